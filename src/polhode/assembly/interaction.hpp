@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/motion_basis.hpp>
+#include <polhode/base/types.hpp>
+#include <polhode/time/body_step.hpp>
+
+namespace polhode {
+
+/// Most multiplier rows one interaction may have.
+inline constexpr int kMaxRows = 6;
+
+/// What one interaction between bodies a and b gives for the current trial step.
+///
+/// Wrenches are (force [N], moment about the centre of mass [N m]), world components, at
+/// t_{n+αf}; increments are (Δr, Δθ), world. A constraint's force on body i is +λ times its
+/// column B_i, and belongs to the wrench. Everything about the ground stays zero and unread.
+struct PairTerms {
+  Vec6 wrench_a, wrench_b;                ///< Of everything, multipliers included.
+  Mat6 D_aa, D_ab, D_ba, D_bb;            ///< D_ij: wrench of i by the increment of j.
+  Eigen::Matrix<double, 6, 6> B_a, B_b;   ///< Column k: wrench per unit of multiplier k.
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> G_a, G_b;  ///< Row k: derivative of g_k at t_{n+1}.
+  Vec6 g;                                 ///< Constraint values at t_{n+1}.
+  Vec6 compliance;                        ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
+
+  void set_zero();
+};
+
+/// One interaction's view of the step.
+struct PairStep {
+  const BodyStep& a;
+  const BodyStep& b;
+  const StepContext& context;
+  const double* lambda;   ///< Current multipliers, rows() of them.
+  const double* history;  ///< What commit() stored at t_n.
+};
+
+/// What an interaction did over the step that was just accepted.
+struct Work {
+  double stored = 0.0;      ///< Potential energy at t_{n+1} [J].
+  double dissipated = 0.0;  ///< Over the step [J]; never negative.
+  double put_in = 0.0;      ///< Work of loads over the step [J].
+
+  Work& operator+=(const Work& w) {
+    stored += w.stored;
+    dissipated += w.dissipated;
+    put_in += w.put_in;
+    return *this;
+  }
+};
+
+/// Which bodies an interaction acts on; kGround for none. Single-body loads use b alone.
+struct Participants {
+  int a = kGround, b = kGround;
+};
+
+/// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
+struct InteractionItem {
+  std::string name;       ///< As in the user's file.
+  Participants bodies;
+
+  [[nodiscard]] int rows() const { return 0; }
+  [[nodiscard]] int history_size() const { return 0; }
+  [[nodiscard]] bool conservative() const { return true; }  ///< Neither dissipates nor depends on time.
+  /// γ in G q̈ + γ = 0 at an instant, one value per row.
+  void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
+  [[nodiscard]] Work work(const PairStep&) const { return {}; }
+  void initialize(const PairStep&, double* /*history*/) const {}   ///< History at the start.
+  void commit(const PairStep&, double* /*history*/) const {}       ///< History at t_{n+1}.
+  /// Mirror images: does the accepted configuration still have the assembled orientation?
+  [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
+  [[nodiscard]] std::optional<MotionBasis> motion_basis() const { return std::nullopt; }
+  /// An equivalent constraint exists with a and b exchanged; reverse() makes it so.
+  [[nodiscard]] bool reversible() const { return false; }
+  void reverse() {}
+};
+
+/// All interactions of one type, in one contiguous array: the assembler makes one virtual call
+/// per group, never per item. `first` and `count` select items; pair(i) gives item i's step.
+class InteractionGroup {
+ public:
+  virtual ~InteractionGroup() = default;
+  [[nodiscard]] virtual std::string kind() const = 0;  ///< "joint", "force" ...: for reports.
+  [[nodiscard]] virtual int size() const = 0;
+  [[nodiscard]] virtual const std::string& name(int i) const = 0;
+  [[nodiscard]] virtual Participants bodies(int i) const = 0;
+  [[nodiscard]] virtual int rows(int i) const = 0;
+  [[nodiscard]] virtual int history_size(int i) const = 0;
+  [[nodiscard]] virtual bool conservative(int i) const = 0;
+  [[nodiscard]] virtual std::optional<MotionBasis> motion_basis(int i) const = 0;
+  [[nodiscard]] virtual bool reversible(int i) const = 0;
+  virtual void reverse(int i) = 0;  ///< Before the system is finished.
+
+  /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
+  virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
+                        std::span<PairTerms> terms) const = 0;
+  virtual void acceleration_terms(int i, const PairStep& step, Vec6& gamma) const = 0;
+  [[nodiscard]] virtual Work work(int i, const PairStep& step) const = 0;
+  virtual void initialize(int i, const PairStep& step, double* history) const = 0;
+  virtual void commit(int i, const PairStep& step, double* history) const = 0;
+  [[nodiscard]] virtual bool acceptable(int i, const PairStep& step) const = 0;
+};
+
+/// The group of an item type. Item derives from InteractionItem and has
+/// `static constexpr const char* kKind` and `void evaluate(const PairStep&, PairTerms&) const`.
+template <class Item>
+class Group final : public InteractionGroup {
+ public:
+  std::vector<Item> items;
+
+  std::string kind() const override { return Item::kKind; }
+  int size() const override { return static_cast<int>(items.size()); }
+  const std::string& name(int i) const override { return at(i).name; }
+  Participants bodies(int i) const override { return at(i).bodies; }
+  int rows(int i) const override { return at(i).rows(); }
+  int history_size(int i) const override { return at(i).history_size(); }
+  bool conservative(int i) const override { return at(i).conservative(); }
+  std::optional<MotionBasis> motion_basis(int i) const override { return at(i).motion_basis(); }
+  bool reversible(int i) const override { return at(i).reversible(); }
+  void reverse(int i) override { items[static_cast<std::size_t>(i)].reverse(); }
+  void evaluate(std::span<const int> list, std::span<const PairStep> steps,
+                std::span<PairTerms> terms) const override {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      terms[k].set_zero();
+      at(list[k]).evaluate(steps[k], terms[k]);
+    }
+  }
+  void acceleration_terms(int i, const PairStep& step, Vec6& gamma) const override {
+    at(i).acceleration_terms(step, gamma);
+  }
+  Work work(int i, const PairStep& step) const override { return at(i).work(step); }
+  void initialize(int i, const PairStep& step, double* history) const override {
+    at(i).initialize(step, history);
+  }
+  void commit(int i, const PairStep& step, double* history) const override {
+    at(i).commit(step, history);
+  }
+  bool acceptable(int i, const PairStep& step) const override { return at(i).acceptable(step); }
+
+ private:
+  [[nodiscard]] const Item& at(int i) const { return items[static_cast<std::size_t>(i)]; }
+};
+
+}  // namespace polhode

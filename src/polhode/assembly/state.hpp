@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <polhode/base/types.hpp>
+
+namespace polhode {
+
+/// Bodies are kept eight at a time, one number of eight bodies side by side, so that one vector
+/// instruction serves several bodies. The layout is the same whatever the instruction set.
+inline constexpr int kLanes = 8;
+/// Steps whose mean velocities the predictor remembers.
+inline constexpr int kPast = 4;
+
+using Lane = double[kLanes];
+using Lane3 = double[3][kLanes];
+
+/// Motion of eight bodies at t_n. Lanes without a body hold a body at rest.
+struct alignas(64) BodyBlock {
+  Lane3 r;           ///< Centre of mass, world [m].
+  Lane3 r_rest;      ///< What rounding took from r (Kahan) [m].
+  double q[4][kLanes];  ///< Unit quaternion (w, x, y, z), body to world.
+  Lane3 v;           ///< [m/s], world.
+  Lane3 W;           ///< Material angular velocity [rad/s].
+  Lane3 a;           ///< Newmark acceleration, of time t_n + δΔt [m/s²]; used for ρ∞ < 1 only.
+  Lane3 A;           ///< Material angular acceleration, likewise [rad/s²].
+  Lane3 h_dot;       ///< Rate of angular momentum, world, likewise [N m].
+  Lane3 past_v[kPast];  ///< Mean velocities u/Δt of the last steps, ring [m/s].
+  Lane3 past_W[kPast];  ///< Mean material angular velocities Θ/Δt, ring [rad/s].
+};
+
+/// One body's motion, as users and tests read and set it.
+struct BodyMotion {
+  Vec3 r = Vec3::Zero();
+  Quat q = Quat::Identity();
+  Vec3 v = Vec3::Zero();
+  Vec3 W = Vec3::Zero();
+  Vec3 a = Vec3::Zero();
+  Vec3 A = Vec3::Zero();
+  Vec3 h_dot = Vec3::Zero();
+
+  [[nodiscard]] Mat3 Lambda() const { return q.toRotationMatrix(); }
+  [[nodiscard]] Vec3 omega() const { return q * W; }  ///< World angular velocity [rad/s].
+};
+
+/// A sum that keeps what rounding takes away (Neumaier).
+struct ExactSum {
+  double sum = 0.0, rest = 0.0;
+  void add(double x) {
+    const double t = sum + x;
+    rest += (sum < 0 ? -sum : sum) >= (x < 0 ? -x : x) ? (sum - t) + x : (x - t) + sum;
+    sum = t;
+  }
+  [[nodiscard]] double value() const { return sum + rest; }
+};
+
+/// What happened so far: the balance that every run ends with. SI units.
+struct Ledger {
+  double initial_energy = 0.0;                 ///< T + V at the start [J].
+  double initial_potential = 0.0;              ///< V at the start [J].
+  std::array<double, 3> initial_p{}, initial_l{};  ///< Momentum, angular momentum about the origin.
+  ExactSum dissipated, put_in;                 ///< [J]
+  std::array<ExactSum, 3> impulse, angular_impulse;  ///< Of loads and ground [N s, N m s].
+  double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;   ///< Largest magnitudes reached.
+  double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;   ///< Largest absolute drifts.
+  double constraint_max = 0.0, velocity_constraint_max = 0.0;  ///< Largest residuals, scaled.
+  std::int64_t steps = 0, rejected = 0, iterations = 0, factorisations = 0;
+};
+
+/// Everything that changes during a run. A value: copy it, save it, compare it bit for bit.
+struct State {
+  double t = 0.0;                   ///< [s]
+  std::vector<BodyBlock> blocks;    ///< By slot, see LaneOrder.
+  std::vector<double> lambda;       ///< Multipliers by row, acting at t_{n+αf} of the last step.
+  std::vector<double> history;      ///< Of interactions: turns of an angle, ...
+  int past_count = 0;               ///< Valid entries of the predictor's rings.
+  int past_next = 0;                ///< Ring position to be written next.
+  std::array<double, kPast> past_time{};  ///< Middles of the remembered steps [s], by ring position.
+  double dt_last = 0.0;             ///< Length of the last accepted step [s].
+  double dt_next = 0.0;             ///< What the step control wants next [s].
+  double error_last = 0.0;          ///< Error estimate of the last step [-].
+  int easy_steps = 0;               ///< Steps in a row that needed few iterations.
+  Ledger ledger;
+
+  [[nodiscard]] BodyMotion motion(int slot) const;
+  void set_motion(int slot, const BodyMotion& m);
+};
+
+}  // namespace polhode

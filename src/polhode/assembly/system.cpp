@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <polhode/assembly/system.hpp>
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+
+namespace polhode {
+
+int System::add_body(BodyData body, const BodyMotion& start) {
+  bodies_.push_back(std::move(body));
+  start_.push_back(start);
+  return body_count() - 1;
+}
+
+void System::finish() {
+  const int n = body_count();
+  std::vector<TreeCandidate> candidates;
+  std::vector<int> shapes;
+  int histories = 0;
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g)
+    for (int i = 0; i < groups_[g]->size(); ++i) {
+      const auto [a, b] = groups_[g]->bodies(i);
+      if (a < kGround || a >= n || b < kGround || b >= n || (a == b))
+        throw InputError(format("{} '{}'", groups_[g]->kind(), groups_[g]->name(i)),
+                         a == b ? "acts between a body and itself" : "names a body that is not there",
+                         "Give two different bodies of this system, or one and the ground");
+      const auto basis = groups_[g]->motion_basis(i);
+      const int index = static_cast<int>(refs_.size());
+      if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
+      shapes.push_back(shape_code(basis));
+      refs_.push_back({g, i, a, b, groups_[g]->rows(i), rows_, histories});
+      rows_ += refs_.back().rows;
+      histories += groups_[g]->history_size(i);
+      conservative_ = conservative_ && groups_[g]->conservative(i);
+    }
+  tree_ = build_spanning_tree(n, static_cast<int>(refs_.size()), candidates, shapes);
+  for (int index : tree_.reversed) {
+    InteractionRef& ref = refs_[index];
+    groups_[ref.group]->reverse(ref.item);
+    std::swap(ref.a, ref.b);
+  }
+
+  // Scales: mean mass, and the mean reach of a body (joint arms, radius of gyration).
+  std::vector<double> reach(n);
+  for (int b = 0; b < n; ++b)
+    reach[b] = std::sqrt(0.5 * bodies_[b].inertia.trace() / bodies_[b].mass);
+  for (const InteractionRef& ref : refs_)
+    if (const auto basis = groups_[ref.group]->motion_basis(ref.item)) {
+      if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], basis->Z_a.norm());
+      if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], basis->Z_b.norm());
+    }
+  double mass = 0.0, length = 0.0;
+  for (int b = 0; b < n; ++b) {
+    mass += bodies_[b].mass;
+    length += reach[b];
+  }
+  mean_mass_ = n > 0 ? mass / n : 1.0;
+  length_ = n > 0 && length > 0.0 ? length / n : 1.0;
+
+  initial_.blocks.resize(tree_.slots / kLanes);
+  if (!initial_.blocks.empty())
+    std::memset(static_cast<void*>(initial_.blocks.data()), 0,
+                initial_.blocks.size() * sizeof(BodyBlock));
+  for (int s = 0; s < tree_.slots; ++s)
+    initial_.set_motion(s, tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
+  initial_.lambda.assign(rows_, 0.0);
+  initial_.history.assign(histories, 0.0);
+}
+
+BodyStep System::instant(const State& state, int body) const {
+  if (body == kGround) return BodyStep::ground(1.0);
+  const BodyMotion m = motion(state, body);
+  return BodyStep::at_instant(m.r, m.Lambda(), m.v, m.W);
+}
+
+}  // namespace polhode

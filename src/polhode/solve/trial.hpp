@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/system.hpp>
+
+namespace polhode {
+
+/// Eight bodies at the current iterate of t_{n+1}, and what the step needs of t_n.
+struct alignas(64) TrialBlock {
+  Lane3 r;                       ///< r_{n+1} [m].  First, with Lambda and Lambda_n: joints gather these.
+  double Lambda[9][kLanes];      ///< Λ_{n+1}, row by row.
+  double Lambda_n[9][kLanes];    ///< Λ_n.
+  Lane3 u;                       ///< r_{n+1} − r_n [m].
+  Lane3 theta;                   ///< Cayley vector of the step, world: Λ_{n+1} = cay[θ] Λ_n [-].
+  Lane3 h_n;                     ///< Angular momentum at t_n, world [N m s].
+};
+
+/// The step being solved.
+struct Trial {
+  StepContext context;
+  std::vector<TrialBlock> blocks;      ///< By slot.
+  std::vector<double> lambda;          ///< By row, current iterate.
+  std::vector<double> lambda_centre;   ///< By row: proximal centre; zero until converged.
+
+  /// s = βΔt²/m_ref: momentum rows are multiplied by it, λ̂ = s λ.
+  [[nodiscard]] double scale(const System& system) const {
+    return context.ga.beta * context.dt * context.dt / system.mean_mass();
+  }
+};
+
+/// Body's step from the state at t_n and the trial at t_{n+1}; velocities by Newmark.
+[[nodiscard]] BodyStep body_step(const System& system, const State& state, const Trial& trial,
+                                 int body);
+/// Replaces a body's u, θ in the trial, and with them r and Λ at t_{n+1}.
+void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const Vec3& theta);
+
+/// How one Newton iteration went.
+struct Iteration {
+  bool solved = false;      ///< False: singular matrix or a value that is not finite.
+  double increment = 0.0;   ///< Largest of |Δr|/ℓ and |Δθ| [-].
+  int worst_body = -1;      ///< Where it is.
+};
+
+/// How well the constraints hold at the current iterate.
+struct ConstraintCheck {
+  double residual = 0.0;     ///< Largest |g| [m or -].
+  int worst_row = -1;
+  double work_defect = 0.0;  ///< Σ |λ g|: the energy that the multipliers may leak [J].
+  double work_scale = 0.0;   ///< Σ |λ|(ℓ + |x|): times round-off, the least that can be asked [J].
+};
+
+/// One way of doing the Newton iterations of a step: assemble, solve, update.
+class NewtonEngine {
+ public:
+  virtual ~NewtonEngine() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Called once per step when the trial was predicted.
+  virtual void begin_step(const State& state, Trial& trial) = 0;
+  /// One iteration on the trial. `refactor` false: keep the last factorisation if there is one.
+  /// `damping` in (0, 1]: part of the increment that is applied.
+  virtual Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) = 0;
+  [[nodiscard]] virtual ConstraintCheck check(const State& state, Trial& trial) = 0;
+  /// Called after convergence: makes trial.lambda complete.
+  virtual void end_step(const State& state, Trial& trial) = 0;
+};
+
+}  // namespace polhode
