@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -49,6 +50,7 @@ void check_mass_properties(std::string_view where, double mass, const Mat3& iner
   Eigen::Index i = 0;
   Eigen::Index j = 0;
   if (skew.cwiseAbs().maxCoeff(&i, &j) > kSymmetrySlack * largest_entry) {
+    if (i > j) std::swap(i, j);
     const char* axis = "xyz";
     throw InputError(where,
                      format("inertia is not symmetric: entry {}{} is {:g}, but {}{} is {:g} kg m²",
