@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/system.hpp>
+#include <polhode/model/model.hpp>
+#include <polhode/solve/start.hpp>
+#include <polhode/solve/stepper.hpp>
+
+namespace polhode {
+
+/// Why a run ended.
+enum class RunEnd { finished, not_converged, interrupted, limit };
+
+/// Energies and momenta at an instant. SI units, world axes, angular momentum about the origin.
+struct Balance {
+  double kinetic = 0.0, potential = 0.0;   ///< [J]
+  double put_in = 0.0, dissipated = 0.0;   ///< Since the start [J].
+  Vec3 linear_momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
+};
+
+/// How a joint stands at the state of a simulation.
+struct JointReport {
+  std::vector<double> coordinates;  ///< Free coordinates, user's order a→b, turns counted [rad or m].
+  std::vector<double> rates;        ///< Their rates.
+  Vec3 force = Vec3::Zero();        ///< That a exerts on b, world axes [N].
+  Vec3 moment = Vec3::Zero();       ///< At the joint's point on b [N m].
+  double residual = 0.0;            ///< Largest |g| of its rows [m or -].
+};
+
+/// The figures a run ends with; `run --json` prints them under these names.
+struct RunSummary {
+  RunEnd end = RunEnd::finished;
+  std::string message;              ///< For a run that did not finish: what happened and what to try.
+  double t = 0.0;
+  std::int64_t steps = 0, rejected_steps = 0, newton_iterations = 0;
+  double energy_drift = 0.0, linear_momentum_drift = 0.0, angular_momentum_drift = 0.0;
+  double constraint_residual_max = 0.0, velocity_constraint_residual_max = 0.0;
+  double wall_time_s = 0.0, cpu_time_s = 0.0;
+  std::vector<std::pair<std::string, double>> phases;   ///< Name, seconds.
+  std::string result_hash, solver, instruction_set, version;
+  int order = 2;
+  std::string narration;            ///< What was chosen and why, a few lines.
+};
+
+/// A compiled model with its state and method: what steps, runs and is looked at.
+class Simulation {
+ public:
+  /// Builds the system, assembles and projects the start, chooses solver and order.
+  /// @throws InputError if the model cannot be built or its start not assembled.
+  explicit Simulation(Model model);
+  /// Continues from a saved state: equal to the straight run bit for bit.
+  Simulation(Model model, State state);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  [[nodiscard]] const Model& model() const;
+  [[nodiscard]] const System& system() const;
+  [[nodiscard]] const State& state() const;
+  [[nodiscard]] double time() const { return state().t; }
+  [[nodiscard]] const StartReport& start_report() const;
+
+  /// Takes one accepted step, not beyond t_limit.
+  StepReport step(double t_limit);
+  /// Steps to the model's duration; calls observe(*this) at the start and after every step
+  /// whose end is an output time (model.output.every), and on_step after every step.
+  /// Stops early, after the current step, when *stop becomes true.
+  RunSummary run(const std::function<void(Simulation&)>& observe = {},
+                 const std::function<void(Simulation&)>& on_step = {},
+                 const std::atomic<bool>* stop = nullptr);
+  /// The figures so far.
+  [[nodiscard]] RunSummary summary() const;
+
+  // What stands at the present state; bodies and joints by index in the Model. Motions of model
+  // bodies are of their centre of mass; fixed bodies stand still.
+  [[nodiscard]] BodyMotion body(int body) const;
+  /// Position, velocity and acceleration of a point of a body, Z from the centre of mass, body axes.
+  struct PointMotion { Vec3 position, velocity, acceleration; };
+  [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
+  [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
+  [[nodiscard]] Balance balance() const;
+  /// SHA-256 over the whole state, bodies in the model's order.
+  [[nodiscard]] std::string state_hash() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace polhode
