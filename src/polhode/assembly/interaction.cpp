@@ -18,4 +18,23 @@ void PairTerms::set_zero() {
   compliance.setZero();
 }
 
+void clear_ground_sides(const PairStep& step, PairTerms& t) {
+  if (!step.a.moves) {
+    t.wrench_a.setZero();
+    t.D_aa.setZero();
+    t.D_ab.setZero();
+    t.D_ba.setZero();
+    t.B_a.setZero();
+    t.G_a.setZero();
+  }
+  if (!step.b.moves) {
+    t.wrench_b.setZero();
+    t.D_bb.setZero();
+    t.D_ab.setZero();
+    t.D_ba.setZero();
+    t.B_b.setZero();
+    t.G_b.setZero();
+  }
+}
+
 }  // namespace polhode

@@ -42,6 +42,9 @@ struct PairStep {
   const double* history;  ///< What commit() stored at t_n.
 };
 
+/// Zeroes what was computed for a side that is the ground: items need not ask while they compute.
+void clear_ground_sides(const PairStep& step, PairTerms& terms);
+
 /// What an interaction did over the step that was just accepted.
 struct Work {
   double stored = 0.0;      ///< Potential energy at t_{n+1} [J].

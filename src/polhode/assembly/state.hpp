@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/base/types.hpp>
+#include <polhode/time/body_motion.hpp>
 
 namespace polhode {
 
@@ -30,20 +31,6 @@ struct alignas(64) BodyBlock {
   Lane3 h_dot;       ///< Rate of angular momentum, world, likewise [N m].
   Lane3 past_v[kPast];  ///< Mean velocities u/Δt of the last steps, ring [m/s].
   Lane3 past_W[kPast];  ///< Mean material angular velocities Θ/Δt, ring [rad/s].
-};
-
-/// One body's motion, as users and tests read and set it.
-struct BodyMotion {
-  Vec3 r = Vec3::Zero();
-  Quat q = Quat::Identity();
-  Vec3 v = Vec3::Zero();
-  Vec3 W = Vec3::Zero();
-  Vec3 a = Vec3::Zero();
-  Vec3 A = Vec3::Zero();
-  Vec3 h_dot = Vec3::Zero();
-
-  [[nodiscard]] Mat3 Lambda() const { return q.toRotationMatrix(); }
-  [[nodiscard]] Vec3 omega() const { return q * W; }  ///< World angular velocity [rad/s].
 };
 
 /// A sum that keeps what rounding takes away (Neumaier).

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
 
 namespace polhode {
@@ -19,18 +20,6 @@ struct Place {
   int line = 0;    ///< 1-based.
   int column = 0;  ///< 1-based.
 };
-
-/// A number that may depend on time: constant, expression in t, or table. SI units.
-class TimeFunction {
- public:
-  virtual ~TimeFunction() = default;
-  [[nodiscard]] virtual double operator()(double t) const = 0;
-  [[nodiscard]] virtual bool is_constant() const { return false; }
-};
-using TimeFunctionPtr = std::shared_ptr<const TimeFunction>;
-
-/// Three time functions, one per component.
-using TimeVector = std::array<TimeFunctionPtr, 3>;
 
 /// A drawable and weighable shape of a body, in body axes.
 struct ShapeSpec {
