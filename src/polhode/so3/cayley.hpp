@@ -34,7 +34,7 @@ namespace polhode {
 
 /// T(Θ), the tangent of the Cayley vector for a right (material) increment:
 /// cay[Θ + T(Θ)·ΔΘ] = cay[Θ]·cay[ΔΘ] to first order.
-/// @eq{eq:td-T-Theta-relation} @eq{td-Theta-linearization}
+/// @eq{eq:td-T-Theta-relation} @eq{td-Theta-linearization} @eq{eq:td-linearization-rot}
 ///
 /// @param Theta  Cayley vector of the step's rotation [-].
 /// @returns      T(Θ) = I + ½ Θ̂ + ¼ Θ⊗Θ [-].

@@ -6,7 +6,8 @@
 namespace polhode {
 
 /// Exponential map: the rotation by the angle |chi| about chi.
-/// @eq{eq:rbr-rotation-tensor-alt-2}
+/// @eq{eq:rbr-rotation-tensor-alt-2}, equal to @eq{eq:rbr-rotation-tensor} and
+/// @eq{eq:rbr-rotation-tensor-alt-1}, which divide by the angle.
 ///
 ///   exp[χ̂] = I + sin χ/χ χ̂ + 2/χ² sin²(χ/2) χ̂²
 ///

@@ -20,7 +20,8 @@ namespace polhode {
   return 0.5 * Vec3(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1));
 }
 
-/// hat(f) * hat(z) == z fᵀ − (f·z) I, the tangent of a moment f × z by a rotation.
+/// hat(f) * hat(z) == z fᵀ − (f·z) I, the tangent of a moment f × z by a rotation; with f = z it
+/// is @eq{eq:rbr-identity-2}.
 [[nodiscard]] inline Mat3 hat_hat(const Vec3& f, const Vec3& z) {
   Mat3 m = z * f.transpose();
   m.diagonal().array() -= f.dot(z);
