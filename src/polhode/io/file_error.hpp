@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace polhode {
+
+/// A file could not be read or written: full disk, missing folder, no permission.
+class FileError : public std::runtime_error {
+ public:
+  FileError(std::string_view file, std::string_view what, std::string_view mend);
+  /// With the reason the system gives for errno.
+  [[nodiscard]] static FileError from_errno(std::string_view file, std::string_view what);
+};
+
+/// The bytes of a file. @throws FileError
+[[nodiscard]] std::string read_file(const std::string& path);
+
+/// Writes a file so that at no moment, not even after a crash, a half-written one stands under
+/// its name: temporary file, fsync, rename. @throws FileError
+void write_file_atomically(const std::string& path, std::string_view bytes);
+
+/// Makes a folder and those above it. @throws FileError
+void make_folder(const std::string& path);
+
+}  // namespace polhode

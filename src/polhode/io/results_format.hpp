@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Names of what a results file holds. docs/reference/results_file.md describes it for users; the
+// viewer and other readers rely on these names, so a change is a new kFormatVersion.
+
+namespace polhode::results {
+
+inline constexpr int kFormatVersion = 1;
+inline constexpr const char* kFileName = "results.h5";
+
+inline constexpr const char* kTime = "/time";
+
+/// Everything about all bodies side by side: (frames, bodies, 3), orientation (frames, bodies, 4).
+inline constexpr const char* kPackedBodies = "/packed/bodies";
+/// All joints side by side: force and moment (frames, joints, 3); coordinates and rates
+/// (frames, coordinates), joint k owns entries first[k] to first[k] + count[k] − 1.
+inline constexpr const char* kPackedJoints = "/packed/joints";
+
+/// The same under the names of bodies and joints: bodies/<name>/position is (frames, 3).
+inline constexpr const char* kBodies = "/bodies";
+inline constexpr const char* kJoints = "/joints";
+/// Models with more bodies and joints than this have only the packed form.
+inline constexpr int kMostNamed = 2000;
+
+inline constexpr const char* kEnergy = "/energy";
+inline constexpr const char* kMomentum = "/momentum";
+inline constexpr const char* kSolver = "/solver";
+inline constexpr const char* kProvenance = "/provenance";
+
+}  // namespace polhode::results

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/write_results.hpp>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/results_format.hpp>
+
+namespace polhode {
+
+namespace {
+
+std::string join(const char* group, const std::string& name) { return group + ("/" + name); }
+
+/// A per-body or per-joint quantity: its name in the file, entries of one body, unit.
+struct Quantity {
+  const char* name;
+  std::size_t size;
+  const char* unit;
+};
+constexpr Quantity kBodyQuantities[] = {{"position", 3, "m"},
+                                        {"orientation", 4, "-"},
+                                        {"velocity", 3, "m/s"},
+                                        {"angular_velocity", 3, "rad/s"}};
+constexpr Quantity kReactions[] = {{"force", 3, "N"}, {"moment", 3, "N m"}};
+constexpr Quantity kCoordinates[] = {{"coordinates", 1, "rad or m"}, {"rates", 1, "rad/s or m/s"}};
+constexpr Quantity kEnergies[] = {{"kinetic", 1, "J"},
+                                  {"potential", 1, "J"},
+                                  {"put_in", 1, "J"},
+                                  {"dissipated", 1, "J"},
+                                  {"total", 1, "J"}};
+
+struct FilePlan {
+  std::vector<Channel> channels;
+  std::vector<ChannelView> views;
+
+  void add(const char* group, const Quantity& q, std::vector<std::size_t> dims,
+           bool integer = false) {
+    channels.push_back({join(group, q.name), std::move(dims), q.unit, integer});
+  }
+  void view(const char* group, const std::string& owner, const Quantity& q, std::size_t first,
+            std::size_t count, bool squeeze) {
+    views.push_back(
+        {format("{}/{}/{}", group, owner, q.name), channels.size() - 1, first, count, squeeze});
+  }
+};
+
+/// The order of the channels is the order in which append() lists the numbers.
+FilePlan plan(const ResultsLayout& layout) {
+  namespace r = results;
+  FilePlan p;
+  const std::size_t bodies = layout.bodies.size();
+  const std::size_t joints = layout.joints.size();
+  const bool named = bodies + joints <= r::kMostNamed;
+  p.channels.push_back({r::kTime, {}, "s", false});
+  for (const Quantity& q : kBodyQuantities) {
+    if (bodies == 0) break;
+    p.add(r::kPackedBodies, q, {bodies, q.size});
+    for (std::size_t i = 0; named && i < bodies; ++i)
+      p.view(r::kBodies, layout.bodies[i], q, i, 1, true);
+  }
+  for (const Quantity& q : kReactions) {
+    if (joints == 0) break;
+    p.add(r::kPackedJoints, q, {joints, q.size});
+    for (std::size_t i = 0; named && i < joints; ++i)
+      p.view(r::kJoints, layout.joints[i].name, q, i, 1, true);
+  }
+  const auto coordinates = static_cast<std::size_t>(layout.coordinates());
+  for (const Quantity& q : kCoordinates) {
+    if (coordinates == 0) break;
+    p.add(r::kPackedJoints, q, {coordinates});
+    std::size_t first = 0;
+    for (const auto& joint : layout.joints) {
+      const auto count = static_cast<std::size_t>(joint.coordinates);
+      if (named && count > 0) p.view(r::kJoints, joint.name, q, first, count, false);
+      first += count;
+    }
+  }
+  for (const Quantity& q : kEnergies) p.add(r::kEnergy, q, {});
+  p.add(r::kMomentum, {"linear", 3, "kg m/s"}, {3});
+  p.add(r::kMomentum, {"angular", 3, "kg m^2/s"}, {3});
+  p.add(r::kSolver, {"dt", 1, "s"}, {});
+  p.add(r::kSolver, {"steps", 1, "-"}, {}, true);
+  p.add(r::kSolver, {"iterations", 1, "-"}, {}, true);
+  p.add(r::kSolver, {"rejected", 1, "-"}, {}, true);
+  return p;
+}
+
+Hdf5File create(const std::string& path, const ResultsLayout& layout) {
+  FilePlan p = plan(layout);
+  return {path, std::move(p.channels), p.views};
+}
+
+std::string lines(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& line : list) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+}  // namespace
+
+int ResultsLayout::coordinates() const {
+  int sum = 0;
+  for (const JointEntry& joint : joints) sum += joint.coordinates;
+  return sum;
+}
+
+ResultsLayout results_layout(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  ResultsLayout layout;
+  layout.title = model.title;
+  for (const BodySpec& body : model.bodies) layout.bodies.push_back(body.name);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const auto count = simulation.joint(static_cast<int>(i)).coordinates.size();
+    layout.joints.push_back({model.joints[i].name, model.joints[i].type, static_cast<int>(count)});
+  }
+  return layout;
+}
+
+ResultsFrame results_frame(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  ResultsFrame frame;
+  frame.t = simulation.time();
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyMotion motion = simulation.body(static_cast<int>(i));
+    frame.position.push_back(motion.r);
+    frame.orientation.push_back(motion.q);
+    frame.velocity.push_back(motion.v);
+    frame.angular_velocity.push_back(motion.omega());
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const JointReport joint = simulation.joint(static_cast<int>(i));
+    frame.force.push_back(joint.force);
+    frame.moment.push_back(joint.moment);
+    frame.coordinates.insert(frame.coordinates.end(), joint.coordinates.begin(),
+                             joint.coordinates.end());
+    frame.rates.insert(frame.rates.end(), joint.rates.begin(), joint.rates.end());
+  }
+  frame.balance = simulation.balance();
+  const State& state = simulation.state();
+  frame.dt = state.dt_last;
+  frame.steps = state.ledger.steps;
+  frame.iterations = state.ledger.iterations;
+  frame.rejected = state.ledger.rejected;
+  return frame;
+}
+
+ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
+                         const Provenance& provenance)
+    : file_(create(path, layout)) {
+  namespace r = results;
+  std::vector<std::string> joints, types;
+  std::vector<std::int64_t> first, count;
+  std::int64_t next = 0;
+  for (const auto& joint : layout.joints) {
+    joints.push_back(joint.name);
+    types.push_back(joint.type);
+    first.push_back(next);
+    count.push_back(joint.coordinates);
+    next += joint.coordinates;
+  }
+  file_.names(join(r::kPackedBodies, "names"), layout.bodies);
+  file_.names(join(r::kPackedJoints, "names"), joints);
+  file_.names(join(r::kPackedJoints, "types"), types);
+  file_.numbers(join(r::kPackedJoints, "first"), first);
+  file_.numbers(join(r::kPackedJoints, "count"), count);
+
+  file_.attribute("/", "format", "polhode results");
+  file_.attribute("/", "format_version", r::kFormatVersion);
+  file_.attribute("/", "title", layout.title);
+  file_.attribute(r::kProvenance, "version", provenance.version);
+  file_.attribute(r::kProvenance, "solver", provenance.solver);
+  file_.attribute(r::kProvenance, "instruction_set", provenance.instruction_set);
+  file_.attribute(r::kProvenance, "model_file", provenance.model_file);
+  file_.attribute(r::kProvenance, "overrides", lines(provenance.overrides));
+  // A list of one text: attributes hold at most 64 KB, models may be longer.
+  file_.names(join(r::kProvenance, "model"), {provenance.model_text});
+  file_.flush();
+}
+
+ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
+  return ResultsFile(Hdf5File::append_to(path, plan(layout).channels, t));
+}
+
+void ResultsFile::append(const ResultsFrame& frame) {
+  numbers_.clear();
+  const auto scalar = [this](double x) { numbers_.push_back(x); };
+  const auto vector = [&](const Vec3& x) {
+    for (int i = 0; i < 3; ++i) scalar(x[i]);
+  };
+  const auto vectors = [&](const std::vector<Vec3>& list) {
+    for (const Vec3& x : list) vector(x);
+  };
+  scalar(frame.t);
+  vectors(frame.position);
+  for (const Quat& q : frame.orientation) {
+    const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation.
+    for (double x : {q.w(), q.x(), q.y(), q.z()}) scalar(sign * x);
+  }
+  vectors(frame.velocity);
+  vectors(frame.angular_velocity);
+  vectors(frame.force);
+  vectors(frame.moment);
+  for (double x : frame.coordinates) scalar(x);
+  for (double x : frame.rates) scalar(x);
+  const Balance& b = frame.balance;
+  for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
+    scalar(x);
+  vector(b.linear_momentum);
+  vector(b.angular_momentum);
+  scalar(frame.dt);
+  for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
+    scalar(static_cast<double>(x));
+  file_.append(numbers_);
+}
+
+}  // namespace polhode

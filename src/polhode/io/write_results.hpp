@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <polhode/io/hdf5_file.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+
+/// Where results come from; kept with them.
+struct Provenance {
+  std::string version;  ///< Of Polhode.
+  std::string solver, instruction_set;
+  std::string model_file;              ///< Name without folders.
+  std::string model_text;              ///< As read, overrides not applied.
+  std::vector<std::string> overrides;  ///< As given with --set.
+};
+
+/// Names and shapes that a results file is laid out by.
+struct ResultsLayout {
+  struct JointEntry {
+    std::string name, type;
+    int coordinates = 0;  ///< Free coordinates reported.
+  };
+  std::string title;
+  std::vector<std::string> bodies;
+  std::vector<JointEntry> joints;
+
+  [[nodiscard]] int coordinates() const;  ///< Of all joints.
+};
+
+/// What stands at one time. Lists hold one entry per body, joint or coordinate of the layout.
+struct ResultsFrame {
+  double t = 0.0;
+  std::vector<Vec3> position, velocity,
+      angular_velocity;           ///< Centre of mass, world [m, m/s, rad/s].
+  std::vector<Quat> orientation;  ///< Body to world.
+  std::vector<double> coordinates, rates;
+  std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
+  Balance balance;
+  double dt = 0.0;                                       ///< Length of the last step [s].
+  std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
+};
+
+[[nodiscard]] ResultsLayout results_layout(const Simulation& simulation);
+[[nodiscard]] ResultsFrame results_frame(const Simulation& simulation);
+
+/// The results file of a run, see docs/reference/results_file.md.
+class ResultsFile {
+ public:
+  /// Starts a new file. @throws FileError
+  ResultsFile(const std::string& path, const ResultsLayout& layout, const Provenance& provenance);
+  /// Continues a file whose frames up to time t are kept. @throws FileError, InputError
+  static ResultsFile append_to(const std::string& path, const ResultsLayout& layout, double t);
+
+  void append(const ResultsFrame& frame);  ///< @throws FileError
+  [[nodiscard]] std::size_t frames() const { return file_.frames(); }
+  void close() { file_.close(); }  ///< @throws FileError
+
+ private:
+  explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
+  Hdf5File file_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace polhode
