@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <numbers>
+
+#include <polhode/assembly/free_coordinate.hpp>
+
+namespace polhode {
+
+namespace {
+
+double nearest_turn(double angle, double near) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  return angle + kTurn * std::round((near - angle) / kTurn);
+}
+
+/// x / sin x, and its derivative.
+std::pair<double, double> over_sine(double x) {
+  if (std::abs(x) < 0.02) {
+    const double y = x * x;
+    return {1.0 + y * (1.0 / 6.0 + y * (7.0 / 360.0 + y * 31.0 / 15120.0)),
+            x * (1.0 / 3.0 + y * (7.0 / 90.0 + y * 31.0 / 2520.0))};
+  }
+  const double s = std::sin(x);
+  return {x / s, (s - x * std::cos(x)) / (s * s)};
+}
+
+/// Directions of the angle at one time: e, f of the base body, d of the other.
+struct Directions {
+  Vec3 e, f, d;
+  [[nodiscard]] double cosine() const { return e.dot(d); }
+  [[nodiscard]] double sine() const { return f.dot(d); }
+  [[nodiscard]] double angle() const { return std::atan2(sine(), cosine()); }
+  /// ∂φ = gradient·(∂θ_other − ∂θ_base) when d is carried by the other body.
+  [[nodiscard]] Vec3 gradient() const {
+    const double C = cosine(), S = sine();
+    return d.cross(C * f - S * e) / (C * C + S * S);
+  }
+};
+
+/// mu with tangents by the base's and the other body's rotation.
+struct Gradient {
+  double alpha = 0.0;
+  Vec3 mu, D_alpha_base, D_alpha_other;
+  Mat3 D_mu_base, D_mu_other;
+};
+
+Gradient discrete_gradient(const Directions& q_alpha, const Directions& q_n1, double phi_n,
+                           double phi_n1, double alpha_f) {
+  Gradient out;
+  out.alpha = (1.0 - alpha_f) * phi_n + alpha_f * phi_n1;
+  const double c = std::cos(out.alpha), s = std::sin(out.alpha);
+  const auto [w, w_x] = over_sine(0.5 * (phi_n1 - phi_n));
+  const Vec3 b = c * q_alpha.f - s * q_alpha.e;
+  const Vec3 n = q_alpha.d.cross(b);
+  out.mu = w * n;
+  const Vec3 phi_gradient = q_n1.gradient();
+  out.D_alpha_other = alpha_f * phi_gradient;
+  out.D_alpha_base = -out.D_alpha_other;
+  const Vec3 b_alpha = -s * q_alpha.f - c * q_alpha.e;
+  const Mat3 through_phi = n * (0.5 * w_x * phi_gradient).transpose() +
+                           w * q_alpha.d.cross(b_alpha) * out.D_alpha_other.transpose();
+  out.D_mu_other = through_phi + w * alpha_f * hat_hat(b, q_n1.d);
+  out.D_mu_base = -through_phi - w * alpha_f * hat_hat(q_alpha.d, c * q_n1.f - s * q_n1.e);
+  return out;
+}
+
+Gradient plain_gradient(const Directions& q_alpha, const Directions& q_n1, double phi_n,
+                        double phi_n1, double alpha_f) {
+  Gradient out;
+  const double C = q_alpha.cosine(), S = q_alpha.sine(), q = C * C + S * S;
+  out.alpha = nearest_turn(std::atan2(S, C), (1.0 - alpha_f) * phi_n + alpha_f * phi_n1);
+  out.mu = q_alpha.gradient();
+  const Vec3 n = C * q_alpha.f - S * q_alpha.e;
+  // Dot products of averaged directions: D(x_α·y_α) by the turn of x is α_f x_{n+1} × y_α.
+  const Vec3 C_other = alpha_f * q_n1.d.cross(q_alpha.e),
+             C_base = alpha_f * q_n1.e.cross(q_alpha.d);
+  const Vec3 S_other = alpha_f * q_n1.d.cross(q_alpha.f),
+             S_base = alpha_f * q_n1.f.cross(q_alpha.d);
+  out.D_alpha_other = (C * S_other - S * C_other) / q;
+  out.D_alpha_base = (C * S_base - S * C_base) / q;
+  const auto tangent = [&](const Vec3& D_C, const Vec3& D_S, const Mat3& turned) -> Mat3 {
+    const Mat3 D_n = q_alpha.f * D_C.transpose() - q_alpha.e * D_S.transpose();
+    return (hat(q_alpha.d) * D_n + turned) / q -
+           out.mu * (2.0 / q * (C * D_C + S * D_S)).transpose();
+  };
+  out.D_mu_other = tangent(C_other, S_other, alpha_f * hat_hat(n, q_n1.d));
+  out.D_mu_base = tangent(C_base, S_base, -alpha_f * hat_hat(q_alpha.d, C * q_n1.f - S * q_n1.e));
+  return out;
+}
+
+Directions directions_at_n1(const FreeAngle& x, const BodyStep& a, const BodyStep& b) {
+  const BodyStep& base = x.on_b ? b : a;
+  const BodyStep& other = x.on_b ? a : b;
+  return {base.Lambda_n1 * x.E, base.Lambda_n1 * x.F, other.Lambda_n1 * x.D};
+}
+
+}  // namespace
+
+double FreeAngle::at_n1(const BodyStep& a, const BodyStep& b, double near) const {
+  return nearest_turn(directions_at_n1(*this, a, b).angle(), near);
+}
+
+double FreeAngle::rate_at_n1(const BodyStep& a, const BodyStep& b) const {
+  const Vec3 omega = b.Lambda_n1 * b.W_n1 - a.Lambda_n1 * a.W_n1;
+  const double rate = directions_at_n1(*this, a, b).gradient().dot(omega);
+  return on_b ? -rate : rate;
+}
+
+AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
+                     bool conserving) {
+  const BodyStep& base = angle.on_b ? b : a;
+  const BodyStep& other = angle.on_b ? a : b;
+  const Carried e = base.vector(angle.E), f = base.vector(angle.F), d = other.vector(angle.D);
+  const Directions q_alpha{e.at_alpha, f.at_alpha, d.at_alpha};
+  const Directions q_n1{e.at_n1, f.at_n1, d.at_n1};
+  AngleStep s;
+  s.at_n = at_n;
+  s.at_n1 = nearest_turn(q_n1.angle(), at_n);
+  const Gradient g =
+      (conserving ? discrete_gradient : plain_gradient)(q_alpha, q_n1, s.at_n, s.at_n1, a.alpha_f);
+  s.at_alpha = g.alpha;
+  const double sign = angle.on_b ? -1.0 : 1.0;
+  s.mu = sign * g.mu;
+  s.D_mu_a = sign * (angle.on_b ? g.D_mu_other : g.D_mu_base);
+  s.D_mu_b = sign * (angle.on_b ? g.D_mu_base : g.D_mu_other);
+  s.D_alpha_a = angle.on_b ? g.D_alpha_other : g.D_alpha_base;
+  s.D_alpha_b = angle.on_b ? g.D_alpha_base : g.D_alpha_other;
+  const Vec3 omega = b.omega_alpha() - a.omega_alpha();
+  s.rate = s.mu.dot(omega);
+  s.D_rate_a = s.D_mu_a.transpose() * omega - a.omega_alpha_tangent().transpose() * s.mu;
+  s.D_rate_b = s.D_mu_b.transpose() * omega + b.omega_alpha_tangent().transpose() * s.mu;
+  return s;
+}
+
+double FreeDisplacement::at_n1(const BodyStep& a, const BodyStep& b) const {
+  return (a.Lambda_n1 * D).dot(b.point(Z_b).at_n1 - a.point(Z_a).at_n1);
+}
+
+double FreeDisplacement::rate_at_n1(const BodyStep& a, const BodyStep& b) const {
+  const Vec3 d = a.Lambda_n1 * D, u = b.point(Z_b).at_n1 - a.point(Z_a).at_n1;
+  const Vec3 omega_a = a.Lambda_n1 * a.W_n1, omega_b = b.Lambda_n1 * b.W_n1;
+  const Vec3 u_dot =
+      b.v_n1 + omega_b.cross(b.vector(Z_b).at_n1) - a.v_n1 - omega_a.cross(a.vector(Z_a).at_n1);
+  return d.dot(u_dot) + omega_a.cross(d).dot(u);
+}
+
+}  // namespace polhode

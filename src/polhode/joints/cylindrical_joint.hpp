@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Sleeve: b moves along z of a and turns about it.
+[[nodiscard]] inline JointRecipe cylindrical_joint(const JointFrames& f, const JointParameters&) {
+  return joint_of(f, PointInPlane{kX}, PointInPlane{kY},  //
+                  OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY});
+}
+
+}  // namespace polhode

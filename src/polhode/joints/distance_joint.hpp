@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Massless rod with ball ends: the joint points keep their distance.
+/// @param p  Value "distance" [m], positive.
+[[nodiscard]] inline JointRecipe distance_joint(const JointFrames& f, const JointParameters& p) {
+  return joint_of(f, Distance{p.values.at("distance")});
+}
+
+}  // namespace polhode

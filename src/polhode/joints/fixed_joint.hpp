@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Weld: nothing is free.
+[[nodiscard]] inline JointRecipe fixed_joint(const JointFrames& f, const JointParameters&) {
+  return joint_of(f, CoincidentPoints{},  //
+                  OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY}, OrthogonalAxes{kX, kY});
+}
+
+}  // namespace polhode

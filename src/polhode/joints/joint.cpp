@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/joints/joint.hpp>
+#include <polhode/so3/exp_map.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// The frame's columns turned with the body, at t_{n+αf} and t_{n+1}.
+struct CarriedFrame {
+  CarriedFrame(const BodyStep& body, const Mat3& R) {
+    if (!body.moves) {
+      at_alpha = at_n1 = R;
+      return;
+    }
+    at_n1.noalias() = body.Lambda_n1.lazyProduct(R);
+    at_alpha.noalias() = body.Lambda_n.lazyProduct(R);
+    at_alpha = (1.0 - body.alpha_f) * at_alpha + body.alpha_f * at_n1;
+  }
+  Mat3 at_alpha, at_n1;
+};
+
+Vec6 times(const double* rows, const double* lambda, int count) {
+  Vec6 w = Vec6::Zero();
+  for (int k = 0; k < count; ++k) w += lambda[k] * Eigen::Map<const Vec6>(rows + 6 * k);
+  return w;
+}
+
+constexpr const char* kAxisName[3] = {"x", "y", "z"};
+constexpr const char* kRotationName[3] = {"rx", "ry", "rz"};
+
+}  // namespace
+
+Joint::Joint(std::string item_name, std::string type, Participants pair, const JointRecipe& recipe)
+    : frames_(recipe.frames),
+      parts_(recipe.parts),
+      rows_(recipe.parts.rows()),
+      shift_(recipe.shift),
+      user_frames_(recipe.frames),
+      type_(std::move(type)) {
+  name = std::move(item_name);
+  bodies = pair;
+}
+
+void Joint::evaluate(const PairStep& step, PairTerms& t) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const Carried z_a = a.vector(frames_.Z_a), z_b = b.vector(frames_.Z_b);
+  const double af = a.alpha_f;
+  const Vec3 u_n = (b.r_n - a.r_n) + (z_b.at_n - z_a.at_n);
+  Configuration q_alpha, q_n1;
+  q_n1.u = (b.r_n1 - a.r_n1) + (z_b.at_n1 - z_a.at_n1);
+  q_n1.z_a = z_a.at_n1;
+  q_n1.z_b = z_b.at_n1;
+  q_alpha.u = (1.0 - af) * u_n + af * q_n1.u;
+  q_alpha.z_a = z_a.at_alpha;
+  q_alpha.z_b = z_b.at_alpha;
+  if (parts_.planes + parts_.axes > 0) {
+    const CarriedFrame R_a(a, frames_.R_a);
+    q_alpha.R_a = R_a.at_alpha;
+    q_n1.R_a = R_a.at_n1;
+  }
+  if (parts_.axes > 0) {
+    const CarriedFrame R_b(b, frames_.R_b);
+    q_alpha.R_b = R_b.at_alpha;
+    q_n1.R_b = R_b.at_n1;
+  }
+  const PairRows G{t.G_a.data(), t.G_b.data()}, B{t.B_a.data(), t.B_b.data()};
+  parts_.for_each([&](const auto& part, int row) {
+    part.residual(q_n1, t.g.data() + row);
+    part.gradient(q_n1, row, G);
+    part.gradient(q_alpha, row, B);
+    part.add_wrench_tangent(q_alpha, q_n1, af, step.lambda + row, t);
+  });
+  t.wrench_a = times(B.a, step.lambda, rows_);
+  t.wrench_b = times(B.b, step.lambda, rows_);
+  clear_ground_sides(step, t);
+}
+
+Configuration Joint::at_n1(const PairStep& step) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const Vec3 z_a = a.Lambda_n1 * frames_.Z_a, z_b = b.Lambda_n1 * frames_.Z_b;
+  return {.u = (b.r_n1 - a.r_n1) + (z_b - z_a),
+          .z_a = z_a,
+          .z_b = z_b,
+          .R_a = a.Lambda_n1 * frames_.R_a,
+          .R_b = b.Lambda_n1 * frames_.R_b};
+}
+
+void Joint::acceleration_terms(const PairStep& step, Vec6& gamma) const {
+  const Configuration q = at_n1(step);
+  SideRates w{.omega_a = step.a.Lambda_n1 * step.a.W_n1,
+              .omega_b = step.b.Lambda_n1 * step.b.W_n1,
+              .u_dot = Vec3::Zero()};
+  w.u_dot = step.b.v_n1 + w.omega_b.cross(q.z_b) - step.a.v_n1 - w.omega_a.cross(q.z_a);
+  parts_.for_each(
+      [&](const auto& part, int row) { part.acceleration_terms(q, w, gamma.data() + row); });
+}
+
+Vec6 Joint::residual(const PairStep& step) const {
+  const Configuration q = at_n1(step);
+  Vec6 g = Vec6::Zero();
+  parts_.for_each([&](const auto& part, int row) { part.residual(q, g.data() + row); });
+  return g;
+}
+
+bool Joint::acceptable(const PairStep& step) const {
+  // Axes held parallel by right angles could also stand antiparallel: the rows do not see it.
+  const auto same_side = [&](int axis) {
+    const Carried on_a = step.a.vector(frames_.R_a.col(axis));
+    const Carried on_b = step.b.vector(frames_.R_b.col(axis));
+    return (on_a.at_n.dot(on_b.at_n) > 0.0) == (on_a.at_n1.dot(on_b.at_n1) > 0.0);
+  };
+  return (parts_.axes < 2 || same_side(kZ)) && (parts_.axes < 3 || same_side(kX));
+}
+
+std::optional<MotionBasis> Joint::motion_basis() const {
+  if (rows_ < 3 || parts_.distance) return std::nullopt;
+  MotionBasis m;
+  m.coincident = parts_.coincident;
+  m.slides = parts_.planes;
+  m.directions = parts_.axes;
+  m.Z_a = frames_.Z_a;
+  m.Z_b = frames_.Z_b;
+  m.R_a = frames_.R_a;
+  m.R_b = frames_.R_b;
+  for (int i = 0; i < parts_.planes; ++i)
+    m.slide[i] = frames_.R_a.col(parts_.plane[static_cast<std::size_t>(i)].normal);
+  return m;
+}
+
+bool Joint::reversible() const {
+  if (!motion_basis()) return false;
+  if (parts_.coincident || parts_.axes == 3) return true;
+  if (parts_.axes != 2) return false;
+  // The planes' normals turn with a: with b they are the same planes only if they are the
+  // common axis, or together span what is at right angles to it.
+  return parts_.planes == 1 ? parts_.plane[0].normal == kZ
+                            : parts_.plane[0].normal != kZ && parts_.plane[1].normal != kZ;
+}
+
+void Joint::reverse() {
+  std::swap(bodies.a, bodies.b);
+  std::swap(frames_.Z_a, frames_.Z_b);
+  std::swap(frames_.R_a, frames_.R_b);
+  if (parts_.axes == 1) {
+    // x_a·y_b once more: the new x is the old y, the new y the old x.
+    const auto turned = [](const Mat3& R, double sign) {
+      Mat3 out;
+      out << sign * R.col(kY), -sign * R.col(kX), R.col(kZ);
+      return out;
+    };
+    frames_.R_a = turned(frames_.R_a, 1.0);
+    frames_.R_b = turned(frames_.R_b, -1.0);
+  }
+  reversed_ = !reversed_;
+}
+
+int Joint::angles() const {
+  if (parts_.distance) return 0;
+  return parts_.axes == 2 ? 1 : parts_.axes == 1 ? 2 : 0;
+}
+
+FreeAngle Joint::angle(int i) const {
+  const Mat3 &R_a = user_frames_.R_a, &R_b = user_frames_.R_b;
+  if (parts_.axes == 2) return {R_a.col(kX), R_a.col(kY), R_b.col(kX), false};
+  if (i == 0) return {R_a.col(kY), R_a.col(kZ), R_b.col(kY), false};  // About x of a.
+  return {R_b.col(kX), R_b.col(kZ), R_a.col(kX), true};               // About y of b.
+}
+
+std::optional<FreeAngle> Joint::axis_angle() const {
+  if (parts_.axes != 2) return std::nullopt;
+  return angle(0);
+}
+
+bool Joint::translation_free(int user_axis) const {
+  if (parts_.coincident || parts_.distance) return false;
+  for (int i = 0; i < parts_.planes; ++i)
+    if ((parts_.plane[static_cast<std::size_t>(i)].normal + shift_) % 3 == user_axis) return false;
+  return true;
+}
+
+void Joint::initialize(const PairStep& step, double* history) const {
+  for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(user_a(step), user_b(step), 0.0);
+}
+
+void Joint::commit(const PairStep& step, double* history) const {
+  for (int i = 0; i < angles(); ++i)
+    history[i] = angle(i).at_n1(user_a(step), user_b(step), step.history[i]);
+}
+
+std::vector<std::string> Joint::coordinate_names() const {
+  std::vector<std::string> names;
+  for (int k = 0; k < 3; ++k)
+    if (translation_free(k)) names.emplace_back(kAxisName[k]);
+  if (parts_.distance) return names;
+  if (parts_.axes == 0) names.insert(names.end(), kRotationName, kRotationName + 3);
+  if (parts_.axes == 1)
+    for (int i : {kX, kY}) names.emplace_back(kRotationName[(i + shift_) % 3]);
+  if (parts_.axes == 2) names.emplace_back(kRotationName[(kZ + shift_) % 3]);
+  return names;
+}
+
+JointCoordinates Joint::coordinates(const PairStep& step) const {
+  const BodyStep &a = user_a(step), &b = user_b(step);
+  JointCoordinates c;
+  const auto add = [&](double value, double rate) {
+    c.value[static_cast<std::size_t>(c.count)] = value;
+    c.rate[static_cast<std::size_t>(c.count++)] = rate;
+  };
+  for (int k = 0; k < 3; ++k) {
+    if (!translation_free(k)) continue;
+    const FreeDisplacement s{user_frames_.Z_a, user_frames_.Z_b,
+                             user_frames_.R_a.col((k - shift_ + 3) % 3)};
+    add(s.at_n1(a, b), s.rate_at_n1(a, b));
+  }
+  if (parts_.distance) return c;
+  if (parts_.axes == 0) {
+    const Mat3 R_a = a.Lambda_n1 * user_frames_.R_a, R_b = b.Lambda_n1 * user_frames_.R_b;
+    const Vec3 chi = log_map(R_a.transpose() * R_b);
+    const Vec3 omega = R_a.transpose() * (b.Lambda_n1 * b.W_n1 - a.Lambda_n1 * a.W_n1);
+    for (int k = 0; k < 3; ++k) add(chi[k], omega[k]);
+  }
+  for (int i = 0; i < angles(); ++i)
+    add(angle(i).at_n1(a, b, step.history[i]), angle(i).rate_at_n1(a, b));
+  return c;
+}
+
+Reaction Joint::reaction(const PairStep& step, bool joint_axes) const {
+  const Configuration q = at_n1(step);
+  double rows_a[36], rows_b[36];
+  const PairRows G{rows_a, rows_b};
+  parts_.for_each([&](const auto& part, int row) { part.gradient(q, row, G); });
+  const Vec6 w_b = times(rows_b, step.lambda, rows_);
+  // On the solver's b, at its joint point: what its a exerts.
+  Reaction on_b{w_b.head<3>(), w_b.tail<3>() - q.z_b.cross(w_b.head<3>())};
+  if (reversed_) {
+    // The user's b is the solver's a: the opposite, moved to the joint point of that body.
+    on_b.force = -on_b.force;
+    on_b.moment = -on_b.moment + q.u.cross(on_b.force);
+  }
+  if (joint_axes) {
+    Mat3 R;
+    for (int i = 0; i < 3; ++i)
+      R.col((i + shift_) % 3) = user_a(step).Lambda_n1 * user_frames_.R_a.col(i);
+    return {R.transpose() * on_b.force, R.transpose() * on_b.moment};
+  }
+  return on_b;
+}
+
+}  // namespace polhode

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/free_coordinate.hpp>
+#include <polhode/assembly/interaction.hpp>
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Free coordinates of a joint at an instant; the first `count` are valid.
+struct JointCoordinates {
+  int count = 0;
+  std::array<double, 6> value{};  ///< [rad], turns counted, or [m].
+  std::array<double, 6> rate{};   ///< [rad/s] or [m/s].
+};
+
+/// What side a of a joint exerts on side b, at the joint's point on b.
+struct Reaction {
+  Vec3 force = Vec3::Zero();   ///< [N]
+  Vec3 moment = Vec3::Zero();  ///< [N m]
+};
+
+/// A joint: a few quadratic parts between two frames, held by multipliers.
+///
+/// Its rows and multipliers are in the order of MotionBasis. Bodies, frames and rows are in the
+/// solver's order, which reverse() may have changed; reports are in the user's order a → b.
+class Joint : public InteractionItem {
+ public:
+  static constexpr const char* kKind = "joint";
+
+  Joint() = default;
+  /// @param item_name  As in the user's file.
+  /// @param type       Name of its JointKind.
+  Joint(std::string item_name, std::string type, Participants pair, const JointRecipe& recipe);
+
+  [[nodiscard]] const std::string& type() const { return type_; }
+  [[nodiscard]] const JointParts& parts() const { return parts_; }
+  [[nodiscard]] const JointFrames& frames() const { return frames_; }  ///< Solver's order.
+  [[nodiscard]] bool reversed() const { return reversed_; }  ///< Solver's a is the user's b.
+
+  // The contract of an interaction.
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int history_size() const { return angles(); }
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  void acceleration_terms(const PairStep& step, Vec6& gamma) const;
+  void initialize(const PairStep& step, double* history) const;
+  void commit(const PairStep& step, double* history) const;
+  [[nodiscard]] bool acceptable(const PairStep& step) const;
+  [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
+  [[nodiscard]] bool reversible() const;
+  void reverse();
+
+  /// The angle about the common axis of the two sides, in the user's order; nothing if the joint
+  /// holds no two axes parallel or leaves no angle free.
+  [[nodiscard]] std::optional<FreeAngle> axis_angle() const;
+
+  // Reports. `step` is in the solver's order; what they read is at t_{n+1}.
+  /// Names of the free coordinates: x, y, z for displacements along the axes of a, rx, ry, rz
+  /// for rotations. Three free rotations are the components in a's axes of the rotation vector,
+  /// their rates those of the relative angular velocity. A distance joint has none.
+  [[nodiscard]] std::vector<std::string> coordinate_names() const;
+  /// Free coordinates of b's frame seen from a's. @param step  With the history at hand.
+  [[nodiscard]] JointCoordinates coordinates(const PairStep& step) const;
+  /// Constraint values, rows() of them [m or -].
+  [[nodiscard]] Vec6 residual(const PairStep& step) const;
+  /// What a exerts on b by the multipliers of `step`, at its joint point on b.
+  /// @param joint_axes  Components along the axes of a's joint frame; else of the world.
+  [[nodiscard]] Reaction reaction(const PairStep& step, bool joint_axes) const;
+
+ private:
+  [[nodiscard]] int angles() const;            ///< Coordinates whose turns are counted.
+  [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
+  [[nodiscard]] bool translation_free(int user_axis) const;
+  [[nodiscard]] Configuration at_n1(const PairStep& step) const;
+  [[nodiscard]] const BodyStep& user_a(const PairStep& s) const { return reversed_ ? s.b : s.a; }
+  [[nodiscard]] const BodyStep& user_b(const PairStep& s) const { return reversed_ ? s.a : s.b; }
+
+  JointFrames frames_;
+  JointParts parts_;
+  int rows_ = 0, shift_ = 0;
+  bool reversed_ = false;
+  JointFrames user_frames_;  ///< As frames_ before any reversal.
+  std::string type_;
+};
+
+}  // namespace polhode

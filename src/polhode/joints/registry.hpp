@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include <polhode/assembly/parameter.hpp>
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// A type of joint as users name it.
+struct JointKind {
+  std::string name;     ///< "type" in the model file.
+  std::string meaning;  ///< One line.
+  std::string free;     ///< Free motions of b as seen from a: Tx Ty Tz Rx Ry Rz; "as given".
+  JointRecipe (*recipe)(const JointFrames&, const JointParameters&);
+  std::vector<Parameter> parameters = {};
+  bool takes_free_list = false;  ///< Wants JointParameters::free.
+};
+
+/// Every joint type; the order is that of the documentation.
+[[nodiscard]] const std::vector<JointKind>& joint_kinds();
+
+/// The joint type of this name. @throws InputError that lists the names if it is unknown.
+[[nodiscard]] const JointKind& joint_kind(std::string_view name);
+
+}  // namespace polhode

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Ball: the joint points coincide; all rotations are free.
+[[nodiscard]] inline JointRecipe spherical_joint(const JointFrames& f, const JointParameters&) {
+  return joint_of(f, CoincidentPoints{});
+}
+
+}  // namespace polhode

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/joints/recipe.hpp>
+
+namespace polhode {
+
+/// Cardan: the joint points coincide and x of a stays at right angles to y of b; rotation about
+/// these two is free.
+[[nodiscard]] inline JointRecipe universal_joint(const JointFrames& f, const JointParameters&) {
+  return joint_of(f, CoincidentPoints{}, OrthogonalAxes{kX, kY});
+}
+
+}  // namespace polhode

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// A force at a point of body b, with components in the world or turning with the body.
+///
+/// It is taken at t_{n+αf}, and acts at the averaged arm, so that its work over a step at
+/// ρ∞ = 1 is exactly force times displacement of the point. A constant force in the world has
+/// the potential −f·x; any other puts work in. @eq{ga-moment-arm}
+class PointForce : public InteractionItem {
+ public:
+  static constexpr const char* kKind = "force";
+  explicit PointForce(const LoadDescription& load);
+
+  [[nodiscard]] bool conservative() const { return potential_; }
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  [[nodiscard]] Work work(const PairStep& step) const;
+
+ private:
+  Vec3 Z_;
+  TimeVector force_;
+  bool body_fixed_, potential_;
+};
+
+/// Adds a PointForce to the system.
+void add_point_force(System& system, const LoadDescription& load);
+
+}  // namespace polhode

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/loads/moment.hpp>
+#include <polhode/loads/point_force.hpp>
+#include <polhode/loads/registry.hpp>
+#include <polhode/loads/spring_damper.hpp>
+#include <polhode/loads/torsional_spring.hpp>
+
+namespace polhode {
+
+const std::vector<LoadKind>& load_kinds() {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  static const std::vector<LoadKind> kinds{
+      {"force",
+       "force at a point of a body, in world or body axes",
+       LoadPlace::body,
+       "force",
+       {},
+       false,
+       add_point_force},
+      {"moment",
+       "moment on a body, in world or body axes",
+       LoadPlace::body,
+       "moment",
+       {},
+       true,
+       add_moment},
+      {"spring_damper",
+       "linear spring and damper between two points",
+       LoadPlace::points,
+       "",
+       {{"stiffness", "N/m", 0.0, 0.0, kMost, "force per elongation"},
+        {"damping", "N*s/m", 0.0, 0.0, kMost, "force per rate of elongation"},
+        {"free_length",
+         "m",
+         {},
+         0.0,
+         kMost,
+         "length without force; left out: the distance at the start"}},
+       false,
+       add_spring_damper},
+      {"torsional_spring",
+       "linear spring and damper about the axis of a joint",
+       LoadPlace::joint,
+       "",
+       {{"stiffness", "N*m/rad", 0.0, 0.0, kMost, "moment per angle, turns counted"},
+        {"damping", "N*m*s/rad", 0.0, 0.0, kMost, "moment per rate of the angle"},
+        {"free_angle", "rad", 0.0, -kMost, kMost, "angle of the joint without moment"}},
+       true,
+       add_torsional_spring},
+  };
+  return kinds;
+}
+
+const LoadKind& load_kind(std::string_view name) {
+  std::string names;
+  for (const LoadKind& kind : load_kinds()) {
+    if (kind.name == name) return kind;
+    names += (names.empty() ? "" : ", ") + kind.name;
+  }
+  throw InputError("loads", format("the type '{}' is not known", name),
+                   format("Use one of: {}", names));
+}
+
+}  // namespace polhode

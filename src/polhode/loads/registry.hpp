@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <polhode/assembly/parameter.hpp>
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// What a kind of load acts on, hence which entries the model file wants.
+enum class LoadPlace {
+  body,    ///< A body, at a point: `body`, `at` or `at_body`.
+  points,  ///< Two points of two bodies: `bodies`, `at` or `at_body`.
+  joint    ///< The freedom of a joint: `joint`.
+};
+
+/// A type of load as users name it.
+struct LoadKind {
+  std::string name;     ///< "type" in the model file.
+  std::string meaning;  ///< One line.
+  LoadPlace place = LoadPlace::body;
+  std::string vector;  ///< Key of the vector it takes, with unit [N] or [N m]; "" for none.
+  std::vector<Parameter> parameters;
+  bool turns = false;  ///< Gives a moment even at the centre of mass.
+  void (*add)(System&, const LoadDescription&) = nullptr;
+};
+
+/// Every load type; the order is that of the documentation.
+[[nodiscard]] const std::vector<LoadKind>& load_kinds();
+
+/// The load type of this name. @throws InputError that lists the names if it is unknown.
+[[nodiscard]] const LoadKind& load_kind(std::string_view name);
+
+}  // namespace polhode

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/loads/spring_damper.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Row12 = Eigen::Matrix<double, 1, 12>;  ///< Derivative by (Δr_a, Δθ_a, Δr_b, Δθ_b).
+using Mat3x12 = Eigen::Matrix<double, 3, 12>;
+
+/// Below this part of a metre a distance is round-off and has no direction.
+constexpr double kNoLength = 1e-14;
+
+/// Velocity of a point of a body at t_{n+αf}, and its tangent.
+Vec3 point_velocity(const BodyStep& body, const Carried& z) {
+  return body.velocity_alpha() + body.omega_alpha().cross(z.at_alpha);
+}
+
+Mat3 point_velocity_by_turn(const BodyStep& body, const Carried& z) {
+  return -hat(z.at_alpha) * body.omega_alpha_tangent() -
+         body.alpha_f * hat_hat(body.omega_alpha(), z.at_n1);
+}
+
+}  // namespace
+
+/// The connection over the step.
+struct SpringDamper::Stretch {
+  Carried z_a, z_b;
+  Vec3 u_alpha, u_n1, u_dot;
+  double l_n1 = 0.0, l_alpha = 0.0, rate = 0.0;
+  bool has_direction = true;
+};
+
+SpringDamper::SpringDamper(const LoadDescription& load)
+    : Z_a_(load.Z_a),
+      Z_b_(load.Z_b),
+      k_(load.value("stiffness", 0.0)),
+      c_(load.value("damping", 0.0)),
+      l_0_(load.value("free_length", load.start_length)) {
+  name = load.name;
+  bodies = load.bodies;
+}
+
+SpringDamper::Stretch SpringDamper::stretch(const PairStep& step) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const double af = a.alpha_f;
+  Stretch s;
+  s.z_a = a.vector(Z_a_);
+  s.z_b = b.vector(Z_b_);
+  const Vec3 u_n = (b.r_n - a.r_n) + (s.z_b.at_n - s.z_a.at_n);
+  s.u_n1 = (b.r_n1 - a.r_n1) + (s.z_b.at_n1 - s.z_a.at_n1);
+  s.u_alpha = (1.0 - af) * u_n + af * s.u_n1;
+  s.l_n1 = s.u_n1.norm();
+  s.l_alpha = step.context.conserving ? (1.0 - af) * u_n.norm() + af * s.l_n1 : s.u_alpha.norm();
+  s.has_direction = s.l_alpha > kNoLength;
+  s.u_dot = point_velocity(b, s.z_b) - point_velocity(a, s.z_a);
+  if (s.has_direction) s.rate = s.u_alpha.dot(s.u_dot) / s.l_alpha;
+  return s;
+}
+
+void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const double af = a.alpha_f;
+  const Stretch s = stretch(step);
+
+  Mat3x12 D_u_n1;
+  D_u_n1 << -Mat3::Identity(), hat(s.z_a.at_n1), Mat3::Identity(), -hat(s.z_b.at_n1);
+  const Mat3x12 D_u = af * D_u_n1;
+
+  Vec3 F = Vec3::Zero();
+  Mat3x12 D_F = Mat3x12::Zero();
+  if (s.has_direction) {
+    const double N = k_ * (s.l_alpha - l_0_) + c_ * s.rate;
+    const Vec3 n = s.u_alpha / s.l_alpha;
+    Row12 D_l = Row12::Zero();
+    if (!step.context.conserving)
+      D_l = n.transpose() * D_u;
+    else if (s.l_n1 > kNoLength)
+      D_l = s.u_n1.transpose() * D_u / s.l_n1;
+    Row12 D_N = k_ * D_l;
+    if (c_ != 0.0) {
+      Mat3x12 D_u_dot;
+      D_u_dot << -af * a.rate * Mat3::Identity(), -point_velocity_by_turn(a, s.z_a),
+          af * b.rate * Mat3::Identity(), point_velocity_by_turn(b, s.z_b);
+      D_N += c_ / s.l_alpha *
+             (s.u_dot.transpose() * D_u + s.u_alpha.transpose() * D_u_dot - s.rate * D_l);
+    }
+    F = -N * n;
+    D_F = -N / s.l_alpha * D_u - n * (D_N - N / s.l_alpha * D_l);
+  } else if (l_0_ == 0.0) {
+    F = -k_ * s.u_alpha;
+    D_F = -k_ * D_u;
+  }
+
+  t.wrench_b << F, s.z_b.at_alpha.cross(F);
+  t.wrench_a << -F, -s.z_a.at_alpha.cross(F);
+  const Mat3x12 D_m_b = hat(s.z_b.at_alpha) * D_F, D_m_a = -hat(s.z_a.at_alpha) * D_F;
+  t.D_ba << D_F.leftCols<6>(), D_m_b.leftCols<6>();
+  t.D_bb << D_F.rightCols<6>(), D_m_b.rightCols<6>();
+  t.D_aa << -D_F.leftCols<6>(), D_m_a.leftCols<6>();
+  t.D_ab << -D_F.rightCols<6>(), D_m_a.rightCols<6>();
+  t.D_bb.bottomRightCorner<3, 3>() += af * hat_hat(F, s.z_b.at_n1);
+  t.D_aa.bottomRightCorner<3, 3>() -= af * hat_hat(F, s.z_a.at_n1);
+  clear_ground_sides(step, t);
+}
+
+Work SpringDamper::work(const PairStep& step) const {
+  const Stretch s = stretch(step);
+  const double stretched = s.l_n1 - l_0_;
+  return {.stored = 0.5 * k_ * stretched * stretched,
+          .dissipated = c_ * s.rate * s.rate * step.context.dt};
+}
+
+double SpringDamper::length(const PairStep& step) const { return stretch(step).l_n1; }
+
+void add_spring_damper(System& system, const LoadDescription& load) {
+  system.group<SpringDamper>().items.emplace_back(load);
+}
+
+}  // namespace polhode

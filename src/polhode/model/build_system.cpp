@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
+#include <polhode/model/build_system.hpp>
+
+namespace polhode {
+
+namespace {
+
+class Builder {
+ public:
+  explicit Builder(const Model& model) : model_(model) {}
+
+  System build(SystemMap* map) {
+    system_.set_gravity(model_.gravity);
+    const double reach = dummy_reach();
+    for (const BodySpec& body : model_.bodies) add_body(body, reach);
+    for (const JointSpec& joint : model_.joints) add_joint(joint);
+    for (const LoadSpec& load : model_.loads) add_load(load);
+    system_.finish();
+    if (map) fill(*map);
+    return std::move(system_);
+  }
+
+ private:
+  /// Radius of gyration for point masses: of the size of the other bodies, so that scales of
+  /// lengths are not spoilt; it has no effect on motion.
+  [[nodiscard]] double dummy_reach() const {
+    double sum = 0.0, farthest = 0.0;
+    int count = 0;
+    for (const BodySpec& body : model_.bodies) {
+      farthest = std::max(farthest, body.position.norm());
+      if (body.point_mass || body.fixed || body.mass <= 0.0) continue;
+      sum += std::sqrt(0.5 * body.inertia.trace() / body.mass);
+      ++count;
+    }
+    return count > 0 ? sum / count : farthest > 0.0 ? farthest : 1.0;
+  }
+
+  void add_body(const BodySpec& body, double reach) {
+    if (body.fixed) {
+      map_.body.push_back(kGround);
+      return;
+    }
+    BodyMotion start;
+    start.r = body.position;
+    start.q = body.orientation.normalized();
+    start.v = body.velocity;
+    BodyData data{.name = body.name, .mass = body.mass, .inertia = body.inertia};
+    if (body.point_mass)
+      data.inertia = body.mass * reach * reach * Mat3::Identity();
+    else
+      start.W = start.q.conjugate() * body.angular_velocity;
+    map_.body.push_back(system_.add_body(std::move(data), start));
+  }
+
+  [[nodiscard]] const BodySpec* spec(int body) const {
+    return body == kGround ? nullptr : &model_.bodies.at(static_cast<std::size_t>(body));
+  }
+  [[nodiscard]] int system_body(int body) const {
+    return body == kGround ? kGround : map_.body.at(static_cast<std::size_t>(body));
+  }
+  [[nodiscard]] bool is_point_mass(int body) const {
+    const BodySpec* s = spec(body);
+    return s && s->point_mass && !s->fixed;
+  }
+  /// A point given in a fixed body's coordinates, in those of the world.
+  [[nodiscard]] Vec3 point(int body, const Vec3& Z) const {
+    const BodySpec* s = spec(body);
+    return s && s->fixed ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
+  }
+  [[nodiscard]] Mat3 axes(int body, const Mat3& R) const {
+    const BodySpec* s = spec(body);
+    return s && s->fixed ? Mat3(s->orientation.normalized().toRotationMatrix() * R) : R;
+  }
+  /// Where a point of any body is at the start [m].
+  [[nodiscard]] Vec3 start_position(int body, const Vec3& Z) const {
+    const BodySpec* s = spec(body);
+    return s ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
+  }
+
+  void check_movable(const std::string& where, int a, int b) const {
+    if (system_body(a) == kGround && system_body(b) == kGround)
+      throw InputError(where, "connects nothing that moves",
+                       "Name at least one body that is not fixed, or leave it out");
+  }
+  void refuse_turning(const std::string& where, int body) const {
+    throw InputError(where, format("would turn '{}', which is a point mass", spec(body)->name),
+                     "Attach it at the point mass itself so that it turns nothing, or give the "
+                     "body an inertia");
+  }
+
+  [[nodiscard]] JointRecipe recipe(const std::string& where, const JointSpec& joint) const {
+    const JointFrames frames{.Z_a = point(joint.a, joint.Z_a),
+                             .Z_b = point(joint.b, joint.Z_b),
+                             .R_a = axes(joint.a, joint.R_a),
+                             .R_b = axes(joint.b, joint.R_b)};
+    JointParameters parameters{.free = joint.free, .values = joint.parameters};
+    const JointKind& kind = joint_kind(joint.type);
+    if (kind.name == "distance" && !parameters.values.contains("distance")) {
+      const double distance =
+          (start_position(joint.b, joint.Z_b) - start_position(joint.a, joint.Z_a)).norm();
+      if (!(distance > 0.0))
+        throw InputError(where, "the two points coincide, so they have no distance to keep",
+                         "Give two points apart, or use a spherical joint");
+      parameters.values["distance"] = distance;
+    }
+    try {
+      return kind.recipe(frames, parameters);
+    } catch (const InputError& e) {
+      throw InputError(format("{}.{}", where, e.where()), e.what_is_wrong(), e.mend());
+    }
+  }
+
+  void add_joint(const JointSpec& joint) {
+    const std::string where = format("joints.{}", joint.name);
+    check_movable(where, joint.a, joint.b);
+    const JointRecipe r = recipe(where, joint);
+    const JointParts& parts = r.parts;
+    // Pairs of axes turn both bodies; planes turn a, on which their normals are.
+    if (is_point_mass(joint.a) && (parts.axes > 0 || parts.planes > 0 || !joint.Z_a.isZero(0.0)))
+      refuse_turning(where, joint.a);
+    if (is_point_mass(joint.b) && (parts.axes > 0 || !joint.Z_b.isZero(0.0)))
+      refuse_turning(where, joint.b);
+    system_.group<Joint>().items.emplace_back(
+        joint.name, joint.type, Participants{system_body(joint.a), system_body(joint.b)}, r);
+  }
+
+  void add_load(const LoadSpec& load) {
+    const std::string where = format("loads.{}", load.name);
+    const LoadKind& kind = load_kind(load.type);
+    int a = load.a, b = load.b;
+    std::optional<FreeAngle> angle;
+    if (kind.place == LoadPlace::joint) {
+      const int index = model_.joint_index(load.joint);
+      const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
+      a = joint.a;
+      b = joint.b;
+      angle = system_.group<Joint>().items[static_cast<std::size_t>(index)].axis_angle();
+      if (!angle)
+        throw InputError(
+            where + ".joint",
+            format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
+            "Use a joint with one free rotation, such as revolute or cylindrical");
+    }
+    check_movable(where, kind.place == LoadPlace::body ? b : a, b);
+    for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
+      if (is_point_mass(body) && (kind.turns || !Z.isZero(0.0))) refuse_turning(where, body);
+    LoadDescription d{
+        .name = load.name,
+        .bodies = {kind.place == LoadPlace::body ? kGround : system_body(a), system_body(b)},
+        .Z_a = point(a, load.Z_a),
+        .Z_b = point(b, load.Z_b),
+        .body_fixed = load.body_fixed,
+        .vector = load.vector.value_or(TimeVector{}),
+        .values = load.parameters,
+        .angle = angle};
+    d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
+    kind.add(system_, d);
+  }
+
+  /// Items keep the user's order within their group; loads are found by kind and count.
+  void fill(SystemMap& map) {
+    std::map<std::string, std::vector<int>> interactions;
+    for (int i = 0; i < static_cast<int>(system_.interactions().size()); ++i)
+      interactions[system_.group(system_.interactions()[i].group).kind()].push_back(i);
+    map_.joint = interactions[Joint::kKind];
+    std::map<std::string, std::size_t> next;
+    for (const LoadSpec& load : model_.loads)
+      map_.load.push_back(interactions.at(load.type).at(next[load.type]++));
+    map = map_;
+  }
+
+  const Model& model_;
+  System system_;
+  SystemMap map_;
+};
+
+}  // namespace
+
+System build_system(const Model& model, SystemMap* map) { return Builder(model).build(map); }
+
+const Joint& joint_at(const System& system, int interaction) {
+  const InteractionRef& ref = system.interactions().at(static_cast<std::size_t>(interaction));
+  const auto* joints = dynamic_cast<const Group<Joint>*>(&system.group(ref.group));
+  if (!joints) throw std::logic_error("joint_at: the interaction is no joint");
+  return joints->items[static_cast<std::size_t>(ref.item)];
+}
+
+}  // namespace polhode
