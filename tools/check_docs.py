@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Documentation and source agree.
+
+* Every kind in a registry has a row in its reference page, and every row has its kind.
+* Every path of the repository that a page names in `backticks` exists.
+* Every link from a page to a file of the repository leads somewhere.
+* No file under src/ has more than 500 lines; above 300 it is worth a thought.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Registry of kinds, by the first string of each entry -> page with a table row for each.
+REGISTRIES = {
+    "src/polhode/body/shapes.cpp": "docs/reference/shapes.md",
+    "src/polhode/joints/registry.cpp": "docs/reference/joints.md",
+    "src/polhode/loads/registry.cpp": "docs/reference/loads.md",
+}
+KIND = re.compile(r'^\s*(?:kinds\.push_back\(|\w+\()?\{\s*(?:\.name = )?"(\w+)"\s*,', re.M)
+TOP = ("src", "apps", "tests", "docs", "tools", "scripts", "cmake", "benchmarks", "examples", "changes", "python",
+       "viewer")
+PATH = re.compile(r"`((?:%s)/[^`\s]*)`" % "|".join(TOP))
+LINK = re.compile(r"\[[^\]]*\]\(<?([^)>\s]+)>?(?:\s+\"[^\"]*\")?\)")
+LINES_WARN, LINES_MOST = 300, 500
+
+
+def pages():
+    skip = {"build", ".git", "node_modules"}
+    for path in sorted(ROOT.rglob("*.md")):
+        parts = path.relative_to(ROOT).parts
+        if not skip & set(parts) and not any(p.endswith(".results") for p in parts):
+            yield path
+
+
+def expansions(path):
+    """a/{b,c}.hpp -> a/b.hpp, a/c.hpp."""
+    if match := re.search(r"\{([^{}]*)\}", path):
+        return [e for part in match[1].split(",")
+                for e in expansions(path[:match.start()] + part.strip() + path[match.end():])]
+    return [path]
+
+
+def exists(path):
+    if re.search(r"[<>…]|\.\.\.", path):  # a pattern for the reader, such as src/polhode/joints/<x>_joint.hpp
+        return True
+    path = re.sub(r"(:\d+)+$", "", path)  # file:line
+    if any(c in path for c in "*?["):
+        return any(True for _ in ROOT.glob(path))
+    return (ROOT / path).exists()
+
+
+def check_kinds(problems):
+    for registry, page in REGISTRIES.items():
+        source = ROOT / registry
+        if not source.exists():
+            continue
+        registered = set(KIND.findall(source.read_text()))
+        text = (ROOT / page).read_text() if (ROOT / page).exists() else ""
+        rows = re.findall(r"^\|\s*`?(\w+)`?\s*\|", text, re.M)
+        documented = set(rows) - {"name", "kind", "type", "shape", "joint", "load"}
+        problems += [f"{registry}: '{kind}' has no row in {page}. Add one." for kind in sorted(registered - documented)]
+        problems += [f"{page}: '{kind}' is not in {registry}." for kind in sorted(documented - registered)]
+
+
+def check_pages(problems):
+    for page in pages():
+        place = page.relative_to(ROOT)
+        for number, line in enumerate(page.read_text().splitlines(), 1):
+            for named in PATH.findall(line):
+                for path in expansions(named.rstrip("/.,;:")):
+                    if not exists(path):
+                        problems.append(f"{place}:{number}: `{path}` does not exist.")
+            for target in LINK.findall(re.sub(r"`[^`]*`", "", line)):
+                if re.match(r"[a-z]+:|#", target):
+                    continue
+                if not (page.parent / target.split("#")[0]).exists():
+                    problems.append(f"{place}:{number}: the link to {target} leads nowhere.")
+
+
+def check_lengths(problems):
+    for path in sorted((ROOT / "src").rglob("*.[ch]pp")):
+        lines = len(path.read_text().splitlines())
+        if lines > LINES_MOST:
+            problems.append(f"{path.relative_to(ROOT)}: {lines} lines, at most {LINES_MOST}. Split it.")
+        elif lines > LINES_WARN:
+            print(f"{path.relative_to(ROOT)}: {lines} lines, worth a thought above {LINES_WARN}.")
+
+
+def main():
+    problems = []
+    check_kinds(problems)
+    check_pages(problems)
+    check_lengths(problems)
+    print("\n".join(problems) if problems else "Documentation and source agree.")
+    return bool(problems)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
