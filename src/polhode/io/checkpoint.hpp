@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+
+/// SHA-256 over everything of a model that a run depends on: bodies, joints, loads, gravity and
+/// the method, but not the duration, the tolerance of the start or the output, so that a run may
+/// be continued for longer. Time functions count by their values at a few times.
+[[nodiscard]] std::string model_fingerprint(const Model& model);
+
+/// Saves a state so that a run continues from it bit for bit. The file is written atomically and
+/// carries a checksum. @throws FileError
+void write_checkpoint(const std::string& path, const Model& model, const System& system,
+                      const State& state);
+
+/// Reads a checkpoint of this model.
+/// @throws FileError if it cannot be read; InputError if it is no checkpoint, is damaged, has
+///         another format version, or belongs to another model.
+[[nodiscard]] State read_checkpoint(const std::string& path, const Model& model,
+                                    const System& system);
+
+}  // namespace polhode

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/csv_probes.hpp>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/file_error.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Rows stay in memory at most this long [s].
+constexpr double kHold = 0.05;
+
+void write_all(const std::string& path, int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw FileError::from_errno(path, "cannot be written");
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+std::string joined(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += (line.empty() ? "" : ",") + cell;
+  return line + "\n";
+}
+
+/// The complete rows of a table up to a time; what follows them is dropped.
+std::string kept_rows(const std::string& text, std::size_t begin, double t,
+                      std::optional<double>& last) {
+  std::size_t end = begin;
+  for (std::size_t line = begin; line < text.size();) {
+    const std::size_t next = text.find('\n', line);
+    if (next == std::string::npos) break;
+    const double time = std::strtod(text.c_str() + line, nullptr);
+    if (time > t * (1.0 + 1e-14)) break;
+    last = time;
+    end = line = next + 1;
+  }
+  return text.substr(begin, end - begin);
+}
+
+std::vector<std::string> vector_header(const std::string& prefix, const std::string& unit) {
+  std::vector<std::string> cells;
+  for (const char* axis : {"x", "y", "z"}) cells.push_back(format("{}{} [{}]", prefix, axis, unit));
+  return cells;
+}
+
+void extend(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+void extend(std::vector<double>& list, const Vec3& x) {
+  list.insert(list.end(), x.begin(), x.end());
+}
+
+std::vector<std::string> body_header() {
+  std::vector<std::string> header{"t [s]"};
+  extend(header, vector_header("", "m"));
+  extend(header, vector_header("v", "m/s"));
+  extend(header, vector_header("a", "m/s^2"));
+  return header;
+}
+
+std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
+  std::vector<std::string> header{"t [s]"};
+  extend(header, vector_header("f", "N"));
+  extend(header, vector_header("m", "N m"));
+  const auto count = simulation.joint(joint).coordinates.size();
+  for (std::size_t k = 0; k < count; ++k) header.push_back(format("q{} [rad or m]", k + 1));
+  for (std::size_t k = 0; k < count; ++k) header.push_back(format("rate{} [rad/s or m/s]", k + 1));
+  return header;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
+                   std::optional<double> keep)
+    : path_(std::move(path)) {
+  std::string text = joined(header);
+  if (keep && std::filesystem::exists(path_)) {
+    const std::string old = read_file(path_);
+    if (old.compare(0, text.size(), text) != 0)
+      throw InputError(path_, "has other columns than this probe",
+                       "Name another folder for the results with -o");
+    text += kept_rows(old, text.size(), *keep, last_time_);
+  }
+  write_file_atomically(path_, text);
+  file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file_ < 0) throw FileError::from_errno(path_, "cannot be written");
+}
+
+CsvTable::CsvTable(CsvTable&& other) noexcept
+    : path_(std::move(other.path_)),
+      held_(std::move(other.held_)),
+      file_(std::exchange(other.file_, -1)),
+      last_time_(other.last_time_),
+      last_write_(other.last_write_) {}
+
+CsvTable::~CsvTable() {
+  if (file_ < 0) return;
+  try {
+    flush();
+  } catch (const FileError&) {  // flush() tells whoever asks.
+  }
+  ::close(file_);
+}
+
+void CsvTable::append(const std::vector<double>& row) {
+  const char* separator = "";
+  for (double x : row) {
+    held_ += format("{}{}", separator, x);  // Shortest text that reads back as the same number.
+    separator = ",";
+  }
+  held_ += '\n';
+  last_time_ = row.front();
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - last_write_;
+  if (waited.count() > kHold || held_.size() > 65536) flush();
+}
+
+void CsvTable::flush() {
+  write_all(path_, file_, held_);
+  held_.clear();
+  last_write_ = std::chrono::steady_clock::now();
+}
+
+CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
+                     std::optional<double> keep) {
+  const Model& model = simulation.model();
+  if (model.output.probes.empty()) return;
+  make_folder(folder);
+  for (const ProbeSpec& spec : model.output.probes) {
+    const bool body = spec.kind == "body";
+    if (!body && spec.kind != "joint")
+      throw InputError(format("output.probes.{}", spec.name),
+                       format("records a {}, but only bodies and joints have channels", spec.kind),
+                       "Name a body or a joint");
+    const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
+    if (body && index == kGround)
+      throw InputError(format("output.probes.{}", spec.name),
+                       "records the ground, which stands still", "Name a body");
+    CsvTable table(format("{}/{}.csv", folder, spec.name),
+                   body ? body_header() : joint_header(simulation, index), keep);
+    const double every = spec.every.value_or(model.output.every.value_or(0.0));
+    std::int64_t next = 0;
+    if (every > 0.0 && table.last_time())
+      next = static_cast<std::int64_t>(std::floor(*table.last_time() / every * (1 + 1e-12))) + 1;
+    probes_.push_back({spec, index, every, next, std::move(table)});
+  }
+}
+
+void CsvProbes::record(const Simulation& simulation) {
+  const double t = simulation.time();
+  for (Probe& probe : probes_) {
+    if (probe.table.last_time() && *probe.table.last_time() >= t) continue;
+    if (probe.every > 0.0) {
+      // A step that ends within rounding of the due time ends at it.
+      if (t * (1 + 1e-12) < static_cast<double>(probe.next) * probe.every) continue;
+      probe.next = static_cast<std::int64_t>(std::floor(t / probe.every * (1 + 1e-12))) + 1;
+    }
+    std::vector<double> row{t};
+    if (probe.spec.kind == "body") {
+      const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
+      for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
+    } else {
+      const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
+      extend(row, joint.force);
+      extend(row, joint.moment);
+      row.insert(row.end(), joint.coordinates.begin(), joint.coordinates.end());
+      row.insert(row.end(), joint.rates.begin(), joint.rates.end());
+    }
+    probe.table.append(row);
+  }
+}
+
+void CsvProbes::flush() {
+  for (Probe& probe : probes_) probe.table.flush();
+}
+
+}  // namespace polhode
