@@ -187,8 +187,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 
 std::string name_list(const std::vector<std::string>& names, std::size_t most) {
   std::string text;
-  for (std::size_t k = 0; k < names.size() && k < most; ++k)
-    text += (k > 0 ? ", " : "") + names[k];
+  for (std::size_t k = 0; k < names.size() && k < most; ++k) text += (k > 0 ? ", " : "") + names[k];
   if (names.size() > most) text += format(" and {} more", names.size() - most);
   return text;
 }

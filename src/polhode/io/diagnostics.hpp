@@ -12,11 +12,12 @@ namespace polhode {
 
 /// One fault of a model file.
 struct Diagnostic {
-  Place place;            ///< file:line:column; line 0: the place has no line (an override).
-  std::string path;       ///< Where in the model, e.g. joints.B.bodies; may be empty.
-  std::string what;       ///< With the value given; no full stop at the end.
-  std::string mend;       ///< What to do; whole sentences, may be empty.
-  std::string excerpt;    ///< The source line with the faulty part underlined, two lines; may be empty.
+  Place place;       ///< file:line:column; line 0: the place has no line (an override).
+  std::string path;  ///< Where in the model, e.g. joints.B.bodies; may be empty.
+  std::string what;  ///< With the value given; no full stop at the end.
+  std::string mend;  ///< What to do; whole sentences, may be empty.
+  std::string
+      excerpt;  ///< The source line with the faulty part underlined, two lines; may be empty.
 
   /// `file:line:column: error: path: what. mend.` and the excerpt below it.
   [[nodiscard]] std::string text() const;
@@ -74,7 +75,8 @@ class Diagnostics {
 
 /// The candidate closest to a mistyped word, or "" if none is close: at most a third of the
 /// letters (and at least one) inserted, left out, replaced or swapped with a neighbour.
-[[nodiscard]] std::string closest(std::string_view word, const std::vector<std::string>& candidates);
+[[nodiscard]] std::string closest(std::string_view word,
+                                  const std::vector<std::string>& candidates);
 
 /// "Did you mean 'x'? " or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word,

@@ -147,7 +147,10 @@ std::size_t utf8_length(std::string_view s) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(s[k]); };
   const unsigned char c = byte(0);
   if (c < 0x80) return 1;
-  const std::size_t n = c >= 0xC2 && c <= 0xDF ? 2 : (c & 0xF0U) == 0xE0 ? 3 : c >= 0xF0 && c <= 0xF4 ? 4 : 0;
+  const std::size_t n = c >= 0xC2 && c <= 0xDF   ? 2
+                        : (c & 0xF0U) == 0xE0    ? 3
+                        : c >= 0xF0 && c <= 0xF4 ? 4
+                                                 : 0;
   if (n == 0 || s.size() < n) return 0;
   for (std::size_t k = 1; k < n; ++k)
     if ((byte(k) & 0xC0U) != 0x80) return 0;
@@ -237,10 +240,14 @@ SourceNode* SourceNode::find(std::string_view key) {
 
 std::string SourceNode::description() const {
   switch (kind) {
-    case Kind::kList: return children.empty() ? "an empty list" : "a list";
-    case Kind::kMap: return "a map";
-    case Kind::kText: return quoted(text);
-    case Kind::kEmpty: break;
+    case Kind::kList:
+      return children.empty() ? "an empty list" : "a list";
+    case Kind::kMap:
+      return "a map";
+    case Kind::kText:
+      return quoted(text);
+    case Kind::kEmpty:
+      break;
   }
   return "empty";
 }
@@ -375,9 +382,10 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
         if (!last) next->kind = SourceNode::Kind::kMap;
       }
     } else {
-      diagnostics.add(place, path,
-                      format("{} is {} and has no entry {}", here, node->description(), quoted(part)),
-                      "Shorten the path.");
+      diagnostics.add(
+          place, path,
+          format("{} is {} and has no entry {}", here, node->description(), quoted(part)),
+          "Shorten the path.");
       return;
     }
     walked += (walked.empty() ? "" : ".") + part;

@@ -23,11 +23,11 @@ struct SourceNode {
   };
 
   Kind kind = Kind::kEmpty;
-  bool in_quotes = false;     ///< The text stood in quotes or was a block text.
-  int line = 0, column = 0;   ///< 1-based; 0 in an override.
-  int origin = 0;             ///< 0: the file; k: override k (1-based).
+  bool in_quotes = false;    ///< The text stood in quotes or was a block text.
+  int line = 0, column = 0;  ///< 1-based; 0 in an override.
+  int origin = 0;            ///< 0: the file; k: override k (1-based).
   std::string text;
-  std::vector<Key> keys;      ///< Of a map: key k belongs to child k.
+  std::vector<Key> keys;  ///< Of a map: key k belongs to child k.
   std::vector<SourceNode> children;
 
   [[nodiscard]] bool is_map() const { return kind == Kind::kMap; }

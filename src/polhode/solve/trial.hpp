@@ -31,6 +31,10 @@ struct Trial {
   }
 };
 
+/// Sizes the trial and fills it one body after the other: nobody has moved yet, λ is that of t_n,
+/// the proximal centre is zero. The context must have been set. (The stepper's predictor does this
+/// several bodies at a time.)
+void start_trial(const System& system, const State& state, Trial& trial);
 /// Body's step from the state at t_n and the trial at t_{n+1}; velocities by Newmark.
 [[nodiscard]] BodyStep body_step(const System& system, const State& state, const Trial& trial,
                                  int body);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polhode/io/units.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// What is known of the dimension of a value in an expression.
+enum class Certainty : unsigned char {
+  kPure,   ///< A number; where a dimension is wanted it counts in the user's base units.
+  kBare,   ///< From a variable without a unit: any dimension, counted in the user's base units.
+  kKnown,  ///< In SI, of a known dimension.
+};
+
+/// A value with what is known of its dimension.
+struct Quantity {
+  double value = 0.0;
+  Certainty certainty = Certainty::kPure;
+  Dimension dimension;  ///< kBare: only the angle, as far as quantities with units brought it in.
+};
+
+/// Variables by name.
+using Variables = std::map<std::string, Quantity, std::less<>>;
+
+/// A fault in an expression.
+struct ExpressionFault {
+  std::size_t offset = 0, length = 0;  ///< In the text [bytes].
+  std::string what, mend;
+};
+
+/// A checked expression of time, ready to be evaluated by any number of threads.
+///
+/// Operators  + - * / ^  ( )  < <= > >= == !=  && ||  c ? a : b;  constant pi;  functions sin cos
+/// tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs sign floor min max pow. A unit
+/// may follow after a blank: "2*pi rad/s". Dimensions of variables with units are followed through.
+class Expression {
+ public:
+  /// @param allow_time  Whether t [s] may stand in it.
+  /// @returns an empty pointer and the fault, or the expression.
+  static std::shared_ptr<const Expression> parse(std::string_view text, const Variables& variables,
+                                                 const UnitSystem& units, bool allow_time,
+                                                 ExpressionFault& fault);
+
+  /// The value at time t [s], in SI or the user's base units as certainty() says.
+  [[nodiscard]] double operator()(double t) const;
+  [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
+  [[nodiscard]] Certainty certainty() const { return type_.certainty; }
+  [[nodiscard]] const Dimension& dimension() const { return type_.dimension; }
+  /// The unit that was written with a number or behind an expression, if any.
+  [[nodiscard]] const std::optional<Unit>& written_unit() const { return unit_; }
+
+  /// Factor from the expression's value to SI if it is taken as a value of this dimension; nothing
+  /// if its dimension is another.
+  [[nodiscard]] std::optional<double> factor_to_si(const Dimension& wanted,
+                                                   const UnitSystem& units) const;
+
+ private:
+  friend class ExpressionParser;
+  enum class Op : unsigned char;
+  struct Instruction {
+    Op op;
+    double value = 0.0;
+  };
+  std::vector<Instruction> program_;
+  Quantity type_;
+  std::optional<Unit> unit_;
+  bool depends_on_time_ = false;
+};
+
+/// Names that a variable cannot have: t, pi and the functions.
+[[nodiscard]] std::vector<std::string> reserved_names();
+
+}  // namespace polhode

@@ -1,0 +1,539 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/field_table.hpp>
+
+#include <stdexcept>
+
+#include <polhode/body/shapes.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+const Field* FieldTable::find(std::string_view name) const {
+  for (const Field& field : fields)
+    if (field.name == name) return &field;
+  return nullptr;
+}
+
+const Field& FieldTable::at(std::string_view name) const {
+  if (const Field* field = find(name)) return *field;
+  throw std::logic_error("the field table '" + title + "' has no '" + std::string(name) + "'");
+}
+
+std::vector<std::string> FieldTable::names() const {
+  std::vector<std::string> result;
+  for (const Field& field : fields) result.push_back(field.name);
+  return result;
+}
+
+const FieldTable& model_fields() {
+  static const FieldTable table{
+      "model",
+      "The whole file. Bodies, joints and loads keep their order.",
+      {
+          {.name = "format",
+           .kind = kInteger,
+           .meaning = "Version of the format: 1.",
+           .required = true,
+           .range = {1, 1}},
+          {.name = "title", .kind = kText, .meaning = "Shown in results and messages."},
+          {.name = "units",
+           .kind = kSection,
+           .meaning = "What bare numbers mean.",
+           .standard = "SI and radians",
+           .table = "units"},
+          {.name = "variables",
+           .kind = kVariables,
+           .meaning = "Numbers by name for use in expressions; each may use the ones before it."},
+          {.name = "gravity",
+           .kind = kVector,
+           .dimension = kAcceleration,
+           .meaning = "Acceleration of free fall, world.",
+           .standard = "[0, 0, 0]"},
+          {.name = "bodies",
+           .kind = kNamed,
+           .meaning = "Rigid bodies by name. 'ground' exists already.",
+           .table = "body"},
+          {.name = "joints", .kind = kNamed, .meaning = "Joints by name.", .table = "joint"},
+          {.name = "loads", .kind = kNamed, .meaning = "Loads by name.", .table = "load"},
+          {.name = "analysis",
+           .kind = kSection,
+           .meaning = "What to compute and how.",
+           .table = "analysis"},
+          {.name = "output", .kind = kSection, .meaning = "What to record.", .table = "output"},
+      }};
+  return table;
+}
+
+const FieldTable& units_fields() {
+  static const FieldTable table{"units",
+                                "What numbers without a unit mean. Derived numbers follow: with mm "
+                                "and kg a bare stiffness is in kg/s^2.",
+                                {
+                                    {.name = "length",
+                                     .kind = kText,
+                                     .dimension = kLength,
+                                     .meaning = "Unit of bare lengths, e.g. mm.",
+                                     .standard = "m"},
+                                    {.name = "mass",
+                                     .kind = kText,
+                                     .dimension = kMass,
+                                     .meaning = "Unit of bare masses, e.g. g.",
+                                     .standard = "kg"},
+                                    {.name = "time",
+                                     .kind = kText,
+                                     .dimension = kTime,
+                                     .meaning = "Unit of bare times, e.g. ms.",
+                                     .standard = "s"},
+                                    {.name = "angle",
+                                     .kind = kText,
+                                     .dimension = kAngle,
+                                     .meaning = "Unit of bare angles: rad or deg. Functions such "
+                                                "as sin take bare numbers in radians.",
+                                     .standard = "rad"},
+                                }};
+  return table;
+}
+
+const FieldTable& body_fields() {
+  static const FieldTable table{
+      "body",
+      "A rigid body. It is weighed by mass and inertia, or by shapes with a density.",
+      {
+          {.name = "mass",
+           .kind = kNumber,
+           .dimension = kMass,
+           .meaning = "With a shape and no density or inertia, the inertia is that of the shape "
+                      "with this mass.",
+           .standard = "from shape and density",
+           .range = kPositive},
+          {.name = "inertia",
+           .kind = kInertiaTensor,
+           .dimension = kInertia,
+           .meaning = "Tensor about the centre of mass in body axes: three principal moments, or "
+                      "{xx: , yy: , zz: , xy: , xz: , yz: }; xy is the tensor's entry, minus the "
+                      "product of inertia of some books.",
+           .standard = "from shape and density"},
+          {.name = "shape",
+           .kind = kShapes,
+           .meaning =
+               "A shape, or a list of shapes each with its own place: mass properties and picture.",
+           .table = "shape"},
+          {.name = "density",
+           .kind = kNumber,
+           .dimension = kDensity,
+           .meaning = "Of every shape that has none of its own.",
+           .range = kPositive},
+          {.name = "position",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "Of the centre of mass (see position_of), world.",
+           .standard = "[0, 0, 0]"},
+          {.name = "position_of",
+           .kind = kChoice,
+           .meaning =
+               "What position places: the centre of mass, or the origin of the body's coordinates.",
+           .standard = "com; origin for a mesh or several shapes",
+           .choices = {"com", "origin"}},
+          {.name = "com",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "Centre of mass in body coordinates.",
+           .standard = "[0, 0, 0], or from the shapes"},
+          {.name = "orientation",
+           .kind = kSection,
+           .meaning = "Turn from the world's axes to the body's.",
+           .standard = "along the world's axes",
+           .table = "orientation"},
+          {.name = "velocity",
+           .kind = kVector,
+           .dimension = kVelocity,
+           .meaning = "Of the centre of mass at the start, world.",
+           .standard = "[0, 0, 0]"},
+          {.name = "angular_velocity",
+           .kind = kVector,
+           .dimension = kAngularVelocity,
+           .meaning = "At the start, world axes.",
+           .standard = "[0, 0, 0]"},
+          {.name = "angular_velocity_body",
+           .kind = kVector,
+           .dimension = kAngularVelocity,
+           .meaning = "At the start, body axes; instead of angular_velocity."},
+          {.name = "point_mass",
+           .kind = kBoolean,
+           .meaning = "No rotation; mass only.",
+           .standard = "false"},
+          {.name = "fixed",
+           .kind = kBoolean,
+           .meaning = "Never moves and costs nothing; needs no mass.",
+           .standard = "false"},
+          {.name = "hold",
+           .kind = kChoices,
+           .meaning = "Freedoms held at their start values: a generic joint to ground at the "
+                      "centre of mass, world axes, named <body>.hold.",
+           .choices = {"x", "y", "z", "rx", "ry", "rz"}},
+      }};
+  return table;
+}
+
+const FieldTable& inertia_fields() {
+  static const FieldTable table{
+      "inertia",
+      "Entries of the inertia tensor about the centre of mass, body axes.",
+      {
+          {.name = "xx",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Moment about x.",
+           .required = true,
+           .range = kPositive},
+          {.name = "yy",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Moment about y.",
+           .required = true,
+           .range = kPositive},
+          {.name = "zz",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Moment about z.",
+           .required = true,
+           .range = kPositive},
+          {.name = "xy",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Minus the integral of x y over the mass.",
+           .standard = "0"},
+          {.name = "xz",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Minus the integral of x z over the mass.",
+           .standard = "0"},
+          {.name = "yz",
+           .kind = kNumber,
+           .dimension = kInertia,
+           .meaning = "Minus the integral of y z over the mass.",
+           .standard = "0"},
+      }};
+  return table;
+}
+
+const FieldTable& orientation_fields() {
+  static const FieldTable table{
+      "orientation",
+      "One of: axis with angle, quaternion, rotation_vector, euler, matrix. Each maps body axes to "
+      "the world's.",
+      {
+          {.name = "axis", .kind = kDirection, .meaning = "Axis of the turn; goes with angle."},
+          {.name = "angle",
+           .kind = kNumber,
+           .dimension = kAngle,
+           .meaning = "Angle of the turn; goes with axis."},
+          {.name = "quaternion", .kind = kNumbers, .meaning = "[w, x, y, z] of length 1."},
+          {.name = "rotation_vector",
+           .kind = kVector,
+           .dimension = kAngle,
+           .meaning = "Axis times angle."},
+          {.name = "euler",
+           .kind = kSection,
+           .meaning = "Three turns one after the other.",
+           .table = "euler"},
+          {.name = "matrix",
+           .kind = kMatrix,
+           .meaning = "Rows of the rotation matrix; its columns are the body's axes in the world."},
+      }};
+  return table;
+}
+
+const FieldTable& euler_fields() {
+  static const FieldTable table{
+      "euler",
+      "Euler angles. Lower-case letters turn about the axes of the body one after the other, "
+      "upper-case letters about the world's.",
+      {
+          {.name = "sequence",
+           .kind = kText,
+           .meaning = "Three letters, e.g. zxz or XYZ; neighbours differ.",
+           .required = true},
+          {.name = "angles",
+           .kind = kVector,
+           .dimension = kAngle,
+           .meaning = "One for each letter.",
+           .required = true},
+      }};
+  return table;
+}
+
+const FieldTable& shape_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"shape",
+                 "One key names the kind and gives its sizes, in this order, as full lengths; the "
+                 "others place it. "
+                 "Cylinder, capsule, cone and tube lie along z; all are centred at their centroid.",
+                 {}};
+    for (const ShapeKind& kind : shape_kinds()) {
+      std::string sizes;
+      for (const ShapeSize& size : kind.sizes) sizes += (sizes.empty() ? "[" : ", ") + size.name;
+      t.fields.push_back({.name = kind.name,
+                          .kind = kNumbers,
+                          .dimension = kLength,
+                          .meaning = kind.meaning + " Sizes: " + sizes + "].",
+                          .range = kPositive});
+    }
+    t.fields.push_back(
+        {.name = "mesh",
+         .kind = kSection,
+         .meaning =
+             "A closed triangle surface from a file, with its own coordinates: a path, or a map.",
+         .table = "mesh"});
+    t.fields.push_back({.name = "plane",
+                        .kind = kDirection,
+                        .meaning = "A plane through the shape's position with this normal, for "
+                                   "fixed bodies; it weighs nothing."});
+    t.fields.push_back({.name = "position",
+                        .kind = kVector,
+                        .dimension = kLength,
+                        .meaning = "Of the shape's centre in body coordinates.",
+                        .standard = "[0, 0, 0]"});
+    t.fields.push_back({.name = "orientation",
+                        .kind = kSection,
+                        .meaning = "Turn from the body's axes to the shape's.",
+                        .standard = "along the body's axes",
+                        .table = "orientation"});
+    t.fields.push_back({.name = "density",
+                        .kind = kNumber,
+                        .dimension = kDensity,
+                        .meaning = "Of this shape.",
+                        .standard = "the body's",
+                        .range = kPositive});
+    return t;
+  }();
+  return table;
+}
+
+const FieldTable& mesh_fields() {
+  static const FieldTable table{"mesh",
+                                "A closed surface of triangles in an STL or OBJ file.",
+                                {
+                                    {.name = "file",
+                                     .kind = kText,
+                                     .meaning = "Path, seen from the model file's folder.",
+                                     .required = true},
+                                    {.name = "scale",
+                                     .kind = kNumber,
+                                     .dimension = kLength,
+                                     .meaning = "Length of one unit of the file.",
+                                     .standard = "1",
+                                     .range = kPositive},
+                                }};
+  return table;
+}
+
+const FieldTable& time_table_fields() {
+  static const FieldTable table{
+      "table",
+      "A value over time, given by points. Before the first and after the last point the end value "
+      "holds.",
+      {
+          {.name = "table",
+           .kind = kNumbers,
+           .meaning = "[[t, value], ...] with increasing times.",
+           .required = true},
+          {.name = "interpolation",
+           .kind = kChoice,
+           .meaning = "Between the points: straight lines, a natural cubic spline, or each value "
+                      "until the next.",
+           .standard = "linear",
+           .choices = {"linear", "cubic", "step"}},
+          {.name = "periodic",
+           .kind = kBoolean,
+           .meaning = "The table repeats; its last value equals the first.",
+           .standard = "false"},
+      }};
+  return table;
+}
+
+const FieldTable& analysis_fields() {
+  static const FieldTable table{
+      "analysis",
+      "What to compute and how.",
+      {
+          {.name = "type",
+           .kind = kChoice,
+           .meaning = "Motion over time.",
+           .standard = "dynamics",
+           .choices = {"dynamics"}},
+          {.name = "duration",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Length of the motion.",
+           .standard = "1",
+           .range = kPositive},
+          {.name = "step",
+           .kind = kStep,
+           .dimension = kTime,
+           .meaning = "Time step, or auto: chosen from the tolerance.",
+           .standard = "auto",
+           .range = kPositive},
+          {.name = "tolerance",
+           .kind = kNumber,
+           .meaning = "Error of one step with automatic steps, relative to the model's size; alone "
+                      "it chooses the order too.",
+           .range = {1e-14, 0.1}},
+          {.name = "rho_inf",
+           .kind = kNumber,
+           .meaning = "Spectral radius at infinity: 1 keeps all energy, 0 damps the highest "
+                      "frequencies in one step.",
+           .standard = "1",
+           .range = {0.0, 1.0}},
+          {.name = "order",
+           .kind = kChoice,
+           .meaning = "Order of accuracy. 4, 6 and 8 are for conservative models at rho_inf = 1.",
+           .standard = "2, or chosen from the tolerance",
+           .choices = {"2", "4", "6", "8"}},
+          {.name = "momentum_rate",
+           .kind = kChoice,
+           .meaning = "Rate of the angular momentum; the kinematic forms are for comparison.",
+           .standard = "momentum",
+           .choices = {"momentum", "kinematic", "kinematic_corrected"}},
+          {.name = "solver",
+           .kind = kChoice,
+           .meaning = "Linear solver.",
+           .standard = "automatic",
+           .choices = {"automatic", "tree", "block_lu", "klu", "sparse_lu"}},
+          {.name = "jacobian",
+           .kind = kChoice,
+           .meaning = "When Newton computes its matrix anew.",
+           .standard = "automatic",
+           .choices = {"automatic", "every_iteration", "every_step", "never"}},
+          {.name = "isa",
+           .kind = kChoice,
+           .meaning = "Instruction set; results are equal bit for bit within one.",
+           .standard = "automatic",
+           .choices = {"automatic", "baseline", "avx2", "avx512"}},
+          {.name = "conserving",
+           .kind = kBoolean,
+           .meaning = "Potentials in discrete-gradient form; false is for comparison.",
+           .standard = "true"},
+          {.name = "newton_tolerance",
+           .kind = kNumber,
+           .meaning = "Largest scaled increment that counts as converged.",
+           .standard = "1e-5; 1e-7 at orders 6 and 8",
+           .range = {0.0, 1e-2, true}},
+          {.name = "max_iterations",
+           .kind = kInteger,
+           .meaning = "Newton iterations before a step is halved.",
+           .standard = "12",
+           .range = {1, 1000}},
+          {.name = "line_search",
+           .kind = kBoolean,
+           .meaning = "Shorten increments that make the residual grow.",
+           .standard = "true"},
+          {.name = "max_step_rotation",
+           .kind = kNumber,
+           .meaning = "Largest Cayley vector of one step; 2 is a right angle.",
+           .standard = "2",
+           .range = {0.0, 1e3, true}},
+          {.name = "assembly_tolerance",
+           .kind = kNumber,
+           .meaning = "Largest move [m or rad] that the assembly of the start may make.",
+           .standard = "1e-3 of the model's size",
+           .range = kPositive},
+          {.name = "min_step",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Smallest step before the run stops.",
+           .range = kPositive},
+          {.name = "max_step",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Largest automatic step.",
+           .range = kPositive},
+          {.name = "smooth_multipliers",
+           .kind = kBoolean,
+           .meaning = "Start with multipliers that vary smoothly from the first step on.",
+           .standard = "true"},
+          {.name = "checkpoint_every",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Wall-clock time between checkpoints; 0: only at the end.",
+           .standard = "0",
+           .range = kNotNegative},
+      }};
+  return table;
+}
+
+const FieldTable& output_fields() {
+  static const FieldTable table{
+      "output",
+      "What to record, and how often.",
+      {
+          {.name = "every",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Time between records.",
+           .standard = "every step",
+           .range = kPositive},
+          {.name = "probes",
+           .kind = kNamed,
+           .meaning = "Channels by name, each at its own rate.",
+           .table = "probe"},
+          {.name = "hdf5", .kind = kBoolean, .meaning = "Write results.h5.", .standard = "true"},
+          {.name = "csv",
+           .kind = kBoolean,
+           .meaning = "Write a .csv file for each probe.",
+           .standard = "true"},
+          {.name = "paraview",
+           .kind = kBoolean,
+           .meaning = "Write .pvd and .vtp files for ParaView.",
+           .standard = "false"},
+      }};
+  return table;
+}
+
+const FieldTable& probe_fields() {
+  static const FieldTable table{
+      "probe",
+      "One of body, joint, load.",
+      {
+          {.name = "body",
+           .kind = kBody,
+           .meaning = "Record position, velocity and acceleration of a point of this body."},
+          {.name = "point",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "The point, in body coordinates.",
+           .standard = "the centre of mass"},
+          {.name = "joint",
+           .kind = kJoint,
+           .meaning = "Record reaction, free coordinates and their rates."},
+          {.name = "axes",
+           .kind = kChoice,
+           .meaning = "Axes of the joint's reaction.",
+           .standard = "world",
+           .choices = {"world", "joint"}},
+          {.name = "load", .kind = kLoad, .meaning = "Record the force or moment of this load."},
+          {.name = "every",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Time between records.",
+           .standard = "output.every",
+           .range = kPositive},
+      }};
+  return table;
+}
+
+std::vector<const FieldTable*> all_field_tables() {
+  std::vector<const FieldTable*> tables = {
+      &model_fields(),       &units_fields(), &body_fields(),  &inertia_fields(),
+      &orientation_fields(), &euler_fields(), &shape_fields(), &mesh_fields()};
+  for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
+  for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
+  for (const FieldTable* table :
+       {&time_table_fields(), &analysis_fields(), &output_fields(), &probe_fields()})
+    tables.push_back(table);
+  return tables;
+}
+
+}  // namespace polhode

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polhode/io/units.hpp>
+
+namespace polhode {
+
+/// What a value of a model file looks like.
+enum class FieldKind : unsigned char {
+  kNumber,      ///< A number, with unit, or an expression.
+  kTimeNumber,  ///< The same, of t too, or a table.
+  kInteger,
+  kBoolean,  ///< true or false.
+  kText,
+  kChoice,         ///< One of a list of words.
+  kChoices,        ///< A list of such words.
+  kVector,         ///< Three numbers.
+  kTimeVector,     ///< Three numbers that may depend on time.
+  kVectorPair,     ///< Two vectors, one for each body.
+  kDirection,      ///< x, y, z, -x, -y, -z or a vector of any length but zero.
+  kDirectionPair,  ///< Two directions, one for each body.
+  kNumbers,        ///< A list of numbers.
+  kMatrix,         ///< Three rows of three numbers.
+  kBody,           ///< Name of a body, or ground.
+  kBodyPair,       ///< Two such names.
+  kJoint,          ///< Name of a joint.
+  kLoad,           ///< Name of a load.
+  kSection,        ///< A map with a table of its own.
+  kNamed,          ///< A map from names the user chooses to sections.
+  kShapes,         ///< A shape or a list of shapes.
+  kInertiaTensor,  ///< Three principal moments, or a map of the tensor's entries.
+  kStep,           ///< A time, or auto.
+  kVariables,      ///< A map from names to numbers.
+};
+
+/// Where a number must lie, in SI.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool above_least = false;  ///< least itself is not allowed.
+};
+inline constexpr Range kAnyNumber{};
+inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false};
+
+/// One key of the model file.
+struct Field {
+  std::string name{};
+  FieldKind kind = FieldKind::kNumber;
+  Dimension dimension{};
+  std::string meaning{};  ///< One line.
+  std::string
+      standard{};  ///< What holds when it is left out: a value in SI, or words; "" if nothing.
+  bool required = false;
+  Range range{};
+  std::vector<std::string> choices{};
+  std::string table{};  ///< Of kSection and kNamed: title of the section's table.
+  std::string since = "0.1";
+};
+
+/// The keys of one kind of thing.
+struct FieldTable {
+  std::string title;    ///< e.g. "body", "joint revolute".
+  std::string meaning;  ///< One or two sentences.
+  std::vector<Field> fields;
+
+  /// The field of that name, or null.
+  [[nodiscard]] const Field* find(std::string_view name) const;
+  /// @throws std::logic_error if there is no such field.
+  [[nodiscard]] const Field& at(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+};
+
+/// A kind of joint or load and the keys it takes.
+struct KindTable {
+  std::string name;
+  FieldTable table;
+};
+
+const FieldTable& model_fields();
+const FieldTable& units_fields();
+const FieldTable& body_fields();
+const FieldTable& inertia_fields();
+const FieldTable& orientation_fields();
+const FieldTable& euler_fields();
+const FieldTable& shape_fields();
+const FieldTable& mesh_fields();
+const FieldTable& time_table_fields();
+const FieldTable& analysis_fields();
+const FieldTable& output_fields();
+const FieldTable& probe_fields();
+const std::vector<KindTable>& joint_tables();
+const std::vector<KindTable>& load_tables();
+/// Every table above, in the order of the reference page.
+std::vector<const FieldTable*> all_field_tables();
+
+}  // namespace polhode

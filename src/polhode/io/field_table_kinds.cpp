@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cctype>
+#include <limits>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/field_table.hpp>
+#include <polhode/joints/registry.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+namespace {
+
+const Field kBodies{.name = "bodies",
+                    .kind = kBodyPair,
+                    .meaning =
+                        "[a, b]: coordinates are those of b's frame seen from a's; a positive "
+                        "angle turns b about +z.",
+                    .required = true};
+const Field kAt{.name = "at",
+                .kind = kVector,
+                .dimension = kLength,
+                .meaning = "The joint's point at the start, world. Or at_body."};
+const Field kPointsAt{.name = "at",
+                      .kind = kVectorPair,
+                      .dimension = kLength,
+                      .meaning = "The points on a and on b at the start, world. Or at_body."};
+const Field kAtBody{.name = "at_body",
+                    .kind = kVectorPair,
+                    .dimension = kLength,
+                    .meaning =
+                        "The joint's point on a and on b, each in its body's coordinates (ground: "
+                        "world); the start is then assembled."};
+const Field kAxis{
+    .name = "axis", .kind = kDirection, .meaning = "The joint's z at the start, world."};
+const Field kAxisBody{
+    .name = "axis_body",
+    .kind = kDirectionPair,
+    .meaning =
+        "Instead of axis: z on a and on b, each in its body's axes; the start is then assembled."};
+const Field kXAxis{.name = "x_axis",
+                   .kind = kDirection,
+                   .meaning = "The joint's x at the start, world; made perpendicular to z.",
+                   .standard = "the world axis least along z, made perpendicular"};
+
+enum class Axis { kRequired, kOptional, kNone };
+
+/// How a joint is given its axes; a kind that is not named here has one that matters.
+Axis axis_of(const std::string& name) {
+  if (name == "universal" || name == "distance") return Axis::kNone;
+  if (name == "spherical" || name == "fixed" || name == "generic") return Axis::kOptional;
+  return Axis::kRequired;
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text + ".";
+}
+
+KindTable joint_table(const JointKind& kind) {
+  KindTable result{kind.name, {"joint " + kind.name, sentence(kind.meaning), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  fields.push_back({.name = "type",
+                    .kind = kChoice,
+                    .meaning = "The kind of joint.",
+                    .required = true,
+                    .choices = {kind.name}});
+  fields.push_back(kBodies);
+  fields.push_back(kind.name == "distance" ? kPointsAt : kAt);
+  fields.push_back(kAtBody);
+  const Axis axis = axis_of(kind.name);
+  if (axis != Axis::kNone) {
+    fields.push_back(kAxis);
+    if (axis == Axis::kOptional) fields.back().standard = "z";
+    if (axis == Axis::kRequired) fields.push_back(kAxisBody);
+    fields.push_back(kXAxis);
+  }
+  if (kind.name == "universal")
+    fields.push_back({.name = "axes",
+                      .kind = kDirectionPair,
+                      .meaning = "[axis on a, axis on b] at the start, world; perpendicular.",
+                      .required = true});
+  if (kind.takes_free_list)
+    fields.push_back({.name = "free",
+                      .kind = kChoices,
+                      .meaning = "The free ones, in the joint's axes.",
+                      .required = true,
+                      .choices = {"x", "y", "z", "rx", "ry", "rz"}});
+  for (const Parameter& p : kind.parameters) {
+    const UnitReading unit = read_unit(p.unit);
+    Field field{.name = p.name, .kind = kNumber, .meaning = sentence(p.meaning)};
+    if (unit.unit) field.dimension = unit.unit->dimension;
+    if (p.standard) field.standard = format("{:g}", *p.standard);
+    // The smallest positive number stands for "above zero".
+    const bool positive = p.least == std::numeric_limits<double>::min();
+    field.range = {positive ? 0.0 : p.least, p.most, positive};
+    if (p.most == std::numeric_limits<double>::max())
+      field.range.most = std::numeric_limits<double>::infinity();
+    fields.push_back(std::move(field));
+  }
+  return result;
+}
+
+KindTable load(const std::string& name, const std::string& meaning,
+               const std::vector<Field>& more) {
+  KindTable kind{name, {"load " + name, meaning, {}}};
+  kind.table.fields.push_back({.name = "type",
+                               .kind = kChoice,
+                               .meaning = "The kind of load.",
+                               .required = true,
+                               .choices = {name}});
+  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
+  return kind;
+}
+
+}  // namespace
+
+const std::vector<KindTable>& joint_tables() {
+  static const std::vector<KindTable> tables = [] {
+    std::vector<KindTable> list;
+    for (const JointKind& kind : joint_kinds()) list.push_back(joint_table(kind));
+    return list;
+  }();
+  return tables;
+}
+
+const std::vector<KindTable>& load_tables() {
+  const Field body{
+      .name = "body", .kind = kBody, .meaning = "The body it acts on.", .required = true};
+  const Field fixed_axes{.name = "body_fixed",
+                         .kind = kBoolean,
+                         .meaning = "The components turn with the body.",
+                         .standard = "false"};
+  static const std::vector<KindTable> tables = {
+      load("force", "A force at a point of a body.",
+           {body,
+            {.name = "at",
+             .kind = kVector,
+             .dimension = kLength,
+             .meaning = "The body's point, world at the start. Or at_body."},
+            {.name = "at_body",
+             .kind = kVector,
+             .dimension = kLength,
+             .meaning = "The body's point, body coordinates.",
+             .standard = "the centre of mass"},
+            {.name = "force",
+             .kind = kTimeVector,
+             .dimension = kForce,
+             .meaning = "Components along the world's axes, or the body's if body_fixed.",
+             .required = true},
+            fixed_axes}),
+      load("moment", "A moment on a body.",
+           {body,
+            {.name = "moment",
+             .kind = kTimeVector,
+             .dimension = kMoment,
+             .meaning = "Components along the world's axes, or the body's if body_fixed.",
+             .required = true},
+            fixed_axes}),
+      load("spring_damper", "A linear spring and damper between two points.",
+           {{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true},
+            {.name = "at",
+             .kind = kVectorPair,
+             .dimension = kLength,
+             .meaning = "The points on a and b, world at the start. Or at_body."},
+            {.name = "at_body",
+             .kind = kVectorPair,
+             .dimension = kLength,
+             .meaning = "The points on a and b, each in its body's coordinates (ground: world)."},
+            {.name = "stiffness",
+             .kind = kNumber,
+             .dimension = kStiffness,
+             .meaning = "Force per length.",
+             .standard = "0",
+             .range = kNotNegative},
+            {.name = "damping",
+             .kind = kNumber,
+             .dimension = kDamping,
+             .meaning = "Force per speed along the line of the points.",
+             .standard = "0",
+             .range = kNotNegative},
+            {.name = "free_length",
+             .kind = kNumber,
+             .dimension = kLength,
+             .meaning = "Length without force.",
+             .standard = "that at the start",
+             .range = kNotNegative}}),
+      load("torsional_spring", "A spring and damper on the angle of a joint.",
+           {{.name = "joint",
+             .kind = kJoint,
+             .meaning = "A joint that turns about its axis: revolute or cylindrical.",
+             .required = true},
+            {.name = "stiffness",
+             .kind = kNumber,
+             .dimension = kAngularStiffness,
+             .meaning = "Moment per angle.",
+             .standard = "0",
+             .range = kNotNegative},
+            {.name = "damping",
+             .kind = kNumber,
+             .dimension = kAngularDamping,
+             .meaning = "Moment per angular velocity.",
+             .standard = "0",
+             .range = kNotNegative},
+            {.name = "free_angle",
+             .kind = kNumber,
+             .dimension = kAngle,
+             .meaning = "Angle without moment.",
+             .standard = "0"}}),
+  };
+  return tables;
+}
+
+}  // namespace polhode

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <polhode/io/expression.hpp>
+#include <polhode/io/field_table.hpp>
+#include <polhode/io/source_tree.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// All that the readers of the parts of one model share.
+struct ReadContext {
+  const SourceTree& tree;
+  Diagnostics& diagnostics;
+  UnitSystem units{};
+  Variables variables{};
+  std::string folder{};  ///< Of the model file; mesh files are seen from it.
+  Model model{};
+  std::unordered_map<std::string, int> bodies{}, joints{}, loads{};  ///< Index by name.
+  std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
+
+  /// Adds a fault of a value.
+  void fault(const SourceNode& node, const std::string& path, std::string what, std::string mend);
+  [[nodiscard]] std::vector<std::string> body_names() const;  ///< With ground.
+  [[nodiscard]] std::vector<std::string> joint_names() const;
+  [[nodiscard]] std::vector<std::string> load_names() const;
+};
+
+/// The text of a value as a dimension-checked number or expression; null after a fault.
+std::shared_ptr<const Expression> read_expression(ReadContext& context, const SourceNode& node,
+                                                  const std::string& path, bool allow_time);
+
+/// A number in SI; nothing after a fault.
+std::optional<double> read_number(ReadContext& context, const SourceNode& node,
+                                  const std::string& path, const Field& field);
+/// A number that may depend on time, or a table; null after a fault.
+TimeFunctionPtr read_time_number(ReadContext& context, const SourceNode& node,
+                                 const std::string& path, const Field& field);
+std::optional<std::vector<double>> read_numbers(ReadContext& context, const SourceNode& node,
+                                                const std::string& path, const Field& field,
+                                                std::size_t count);
+std::optional<Vec3> read_vector(ReadContext& context, const SourceNode& node,
+                                const std::string& path, const Field& field);
+std::optional<TimeVector> read_time_vector(ReadContext& context, const SourceNode& node,
+                                           const std::string& path, const Field& field);
+std::optional<std::array<Vec3, 2>> read_vector_pair(ReadContext& context, const SourceNode& node,
+                                                    const std::string& path, const Field& field);
+/// A unit vector from a letter (x, -x, ...) or three numbers.
+std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
+                                   const std::string& path);
+std::optional<std::array<Vec3, 2>> read_direction_pair(ReadContext& context, const SourceNode& node,
+                                                       const std::string& path);
+std::optional<bool> read_boolean(ReadContext& context, const SourceNode& node,
+                                 const std::string& path);
+std::optional<std::string> read_text(ReadContext& context, const SourceNode& node,
+                                     const std::string& path);
+std::optional<std::string> read_choice(ReadContext& context, const SourceNode& node,
+                                       const std::string& path,
+                                       const std::vector<std::string>& choices);
+/// Words out of a list, each at most once, in the order of the list.
+std::optional<std::vector<std::string>> read_choices(ReadContext& context, const SourceNode& node,
+                                                     const std::string& path, const Field& field);
+/// Index of a body; kGround for ground.
+std::optional<int> read_body(ReadContext& context, const SourceNode& node, const std::string& path);
+std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const SourceNode& node,
+                                                 const std::string& path);
+
+/// Whether a user may give this name to a body, joint, load or probe; adds a fault if not.
+bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
+                const std::string& collection);
+
+/// A map that is read by the fields of a table.
+class Section {
+ public:
+  /// Tells of unknown and missing keys, and of a value that is no map.
+  /// @param place  Of the thing, where a missing key is told.
+  Section(ReadContext& context, const SourceNode& node, Place place, std::string path,
+          const FieldTable& table);
+
+  [[nodiscard]] const SourceNode* find(const std::string& name) const;
+  [[nodiscard]] bool has(const std::string& name) const { return find(name) != nullptr; }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return path_.empty() ? name : path_ + "." + name;
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const Place& place() const { return place_; }
+
+  std::optional<double> number(const std::string& name);
+  std::optional<int> integer(const std::string& name);
+  std::optional<bool> boolean(const std::string& name);
+  std::optional<std::string> text(const std::string& name);
+  std::optional<std::string> choice(const std::string& name);
+  std::optional<std::vector<std::string>> choices(const std::string& name);
+  std::optional<Vec3> vector(const std::string& name);
+  std::optional<TimeVector> time_vector(const std::string& name);
+  std::optional<std::array<Vec3, 2>> vector_pair(const std::string& name);
+  std::optional<Vec3> direction(const std::string& name);
+  std::optional<std::array<Vec3, 2>> direction_pair(const std::string& name);
+  std::optional<int> body(const std::string& name);
+  std::optional<std::array<int, 2>> body_pair(const std::string& name);
+
+  /// A fault of one key, or of the whole thing where the key is absent.
+  void fault(const std::string& name, std::string what, std::string mend);
+  /// A fault of the whole thing.
+  void fault(std::string what, std::string mend);
+  /// Tells that two keys exclude each other, if both are there.
+  bool refuse_both(const std::string& one, const std::string& other, const std::string& mend);
+
+ private:
+  ReadContext& context_;
+  const SourceNode& node_;
+  Place place_;
+  std::string path_;
+  const FieldTable& table_;
+};
+
+/// The table of the kind that "type" names; null after a fault.
+const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const Place& place,
+                            const std::string& path, const std::vector<KindTable>& kinds,
+                            std::string& type);
+
+/// The shortest text of a number for messages.
+std::string shown(double value);
+
+// The parts of a model, each in its own file.
+void read_units(ReadContext& context, const SourceNode& node);
+void read_variables(ReadContext& context, const SourceNode& node);
+std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& node,
+                                     const std::string& path);
+void read_bodies(ReadContext& context, const SourceNode& node);
+std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
+                                   const std::string& path);
+void read_joints(ReadContext& context, const SourceNode& node);
+void read_loads(ReadContext& context, const SourceNode& node);
+void read_analysis(ReadContext& context, const SourceNode& node, const Place& place);
+void read_output(ReadContext& context, const SourceNode& node, const Place& place);
+/// What only the whole model shows: orders against loads, and the like.
+void check_model(ReadContext& context, const SourceNode& root);
+
+}  // namespace polhode

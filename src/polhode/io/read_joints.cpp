@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_context.hpp>
+#include <polhode/joints/registry.hpp>
+
+namespace polhode {
+namespace {
+
+/// Where a body stands at the start; the ground is the world.
+struct Pose {
+  Vec3 r = Vec3::Zero();    ///< Centre of mass [m].
+  Vec3 com = Vec3::Zero();  ///< The same in the user's body coordinates [m].
+  Mat3 Lambda = Mat3::Identity();
+
+  [[nodiscard]] Vec3 from_world(const Vec3& point) const {
+    return Lambda.transpose() * (point - r);
+  }
+  [[nodiscard]] Vec3 to_world(const Vec3& Z) const { return r + Lambda * Z; }
+};
+
+Pose pose_of(const ReadContext& context, int body) {
+  if (body == kGround) return {};
+  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
+  return {b.position, b.com, b.orientation.toRotationMatrix()};
+}
+
+/// Right-handed axes with this z; x as near as it can be to a wish, or along the world axis that is
+/// least along z.
+Mat3 axes_about(const Vec3& z, const std::optional<Vec3>& wish = {}) {
+  int least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  const Vec3 x = wish.value_or(Vec3::Unit(least));
+  Mat3 F;
+  F.col(2) = z;
+  F.col(0) = (x - x.dot(z) * z).normalized();
+  F.col(1) = z.cross(F.col(0));
+  return F;
+}
+
+class JointReader {
+ public:
+  JointReader(ReadContext& context, const SourceNode& node, JointSpec& joint,
+              const FieldTable& table)
+      : context_(context),
+        node_(node),
+        joint_(joint),
+        table_(table),
+        section_(context, node, joint.place, "joints." + joint.name, table) {}
+
+  void read() {
+    if (!node_.is_map()) return;
+    const std::size_t before = context_.diagnostics.size();
+    const auto bodies = section_.body_pair("bodies");
+    if (bodies) {
+      joint_.a = (*bodies)[0];
+      joint_.b = (*bodies)[1];
+      check_can_move();
+    }
+    a_ = pose_of(context_, joint_.a);
+    b_ = pose_of(context_, joint_.b);
+    read_points();
+    read_axes();
+    read_parameters();
+    // What follows needs sound numbers, and bodies that stand where they should.
+    const auto sound = [&](int body) {
+      return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
+    };
+    if (context_.diagnostics.size() != before || !bodies || !sound(joint_.a) || !sound(joint_.b))
+      return;
+    if (joint_.type == "distance") complete_distance();
+    check_recipe();
+  }
+
+ private:
+  [[nodiscard]] bool takes(const std::string& name) const { return table_.find(name) != nullptr; }
+
+  void check_can_move() {
+    const auto stays = [&](int body) {
+      return body == kGround || context_.model.bodies[static_cast<std::size_t>(body)].fixed;
+    };
+    if (stays(joint_.a) && stays(joint_.b))
+      section_.fault("bodies", "neither body can move",
+                     "Leave the joint out, or name a body that is not fixed.");
+  }
+
+  void read_points() {
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
+    if (const auto points = section_.vector_pair("at_body")) {
+      joint_.Z_a = (*points)[0] - a_.com;
+      joint_.Z_b = (*points)[1] - b_.com;
+      joint_.assembled_start = true;
+    }
+    if (section_.has("at_body")) return;
+    if (!section_.has("at")) {
+      // Directions alone matter to parallel axes.
+      if (joint_.type != "parallel_axes")
+        section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
+      return;
+    }
+    if (table_.at("at").kind == FieldKind::kVectorPair) {
+      const auto points = section_.vector_pair("at");
+      if (!points) return;
+      joint_.Z_a = a_.from_world((*points)[0]);
+      joint_.Z_b = b_.from_world((*points)[1]);
+    } else if (const auto point = section_.vector("at")) {
+      joint_.Z_a = a_.from_world(*point);
+      joint_.Z_b = b_.from_world(*point);
+    }
+  }
+
+  void set_axes(const Mat3& F) {
+    joint_.R_a = a_.Lambda.transpose() * F;
+    joint_.R_b = b_.Lambda.transpose() * F;
+  }
+
+  void read_axes() {
+    if (takes("axes")) {
+      read_cross();
+      return;
+    }
+    if (!takes("axis")) {
+      set_axes(Mat3::Identity());
+      return;
+    }
+    if (takes("axis_body")) {
+      section_.refuse_both("axis", "axis_body", "Give one of them.");
+      if (!section_.has("axis") && !section_.has("axis_body"))
+        section_.fault("'axis' is missing", "Give axis (world) or axis_body (on each body).");
+      if (section_.has("axis_body")) {
+        read_body_axes();
+        return;
+      }
+    }
+    const auto axis = section_.direction("axis");
+    const auto x = section_.direction("x_axis");
+    if (section_.has("axis") && !axis) return;
+    const Vec3 z = axis.value_or(Vec3::UnitZ());
+    if (x && !check_x(z, *x)) return;
+    set_axes(axes_about(z, x));
+  }
+
+  bool check_x(const Vec3& z, const Vec3& x) {
+    if (x.cross(z).norm() > 1e-3) return true;
+    section_.fault("x_axis", "is parallel to the joint's z", "Give a direction across the axis.");
+    return false;
+  }
+
+  /// z on each body; x_axis counts in the world at the start, as seen from a.
+  void read_body_axes() {
+    const auto z = section_.direction_pair("axis_body");
+    const auto x = section_.direction("x_axis");
+    if (!z) return;
+    const Vec3 z_a = a_.Lambda * (*z)[0], z_b = b_.Lambda * (*z)[1];
+    if (x && !check_x(z_a, *x)) return;
+    const Mat3 F = axes_about(z_a, x);
+    // The shortest turn from one axis to the other keeps the joint's angle at the start near zero.
+    const Quat turn = Quat::FromTwoVectors(z_a, z_b);
+    joint_.R_a = a_.Lambda.transpose() * F;
+    joint_.R_b = b_.Lambda.transpose() * (turn * F);
+    joint_.assembled_start = true;
+  }
+
+  /// The two axes of a universal joint: x on a, y on b.
+  void read_cross() {
+    const auto axes = section_.direction_pair("axes");
+    if (!axes) return;
+    const auto& [x, y] = *axes;
+    const double angle = std::atan2(x.cross(y).norm(), x.dot(y));
+    if (std::abs(x.dot(y)) > 1e-6) {
+      section_.fault("axes", format("are {:.6g} deg apart", angle * 180.0 / 3.14159265358979323846),
+                     "The two axes of a universal joint are perpendicular.");
+      return;
+    }
+    Mat3 F;
+    F.col(0) = x;
+    F.col(2) = x.cross(y).normalized();
+    F.col(1) = F.col(2).cross(x);
+    set_axes(F);
+  }
+
+  void read_parameters() {
+    const JointKind& kind = joint_kind(joint_.type);
+    if (kind.takes_free_list)
+      if (const auto free = section_.choices("free")) joint_.free = *free;
+    for (const Parameter& parameter : kind.parameters) {
+      if (const auto value = section_.number(parameter.name))
+        joint_.parameters[parameter.name] = *value;
+      else if (parameter.standard)
+        joint_.parameters[parameter.name] = *parameter.standard;
+    }
+  }
+
+  void complete_distance() {
+    const double start = (a_.to_world(joint_.Z_a) - b_.to_world(joint_.Z_b)).norm();
+    const auto [found, is_new] = joint_.parameters.emplace("distance", start);
+    if (is_new && !(start > 0.0)) {
+      section_.fault(section_.has("at") ? "at" : "at_body", "the two points coincide at the start",
+                     "Use a spherical joint, or give the distance.");
+    }
+    if (!is_new && std::abs(found->second - start) > 1e-9 * start) joint_.assembled_start = true;
+  }
+
+  /// The kind itself knows what else can be wrong.
+  void check_recipe() {
+    try {
+      joint_kind(joint_.type)
+          .recipe({joint_.Z_a, joint_.Z_b, joint_.R_a, joint_.R_b},
+                  {joint_.free, joint_.parameters});
+    } catch (const InputError& error) {
+      const bool is_key = table_.find(error.where()) != nullptr;
+      section_.fault(is_key ? error.where() : "type", error.what_is_wrong(), error.mend());
+    }
+  }
+
+  ReadContext& context_;
+  const SourceNode& node_;
+  JointSpec& joint_;
+  const FieldTable& table_;
+  Section section_;
+  Pose a_, b_;
+};
+
+}  // namespace
+
+void read_joints(ReadContext& context, const SourceNode& node) {
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const SourceNode::Key& key = node.keys[k];
+    if (!check_name(context, key, node.children[k], "joints")) continue;
+    JointSpec joint;
+    joint.name = key.name;
+    joint.place = context.tree.place_of(key, node.children[k]);
+    if (const FieldTable* table = read_kind(context, node.children[k], joint.place,
+                                            "joints." + key.name, joint_tables(), joint.type))
+      JointReader(context, node.children[k], joint, *table).read();
+    context.joints.emplace(joint.name, static_cast<int>(context.model.joints.size()));
+    context.model.joints.push_back(std::move(joint));
+  }
+}
+
+}  // namespace polhode

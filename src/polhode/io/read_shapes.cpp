@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/body/shapes.hpp>
+#include <polhode/io/read_context.hpp>
+
+namespace polhode {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (const ShapeKind& kind : shape_kinds()) names.push_back(kind.name);
+  names.emplace_back("mesh");
+  names.emplace_back("plane");
+  return names;
+}
+
+/// Sizes as a list in order, as a map by name, or, where there is one only, as a number.
+std::optional<std::vector<double>> read_sizes(ReadContext& context, const SourceNode& node,
+                                              const std::string& path, const ShapeKind& kind) {
+  const Field& field = shape_fields().at(kind.name);
+  std::string order;
+  for (const ShapeSize& size : kind.sizes) order += (order.empty() ? "" : ", ") + size.name;
+  std::vector<double> sizes;
+  if (node.is_map()) {
+    FieldTable table{"shape " + kind.name, kind.meaning, {}};
+    for (const ShapeSize& size : kind.sizes) {
+      table.fields.push_back({.name = size.name,
+                              .kind = FieldKind::kNumber,
+                              .dimension = dimensions::kLength,
+                              .meaning = size.meaning,
+                              .required = true,
+                              .range = kPositive});
+    }
+    Section section(context, node, context.tree.place_of(node), path, table);
+    for (const ShapeSize& size : kind.sizes)
+      if (const auto value = section.number(size.name)) sizes.push_back(*value);
+  } else if (node.is_text() && kind.sizes.size() == 1) {
+    if (const auto value = read_number(context, node, path, field)) sizes.push_back(*value);
+  } else if (!node.is_list() || node.children.size() != kind.sizes.size()) {
+    const std::string found =
+        node.is_list() ? format("has {}", node.children.size()) : "is " + node.description();
+    context.fault(node, path,
+                  format("expects {} size{}, but {}", kind.sizes.size(),
+                         kind.sizes.size() == 1 ? "" : "s", found),
+                  format("Write [{}]; all are full lengths.", order));
+    return std::nullopt;
+  } else {
+    for (const SourceNode& child : node.children)
+      if (const auto value = read_number(context, child, path, field)) sizes.push_back(*value);
+  }
+  if (sizes.size() != kind.sizes.size()) return std::nullopt;
+  try {
+    check_shape_sizes(path, kind, sizes);
+  } catch (const InputError& error) {
+    context.fault(node, path, error.what_is_wrong(), error.mend());
+    return std::nullopt;
+  }
+  return sizes;
+}
+
+bool read_mesh(ReadContext& context, const SourceNode& node, const std::string& path,
+               ShapeSpec& shape) {
+  const SourceNode* file = &node;
+  if (!node.is_text()) {
+    Section section(context, node, context.tree.place_of(node), path, mesh_fields());
+    shape.scale = section.number("scale").value_or(context.units.length);
+    file = section.find("file");
+    if (!file || !section.text("file")) return false;
+  } else {
+    shape.scale = context.units.length;
+  }
+  std::error_code ignored;
+  const fs::path full = fs::path(context.folder) / fs::path(file->text);
+  if (file->text.empty() || !fs::is_regular_file(full, ignored)) {
+    context.fault(*file, path, "there is no file " + quoted(file->text),
+                  "Give the path as seen from the model file's folder.");
+    return false;
+  }
+  shape.file = full.lexically_normal().string();
+  return true;
+}
+
+std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node,
+                                    const std::string& path) {
+  const FieldTable& table = shape_fields();
+  const std::vector<std::string> names = shape_names();
+  ShapeSpec shape;
+  shape.place = context.tree.place_of(node);
+  Section section(context, node, shape.place, path, table);
+  if (!node.is_map()) return std::nullopt;
+  const SourceNode* sizes = nullptr;
+  for (const std::string& name : names) {
+    const SourceNode* value = section.find(name);
+    if (!value) continue;
+    if (sizes) {
+      section.fault(name, format("stands beside '{}'", shape.type),
+                    "Give one kind to a shape; several shapes form a list.");
+      return std::nullopt;
+    }
+    sizes = value;
+    shape.type = name;
+  }
+  if (!sizes) {
+    section.fault("has no kind", "Use one of: " + name_list(names) + ".");
+    return std::nullopt;
+  }
+  if (const auto p = section.vector("position")) shape.position = *p;
+  if (const SourceNode* value = section.find("orientation"))
+    if (const auto q = read_orientation(context, *value, section.path("orientation")))
+      shape.orientation = *q;
+  shape.density = section.number("density");
+  if (shape.type == "mesh") {
+    if (!read_mesh(context, *sizes, section.path("mesh"), shape)) return std::nullopt;
+  } else if (shape.type == "plane") {
+    const auto normal = read_direction(context, *sizes, section.path("plane"));
+    if (!normal) return std::nullopt;
+    shape.sizes = {normal->x(), normal->y(), normal->z()};
+  } else {
+    auto values =
+        read_sizes(context, *sizes, section.path(shape.type), *find_shape_kind(shape.type));
+    if (!values) return std::nullopt;
+    shape.sizes = std::move(*values);
+  }
+  return shape;
+}
+
+}  // namespace
+
+std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
+                                   const std::string& path) {
+  std::vector<ShapeSpec> shapes;
+  if (!node.is_list()) {
+    if (auto shape = read_shape(context, node, path)) shapes.push_back(std::move(*shape));
+    return shapes;
+  }
+  if (node.children.empty())
+    context.fault(node, path, "is an empty list", "Leave it out, or list a shape.");
+  for (std::size_t k = 0; k < node.children.size(); ++k)
+    if (auto shape = read_shape(context, node.children[k], format("{}.{}", path, k)))
+      shapes.push_back(std::move(*shape));
+  return shapes;
+}
+
+}  // namespace polhode

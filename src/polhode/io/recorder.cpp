@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/recorder.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include <polhode/io/csv_probes.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/io/paraview.hpp>
+#include <polhode/io/results_format.hpp>
+
+namespace polhode {
+
+struct Recorder::Impl {
+  std::optional<ResultsFile> results;
+  std::optional<ParaviewWriter> paraview;
+  std::optional<CsvProbes> probes;
+  double last_frame = -std::numeric_limits<double>::infinity();
+  std::size_t frames = 0;
+};
+
+Recorder::Recorder(const Simulation& simulation, const std::string& folder,
+                   const Provenance& provenance, bool restarted)
+    : impl_(std::make_unique<Impl>()) {
+  const OutputSpec& output = simulation.model().output;
+  const std::optional<double> keep =
+      restarted ? std::optional<double>(simulation.time()) : std::nullopt;
+  make_folder(folder);
+  if (output.hdf5) {
+    const std::string path = folder + "/" + results::kFileName;
+    const ResultsLayout layout = results_layout(simulation);
+    if (keep && std::filesystem::exists(path))
+      impl_->results.emplace(ResultsFile::append_to(path, layout, *keep));
+    else
+      impl_->results.emplace(path, layout, provenance);
+    // The start of a continued run is an instant the earlier run has dealt with already.
+    if (impl_->results->frames() > 0) impl_->last_frame = simulation.time();
+  }
+  if (output.paraview)
+    impl_->paraview.emplace(folder + "/paraview", "results",
+                            body_pictures(simulation.model(), simulation.system().length_scale()),
+                            keep);
+  if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::frame(const Simulation& simulation) {
+  if (simulation.time() <= impl_->last_frame) return;
+  impl_->last_frame = simulation.time();
+  if (impl_->results) impl_->results->append(results_frame(simulation));
+  if (impl_->paraview) {
+    std::vector<BodyMotion> motions;
+    for (std::size_t i = 0; i < simulation.model().bodies.size(); ++i)
+      motions.push_back(simulation.body(static_cast<int>(i)));
+    impl_->paraview->append(simulation.time(), motions);
+  }
+  ++impl_->frames;
+}
+
+void Recorder::step(const Simulation& simulation) {
+  if (impl_->probes) impl_->probes->record(simulation);
+}
+
+void Recorder::close() {
+  if (impl_->results) impl_->results->close();
+  if (impl_->paraview) impl_->paraview->close();
+  if (impl_->probes) impl_->probes->flush();
+}
+
+std::size_t Recorder::frames() const {
+  return impl_->results ? impl_->results->frames() : impl_->frames;
+}
+
+}  // namespace polhode

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <polhode/io/write_results.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+
+/// Writes what a model's `output` asks for into one folder: results.h5, probes/<name>.csv,
+/// paraview/results.pvd.
+class Recorder {
+ public:
+  /// @param restarted  The simulation continues from its present time: files of the earlier run
+  ///                   in the folder are kept up to that time and continued.
+  /// @throws FileError, InputError
+  Recorder(const Simulation& simulation, const std::string& folder, const Provenance& provenance,
+           bool restarted = false);
+  ~Recorder();
+
+  /// A frame: results and pictures. Called at output times; a frame that stands already is not
+  /// written twice. @throws FileError
+  void frame(const Simulation& simulation);
+  /// Probes. Called after every step. @throws FileError
+  void step(const Simulation& simulation);
+  /// Writes everything that is held back and closes the files. @throws FileError
+  void close();
+
+  /// Frames in the results.
+  [[nodiscard]] std::size_t frames() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elimination along the tree, body by body: towards the roots (up) and back (down).
+// Derivation: docs/theory/elimination_along_the_tree.md.
+#pragma once
+
+#include <polhode/solve/lanes/joint_kernels.hpp>
+#include <polhode/solve/lanes/loops.hpp>
+
+namespace polhode::POLHODE_ISA {
+
+/// Inverse of a small matrix by Gauss-Jordan with row exchanges. False: a pivot vanished.
+template <int n>
+POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
+  double a[n][n], e[n][n];
+  double largest = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      a[i][j] = D[i][j];
+      e[i][j] = i == j ? 1.0 : 0.0;
+      largest = __builtin_fabs(a[i][j]) > largest ? __builtin_fabs(a[i][j]) : largest;
+    }
+  for (int c = 0; c < n; ++c) {
+    int p = c;
+    for (int i = c + 1; i < n; ++i)
+      if (__builtin_fabs(a[i][c]) > __builtin_fabs(a[p][c])) p = i;
+    if (!(__builtin_fabs(a[p][c]) > 1e-14 * largest)) return false;
+    if (p != c)
+      for (int j = 0; j < n; ++j) {
+        const double x = a[c][j], y = e[c][j];
+        a[c][j] = a[p][j];
+        e[c][j] = e[p][j];
+        a[p][j] = x;
+        e[p][j] = y;
+      }
+    const double pivot = 1.0 / a[c][c];
+    for (int j = 0; j < n; ++j) {
+      a[c][j] *= pivot;
+      e[c][j] *= pivot;
+    }
+    for (int i = 0; i < n; ++i) {
+      if (i == c) continue;
+      const double factor = a[i][c];
+      for (int j = 0; j < n; ++j) {
+        a[i][j] -= factor * a[c][j];
+        e[i][j] -= factor * e[c][j];
+      }
+    }
+  }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) inverse[i][j] = e[i][j];
+  return true;
+}
+
+/// The body's rows: own balance, what is attached to it, children.
+POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s, Row* A) {
+  EliminatedBody& e = v.body[slot];
+  for (int i = 0; i < 3; ++i) {
+    A[i] = s.mass[lane] * unit(i) + s.rhs[i][lane] * unit(7);
+    A[3 + i] = row_load(s.theta[i][lane]);
+  }
+  if (v.has_children[slot])
+    for (int i = 0; i < 6; ++i) A[i] += row_load(e.A[i]);
+  if (v.extra[slot] >= 0)
+    for (int i = 0; i < 6; ++i) A[i] += row_load(v.extra_rows[v.extra[slot]].A[i]);
+  for (int i = 0; i < 6; ++i) row_store(e.A[i], A[i]);
+}
+
+/// bottom += c × top, for rows: X_lᵀ of a wrench's rows.
+POLHODE_INLINE void shift_rows(const double* c, Row* M) {
+  M[3] += c[1] * M[2] - c[2] * M[1];
+  M[4] += c[2] * M[0] - c[0] * M[2];
+  M[5] += c[0] * M[1] - c[1] * M[0];
+}
+
+/// Hands the rows M of an eliminated body to its parent.
+POLHODE_INLINE void give_to_parent(const TreeView& v, int slot, int lane, const BlockScratch& s, Row* M) {
+  // The joint's force on the parent turns with its arm: arm Fᵀ − F·arm I.
+  const double along = s.F_dot_arm[lane];
+  alignas(64) const double F_row[8] = {0, 0, 0, s.F[0][lane], s.F[1][lane], s.F[2][lane], 0, 0};
+  const Row F = row_load(F_row);
+  for (int i = 0; i < 3; ++i) M[3 + i] += s.arm[i][lane] * F - along * unit(3 + i);
+  EliminatedBody& p = v.body[v.parent[slot]];
+  if (v.first_child[slot])
+    for (int i = 0; i < 6; ++i) row_store(p.A[i], M[i]);
+  else
+    for (int i = 0; i < 6; ++i) row_store(p.A[i], row_load(p.A[i]) + M[i]);
+}
+
+/// Eliminates a body whose joint leaves kFree directions.
+template <class S>
+bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
+  constexpr int nq = S::free;
+  constexpr JointLayout l = S::layout;
+  const double* data = v.joint_data + v.joint[slot / kLanes] + lane;
+  const auto kept = [&](int field) { return data[8 * field]; };
+  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot)) return false;
+  Row M[6];
+  collect_rows(v, slot, lane, s, M);
+  // From memory on purpose: scalars of a row that was just stored.
+  const double(*a)[8] = v.body[slot].A;
+  asm volatile("" ::: "memory");
+
+  // M = [A X_r | A S_r | A x_g − ρ] for one free direction, [A X_r | · | A x_g − ρ] and N = A S_r else.
+  Row T[6], N[6];
+  for (int i = 0; i < 3; ++i) {
+    T[i] = row_load(s.T[i][lane]);
+    T[3 + i] = kept(l.x_g() + 3 + i) * unit(7);
+    if constexpr (nq == 1) T[3 + i] += kept(l.S_r() + 3 + i) * unit(6);
+  }
+  for (int i = 0; i < 6; ++i) {
+    M[i] = (M[i] + a[i][0] * T[0] + a[i][1] * T[1]) + a[i][2] * T[2];
+    if constexpr (S::ND > 0 || nq == 1)
+      M[i] += (a[i][3] * T[3] + a[i][4] * T[4]) + a[i][5] * T[5];
+  }
+  if constexpr (nq > 1) {
+    Row Sr[6];
+    for (int i = 0; i < 6; ++i) Sr[i] = row_load(s.S_rows[i][lane]);
+    for (int i = 0; i < 6; ++i)
+      N[i] = ((a[i][0] * Sr[0] + a[i][1] * Sr[1]) + a[i][2] * Sr[2]) +
+             ((a[i][3] * Sr[3] + a[i][4] * Sr[4]) + a[i][5] * Sr[5]);
+  }
+  const EdgeRows* edge = v.edge[slot] >= 0 ? &v.edge_rows[v.edge[slot]] : nullptr;
+  if (edge)
+    for (int i = 0; i < 6; ++i) M[i] += row_load(edge->K_bp[i]);
+
+  // Projected rows Y = [Qᵀ | D or · | −β].
+  Row Y[nq > 0 ? nq : 1];
+  alignas(64) double D[nq > 0 ? nq : 1][8] = {}, D_inverse[nq > 0 ? nq : 1][8] = {};
+  for (int k = 0; k < nq; ++k) {
+    double left[6];
+    for (int i = 0; i < 6; ++i) left[i] = s.S_l[k][i][lane];
+    Y[k] = ((left[0] * M[0] + left[1] * M[1]) + left[2] * M[2]) +
+           ((left[3] * M[3] + left[4] * M[4]) + left[5] * M[5]);
+    alignas(64) const double stiffness[8] = {0, 0, 0, s.k_a[k][0][lane], s.k_a[k][1][lane], s.k_a[k][2][lane], 0, 0};
+    Y[k] += row_load(stiffness);
+    if constexpr (nq > 1) {
+      const Row d = ((left[0] * N[0] + left[1] * N[1]) + left[2] * N[2]) +
+                    ((left[3] * N[3] + left[4] * N[4]) + left[5] * N[5]);
+      row_store(D[k], d);
+    } else {
+      D[0][0] = Y[0][6];
+      double size = 0.0;
+      for (int i = 0; i < 6; ++i) size += __builtin_fabs(left[i] * M[i][6]);
+      if (!(__builtin_fabs(D[0][0]) > 1e-12 * size)) return false;
+    }
+  }
+  if constexpr (S::ND == 1) {  // stiffness on Δθ_b = Δθ_a + (S_r q)_θ + w
+    constexpr int k = S::taus + 1;
+    const double kb[3] = {s.k_b[0][lane], s.k_b[1][lane], s.k_b[2][lane]};
+    double constant = 0.0;
+    for (int i = 0; i < 3; ++i) constant += kb[i] * kept(l.x_g() + 3 + i);
+    alignas(64) const double row[8] = {0, 0, 0, kb[0], kb[1], kb[2], 0, constant};
+    Y[k] += row_load(row);
+    for (int j = 0; j < nq; ++j)
+      for (int i = 0; i < 3; ++i) D[k][j] += kb[i] * kept(l.S_r() + 6 * j + 3 + i);
+  }
+  if constexpr (nq == 1) {
+    D_inverse[0][0] = 1.0 / D[0][0];
+    Y[0] = D_inverse[0][0] * Y[0];
+  } else if constexpr (nq > 1) {
+    if (!invert<nq>(D, D_inverse)) return false;
+    Row fresh[nq];
+    for (int k = 0; k < nq; ++k) {
+      fresh[k] = D_inverse[k][0] * Y[0];
+      for (int j = 1; j < nq; ++j) fresh[k] += D_inverse[k][j] * Y[j];
+    }
+    for (int k = 0; k < nq; ++k) Y[k] = fresh[k];
+  }
+  RowData* y = v.Y + v.y_row[slot];
+  for (int k = 0; k < nq; ++k) row_store(y[k], Y[k]);
+
+  const int open = v.first_open[slot + 1] - v.first_open[slot];
+  if (v.parent[slot] < 0 && open == 0) return true;
+  const double c_l[3] = {s.c_l[0][lane], s.c_l[1][lane], s.c_l[2][lane]};
+  shift_rows(c_l, M);
+  if constexpr (nq > 1) shift_rows(c_l, N);
+  if (edge)
+    for (int i = 0; i < 6; ++i) {
+      const double* K = edge->K_pb[i];
+      Row KX = row_load(K);
+      for (int j = 0; j < 6; ++j) KX += K[j] * T[j];
+      M[i] += KX;
+      if constexpr (nq > 1)
+        for (int j = 0; j < 6; ++j) N[i] += K[j] * row_load(s.S_rows[j][lane]);
+    }
+  if constexpr (S::sliding)
+    for (int i = 0; i < 3; ++i) {
+      alignas(64) double slide[8] = {};
+      for (int k = 0; k < S::taus; ++k) slide[nq == 1 ? 6 : k] = s.F_tau[k][i][lane];
+      if constexpr (nq == 1) {
+        slide[7] = s.F_t[i][lane];
+        M[3 + i] += row_load(slide);
+      } else {
+        N[3 + i] += row_load(slide);
+        M[3 + i] += s.F_t[i][lane] * unit(7);
+      }
+    }
+  double P[6][nq > 0 ? nq : 1];  // X_lᵀ A S_r + K_pb S_r
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < nq; ++k) P[i][k] = nq == 1 ? M[i][6] : N[i][k];
+  if (open > 0) {
+    double S_l[nq > 0 ? nq : 1][6], S_r[nq > 0 ? nq : 1][6], x_g[6], c_r[3];
+    for (int k = 0; k < nq; ++k)
+      for (int i = 0; i < 6; ++i) {
+        S_l[k][i] = s.S_l[k][i][lane];
+        S_r[k][i] = kept(l.S_r() + 6 * k + i);
+      }
+    for (int i = 0; i < 6; ++i) x_g[i] = kept(l.x_g() + i);
+    for (int i = 0; i < 3; ++i) c_r[i] = kept(l.c_r() + i);
+    carry_loops(v, slot, nq, &S_l[0][0], &S_r[0][0], x_g, c_l, c_r, &P[0][0], nq > 0 ? nq : 1,
+                &D_inverse[0][0], Y);
+  }
+  if (v.parent[slot] < 0) return true;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < nq; ++k) M[i] -= P[i][k] * Y[k];
+  give_to_parent(v, slot, lane, s, M);
+  return true;
+}
+
+/// Eliminates a body that floats freely: six directions, no parent.
+inline bool eliminate_root(const TreeView& v, int slot, int lane, const BlockScratch& s) {
+  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot)) return false;
+  Row A[6], Y[6];
+  collect_rows(v, slot, lane, s, A);
+  alignas(64) double D_inverse[6][8];
+  asm volatile("" ::: "memory");
+  if (!invert<6>(v.body[slot].A, D_inverse)) return false;
+  RowData* y = v.Y + v.y_row[slot];
+  for (int k = 0; k < 6; ++k) {
+    Y[k] = D_inverse[k][0] * A[0];
+    for (int j = 1; j < 6; ++j) Y[k] += D_inverse[k][j] * A[j];
+    for (int j = 0; j < 6; ++j) Y[k] -= Y[k][j] * unit(j);  // no parent: only the right-hand side
+    row_store(y[k], Y[k]);
+  }
+  if (v.first_open[slot] == v.first_open[slot + 1]) return true;
+  double unit6[6][6] = {}, P[6][6] = {};
+  const double zero[6] = {};
+  for (int k = 0; k < 6; ++k) unit6[k][k] = 1.0;
+  carry_loops(v, slot, 6, &unit6[0][0], &unit6[0][0], zero, zero, zero, &P[0][0], 6,
+              &D_inverse[0][0], Y);
+  return true;
+}
+
+/// Increment of a body from its parent's, and A Δx − ρ. Loops' solutions are already there.
+POLHODE_INLINE void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
+  EliminatedBody& e = v.body[slot];
+  const double* x_a = v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;
+  const RowData* y = v.Y + v.y_row[slot];
+  const JointLayout l = JointLayout::of_code(v.shape[slot]);
+  const int nq = l.free();
+  double q[6];
+  for (int k = 0; k < nq; ++k) {
+    const double* Y = y[k];
+    q[k] = -(((Y[0] * x_a[0] + Y[1] * x_a[1]) + Y[2] * x_a[2]) +
+             ((Y[3] * x_a[3] + Y[4] * x_a[4]) + Y[5] * x_a[5]) + Y[7]);
+  }
+  const int open = v.first_open[slot + 1] - v.first_open[slot];
+  if (open > 0) subtract_loops(v, slot, nq, q);
+  double x[6];
+  if (l.root()) {
+    for (int i = 0; i < 6; ++i) x[i] = q[i];
+  } else {
+    const double* data = v.joint_data + v.joint[slot / kLanes] + lane;
+    const auto kept = [&](int field) { return data[8 * field]; };
+    const int c = l.c_r(), g = l.x_g(), S = l.S_r();
+    const double cx = kept(c), cy = kept(c + 1), cz = kept(c + 2);
+    x[0] = x_a[0] + (x_a[4] * cz - x_a[5] * cy) + kept(g);
+    x[1] = x_a[1] + (x_a[5] * cx - x_a[3] * cz) + kept(g + 1);
+    x[2] = x_a[2] + (x_a[3] * cy - x_a[4] * cx) + kept(g + 2);
+    for (int i = 3; i < 6; ++i) x[i] = x_a[i] + kept(g + i);
+    for (int k = 0; k < nq; ++k)
+      for (int i = 0; i < 6; ++i) x[i] += q[k] * kept(S + 6 * k + i);
+  }
+  for (int i = 0; i < 6; ++i) e.X[i] = x[i];
+  e.X[6] = 0.0;
+  e.X[7] = 1.0;
+  for (int i = 0; i < 6; ++i) {
+    const double* A = e.A[i];
+    wrench[i] = ((A[0] * x[0] + A[1] * x[1]) + A[2] * x[2]) +
+                ((A[3] * x[3] + A[4] * x[4]) + A[5] * x[5]) + A[7];
+  }
+  wrench[6] = wrench[7] = 0.0;
+  if (v.edge[slot] >= 0) {
+    const EdgeRows& edge = v.edge_rows[v.edge[slot]];
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) wrench[i] += edge.K_bp[i][j] * x_a[j];
+  }
+  if (open > 0) add_loop_forces(v, slot, wrench);
+  if (v.first_common[slot] != v.first_common[slot + 1]) solve_common_loops(v, slot);
+}
+
+/// Calls f.template operator()<Shape>() for a shape code that is not a root.
+template <class F>
+POLHODE_INLINE void with_shape(int code, F&& f) {
+  switch (code) {
+    case 1: return f.template operator()<Shape<0, 1>>();
+    case 2: return f.template operator()<Shape<0, 2>>();
+    case 3: return f.template operator()<Shape<0, 3>>();
+    case 4: return f.template operator()<Shape<1, 0>>();
+    case 5: return f.template operator()<Shape<1, 1>>();
+    case 6: return f.template operator()<Shape<1, 2>>();
+    case 7: return f.template operator()<Shape<1, 3>>();
+    case 8: return f.template operator()<Shape<2, 0>>();
+    case 9: return f.template operator()<Shape<2, 1>>();
+    case 10: return f.template operator()<Shape<2, 2>>();
+    case 11: return f.template operator()<Shape<2, 3>>();
+    case 12: return f.template operator()<Shape<3, 0>>();
+    case 13: return f.template operator()<Shape<3, 1>>();
+    case 14: return f.template operator()<Shape<3, 2>>();
+    default: return f.template operator()<Shape<3, 3>>();
+  }
+}
+
+/// Most blocks a chunk can have: its bodies, and a part-filled block for each shape.
+inline constexpr int kChunkBlocks = kChunkBodies / kLanes + 16;
+
+inline bool up(const TreeView* view, int* failed_slot) {
+  const TreeView& v = *view;
+  const bool rho1 = v.c == 2.0;
+  static thread_local BlockScratch scratch[kChunkBlocks];
+  for (int c = v.chunks - 1; c >= 0; --c) {
+    const SpanningTree::Chunk& chunk = v.chunk[c];
+    const int first_block = v.run[chunk.first_run].first_block;
+    for (int r = chunk.first_run; r < chunk.last_run; ++r) {
+      const SpanningTree::Run& run = v.run[r];
+      for (int b = run.first_block; b < run.first_block + run.blocks; ++b) {
+        BlockScratch& s = scratch[b - first_block];
+        if (run.shape == 0) {
+          rho1 ? assemble_root_block<true>(v, b, s) : assemble_root_block<false>(v, b, s);
+        } else {
+          with_shape(run.shape, [&]<class S>() {
+            rho1 ? assemble_block<S, true>(v, b, s) : assemble_block<S, false>(v, b, s);
+          });
+        }
+      }
+    }
+    for (int i = chunk.last - 1; i >= chunk.first; --i) {
+      const int slot = v.slot_in_order[i], lane = slot % kLanes;
+      const BlockScratch& s = scratch[slot / kLanes - first_block];
+      bool fine = true;
+      if (v.shape[slot] == 0)
+        fine = eliminate_root(v, slot, lane, s);
+      else
+        with_shape(v.shape[slot], [&]<class S>() { fine = eliminate<S>(v, slot, lane, s); });
+      if (!fine) {
+        *failed_slot = slot;
+        return false;
+      }
+    }
+  }
+  for (int i = 0; i < v.ground_loops; ++i)
+    if (!eliminate_loop(v, v.ground_loop[i])) {
+      *failed_slot = -1;
+      return false;
+    }
+  return true;
+}
+
+inline SweepResult down(const TreeView* view) {
+  const TreeView& v = *view;
+  for (int i = v.ground_loops - 1; i >= 0; --i) solve_loop(v, v.ground_loop[i]);
+  static thread_local struct alignas(64) {
+    double X[kChunkBlocks][8][8], X_a[kChunkBlocks][8][8], wrench[kChunkBlocks][8][8];
+  } scratch;
+  BlockMaxima most;
+  for (int c = 0; c < v.chunks; ++c) {
+    const SpanningTree::Chunk& chunk = v.chunk[c];
+    const int first_block = v.run[chunk.first_run].first_block;
+    const SpanningTree::Run& last = v.run[chunk.last_run - 1];
+    for (int r = chunk.first_run; r < chunk.last_run; ++r) {  // padding lanes stay at rest
+      const int b = v.run[r].first_block + v.run[r].blocks - 1 - first_block;
+      for (int lane = 0; lane < 8; ++lane)
+        for (int i = 0; i < 8; ++i)
+          scratch.X[b][lane][i] = scratch.X_a[b][lane][i] = scratch.wrench[b][lane][i] = 0.0;
+    }
+    (void)last;
+    for (int i = chunk.first; i < chunk.last; ++i) {
+      const int slot = v.slot_in_order[i], lane = slot % kLanes, b = slot / kLanes - first_block;
+      back_substitute(v, slot, lane, scratch.wrench[b][lane]);
+      row_store(scratch.X[b][lane], row_load(v.body[slot].X));
+      const double* x_a = v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;
+      row_store(scratch.X_a[b][lane], row_load(x_a));
+    }
+    for (int r = chunk.first_run; r < chunk.last_run; ++r) {
+      const SpanningTree::Run& run = v.run[r];
+      for (int block = run.first_block; block < run.first_block + run.blocks; ++block) {
+        const int b = block - first_block;
+        if (run.shape == 0)
+          update_root_block(v, block, scratch.X[b], most);
+        else
+          with_shape(run.shape, [&]<class S>() {
+            update_block<S>(v, block, scratch.X[b], scratch.X_a[b], scratch.wrench[b], most);
+          });
+      }
+    }
+  }
+  return {largest(most.increment), largest(most.rotation)};
+}
+
+inline void check(const TreeView* view, const int* body_of_slot, double* largest_residual,
+                  int* worst_slot, double* work_defect, double* work_scale) {
+  const TreeView& v = *view;
+  for (int c = 0; c < v.chunks; ++c)
+    for (int r = v.chunk[c].first_run; r < v.chunk[c].last_run; ++r) {
+      const SpanningTree::Run& run = v.run[r];
+      if (run.shape == 0) continue;
+      for (int b = run.first_block; b < run.first_block + run.blocks; ++b)
+        with_shape(run.shape, [&]<class S>() {
+          check_block<S>(v, body_of_slot, b, largest_residual, worst_slot, work_defect, work_scale);
+        });
+    }
+}
+
+}  // namespace polhode::POLHODE_ISA

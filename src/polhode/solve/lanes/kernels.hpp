@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/solve/lanes/elimination.hpp>
+
+namespace polhode::POLHODE_ISA {
+
+inline LaneKernels make_kernels(const char* name) {
+  return {name, predict, commit, sums, up, down, check};
+}
+
+}  // namespace polhode::POLHODE_ISA

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <polhode/solve/newton_system.hpp>
+
+namespace polhode {
+
+/// Newton iterations by one sparse matrix of all bodies and all multipliers, with any of the
+/// linear solvers: the reference of the elimination along the tree, and its fallback.
+class SparseEngine final : public NewtonEngine {
+ public:
+  /// @param solver  "block_lu", "klu" or "sparse_lu". @throws InputError for any other.
+  SparseEngine(const System& system, const std::string& solver,
+               MomentumRate form = MomentumRate::momentum);
+  [[nodiscard]] std::string name() const override { return solver_->name(); }
+  void begin_step(const State& state, Trial& trial) override;
+  Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
+  [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
+  void end_step(const State& state, Trial& trial) override;
+
+  /// The system as last assembled: residuals by body and by row, for reports.
+  [[nodiscard]] const NewtonSystem& assembled() const { return newton_; }
+  [[nodiscard]] const LinearSolver& solver() const { return *solver_; }
+
+ private:
+  void move(const State& state, Trial& trial, double damping, Iteration& done);
+
+  NewtonSystem newton_;
+  std::unique_ptr<LinearSolver> solver_;
+  Vec x_;
+  bool factored_ = false;
+};
+
+}  // namespace polhode

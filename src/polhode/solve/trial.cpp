@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solve/trial.hpp>
+
+namespace polhode {
+
+namespace {
+
+Vec3 get(const Lane3& x, int lane) { return {x[0][lane], x[1][lane], x[2][lane]}; }
+
+void put(Lane3& x, int lane, const Vec3& value) {
+  for (int i = 0; i < 3; ++i) x[i][lane] = value[i];
+}
+
+Mat3 get(const double (&x)[9][kLanes], int lane) {
+  Mat3 M;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) M(i, j) = x[3 * i + j][lane];
+  return M;
+}
+
+void put(double (&x)[9][kLanes], int lane, const Mat3& M) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) x[3 * i + j][lane] = M(i, j);
+}
+
+}  // namespace
+
+void start_trial(const System& system, const State& state, Trial& trial) {
+  trial.blocks.resize(state.blocks.size());
+  for (int slot = 0; slot < system.tree().slots; ++slot) {
+    const int body = system.tree().body_of_slot[slot];
+    const BodyMotion m = state.motion(slot);
+    const Mat3 Lambda = m.Lambda();
+    const Mat3 J_r = body < 0 ? Mat3::Identity() : system.bodies()[body].inertia;
+    TrialBlock& t = trial.blocks[slot / kLanes];
+    const int lane = slot % kLanes;
+    put(t.Lambda_n, lane, Lambda);
+    put(t.h_n, lane, Lambda * (J_r * m.W));
+    move_body(state, trial, slot, Vec3::Zero(), Vec3::Zero());
+  }
+  trial.lambda = state.lambda;
+  trial.lambda_centre.assign(state.lambda.size(), 0.0);
+}
+
+/// @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot} @eq{eq:td-incremental-rotation}
+BodyStep body_step(const System& system, const State& state, const Trial& trial, int body) {
+  const StepContext& context = trial.context;
+  const GeneralizedAlpha& ga = context.ga;
+  if (body == kGround) return BodyStep::ground(ga.alpha_f);
+  const int slot = system.slot(body), lane = slot % kLanes;
+  const TrialBlock& t = trial.blocks[slot / kLanes];
+  const BodyBlock& n = state.blocks[slot / kLanes];
+  BodyStep s;
+  s.r_n = get(n.r, lane);
+  s.r_n1 = get(t.r, lane);
+  s.Lambda_n = get(t.Lambda_n, lane);
+  s.Lambda_n1 = get(t.Lambda, lane);
+  s.u = get(t.u, lane);
+  s.theta = get(t.theta, lane);
+  s.v_n = get(n.v, lane);
+  s.W_n = get(n.W, lane);
+  s.alpha_f = ga.alpha_f;
+  s.rate = ga.c / context.dt;
+  const Vec3 Theta = s.Lambda_n.transpose() * s.theta;
+  s.v_n1 = s.rate * s.u + (1.0 - ga.c) * s.v_n;
+  s.W_n1 = s.rate * Theta + (1.0 - ga.c) * s.W_n;
+  if (ga.c_A != 0.0) {
+    s.v_n1 += context.dt * ga.c_A * get(n.a, lane);
+    s.W_n1 += context.dt * ga.c_A * get(n.A, lane);
+  }
+  return s;
+}
+
+/// @eq{eq:ga-rotation-iterations}
+void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const Vec3& theta) {
+  const int lane = slot % kLanes;
+  TrialBlock& t = trial.blocks[slot / kLanes];
+  put(t.u, lane, u);
+  put(t.theta, lane, theta);
+  put(t.r, lane, get(state.blocks[slot / kLanes].r, lane) + u);
+  put(t.Lambda, lane, cay(theta) * get(t.Lambda_n, lane));
+}
+
+}  // namespace polhode
