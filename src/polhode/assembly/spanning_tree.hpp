@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <polhode/assembly/body_block.hpp>
 #include <polhode/assembly/motion_basis.hpp>
 
 namespace polhode {
@@ -29,14 +30,11 @@ struct TreeLink {
 /// the shape of the joint to the parent, so that one vector instruction serves several joints of
 /// one shape; each (chunk, shape) run is padded to whole blocks of kLanes.
 struct SpanningTree {
-  struct Run { int first_block, blocks, shape; };         ///< Blocks of one shape.
-  struct Chunk { int first_run, last_run, first, last; }; ///< Half-open: runs, positions in order.
-
   std::vector<TreeLink> link;          ///< By body.
   std::vector<int> order;              ///< Bodies, parents first.
   std::vector<int> slot_of_body, body_of_slot;  ///< body_of_slot is -1 in padding lanes.
-  std::vector<Run> runs;
-  std::vector<Chunk> chunks;
+  std::vector<TreeRun> runs;
+  std::vector<TreeChunk> chunks;
   std::vector<char> in_tree;           ///< By interaction: eliminated along the tree.
   std::vector<int> reversed;           ///< Interactions whose sides must be exchanged.
   int slots = 0;                       ///< Padded: a multiple of kLanes.
@@ -51,8 +49,5 @@ struct SpanningTree {
 [[nodiscard]] SpanningTree build_spanning_tree(int bodies, int interactions,
                                                std::span<const TreeCandidate> candidates,
                                                std::span<const int> shapes);
-
-/// Most bodies in a chunk: their rows stay in the cache between assembly and elimination.
-inline constexpr int kChunkBodies = 64;
 
 }  // namespace polhode

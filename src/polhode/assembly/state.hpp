@@ -5,33 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include <polhode/assembly/body_block.hpp>
 #include <polhode/base/types.hpp>
 #include <polhode/time/body_motion.hpp>
 
 namespace polhode {
-
-/// Bodies are kept eight at a time, one number of eight bodies side by side, so that one vector
-/// instruction serves several bodies. The layout is the same whatever the instruction set.
-inline constexpr int kLanes = 8;
-/// Steps whose mean velocities the predictor remembers.
-inline constexpr int kPast = 4;
-
-using Lane = double[kLanes];
-using Lane3 = double[3][kLanes];
-
-/// Motion of eight bodies at t_n. Lanes without a body hold a body at rest.
-struct alignas(64) BodyBlock {
-  Lane3 r;           ///< Centre of mass, world [m].
-  Lane3 r_rest;      ///< What rounding took from r (Kahan) [m].
-  double q[4][kLanes];  ///< Unit quaternion (w, x, y, z), body to world.
-  Lane3 v;           ///< [m/s], world.
-  Lane3 W;           ///< Material angular velocity [rad/s].
-  Lane3 a;           ///< Newmark acceleration, of time t_n + δΔt [m/s²]; used for ρ∞ < 1 only.
-  Lane3 A;           ///< Material angular acceleration, likewise [rad/s²].
-  Lane3 h_dot;       ///< Rate of angular momentum, world, likewise [N m].
-  Lane3 past_v[kPast];  ///< Mean velocities u/Δt of the last steps, ring [m/s].
-  Lane3 past_W[kPast];  ///< Mean material angular velocities Θ/Δt, ring [rad/s].
-};
 
 /// A sum that keeps what rounding takes away (Neumaier).
 struct ExactSum {

@@ -8,16 +8,6 @@
 
 namespace polhode {
 
-/// Eight bodies at the current iterate of t_{n+1}, and what the step needs of t_n.
-struct alignas(64) TrialBlock {
-  Lane3 r;                       ///< r_{n+1} [m].  First, with Lambda and Lambda_n: joints gather these.
-  double Lambda[9][kLanes];      ///< Λ_{n+1}, row by row.
-  double Lambda_n[9][kLanes];    ///< Λ_n.
-  Lane3 u;                       ///< r_{n+1} − r_n [m].
-  Lane3 theta;                   ///< Cayley vector of the step, world: Λ_{n+1} = cay[θ] Λ_n [-].
-  Lane3 h_n;                     ///< Angular momentum at t_n, world [N m s].
-};
-
 /// The step being solved.
 struct Trial {
   StepContext context;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string>
-#include <vector>
-
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
-#include <polhode/solve/lanes/tree_data.hpp>
+#include <polhode/solve/lanes/dispatch.hpp>
 
 namespace polhode {
 
@@ -32,9 +29,8 @@ std::vector<const LaneKernels*> available() {
 
 }  // namespace
 
-const LaneKernels& lane_kernels(const char* isa) {
+const LaneKernels& lane_kernels(const std::string& wanted) {
   const auto sets = available();
-  const std::string wanted = isa;
   if (wanted == "automatic") return *sets.front();
   std::string names;
   for (const LaneKernels* set : sets) {

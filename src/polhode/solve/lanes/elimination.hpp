@@ -319,10 +319,10 @@ inline bool up(const TreeView* view, int* failed_slot) {
   const bool rho1 = v.c == 2.0;
   static thread_local BlockScratch scratch[kChunkBlocks];
   for (int c = v.chunks - 1; c >= 0; --c) {
-    const SpanningTree::Chunk& chunk = v.chunk[c];
+    const TreeChunk& chunk = v.chunk[c];
     const int first_block = v.run[chunk.first_run].first_block;
     for (int r = chunk.first_run; r < chunk.last_run; ++r) {
-      const SpanningTree::Run& run = v.run[r];
+      const TreeRun& run = v.run[r];
       for (int b = run.first_block; b < run.first_block + run.blocks; ++b) {
         BlockScratch& s = scratch[b - first_block];
         if (run.shape == 0) {
@@ -364,9 +364,9 @@ inline SweepResult down(const TreeView* view) {
   } scratch;
   BlockMaxima most;
   for (int c = 0; c < v.chunks; ++c) {
-    const SpanningTree::Chunk& chunk = v.chunk[c];
+    const TreeChunk& chunk = v.chunk[c];
     const int first_block = v.run[chunk.first_run].first_block;
-    const SpanningTree::Run& last = v.run[chunk.last_run - 1];
+    const TreeRun& last = v.run[chunk.last_run - 1];
     for (int r = chunk.first_run; r < chunk.last_run; ++r) {  // padding lanes stay at rest
       const int b = v.run[r].first_block + v.run[r].blocks - 1 - first_block;
       for (int lane = 0; lane < 8; ++lane)
@@ -382,7 +382,7 @@ inline SweepResult down(const TreeView* view) {
       row_store(scratch.X_a[b][lane], row_load(x_a));
     }
     for (int r = chunk.first_run; r < chunk.last_run; ++r) {
-      const SpanningTree::Run& run = v.run[r];
+      const TreeRun& run = v.run[r];
       for (int block = run.first_block; block < run.first_block + run.blocks; ++block) {
         const int b = block - first_block;
         if (run.shape == 0)
@@ -402,7 +402,7 @@ inline void check(const TreeView* view, const int* body_of_slot, double* largest
   const TreeView& v = *view;
   for (int c = 0; c < v.chunks; ++c)
     for (int r = v.chunk[c].first_run; r < v.chunk[c].last_run; ++r) {
-      const SpanningTree::Run& run = v.run[r];
+      const TreeRun& run = v.run[r];
       if (run.shape == 0) continue;
       for (int b = run.first_block; b < run.first_block + run.blocks; ++b)
         with_shape(run.shape, [&]<class S>() {

@@ -5,7 +5,7 @@
 
 namespace polhode::POLHODE_ISA {
 
-inline LaneKernels make_kernels(const char* name) {
+constexpr LaneKernels make_kernels(const char* name) {
   return {name, predict, commit, sums, up, down, check};
 }
 

@@ -7,6 +7,6 @@
 
 namespace polhode {
 extern const LaneKernels kAvx2Kernels;
-const LaneKernels kAvx2Kernels = lanes_avx2::make_kernels("avx2");
+constinit const LaneKernels kAvx2Kernels = lanes_avx2::make_kernels("avx2");
 }  // namespace polhode
 #endif

@@ -7,6 +7,6 @@
 
 namespace polhode {
 extern const LaneKernels kAvx512Kernels;
-const LaneKernels kAvx512Kernels = lanes_avx512::make_kernels("avx512");
+constinit const LaneKernels kAvx512Kernels = lanes_avx512::make_kernels("avx512");
 }  // namespace polhode
 #endif

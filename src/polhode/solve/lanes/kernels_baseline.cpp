@@ -6,5 +6,5 @@
 
 namespace polhode {
 extern const LaneKernels kBaselineKernels;
-const LaneKernels kBaselineKernels = lanes_baseline::make_kernels("baseline");
+constinit const LaneKernels kBaselineKernels = lanes_baseline::make_kernels("baseline");
 }  // namespace polhode

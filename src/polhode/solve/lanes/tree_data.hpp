@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/assembly/state.hpp>
-#include <polhode/solve/trial.hpp>
+#include <polhode/assembly/body_block.hpp>
 
 namespace polhode {
 
@@ -107,8 +106,8 @@ struct LaterLoop {
 struct TreeView {
   // Topology.
   int bodies = 0, blocks = 0, chunks = 0;
-  const SpanningTree::Run* run = nullptr;
-  const SpanningTree::Chunk* chunk = nullptr;
+  const TreeRun* run = nullptr;
+  const TreeChunk* chunk = nullptr;
   const int* slot_in_order = nullptr;     ///< Slots, parents first.
   const int* parent = nullptr;            ///< Slot of the parent, −1 ground; by slot.
   const int* gather = nullptr;            ///< Offset of the parent's lane in the trial, doubles; by slot.
@@ -194,11 +193,5 @@ struct LaneKernels {
   void (*check)(const TreeView* view, const int* body_of_slot, double* largest, int* worst_slot,
                 double* work_defect, double* work_scale);
 };
-
-/// "automatic" takes the widest this machine has; else baseline, avx2 or avx512.
-/// @throws InputError if the machine or the build lacks it.
-[[nodiscard]] const LaneKernels& lane_kernels(const char* isa);
-/// The sets this machine and build offer, widest first.
-[[nodiscard]] std::vector<std::string> available_instruction_sets();
 
 }  // namespace polhode
