@@ -17,7 +17,7 @@ REGISTRIES = {
     "src/polhode/joints/registry.cpp": "docs/reference/joints.md",
     "src/polhode/loads/registry.cpp": "docs/reference/loads.md",
 }
-KIND = re.compile(r'^\s*(?:kinds\.push_back\(|\w+\()?\{\s*(?:\.name = )?"(\w+)"\s*,', re.M)
+KIND = re.compile(r'^ {6}\{"(\w+)",', re.M)
 TOP = ("src", "apps", "tests", "docs", "tools", "scripts", "cmake", "benchmarks", "examples", "changes", "python",
        "viewer")
 PATH = re.compile(r"`((?:%s)/[^`\s]*)`" % "|".join(TOP))
