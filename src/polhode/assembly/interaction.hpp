@@ -64,6 +64,10 @@ struct Participants {
   int a = kGround, b = kGround;
 };
 
+/// Which rows of the two bodies depend on each other's motion beyond the multipliers' own: nothing,
+/// the moments only, or all. Elimination along the tree carries no more than that.
+enum class Coupling { none, moments, all };
+
 /// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
 struct InteractionItem {
   std::string name;       ///< As in the user's file.
@@ -80,6 +84,7 @@ struct InteractionItem {
   /// Mirror images: does the accepted configuration still have the assembled orientation?
   [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const { return std::nullopt; }
+  [[nodiscard]] Coupling coupling() const { return Coupling::all; }
   /// An equivalent constraint exists with a and b exchanged; reverse() makes it so.
   [[nodiscard]] bool reversible() const { return false; }
   void reverse() {}
@@ -98,6 +103,7 @@ class InteractionGroup {
   [[nodiscard]] virtual int history_size(int i) const = 0;
   [[nodiscard]] virtual bool conservative(int i) const = 0;
   [[nodiscard]] virtual std::optional<MotionBasis> motion_basis(int i) const = 0;
+  [[nodiscard]] virtual Coupling coupling(int i) const = 0;
   [[nodiscard]] virtual bool reversible(int i) const = 0;
   virtual void reverse(int i) = 0;  ///< Before the system is finished.
 
@@ -126,6 +132,7 @@ class Group final : public InteractionGroup {
   int history_size(int i) const override { return at(i).history_size(); }
   bool conservative(int i) const override { return at(i).conservative(); }
   std::optional<MotionBasis> motion_basis(int i) const override { return at(i).motion_basis(); }
+  Coupling coupling(int i) const override { return at(i).coupling(); }
   bool reversible(int i) const override { return at(i).reversible(); }
   void reverse(int i) override { items[static_cast<std::size_t>(i)].reverse(); }
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,

@@ -51,6 +51,11 @@ class Joint : public InteractionItem {
   void commit(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
+  [[nodiscard]] Coupling coupling() const {
+    return parts_.planes > 0 || parts_.distance ? Coupling::all
+           : parts_.axes > 0                    ? Coupling::moments
+                                                : Coupling::none;
+  }
   [[nodiscard]] bool reversible() const;
   void reverse();
 

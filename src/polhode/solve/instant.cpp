@@ -186,11 +186,10 @@ struct PositionDefect {
 
 /// Rounding of a constraint value: that of the positions and of the turned arms.
 double row_noise(const PairStep& step, const PairTerms& t, int k, double length) {
-  const double reach =
-      length + std::max(step.a.r_n1.lpNorm<1>(), step.b.r_n1.lpNorm<1>());
-  const double G_r = std::max(t.G_a.row(k).head<3>().lpNorm<1>(), t.G_b.row(k).head<3>().lpNorm<1>());
-  const double G_theta =
-      t.G_a.row(k).tail<3>().lpNorm<1>() + t.G_b.row(k).tail<3>().lpNorm<1>();
+  const double reach = length + std::max(step.a.r_n1.lpNorm<1>(), step.b.r_n1.lpNorm<1>());
+  const double G_r =
+      std::max(t.G_a.row(k).head<3>().lpNorm<1>(), t.G_b.row(k).head<3>().lpNorm<1>());
+  const double G_theta = t.G_a.row(k).tail<3>().lpNorm<1>() + t.G_b.row(k).tail<3>().lpNorm<1>();
   return 8.0 * kRoundOff * (G_r * reach + G_theta);
 }
 
@@ -255,8 +254,7 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
     }
     // ε falls with |g|²: steps stay bounded where rows are nearly redundant, and convergence is
     // quadratic in the end (Levenberg-Marquardt).
-    const double epsilon =
-        std::clamp(1e-2 * defect.largest * defect.largest, kProximal, 1e-3);
+    const double epsilon = std::clamp(1e-2 * defect.largest * defect.largest, kProximal, 1e-3);
     for (std::size_t p = 0; p < s.values.pairs.size(); ++p)
       for (int k = 0; k < s.map.topology.pairs[p].rows; ++k)
         if (s.values.pairs[p].C[k] != 1.0) s.values.pairs[p].C[k] = epsilon;
@@ -268,8 +266,8 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
     s.solver->solve(s.rhs);
     double size = 0.0;
     for (int b = 0; b < bodies; ++b)
-      size = std::max({size, s.rhs.segment<3>(6 * b).norm() / length,
-                       s.rhs.segment<3>(6 * b + 3).norm()});
+      size = std::max(
+          {size, s.rhs.segment<3>(6 * b).norm() / length, s.rhs.segment<3>(6 * b + 3).norm()});
     if (!std::isfinite(size)) {
       report.assembled = false;
       break;
@@ -283,9 +281,8 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
 
   for (int b = 0; b < bodies; ++b) {
     const BodyMotion now = system.motion(state, b);
-    const double move =
-        std::max((now.r - given[b].r).norm() / length,
-                 rotation_vector(now.q * given[b].q.conjugate()).norm());
+    const double move = std::max((now.r - given[b].r).norm() / length,
+                                 rotation_vector(now.q * given[b].q.conjugate()).norm());
     if (move > report.largest_move) {
       report.largest_move = move;
       report.moved_body = b;

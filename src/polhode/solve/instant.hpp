@@ -11,22 +11,22 @@ namespace polhode {
 
 /// What the assembly of positions did.
 struct PositionReport {
-  bool assembled = true;            ///< False: g = 0 was not reached; see `unsatisfied`.
-  double residual_before = 0.0;     ///< Largest |g| as given [m or -].
-  double residual = 0.0;            ///< Largest |g| now [m or -].
-  double largest_move = 0.0;        ///< Of any body, |Δr|/ℓ or angle [-].
-  int moved_body = -1;              ///< Which; -1 if nothing moved.
+  bool assembled = true;         ///< False: g = 0 was not reached; see `unsatisfied`.
+  double residual_before = 0.0;  ///< Largest |g| as given [m or -].
+  double residual = 0.0;         ///< Largest |g| now [m or -].
+  double largest_move = 0.0;     ///< Of any body, |Δr|/ℓ or angle [-].
+  int moved_body = -1;           ///< Which; -1 if nothing moved.
   int iterations = 0;
-  std::vector<int> unsatisfied;     ///< Interactions whose rows contradict one another.
+  std::vector<int> unsatisfied;  ///< Interactions whose rows contradict one another.
 };
 
 /// What the projection of velocities did.
 struct VelocityReport {
-  double residual_before = 0.0;     ///< Largest |G v| as given [m/s or 1/s].
-  double residual = 0.0;            ///< Largest |G v| now.
-  double largest_change = 0.0;      ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
+  double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
+  double residual = 0.0;         ///< Largest |G v| now.
+  double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;
-  int solves = 0;                   ///< 0: G v was at round-off already.
+  int solves = 0;  ///< 0: G v was at round-off already.
 };
 
 /// Accelerations and multipliers at an instant.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <numeric>
 #include <cmath>
 #include <limits>
 
@@ -27,16 +28,29 @@ KktMap kkt_map(const System& system) {
   return map;
 }
 
-InteractionSweep::InteractionSweep(const System& system) : system_(&system) {
-  const auto& refs = system.interactions();
-  for (int i = 0; i < static_cast<int>(refs.size()); ++i) {
-    if (batches_.empty() || batches_.back().group != refs[i].group ||
-        batches_.back().count == kBatch)
-      batches_.push_back({refs[i].group, i, 0, false});
+namespace {
+
+std::vector<int> all_interactions(const System& system) {
+  std::vector<int> all(system.interactions().size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+InteractionSweep::InteractionSweep(const System& system)
+    : InteractionSweep(system, all_interactions(system)) {}
+
+InteractionSweep::InteractionSweep(const System& system, std::vector<int> interactions)
+    : system_(&system), interactions_(std::move(interactions)) {
+  for (int i = 0; i < static_cast<int>(interactions_.size()); ++i) {
+    const InteractionRef& ref = system.interactions()[interactions_[i]];
+    if (batches_.empty() || batches_.back().group != ref.group || batches_.back().count == kBatch)
+      batches_.push_back({ref.group, i, 0, false});
     ++batches_.back().count;
-    if (refs[i].rows > 0) batches_.back().has_rows = true;
+    if (ref.rows > 0) batches_.back().has_rows = true;
   }
-  const auto most = static_cast<std::size_t>(std::min(kBatch, static_cast<int>(refs.size())));
+  const auto most = static_cast<std::size_t>(std::min(kBatch, static_cast<int>(interactions_.size())));
   items_.reserve(most);
   pair_steps_.reserve(most);
   terms_.resize(most);
@@ -51,7 +65,7 @@ void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> st
     return body == kGround ? steps.back() : steps[body];
   };
   for (int k = 0; k < batch.count; ++k) {
-    const InteractionRef& ref = system_->interactions()[batch.first + k];
+    const InteractionRef& ref = system_->interactions()[interactions_[batch.first + k]];
     items_.push_back(ref.item);
     pair_steps_.push_back({step_of(ref.a), step_of(ref.b), context, lambda + ref.first_row,
                            history + ref.first_history});

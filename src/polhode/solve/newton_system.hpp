@@ -28,6 +28,8 @@ struct KktMap {
 class InteractionSweep {
  public:
   explicit InteractionSweep(const System& system);
+  /// Only these interactions, in ascending order.
+  InteractionSweep(const System& system, std::vector<int> interactions);
 
   /// @param steps    By body, the ground last.
   /// @param visit    visit(int interaction, const PairStep&, const PairTerms&).
@@ -39,20 +41,21 @@ class InteractionSweep {
       if (rows_only && !batch.has_rows) continue;
       evaluate(batch, steps, context, lambda, history);
       for (int k = 0; k < batch.count; ++k)
-        visit(batch.first + k, static_cast<const PairStep&>(pair_steps_[k]),
+        visit(interactions_[batch.first + k], static_cast<const PairStep&>(pair_steps_[k]),
               static_cast<const PairTerms&>(terms_[k]));
     }
   }
 
  private:
   struct Batch {
-    int group = 0, first = 0, count = 0;  ///< Interactions [first, first + count) of one group.
+    int group = 0, first = 0, count = 0;  ///< Positions [first, first + count), of one group.
     bool has_rows = false;
   };
   void evaluate(const Batch& batch, std::span<const BodyStep> steps, const StepContext& context,
                 const double* lambda, const double* history);
 
   const System* system_;
+  std::vector<int> interactions_;
   std::vector<Batch> batches_;
   std::vector<int> items_;
   std::vector<PairStep> pair_steps_;

@@ -25,8 +25,17 @@ void put(double (&x)[9][kLanes], int lane, const Mat3& M) {
 
 }  // namespace
 
+void size_blocks(const State& state, Trial& trial) {
+  trial.blocks.assign(state.blocks.size() + 1, TrialBlock{});
+  TrialBlock& ground = trial.blocks.back();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    put(ground.Lambda, lane, Mat3::Identity());
+    put(ground.Lambda_n, lane, Mat3::Identity());
+  }
+}
+
 void start_trial(const System& system, const State& state, Trial& trial) {
-  trial.blocks.resize(state.blocks.size());
+  size_blocks(state, trial);
   for (int slot = 0; slot < system.tree().slots; ++slot) {
     const int body = system.tree().body_of_slot[slot];
     const BodyMotion m = state.motion(slot);

@@ -11,7 +11,7 @@ namespace polhode {
 /// The step being solved.
 struct Trial {
   StepContext context;
-  std::vector<TrialBlock> blocks;      ///< By slot.
+  std::vector<TrialBlock> blocks;      ///< By slot; the last block is the ground.
   std::vector<double> lambda;          ///< By row, current iterate.
   std::vector<double> lambda_centre;   ///< By row: proximal centre; zero until converged.
 
@@ -21,6 +21,8 @@ struct Trial {
   }
 };
 
+/// Makes room for the bodies and the ground.
+void size_blocks(const State& state, Trial& trial);
 /// Sizes the trial and fills it one body after the other: nobody has moved yet, λ is that of t_n,
 /// the proximal centre is zero. The context must have been set. (The stepper's predictor does this
 /// several bodies at a time.)
@@ -35,6 +37,7 @@ void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const 
 struct Iteration {
   bool solved = false;      ///< False: singular matrix or a value that is not finite.
   double increment = 0.0;   ///< Largest of |Δr|/ℓ and |Δθ| [-].
+  double rotation = 0.0;    ///< Largest |θ| of the step after the update [-].
   int worst_body = -1;      ///< Where it is.
 };
 
