@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <polhode/base/names.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -72,20 +73,5 @@ class Diagnostics {
   const SourceText* source_;
   std::vector<Diagnostic> list_;
 };
-
-/// The candidate closest to a mistyped word, or "" if none is close: at most a third of the
-/// letters (and at least one) inserted, left out, replaced or swapped with a neighbour.
-[[nodiscard]] std::string closest(std::string_view word,
-                                  const std::vector<std::string>& candidates);
-
-/// "Did you mean 'x'? " or nothing.
-[[nodiscard]] std::string did_you_mean(std::string_view word,
-                                       const std::vector<std::string>& candidates);
-
-/// "a, b, c" with at most that many names, then "and 12 more".
-[[nodiscard]] std::string name_list(const std::vector<std::string>& names, std::size_t most = 24);
-
-/// A value quoted for a message: control characters shown, cut when long.
-[[nodiscard]] std::string quoted(std::string_view value);
 
 }  // namespace polhode

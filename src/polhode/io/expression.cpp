@@ -162,11 +162,11 @@ class ExpressionParser {
   [[noreturn]] void unexpected(const std::string& wanted) {
     skip_blanks();
     if (at_ >= text_.size())
-      stop(0, text_.size(), "the expression " + quoted(text_) + " ends too early: " + wanted,
+      stop(0, text_.size(), "the expression " + quote(text_) + " ends too early: " + wanted,
            "Complete it.");
     stop(at_, 1,
-         format("{} cannot be read as a number or expression: {} at {}", quoted(text_), wanted,
-                quoted(text_.substr(at_, 12))),
+         format("{} cannot be read as a number or expression: {} at {}", quote(text_), wanted,
+                quote(text_.substr(at_, 12))),
          "Write a number, a number with its unit, or an expression of the variables.");
   }
 
@@ -195,7 +195,7 @@ class ExpressionParser {
   void read_written_unit(Part& whole) {
     const std::string_view written = text_.substr(at_);
     if (text_[at_ - 1] != ' ' && is_letter(text_[at_])) {
-      stop(at_, written.size(), quoted(text_) + " lacks a blank before the unit",
+      stop(at_, written.size(), quote(text_) + " lacks a blank before the unit",
            format("Write '{} {}'.", text_.substr(0, at_), written));
     }
     const UnitReading reading = read_unit(written);
@@ -325,7 +325,7 @@ class ExpressionParser {
     const auto [end, error] =
         std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error == std::errc::result_out_of_range)
-      stop(offset, 1, "a number in " + quoted(text_) + " is too large or too small",
+      stop(offset, 1, "a number in " + quote(text_) + " is too large or too small",
            "Stay within 1e-300 and 1e300.");
     if (error != std::errc()) unexpected("a value is missing");
     at_ = static_cast<std::size_t>(end - text_.data());
@@ -365,7 +365,7 @@ class ExpressionParser {
         names.empty() ? "There are no variables." : "Variables: " + name_list(names) + ".";
     std::vector<std::string> all = reserved_names();
     all.insert(all.end(), names.begin(), names.end());
-    stop(offset, word.size(), "unknown name " + quoted(word), did_you_mean(word, all) + known);
+    stop(offset, word.size(), "unknown name " + quote(word), did_you_mean(word, all) + known);
   }
 
   Part call(const Function& f, std::size_t offset) {

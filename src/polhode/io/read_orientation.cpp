@@ -41,7 +41,7 @@ std::optional<Quat> from_euler(ReadContext& context, const SourceNode& node,
     return s.size() == 3 && s.find_first_not_of(letters) == std::string::npos;
   };
   if (!(all("xyz") || all("XYZ")) || s[0] == s[1] || s[1] == s[2]) {
-    section.fault("sequence", quoted(s) + " is no Euler sequence",
+    section.fault("sequence", quote(s) + " is no Euler sequence",
                   "Give three letters, neighbours different: lower case (zxz) for turns about the "
                   "body's axes, "
                   "upper case (XYZ) about the world's.");

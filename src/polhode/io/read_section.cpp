@@ -30,7 +30,7 @@ bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNo
     sound = sound && (std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-') &&
             static_cast<unsigned char>(c) < 0x80;
   if (!sound)
-    context.diagnostics.add(place, collection, quoted(key.name) + " is not allowed as a name",
+    context.diagnostics.add(place, collection, quote(key.name) + " is not allowed as a name",
                             "Use letters, digits, '_' and '-'.");
   return sound;
 }
@@ -82,7 +82,7 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
     }
     if (table.find(key.name)) continue;
     context.diagnostics.add(
-        key_place, path_, "unknown key " + quoted(key.name),
+        key_place, path_, "unknown key " + quote(key.name),
         did_you_mean(key.name, table.names()) + "Keys: " + name_list(table.names(), 40) + ".");
   }
   for (const Field& field : table.fields)

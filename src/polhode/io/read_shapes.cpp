@@ -77,7 +77,7 @@ bool read_mesh(ReadContext& context, const SourceNode& node, const std::string& 
   std::error_code ignored;
   const fs::path full = fs::path(context.folder) / fs::path(file->text);
   if (file->text.empty() || !fs::is_regular_file(full, ignored)) {
-    context.fault(*file, path, "there is no file " + quoted(file->text),
+    context.fault(*file, path, "there is no file " + quote(file->text),
                   "Give the path as seen from the model file's folder.");
     return false;
   }

@@ -59,7 +59,7 @@ void wrong_dimension(ReadContext& context, const SourceNode& node, const std::st
     mend = "The unit g is the gram; standard gravity is g0.";
   if (field.dimension.is_none()) mend = "Give it without a unit.";
   context.fault(node, path,
-                format("expects {}, but {} is {}", expected(field), quoted(node.text),
+                format("expects {}, but {} is {}", expected(field), quote(node.text),
                        expression.dimension().name()),
                 mend);
 }
@@ -127,7 +127,7 @@ std::shared_ptr<const Expression> read_expression(ReadContext& context, const So
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const char* word : {".inf", "-.inf", "+.inf", ".nan", "inf", "-inf", "nan", "infinity"}) {
     if (lower != word) continue;
-    context.fault(node, path, quoted(node.text) + " is no finite number", "Give a finite number.");
+    context.fault(node, path, quote(node.text) + " is no finite number", "Give a finite number.");
     return nullptr;
   }
   ExpressionFault fault;
@@ -139,7 +139,7 @@ std::shared_ptr<const Expression> read_expression(ReadContext& context, const So
     return nullptr;
   }
   if (!expression->depends_on_time() && !std::isfinite((*expression)(0.0))) {
-    context.fault(node, path, quoted(node.text) + " is no finite number",
+    context.fault(node, path, quote(node.text) + " is no finite number",
                   "Look for a division by zero or a root of a negative number.");
     return nullptr;
   }
@@ -154,7 +154,7 @@ std::optional<double> read_number(ReadContext& context, const SourceNode& node,
   if (!factor) return std::nullopt;
   const double value = *factor * (*expression)(0.0);
   if (!std::isfinite(value)) {
-    context.fault(node, path, quoted(node.text) + " is too large", "Check its unit.");
+    context.fault(node, path, quote(node.text) + " is too large", "Check its unit.");
     return std::nullopt;
   }
   if (!check_range(context, node, path, field, value)) return std::nullopt;
@@ -278,7 +278,7 @@ std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
     const std::string letter = minus ? node.text.substr(1) : node.text;
     if (letter == "x" || letter == "y" || letter == "z")
       return Vec3((minus ? -1.0 : 1.0) * Vec3::Unit(letter[0] - 'x'));
-    context.fault(node, path, quoted(node.text) + " is no direction",
+    context.fault(node, path, quote(node.text) + " is no direction",
                   "Use x, y, z, -x, -y, -z or three numbers.");
     return std::nullopt;
   }
@@ -336,7 +336,7 @@ std::optional<std::string> read_choice(ReadContext& context, const SourceNode& n
     return std::nullopt;
   }
   if (std::find(choices.begin(), choices.end(), node.text) != choices.end()) return node.text;
-  context.fault(node, path, quoted(node.text) + " is not known",
+  context.fault(node, path, quote(node.text) + " is not known",
                 did_you_mean(node.text, choices) + "Use one of: " + name_list(choices) + ".");
   return std::nullopt;
 }
@@ -350,7 +350,7 @@ std::optional<std::vector<std::string>> read_choices(ReadContext& context, const
     const auto word = read_choice(context, child, path, field.choices);
     if (!word) return std::nullopt;
     if (std::find(found.begin(), found.end(), *word) != found.end()) {
-      context.fault(child, path, quoted(*word) + " stands twice", "Keep one of them.");
+      context.fault(child, path, quote(*word) + " stands twice", "Keep one of them.");
       return std::nullopt;
     }
     found.push_back(*word);
@@ -371,7 +371,7 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node,
   const auto found = context.bodies.find(node.text);
   if (found != context.bodies.end()) return found->second;
   const std::vector<std::string> names = context.body_names();
-  context.fault(node, path, "unknown body " + quoted(node.text),
+  context.fault(node, path, "unknown body " + quote(node.text),
                 did_you_mean(node.text, names) + "Bodies: " + name_list(names) + ".");
   return std::nullopt;
 }
@@ -383,7 +383,7 @@ std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const Sou
   const auto b = read_body(context, node.children[1], path);
   if (!a || !b) return std::nullopt;
   if (*a == *b) {
-    context.fault(node, path, "both bodies are " + quoted(node.children[0].text),
+    context.fault(node, path, "both bodies are " + quote(node.children[0].text),
                   "Name two different bodies; one may be ground.");
     return std::nullopt;
   }

@@ -130,7 +130,7 @@ class TreeBuilder : public YAML::EventHandler {
       stop("a key must be a name, but is " + node.description(), "Write 'name: value'.");
     if (node.text == "<<") stop("merge keys (<<) are not allowed", "Write the values out.");
     if (!level.names.insert(node.text).second)
-      stop("the key " + quoted(node.text) + " stands twice", "Keep one of them.");
+      stop("the key " + quote(node.text) + " stands twice", "Keep one of them.");
     level.node.keys.push_back({node.text, node.line, node.column});
     level.has_key = true;
   }
@@ -245,7 +245,7 @@ std::string SourceNode::description() const {
     case Kind::kMap:
       return "a map";
     case Kind::kText:
-      return quoted(text);
+      return quote(text);
     case Kind::kEmpty:
       break;
   }
@@ -338,7 +338,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
     const std::string known =
         names.empty() ? "The model has no variables." : "Variables: " + name_list(names) + ".";
     for (const std::string& name : key_names(root_)) names.push_back(name);
-    diagnostics.add(place, path, "there is no variable " + quoted(parts[0]),
+    diagnostics.add(place, path, "there is no variable " + quote(parts[0]),
                     did_you_mean(parts[0], names) + known);
     return;
   }
@@ -348,14 +348,14 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const std::string& part = parts[k];
     const bool last = k + 1 == parts.size();
-    const std::string here = walked.empty() ? "the model" : quoted(walked);
+    const std::string here = walked.empty() ? "the model" : quote(walked);
     SourceNode* next = nullptr;
     if (node->is_list()) {
       const bool is_index = !part.empty() && part.size() < 9 &&
                             part.find_first_not_of("0123456789") == std::string::npos;
       const std::size_t index = is_index ? std::stoul(part) : node->children.size();
       if (index >= node->children.size()) {
-        diagnostics.add(place, path, format("{} has no entry {}", here, quoted(part)),
+        diagnostics.add(place, path, format("{} has no entry {}", here, quote(part)),
                         node->children.empty()
                             ? "The list is empty."
                             : format("Entries count from 0 to {}.", node->children.size() - 1));
@@ -370,7 +370,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
       const bool may_add = !holds_names && (last || k == 0);
       if (!next && !may_add) {
         const std::vector<std::string> names = key_names(*node);
-        diagnostics.add(place, path, format("{} has no entry {}", here, quoted(part)),
+        diagnostics.add(place, path, format("{} has no entry {}", here, quote(part)),
                         did_you_mean(part, names) + "Entries: " + name_list(names) + ".");
         return;
       }
@@ -384,7 +384,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
     } else {
       diagnostics.add(
           place, path,
-          format("{} is {} and has no entry {}", here, node->description(), quoted(part)),
+          format("{} is {} and has no entry {}", here, node->description(), quote(part)),
           "Shorten the path.");
       return;
     }

@@ -87,7 +87,7 @@ class UnitParser {
   UnitReading read() {
     UnitReading reading;
     Unit unit;
-    if (product(unit, 0) && at_ != text_.size()) fail("unexpected " + quoted(text_.substr(at_)));
+    if (product(unit, 0) && at_ != text_.size()) fail("unexpected " + quote(text_.substr(at_)));
     if (!what_.empty()) {
       reading.what = what_;
       reading.mend = mend_;
@@ -102,7 +102,7 @@ class UnitParser {
 
   bool fail(std::string what, std::string mend = "Write a unit such as N/mm or kg m^2.") {
     if (what_.empty()) {
-      what_ = format("the unit {} cannot be read: ", quoted(text_)) + std::move(what);
+      what_ = format("the unit {} cannot be read: ", quote(text_)) + std::move(what);
       mend_ = std::move(mend);
     }
     return false;
@@ -129,7 +129,7 @@ class UnitParser {
         ++at_;
         sign = -1.0;
       } else if (at_ == before) {
-        return fail("unexpected " + quoted(text_.substr(at_)));
+        return fail("unexpected " + quote(text_.substr(at_)));
       }
       if (sign > 0.0 && divided)
         return fail("what follows a '/' is not clear", "Write brackets, e.g. N/(m s).");
@@ -170,7 +170,7 @@ class UnitParser {
     const std::optional<Unit> unit = named_unit(word);
     if (!unit) {
       if (what_.empty()) {
-        what_ = "the unit " + quoted(word) + " is not known";
+        what_ = "the unit " + quote(word) + " is not known";
         std::vector<std::string> names = unit_names();
         for (const char* usual : {"mm", "cm", "km", "kg", "ms", "kN", "MPa", "GPa", "kHz"})
           names.emplace_back(usual);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string_view>
-
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -11,24 +10,24 @@ namespace {
 
 template <class Spec>
 int index_of(const std::vector<Spec>& specs, const std::string& name, const char* what,
-             std::string names) {
-  for (std::size_t i = 0; i < specs.size(); ++i) {
+             const char* plural, std::vector<std::string> names) {
+  for (std::size_t i = 0; i < specs.size(); ++i)
     if (specs[i].name == name) return static_cast<int>(i);
-    names += (names.empty() ? "" : ", ") + specs[i].name;
-  }
-  throw InputError(
-      what == std::string_view("body") ? "bodies" : "joints", format("unknown {} '{}'", what, name),
-      names.empty() ? format("The model has no {}", what) : format("Use one of: {}", names));
+  for (const Spec& spec : specs) names.push_back(spec.name);
+  const std::string known = specs.empty() ? format("The model has no {}", plural)
+                                          : format("Use one of: {}", name_list(names));
+  throw InputError(plural, format("unknown {} '{}'", what, name),
+                   did_you_mean(name, names) + known);
 }
 
 }  // namespace
 
 int Model::body_index(const std::string& name) const {
-  return name == "ground" ? kGround : index_of(bodies, name, "body", "ground");
+  return name == "ground" ? kGround : index_of(bodies, name, "body", "bodies", {"ground"});
 }
 
 int Model::joint_index(const std::string& name) const {
-  return index_of(joints, name, "joint", "");
+  return index_of(joints, name, "joint", "joints", {});
 }
 
 }  // namespace polhode

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_context.hpp>
+
+namespace polhode {
+namespace {
+
+/// Writes a value where the file gives one, and leaves the standard where it does not.
+template <class Target, class Value>
+void assign(Target& target, const std::optional<Value>& value) {
+  if (value) target = *value;
+}
+
+/// A time, or auto.
+void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
+  const SourceNode* value = section.find("step");
+  if (!value || (value->is_text() && value->text == "auto")) return;
+  if (const std::string guess = value->is_text() ? closest(value->text, {"auto", "automatic"}) : "";
+      !guess.empty()) {
+    context.fault(*value, section.path("step"), quote(value->text) + " is not known",
+                  "Did you mean 'auto'? Give auto or a time.");
+    return;
+  }
+  analysis.step = section.number("step");
+}
+
+}  // namespace
+
+void read_analysis(ReadContext& context, const SourceNode& node, const Place& place) {
+  AnalysisSpec& analysis = context.model.analysis;
+  analysis.place = place;
+  Section section(context, node, place, "analysis", analysis_fields());
+  if (!node.is_map()) return;
+  const SourceNode* type = section.find("type");
+  if (type && type->is_text() && (type->text == "statics" || type->text == "modes")) {
+    section.fault("type", quote(type->text) + " is not supported by this version",
+                  "Use: dynamics.");
+  } else {
+    assign(analysis.type, section.choice("type"));
+  }
+  assign(analysis.duration, section.number("duration"));
+  read_step(context, section, analysis);
+  analysis.tolerance = section.number("tolerance");
+  assign(analysis.rho_inf, section.number("rho_inf"));
+  if (const auto order = section.choice("order")) analysis.order = std::stoi(*order);
+  assign(analysis.momentum_rate, section.choice("momentum_rate"));
+  assign(analysis.solver, section.choice("solver"));
+  assign(analysis.jacobian, section.choice("jacobian"));
+  assign(analysis.isa, section.choice("isa"));
+  assign(analysis.conserving, section.boolean("conserving"));
+  assign(analysis.newton_tolerance, section.number("newton_tolerance"));
+  assign(analysis.max_iterations, section.integer("max_iterations"));
+  assign(analysis.line_search, section.boolean("line_search"));
+  assign(analysis.max_step_rotation, section.number("max_step_rotation"));
+  assign(analysis.assembly_tolerance, section.number("assembly_tolerance"));
+  analysis.min_step = section.number("min_step");
+  analysis.max_step = section.number("max_step");
+  assign(analysis.smooth_multipliers, section.boolean("smooth_multipliers"));
+  assign(analysis.checkpoint_every, section.number("checkpoint_every"));
+
+  if (analysis.step && analysis.tolerance)
+    section.fault("tolerance", "stands beside a fixed step of " + shown(*analysis.step) + " s",
+                  "A tolerance chooses the steps by itself: leave 'step' out, write 'step: auto', "
+                  "or leave out 'tolerance'.");
+  if (analysis.order == 4 && !analysis.step)
+    section.fault("order", "order 4 has no error estimate, so it cannot choose its steps",
+                  "Give a step, or use order 2, 6 or 8.");
+  if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0)
+    section.fault(
+        "order",
+        format("order {} stands beside rho_inf {}", *analysis.order, shown(analysis.rho_inf)),
+        "Orders above 2 go back in time within a step, where numerical damping would feed energy "
+        "in: use rho_inf 1 or order 2.");
+  if (analysis.min_step && analysis.max_step && *analysis.min_step > *analysis.max_step)
+    section.fault("min_step",
+                  format("is above max_step: {} s > {} s", shown(*analysis.min_step),
+                         shown(*analysis.max_step)),
+                  "Give a smaller min_step.");
+}
+
+namespace {
+
+/// The name of a joint or load that a probe records.
+std::string read_target(ReadContext& context, Section& section, const std::string& kind,
+                        const std::unordered_map<std::string, int>& known,
+                        const std::vector<std::string>& names) {
+  const auto name = section.text(kind);
+  if (!name) return {};
+  if (!known.contains(*name)) {
+    const std::string list =
+        names.empty() ? format("The model has no {}s.", kind)
+                      : format("{}s: {}.", kind == "joint" ? "Joint" : "Load", name_list(names));
+    context.fault(*section.find(kind), section.path(kind),
+                  format("unknown {} {}", kind, quote(*name)), did_you_mean(*name, names) + list);
+  }
+  return *name;
+}
+
+void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) {
+  Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
+  if (!node.is_map()) return;
+  int targets = 0;
+  for (const char* kind : {"body", "joint", "load"}) {
+    if (!section.has(kind)) continue;
+    probe.kind = kind;
+    ++targets;
+  }
+  if (targets != 1) {
+    section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
+                  "Give one of: body, joint, load.");
+    return;
+  }
+  probe.every = section.number("every");
+  if (section.has("point") && probe.kind != "body")
+    section.fault("point", format("does not go with '{}'", probe.kind),
+                  "A point belongs to a body.");
+  if (section.has("axes") && probe.kind != "joint")
+    section.fault("axes", format("does not go with '{}'", probe.kind),
+                  "Axes belong to a joint's reaction.");
+  if (const auto axes = section.choice("axes")) probe.axes = *axes;
+  if (probe.kind == "body") {
+    const auto body = section.body("body");
+    const auto point = section.vector("point");
+    if (!body) return;
+    if (*body == kGround) {
+      section.fault("body", "the ground does not move", "Name a body.");
+      return;
+    }
+    const BodySpec& spec = context.model.bodies[static_cast<std::size_t>(*body)];
+    probe.target = spec.name;
+    if (point) probe.point = *point - spec.com;
+  } else if (probe.kind == "joint") {
+    probe.target = read_target(context, section, "joint", context.joints, context.joint_names());
+  } else {
+    probe.target = read_target(context, section, "load", context.loads, context.load_names());
+  }
+}
+
+}  // namespace
+
+void read_output(ReadContext& context, const SourceNode& node, const Place& place) {
+  OutputSpec& output = context.model.output;
+  Section section(context, node, place, "output", output_fields());
+  if (!node.is_map()) return;
+  output.every = section.number("every");
+  assign(output.hdf5, section.boolean("hdf5"));
+  assign(output.csv, section.boolean("csv"));
+  assign(output.paraview, section.boolean("paraview"));
+  const SourceNode* probes = section.find("probes");
+  if (!probes || probes->kind == SourceNode::Kind::kEmpty) return;
+  if (!probes->is_map()) {
+    context.fault(*probes, section.path("probes"),
+                  "expects a map from names to probes, but is " + probes->description(),
+                  "Write 'name: {body: ...}'.");
+    return;
+  }
+  for (std::size_t k = 0; k < probes->keys.size(); ++k) {
+    const SourceNode::Key& key = probes->keys[k];
+    if (!check_name(context, key, probes->children[k], "output.probes")) continue;
+    ProbeSpec probe;
+    probe.name = key.name;
+    probe.place = context.tree.place_of(key, probes->children[k]);
+    read_probe(context, probes->children[k], probe);
+    output.probes.push_back(std::move(probe));
+  }
+}
+
+}  // namespace polhode

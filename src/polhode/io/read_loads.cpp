@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_context.hpp>
+#include <polhode/joints/registry.hpp>
+
+namespace polhode {
+namespace {
+
+/// A world point at the start, seen from a body's centre of mass in its axes.
+Vec3 seen_from(const ReadContext& context, int body, const Vec3& point) {
+  if (body == kGround) return point;
+  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
+  return b.orientation.conjugate() * (point - b.position);
+}
+
+/// A point in the user's body coordinates, seen from the centre of mass.
+Vec3 from_com(const ReadContext& context, int body, const Vec3& point) {
+  if (body == kGround) return point;
+  return point - context.model.bodies[static_cast<std::size_t>(body)].com;
+}
+
+Vec3 world_point(const ReadContext& context, int body, const Vec3& Z) {
+  if (body == kGround) return Z;
+  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
+  return b.position + b.orientation * Z;
+}
+
+/// Whether a joint leaves one rotation free, and that about its z.
+bool turns_about_z(const JointSpec& joint) {
+  if (joint.type.empty()) return true;  // Its own fault is told already.
+  const auto has = [&](const std::string& freedom) {
+    return std::find(joint.free.begin(), joint.free.end(), freedom) != joint.free.end();
+  };
+  const JointKind& kind = joint_kind(joint.type);
+  if (kind.takes_free_list) return has("rz") && !has("rx") && !has("ry");
+  const std::string& free = kind.free;
+  const auto leaves = [&](const char* freedom) { return free.find(freedom) != std::string::npos; };
+  return leaves("Rz") && !leaves("Rx") && !leaves("Ry");
+}
+
+class LoadReader {
+ public:
+  LoadReader(ReadContext& context, const SourceNode& node, LoadSpec& load, const FieldTable& table)
+      : context_(context),
+        load_(load),
+        table_(table),
+        section_(context, node, load.place, "loads." + load.name, table) {}
+
+  void read() {
+    if (load_.type == "spring_damper") {
+      read_spring();
+    } else if (load_.type == "torsional_spring") {
+      read_torsional_spring();
+    } else {
+      read_wrench();
+    }
+    for (const Field& field : table_.fields)
+      if (field.kind == FieldKind::kNumber)
+        if (const auto value = section_.number(field.name)) load_.parameters[field.name] = *value;
+  }
+
+ private:
+  /// A force or moment on one body.
+  void read_wrench() {
+    if (const auto body = section_.body("body")) {
+      load_.b = *body;
+      if (*body == kGround)
+        section_.fault("body", "a load on the ground moves nothing", "Name a body.");
+    }
+    if (const auto vector = section_.time_vector(load_.type)) load_.vector = *vector;
+    load_.body_fixed = section_.boolean("body_fixed").value_or(false);
+    if (load_.type != "force") return;
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
+    if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
+    if (const auto point = section_.vector("at_body"))
+      load_.Z_b = from_com(context_, load_.b, *point);
+  }
+
+  void read_spring() {
+    const std::size_t before = context_.diagnostics.size();
+    if (const auto bodies = section_.body_pair("bodies")) {
+      load_.a = (*bodies)[0];
+      load_.b = (*bodies)[1];
+    }
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
+    if (!section_.has("at") && !section_.has("at_body"))
+      section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
+    if (const auto points = section_.vector_pair("at")) {
+      load_.Z_a = seen_from(context_, load_.a, (*points)[0]);
+      load_.Z_b = seen_from(context_, load_.b, (*points)[1]);
+    }
+    if (const auto points = section_.vector_pair("at_body")) {
+      load_.Z_a = from_com(context_, load_.a, (*points)[0]);
+      load_.Z_b = from_com(context_, load_.b, (*points)[1]);
+    }
+    const bool sound = context_.diagnostics.size() == before;
+    if (sound && !section_.has("free_length"))
+      load_.parameters["free_length"] =
+          (world_point(context_, load_.a, load_.Z_a) - world_point(context_, load_.b, load_.Z_b))
+              .norm();
+    require_effect();
+  }
+
+  void read_torsional_spring() {
+    require_effect();
+    const SourceNode* value = section_.find("joint");
+    if (!value) return;
+    const std::string path = section_.path("joint");
+    const auto name = read_text(context_, *value, path);
+    if (!name) return;
+    const auto found = context_.joints.find(*name);
+    if (found == context_.joints.end()) {
+      const std::vector<std::string> names = context_.joint_names();
+      section_.fault(
+          "joint", "unknown joint " + quote(*name),
+          did_you_mean(*name, names) +
+              (names.empty() ? "The model has no joints." : "Joints: " + name_list(names) + "."));
+      return;
+    }
+    const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
+    load_.joint = *name;
+    load_.a = joint.a;
+    load_.b = joint.b;
+    if (!turns_about_z(joint))
+      section_.fault(
+          "joint",
+          format("the {} joint {} has no angle about its axis alone", joint.type, quote(*name)),
+          "Name a joint that turns about its axis, such as a revolute one.");
+  }
+
+  void require_effect() {
+    if (!section_.has("stiffness") && !section_.has("damping"))
+      section_.fault("has neither stiffness nor damping", "Give one of them, or both.");
+  }
+
+  ReadContext& context_;
+  LoadSpec& load_;
+  const FieldTable& table_;
+  Section section_;
+};
+
+}  // namespace
+
+void read_loads(ReadContext& context, const SourceNode& node) {
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const SourceNode::Key& key = node.keys[k];
+    if (!check_name(context, key, node.children[k], "loads")) continue;
+    LoadSpec load;
+    load.name = key.name;
+    load.place = context.tree.place_of(key, node.children[k]);
+    if (const FieldTable* table = read_kind(context, node.children[k], load.place,
+                                            "loads." + key.name, load_tables(), load.type))
+      LoadReader(context, node.children[k], load, *table).read();
+    context.loads.emplace(load.name, static_cast<int>(context.model.loads.size()));
+    context.model.loads.push_back(std::move(load));
+  }
+}
+
+}  // namespace polhode
