@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <numeric>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <polhode/base/format.hpp>
 #include <polhode/solve/newton_system.hpp>
@@ -50,7 +50,8 @@ InteractionSweep::InteractionSweep(const System& system, std::vector<int> intera
     ++batches_.back().count;
     if (ref.rows > 0) batches_.back().has_rows = true;
   }
-  const auto most = static_cast<std::size_t>(std::min(kBatch, static_cast<int>(interactions_.size())));
+  const auto most =
+      static_cast<std::size_t>(std::min(kBatch, static_cast<int>(interactions_.size())));
   items_.reserve(most);
   pair_steps_.reserve(most);
   terms_.resize(most);
@@ -95,8 +96,8 @@ void NewtonSystem::assemble(const State& state, const Trial& trial, bool tangent
   const double s = trial.scale(*system_);
   for (int b = 0; b < system_->body_count(); ++b) {
     const BodyData& body = system_->bodies()[b];
-    const MomentumStep m = momentum_step(body.mass, body.inertia, steps_[b],
-                                         system_->motion(state, b), trial.context, form_);
+    const MomentumRates m = momentum_rates(body.mass, body.inertia, system_->motion(state, b),
+                                           steps_[b], trial.context, form_);
     Vec6& R = body_residual_[b];
     const Vec3 weight = body.mass * system_->gravity();
     R.head<3>() = m.p_dot - weight;

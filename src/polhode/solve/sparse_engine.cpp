@@ -42,12 +42,15 @@ void SparseEngine::move(const State& state, Trial& trial, double damping, Iterat
     if (done.worst_body < 0 || size > done.increment) {
       done.increment = size;
       done.worst_body = b;
+      worst_body_ = b;
     }
     const int slot = system.slot(b), lane = slot % kLanes;
     const TrialBlock& t = trial.blocks[slot / kLanes];
     const Vec3 u(t.u[0][lane], t.u[1][lane], t.u[2][lane]);
     const Vec3 theta(t.theta[0][lane], t.theta[1][lane], t.theta[2][lane]);
-    move_body(state, trial, slot, u + damping * D_r, compose_cayley(damping * D_theta, theta));
+    const Vec3 turned = compose_cayley(damping * D_theta, theta);
+    done.rotation = std::max(done.rotation, turned.norm());
+    move_body(state, trial, slot, u + damping * D_r, turned);
   }
   const double per_scale = damping / trial.scale(system);
   const int first = 6 * system.body_count();

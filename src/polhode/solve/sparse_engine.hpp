@@ -19,6 +19,7 @@ class SparseEngine final : public NewtonEngine {
   void begin_step(const State& state, Trial& trial) override;
   Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
   [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
+  [[nodiscard]] int worst_body() const override { return worst_body_; }
   void end_step(const State& state, Trial& trial) override;
 
   /// The system as last assembled: residuals by body and by row, for reports.
@@ -32,6 +33,7 @@ class SparseEngine final : public NewtonEngine {
   std::unique_ptr<LinearSolver> solver_;
   Vec x_;
   bool factored_ = false;
+  int worst_body_ = -1;
 };
 
 }  // namespace polhode
