@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <loads/load_samples.hpp>
+#include <polhode/base/error.hpp>
+#include <polhode/loads/registry.hpp>
+
+namespace polhode::test {
+
+// The ledger and the reports find a load's items by its kind.
+TEST(LoadRegistry, AddsItemsOfTheKindItNames) {
+  for (const LoadKind& kind : load_kinds()) {
+    System system;
+    const int body = system.add_body({.name = "body"}, {});
+    LoadDescription d;
+    d.name = "load";
+    d.bodies = {kGround, body};
+    d.angle = FreeAngle{};
+    kind.add(system, d);
+    system.finish();
+    ASSERT_EQ(system.interactions().size(), 1U) << kind.name;
+    EXPECT_EQ(system.group(system.interactions()[0].group).kind(), kind.name);
+    EXPECT_EQ(system.name(system.interactions()[0]), "load");
+  }
+}
+
+TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
+  try {
+    (void)load_kind("torque");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "loads: the type 'torque' is not known. Use one of: force, moment, "
+                 "spring_damper, torsional_spring.");
+  }
+}
+
+}  // namespace polhode::test
