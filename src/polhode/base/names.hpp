@@ -22,4 +22,8 @@ namespace polhode {
 /// A value quoted for a message: control characters shown, cut when long.
 [[nodiscard]] std::string quote(std::string_view value);
 
+/// Length of the UTF-8 sequence at the start of a text that is not empty; 0 if it is not one.
+[[nodiscard]] std::size_t utf8_length(std::string_view text);
+[[nodiscard]] bool is_utf8(std::string_view text);
+
 }  // namespace polhode

@@ -86,9 +86,14 @@ SourceText::SourceText(std::string name, std::string text)
     if (text_[k] == '\n') line_starts_.push_back(k + 1);
 }
 
+std::size_t SourceText::offset(int line_number) const {
+  if (line_number < 1 || static_cast<std::size_t>(line_number) > line_starts_.size())
+    return text_.size();
+  return line_starts_[static_cast<std::size_t>(line_number) - 1];
+}
+
 std::string_view SourceText::line(int number) const {
-  if (number < 1 || static_cast<std::size_t>(number) > line_starts_.size()) return {};
-  const std::size_t start = line_starts_[static_cast<std::size_t>(number) - 1];
+  const std::size_t start = offset(number);
   const std::size_t end = std::min(text_.find('\n', start), text_.size());
   return std::string_view(text_).substr(start, end - start);
 }
@@ -118,6 +123,9 @@ std::string SourceText::excerpt(int line_number, int column, int length) const {
   std::string clean(shown);
   for (char& c : clean)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  if (!is_utf8(clean))
+    for (char& c : clean)
+      if (static_cast<unsigned char>(c) >= 0x80) c = '?';
   const std::size_t end = std::min(at + reach, shown.size());
   const std::size_t wide = end > at ? display_width(shown.substr(at, end - at)) : 1;
   const std::string margin(before_cut.size() + display_width(shown.substr(0, at)), ' ');

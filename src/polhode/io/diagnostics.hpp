@@ -45,6 +45,8 @@ class SourceText {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::string& text() const { return text_; }
+  /// Where a line starts in the text; 1-based.
+  [[nodiscard]] std::size_t offset(int line_number) const;
   /// A line without its end; 1-based, empty beyond the end.
   [[nodiscard]] std::string_view line(int number) const;
   /// A line and, below it, a caret and tildes under the value or key that starts at the column.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/field_table.hpp>
 
+#include <cctype>
 #include <stdexcept>
 
 #include <polhode/body/shapes.hpp>
@@ -27,6 +28,11 @@ std::vector<std::string> FieldTable::names() const {
   return result;
 }
 
+std::string sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text.ends_with('.') ? text : text + ".";
+}
+
 const FieldTable& model_fields() {
   static const FieldTable table{
       "model",
@@ -34,7 +40,7 @@ const FieldTable& model_fields() {
       {
           {.name = "format",
            .kind = kInteger,
-           .meaning = "Version of the format: 1.",
+           .meaning = "Version of the format: write 1.",
            .required = true,
            .range = {1, 1}},
           {.name = "title", .kind = kText, .meaning = "Shown in results and messages."},
@@ -278,7 +284,7 @@ const FieldTable& shape_fields() {
       t.fields.push_back({.name = kind.name,
                           .kind = kNumbers,
                           .dimension = kLength,
-                          .meaning = kind.meaning + " Sizes: " + sizes + "].",
+                          .meaning = sentence(kind.meaning) + " Sizes: " + sizes + "].",
                           .range = kPositive});
     }
     t.fields.push_back(

@@ -82,6 +82,9 @@ struct KindTable {
   FieldTable table;
 };
 
+/// A phrase with a capital letter and a full stop.
+std::string sentence(std::string text);
+
 const FieldTable& model_fields();
 const FieldTable& units_fields();
 const FieldTable& body_fields();

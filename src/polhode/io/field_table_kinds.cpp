@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cctype>
 #include <limits>
 
 #include <polhode/base/format.hpp>
@@ -52,11 +51,6 @@ Axis axis_of(const std::string& name) {
   if (name == "universal" || name == "distance") return Axis::kNone;
   if (name == "spherical" || name == "fixed" || name == "generic") return Axis::kOptional;
   return Axis::kRequired;
-}
-
-std::string sentence(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text + ".";
 }
 
 KindTable joint_table(const JointKind& kind) {

@@ -21,7 +21,9 @@ class BodyReader {
 
   void read() {
     if (!node_.is_map()) return;
-    body_.fixed = section_.boolean("fixed").value_or(false);
+    const auto fixed = section_.boolean("fixed");
+    fixed_is_sound_ = fixed.has_value();
+    body_.fixed = fixed.value_or(false);
     body_.point_mass = section_.boolean("point_mass").value_or(false);
     const std::size_t before = context_.diagnostics.size();
     if (const SourceNode* shapes = section_.find("shape"))
@@ -51,7 +53,7 @@ class BodyReader {
     if (section_.has("inertia") && body_.point_mass)
       section_.fault("inertia", "a point mass has no inertia",
                      "Leave out 'inertia' or 'point_mass'.");
-    if (section_.has("inertia") && !section_.has("mass"))
+    if (section_.has("inertia") && section_.misses("mass"))
       section_.fault("inertia", "stands without 'mass'", "Give both, or shape and density.");
     const bool has_density = section_.has("density") ||
                              std::any_of(body_.shapes.begin(), body_.shapes.end(),
@@ -67,10 +69,13 @@ class BodyReader {
     } else if (!body_.fixed) {
       require_mass(weighable);
     }
-    if (context_.diagnostics.size() == before && !body_.fixed && !body_.point_mass) check_mass();
+    if (context_.diagnostics.size() == before && body_.mass > 0.0 && !body_.point_mass)
+      if (section_.has("inertia") || from_shapes) check_mass();
   }
 
   void require_mass(bool weighable) {
+    // A key that was misspelt, or a 'fixed' that is no boolean, is told already.
+    if (section_.has_unknown_key() || (section_.has("fixed") && !fixed_is_sound_)) return;
     if (!section_.has("mass")) {
       section_.fault(weighable ? "'density' is missing" : "'mass' is missing",
                      weighable ? "Give density or mass."
@@ -204,6 +209,7 @@ class BodyReader {
   const SourceNode& node_;
   BodySpec& body_;
   Section section_;
+  bool fixed_is_sound_ = false;
 };
 
 }  // namespace

@@ -85,6 +85,9 @@ class Section {
 
   [[nodiscard]] const SourceNode* find(const std::string& name) const;
   [[nodiscard]] bool has(const std::string& name) const { return find(name) != nullptr; }
+  /// Whether a key is missing and no unknown key looks like it, which would say enough.
+  [[nodiscard]] bool misses(const std::string& name) const;
+  [[nodiscard]] bool has_unknown_key() const { return has_unknown_key_; }
   [[nodiscard]] std::string path(const std::string& name) const {
     return path_.empty() ? name : path_ + "." + name;
   }
@@ -118,6 +121,8 @@ class Section {
   Place place_;
   std::string path_;
   const FieldTable& table_;
+  bool has_unknown_key_ = false;
+  std::vector<std::string> likely_meant_;  ///< By unknown keys.
 };
 
 /// The table of the kind that "type" names; null after a fault.

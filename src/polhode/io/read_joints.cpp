@@ -97,7 +97,7 @@ class JointReader {
     if (section_.has("at_body")) return;
     if (!section_.has("at")) {
       // Directions alone matter to parallel axes.
-      if (joint_.type != "parallel_axes")
+      if (joint_.type != "parallel_axes" && section_.misses("at") && section_.misses("at_body"))
         section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
       return;
     }
@@ -128,7 +128,7 @@ class JointReader {
     }
     if (takes("axis_body")) {
       section_.refuse_both("axis", "axis_body", "Give one of them.");
-      if (!section_.has("axis") && !section_.has("axis_body"))
+      if (section_.misses("axis") && section_.misses("axis_body"))
         section_.fault("'axis' is missing", "Give axis (world) or axis_body (on each body).");
       if (section_.has("axis_body")) {
         read_body_axes();

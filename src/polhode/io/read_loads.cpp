@@ -85,7 +85,7 @@ class LoadReader {
       load_.b = (*bodies)[1];
     }
     if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
-    if (!section_.has("at") && !section_.has("at_body"))
+    if (section_.misses("at") && section_.misses("at_body"))
       section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
     if (const auto points = section_.vector_pair("at")) {
       load_.Z_a = seen_from(context_, load_.a, (*points)[0]);
@@ -131,7 +131,7 @@ class LoadReader {
   }
 
   void require_effect() {
-    if (!section_.has("stiffness") && !section_.has("damping"))
+    if (section_.misses("stiffness") && section_.misses("damping"))
       section_.fault("has neither stiffness nor damping", "Give one of them, or both.");
   }
 

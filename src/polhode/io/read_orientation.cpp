@@ -62,7 +62,7 @@ std::optional<Quat> from_matrix(ReadContext& context, const SourceNode& node,
   Mat3 R;
   if (!node.is_list() || node.children.size() != 3) {
     context.fault(node, path, "expects three rows of three numbers, but is " + node.description(),
-                  "");
+                  "Write [[1, 0, 0], [0, 1, 0], [0, 0, 1]], for example.");
     return std::nullopt;
   }
   for (int row = 0; row < 3; ++row) {
@@ -96,6 +96,7 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
   int forms = 0;
   for (const char* form : {"axis", "quaternion", "rotation_vector", "euler", "matrix"})
     forms += section.has(form) ? 1 : 0;
+  if (forms == 0 && section.has_unknown_key()) return std::nullopt;  // Told already.
   if (forms != 1) {
     section.fault(forms == 0 ? "gives no turn" : "gives more than one turn", kForms);
     return std::nullopt;

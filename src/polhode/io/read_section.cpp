@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <polhode/base/format.hpp>
@@ -81,18 +82,25 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
       continue;
     }
     if (table.find(key.name)) continue;
+    has_unknown_key_ = true;
+    likely_meant_.push_back(closest(key.name, table.names()));
     context.diagnostics.add(
         key_place, path_, "unknown key " + quote(key.name),
         did_you_mean(key.name, table.names()) + "Keys: " + name_list(table.names(), 40) + ".");
   }
   for (const Field& field : table.fields)
-    if (field.required && !node.find(field.name))
+    if (field.required && misses(field.name))
       fault(format("'{}' is missing", field.name), field.meaning);
 }
 
 const SourceNode* Section::find(const std::string& name) const {
   static_cast<void>(table_.at(name));  // A reader asks only for what the table has.
   return node_.is_map() ? node_.find(name) : nullptr;
+}
+
+bool Section::misses(const std::string& name) const {
+  return !has(name) &&
+         std::find(likely_meant_.begin(), likely_meant_.end(), name) == likely_meant_.end();
 }
 
 void Section::fault(const std::string& name, std::string what, std::string mend) {

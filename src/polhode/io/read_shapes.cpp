@@ -105,6 +105,7 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     sizes = value;
     shape.type = name;
   }
+  if (!sizes && section.has_unknown_key()) return std::nullopt;  // Told already.
   if (!sizes) {
     section.fault("has no kind", "Use one of: " + name_list(names) + ".");
     return std::nullopt;

@@ -46,7 +46,10 @@ bool check_range(ReadContext& context, const SourceNode& node, const std::string
   } else {
     must = format("must be at most {}{}", shown(r.most), with);
   }
-  context.fault(node, path, format("{}, but is {}{}", must, shown(value), with), field.meaning);
+  std::string mend = field.meaning;
+  if (r.least == 0.0 && !std::isfinite(r.most))
+    mend = r.above_least ? "Give a value above 0." : "Give 0 or more.";
+  context.fault(node, path, format("{}, but is {}{}", must, shown(value), with), mend);
   return false;
 }
 
@@ -80,12 +83,12 @@ std::optional<double> si_factor(ReadContext& context, const SourceNode& node,
 }
 
 bool check_list(ReadContext& context, const SourceNode& node, const std::string& path,
-                std::size_t count, const std::string& wanted) {
+                std::size_t count, const std::string& wanted, const std::string& mend) {
   if (node.is_list() && (count == 0 || node.children.size() == count)) return true;
   const std::string found = node.is_list() && !node.children.empty()
                                 ? format("a list of {}", node.children.size())
                                 : node.description();
-  context.fault(node, path, format("expects {}, but is {}", wanted, found), "");
+  context.fault(node, path, format("expects {}, but is {}", wanted, found), mend);
   return false;
 }
 
@@ -119,7 +122,8 @@ std::vector<std::string> ReadContext::load_names() const {
 std::shared_ptr<const Expression> read_expression(ReadContext& context, const SourceNode& node,
                                                   const std::string& path, bool allow_time) {
   if (!node.is_text()) {
-    context.fault(node, path, "expects a number, but is " + node.description(), "");
+    context.fault(node, path, "expects a number, but is " + node.description(),
+                  "Write one number.");
     return nullptr;
   }
   std::string lower = node.text;
@@ -171,11 +175,13 @@ TimeFunctionPtr read_table(ReadContext& context, const SourceNode& node, const s
   const SourceNode* points = section.find("table");
   if (!points) return nullptr;
   const std::string wanted = "a list [[t, value], ...] of at least two points";
-  if (!check_list(context, *points, section.path("table"), 0, wanted)) return nullptr;
+  const char* example = "Write table: [[0, 1], [2, 5]].";
+  if (!check_list(context, *points, section.path("table"), 0, wanted, example)) return nullptr;
   const Field time{.name = "t", .dimension = dimensions::kTime, .meaning = "Time."};
   std::vector<double> times, values;
   for (const SourceNode& point : points->children) {
-    if (!check_list(context, point, section.path("table"), 2, "points [t, value]")) return nullptr;
+    if (!check_list(context, point, section.path("table"), 2, "points [t, value]", example))
+      return nullptr;
     const auto t = read_number(context, point.children[0], section.path("table"), time);
     const auto v = read_number(context, point.children[1], section.path("table"), field);
     if (!t || !v) return nullptr;
@@ -190,7 +196,7 @@ TimeFunctionPtr read_table(ReadContext& context, const SourceNode& node, const s
     values.push_back(*v);
   }
   if (times.size() < 2) {
-    context.fault(*points, section.path("table"), "expects " + wanted, "");
+    context.fault(*points, section.path("table"), "expects " + wanted, example);
     return nullptr;
   }
   const auto interpolation = way == "cubic"  ? Interpolation::kCubic
@@ -229,7 +235,8 @@ TimeFunctionPtr read_time_number(ReadContext& context, const SourceNode& node,
 std::optional<std::vector<double>> read_numbers(ReadContext& context, const SourceNode& node,
                                                 const std::string& path, const Field& field,
                                                 std::size_t count) {
-  if (!check_list(context, node, path, count, format("a list of {} numbers", count)))
+  if (!check_list(context, node, path, count, format("a list of {} numbers", count),
+                  count == 3 ? "Write [x, y, z]." : "Write [w, x, y, z]."))
     return std::nullopt;
   std::vector<double> values;
   for (const SourceNode& child : node.children)
@@ -247,7 +254,8 @@ std::optional<Vec3> read_vector(ReadContext& context, const SourceNode& node,
 
 std::optional<TimeVector> read_time_vector(ReadContext& context, const SourceNode& node,
                                            const std::string& path, const Field& field) {
-  if (!check_list(context, node, path, 3, "a list of 3 numbers")) return std::nullopt;
+  if (!check_list(context, node, path, 3, "a list of 3 numbers", "Write [x, y, z]."))
+    return std::nullopt;
   TimeVector functions;
   bool sound = true;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -262,7 +270,8 @@ std::optional<std::array<Vec3, 2>> read_vector_pair(ReadContext& context, const 
                                                     const std::string& path, const Field& field) {
   const bool is_pair = node.is_list() && node.children.size() == 2;
   if (!is_pair) {
-    check_list(context, node, path, 2, "two vectors [[x, y, z], [x, y, z]], on a and on b");
+    check_list(context, node, path, 2, "two vectors, on a and on b",
+               "Write [[x, y, z], [x, y, z]].");
     return std::nullopt;
   }
   const auto a = read_vector(context, node.children[0], path, field);
@@ -282,7 +291,8 @@ std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
                   "Use x, y, z, -x, -y, -z or three numbers.");
     return std::nullopt;
   }
-  if (!check_list(context, node, path, 3, "a direction: x, y, z or three numbers"))
+  if (!check_list(context, node, path, 3, "a direction",
+                  "Use x, y, z, -x, -y, -z or three numbers."))
     return std::nullopt;
   // A direction has no unit that matters, so any one will do.
   Vec3 direction;
@@ -302,7 +312,9 @@ std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
 
 std::optional<std::array<Vec3, 2>> read_direction_pair(ReadContext& context, const SourceNode& node,
                                                        const std::string& path) {
-  if (!check_list(context, node, path, 2, "two directions, on a and on b")) return std::nullopt;
+  if (!check_list(context, node, path, 2, "two directions, on a and on b",
+                  "Write [x, y], for example."))
+    return std::nullopt;
   const auto a = read_direction(context, node.children[0], path);
   const auto b = read_direction(context, node.children[1], path);
   if (!a || !b) return std::nullopt;
@@ -315,15 +327,16 @@ std::optional<bool> read_boolean(ReadContext& context, const SourceNode& node,
     if (node.text == "true") return true;
     if (node.text == "false") return false;
   }
-  context.fault(node, path, "expects true or false, but is " + node.description(),
-                "Write true or false.");
+  const std::string with = node.in_quotes ? " in quotes" : "";
+  context.fault(node, path, "expects true or false, but is " + node.description() + with,
+                with.empty() ? "Write true or false." : "Write it without quotes.");
   return std::nullopt;
 }
 
 std::optional<std::string> read_text(ReadContext& context, const SourceNode& node,
                                      const std::string& path) {
   if (node.is_text()) return node.text;
-  context.fault(node, path, "expects a text, but is " + node.description(), "");
+  context.fault(node, path, "expects a text, but is " + node.description(), "Write a text.");
   return std::nullopt;
 }
 
@@ -343,7 +356,8 @@ std::optional<std::string> read_choice(ReadContext& context, const SourceNode& n
 
 std::optional<std::vector<std::string>> read_choices(ReadContext& context, const SourceNode& node,
                                                      const std::string& path, const Field& field) {
-  if (!check_list(context, node, path, 0, "a list of: " + name_list(field.choices)))
+  if (!check_list(context, node, path, 0, "a list of: " + name_list(field.choices),
+                  format("Write [{}], for example.", field.choices.front())))
     return std::nullopt;
   std::vector<std::string> found;
   for (const SourceNode& child : node.children) {
@@ -364,7 +378,8 @@ std::optional<std::vector<std::string>> read_choices(ReadContext& context, const
 std::optional<int> read_body(ReadContext& context, const SourceNode& node,
                              const std::string& path) {
   if (!node.is_text()) {
-    context.fault(node, path, "expects the name of a body, but is " + node.description(), "");
+    context.fault(node, path, "expects the name of a body, but is " + node.description(),
+                  "Write the name of one body.");
     return std::nullopt;
   }
   if (node.text == "ground") return kGround;
@@ -378,7 +393,7 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node,
 
 std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const SourceNode& node,
                                                  const std::string& path) {
-  if (!check_list(context, node, path, 2, "two bodies [a, b]")) return std::nullopt;
+  if (!check_list(context, node, path, 2, "two bodies", "Write [a, b].")) return std::nullopt;
   const auto a = read_body(context, node.children[0], path);
   const auto b = read_body(context, node.children[1], path);
   if (!a || !b) return std::nullopt;

@@ -14,6 +14,9 @@
 namespace polhode {
 namespace {
 
+constexpr const char* kNoAliases = "aliases (*name) are not allowed";
+constexpr const char* kWriteOut = "Write the value out, or use a variable.";
+
 /// Stops the parser at the first thing that cannot be read on from.
 struct Stop {
   int line, column;
@@ -32,16 +35,17 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(make(mark)); }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    refuse(mark, "aliases (*name) are not allowed", "Write the value out, or use a variable.");
+    refuse(mark, kNoAliases, kWriteOut);
   }
 
   void OnAnchor(const YAML::Mark& mark, const std::string&) override {
-    refuse(mark, "anchors (&name) are not allowed", "Write the value out, or use a variable.");
+    refuse(mark, "anchors (&name) are not allowed", kWriteOut);
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                 const std::string& value) override {
     refuse_tag(mark, tag);
+    if (tag == "!") check_closing_quote(mark);
     SourceNode node = make(mark);
     node.kind = SourceNode::Kind::kText;
     node.in_quotes = tag == "!";
@@ -83,6 +87,24 @@ class TreeBuilder : public YAML::EventHandler {
       refuse(mark, "tags (!name) are not allowed", "Leave the tag out.");
   }
 
+  /// The parser takes a quote that is never closed for a text up to the end of the file.
+  void check_closing_quote(const YAML::Mark& mark) const {
+    const std::string_view text = source_.text();
+    std::size_t k = source_.offset(mark.line + 1) + static_cast<std::size_t>(mark.column);
+    const char quote_mark = k < text.size() ? text[k] : ' ';
+    if (quote_mark != '"' && quote_mark != '\'') return;  // A block text.
+    for (++k; k < text.size(); ++k) {
+      if (text[k] == '\\' && quote_mark == '"') {
+        ++k;
+      } else if (text[k] == quote_mark) {
+        const bool doubled = quote_mark == '\'' && k + 1 < text.size() && text[k + 1] == '\'';
+        if (!doubled) return;
+        ++k;
+      }
+    }
+    refuse(mark, "the quote is not closed", format("Add {} where the text ends.", quote_mark));
+  }
+
   SourceNode make(const YAML::Mark& mark) {
     if (++nodes_ > limits_.nodes)
       refuse(mark, format("the file has more than {} values", limits_.nodes),
@@ -119,6 +141,11 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     level.has_key = false;
+    if (node.kind == SourceNode::Kind::kEmpty && !level.node.keys.empty()) {
+      // The parser places nothing where the next thing stands.
+      node.line = level.node.keys.back().line;
+      node.column = level.node.keys.back().column;
+    }
     level.node.children.push_back(std::move(node));
   }
 
@@ -141,24 +168,6 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Level> levels_;
   std::size_t nodes_ = 0;
 };
-
-/// Length of the UTF-8 sequence at the start of a text, 0 if it is not one.
-std::size_t utf8_length(std::string_view s) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(s[k]); };
-  const unsigned char c = byte(0);
-  if (c < 0x80) return 1;
-  const std::size_t n = c >= 0xC2 && c <= 0xDF   ? 2
-                        : (c & 0xF0U) == 0xE0    ? 3
-                        : c >= 0xF0 && c <= 0xF4 ? 4
-                                                 : 0;
-  if (n == 0 || s.size() < n) return 0;
-  for (std::size_t k = 1; k < n; ++k)
-    if ((byte(k) & 0xC0U) != 0x80) return 0;
-  if ((c == 0xE0 && byte(1) < 0xA0) || (c == 0xED && byte(1) >= 0xA0) ||
-      (c == 0xF0 && byte(1) < 0x90) || (c == 0xF4 && byte(1) >= 0x90))
-    return 0;
-  return n;
-}
 
 /// Byte-order mark and carriage returns of Windows removed.
 std::string normalised(std::string text) {
@@ -197,10 +206,15 @@ void check_characters(const SourceText& source) {
 }
 
 /// A sentence from the parser's message.
-std::string parser_complaint(const std::string& message) {
-  if (message.find("illegal tab") != std::string::npos || message.find("tab") == 0)
-    return "a tab cannot indent";
-  return "the text is not YAML: " + message;
+Stop parser_complaint(const SourceText& source, const YAML::Exception& error) {
+  const int line = error.mark.line + 1, column = error.mark.column + 1;
+  const std::string_view text = source.line(line);
+  const std::size_t indent = text.find_first_not_of(" \t");
+  if (text.substr(0, indent).find('\t') != std::string_view::npos)
+    return {line, 1, "a tab cannot indent", "Indent with blanks."};
+  if (error.msg.find("anchor") != std::string::npos) return {line, column, kNoAliases, kWriteOut};
+  return {line, column, "the text is not YAML: " + error.msg,
+          "Check indentation, brackets and quotes here and in the line above."};
 }
 
 void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode& root) {
@@ -221,8 +235,7 @@ void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode
     Refuser refuser(source, limits, ignored);
     parser.HandleNextDocument(refuser);
   } catch (const YAML::Exception& error) {
-    throw Stop{error.mark.line + 1, error.mark.column + 1, parser_complaint(error.msg),
-               "Check indentation, brackets and quotes here and in the line above."};
+    throw parser_complaint(source, error);
   }
 }
 
