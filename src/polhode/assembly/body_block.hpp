@@ -16,26 +16,26 @@ using Lane3 = double[3][kLanes];
 
 /// Motion of eight bodies at t_n. Lanes without a body hold a body at rest.
 struct alignas(64) BodyBlock {
-  Lane3 r;           ///< Centre of mass, world [m].
-  Lane3 r_rest;      ///< What rounding took from r (Kahan) [m].
+  Lane3 r;              ///< Centre of mass, world [m].
+  Lane3 r_rest;         ///< What rounding took from r (Kahan) [m].
   double q[4][kLanes];  ///< Unit quaternion (w, x, y, z), body to world.
-  Lane3 v;           ///< [m/s], world.
-  Lane3 W;           ///< Material angular velocity [rad/s].
-  Lane3 a;           ///< Newmark acceleration, of time t_n + δΔt [m/s²]; used for ρ∞ < 1 only.
-  Lane3 A;           ///< Material angular acceleration, likewise [rad/s²].
-  Lane3 h_dot;       ///< Rate of angular momentum, world, likewise [N m].
+  Lane3 v;              ///< [m/s], world.
+  Lane3 W;              ///< Material angular velocity [rad/s].
+  Lane3 a;      ///< Newmark acceleration, of time t_n + δΔt [m/s²]; used for ρ∞ < 1 only.
+  Lane3 A;      ///< Material angular acceleration, likewise [rad/s²].
+  Lane3 h_dot;  ///< Rate of angular momentum, world, likewise [N m].
   Lane3 past_v[kPast];  ///< Mean velocities u/Δt of the last steps, ring [m/s].
   Lane3 past_W[kPast];  ///< Mean material angular velocities Θ/Δt, ring [rad/s].
 };
 
 /// Eight bodies at the current iterate of t_{n+1}, and what the step needs of t_n.
 struct alignas(64) TrialBlock {
-  Lane3 r;                       ///< r_{n+1} [m].  First, with Lambda and Lambda_n: joints gather these.
-  double Lambda[9][kLanes];      ///< Λ_{n+1}, row by row.
-  double Lambda_n[9][kLanes];    ///< Λ_n.
-  Lane3 u;                       ///< r_{n+1} − r_n [m].
-  Lane3 theta;                   ///< Cayley vector of the step, world: Λ_{n+1} = cay[θ] Λ_n [-].
-  Lane3 h_n;                     ///< Angular momentum at t_n, world [N m s].
+  Lane3 r;  ///< r_{n+1} [m].  First, with Lambda and Lambda_n: joints gather these.
+  double Lambda[9][kLanes];    ///< Λ_{n+1}, row by row.
+  double Lambda_n[9][kLanes];  ///< Λ_n.
+  Lane3 u;                     ///< r_{n+1} − r_n [m].
+  Lane3 theta;                 ///< Cayley vector of the step, world: Λ_{n+1} = cay[θ] Λ_n [-].
+  Lane3 h_n;                   ///< Angular momentum at t_n, world [N m s].
 };
 
 /// A run of blocks whose joints to the parent have one shape.

@@ -23,12 +23,12 @@ inline constexpr int kMaxRows = 6;
 /// t_{n+αf}; increments are (Δr, Δθ), world. A constraint's force on body i is +λ times its
 /// column B_i, and belongs to the wrench. Everything about the ground stays zero and unread.
 struct PairTerms {
-  Vec6 wrench_a, wrench_b;                ///< Of everything, multipliers included.
-  Mat6 D_aa, D_ab, D_ba, D_bb;            ///< D_ij: wrench of i by the increment of j.
-  Eigen::Matrix<double, 6, 6> B_a, B_b;   ///< Column k: wrench per unit of multiplier k.
+  Vec6 wrench_a, wrench_b;               ///< Of everything, multipliers included.
+  Mat6 D_aa, D_ab, D_ba, D_bb;           ///< D_ij: wrench of i by the increment of j.
+  Eigen::Matrix<double, 6, 6> B_a, B_b;  ///< Column k: wrench per unit of multiplier k.
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> G_a, G_b;  ///< Row k: derivative of g_k at t_{n+1}.
-  Vec6 g;                                 ///< Constraint values at t_{n+1}.
-  Vec6 compliance;                        ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
+  Vec6 g;                                                 ///< Constraint values at t_{n+1}.
+  Vec6 compliance;  ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
 
   void set_zero();
 };
@@ -70,17 +70,22 @@ enum class Coupling { none, moments, all };
 
 /// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
 struct InteractionItem {
-  std::string name;       ///< As in the user's file.
+  std::string name;  ///< As in the user's file.
   Participants bodies;
 
   [[nodiscard]] int rows() const { return 0; }
   [[nodiscard]] int history_size() const { return 0; }
-  [[nodiscard]] bool conservative() const { return true; }  ///< Neither dissipates nor depends on time.
+  /// The history only counts turns: it may be committed after several steps, before the bodies
+  /// have turned by half a turn against each other.
+  [[nodiscard]] bool lazy_history() const { return false; }
+  [[nodiscard]] bool conservative() const {
+    return true;
+  }  ///< Neither dissipates nor depends on time.
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
-  void initialize(const PairStep&, double* /*history*/) const {}   ///< History at the start.
-  void commit(const PairStep&, double* /*history*/) const {}       ///< History at t_{n+1}.
+  void initialize(const PairStep&, double* /*history*/) const {}  ///< History at the start.
+  void commit(const PairStep&, double* /*history*/) const {}      ///< History at t_{n+1}.
   /// Mirror images: does the accepted configuration still have the assembled orientation?
   [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const { return std::nullopt; }
@@ -101,6 +106,7 @@ class InteractionGroup {
   [[nodiscard]] virtual Participants bodies(int i) const = 0;
   [[nodiscard]] virtual int rows(int i) const = 0;
   [[nodiscard]] virtual int history_size(int i) const = 0;
+  [[nodiscard]] virtual bool lazy_history(int i) const = 0;
   [[nodiscard]] virtual bool conservative(int i) const = 0;
   [[nodiscard]] virtual std::optional<MotionBasis> motion_basis(int i) const = 0;
   [[nodiscard]] virtual Coupling coupling(int i) const = 0;
@@ -130,6 +136,7 @@ class Group final : public InteractionGroup {
   Participants bodies(int i) const override { return at(i).bodies; }
   int rows(int i) const override { return at(i).rows(); }
   int history_size(int i) const override { return at(i).history_size(); }
+  bool lazy_history(int i) const override { return at(i).lazy_history(); }
   bool conservative(int i) const override { return at(i).conservative(); }
   std::optional<MotionBasis> motion_basis(int i) const override { return at(i).motion_basis(); }
   Coupling coupling(int i) const override { return at(i).coupling(); }

@@ -22,9 +22,9 @@ struct MotionBasis {
   bool coincident = false;
   int slides = 0;
   int directions = 0;
-  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();               ///< [m]
+  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();  ///< [m]
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();
-  Vec3 slide[2] = {Vec3::UnitX(), Vec3::UnitY()};            ///< Body-a components, unit.
+  Vec3 slide[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< Body-a components, unit.
 
   [[nodiscard]] int translation_rows() const { return coincident ? 3 : slides; }
   [[nodiscard]] int rows() const { return translation_rows() + directions; }

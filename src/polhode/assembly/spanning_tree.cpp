@@ -13,8 +13,8 @@ constexpr int kDepthFirstFrom = 10000;
 
 struct Edge {
   int candidate;
-  int other;         ///< The body at the far end.
-  bool as_child_b;   ///< The far end is b, hence needs no reversal.
+  int other;        ///< The body at the far end.
+  bool as_child_b;  ///< The far end is b, hence needs no reversal.
 };
 
 }  // namespace

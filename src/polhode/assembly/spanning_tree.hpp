@@ -12,15 +12,15 @@ namespace polhode {
 
 /// A joint as a candidate for the tree: parent side a, child side b.
 struct TreeCandidate {
-  int a = kGround, b = kGround;   ///< Body indices.
-  int interaction = 0;            ///< Index into System::interactions().
-  bool may_reverse = false;       ///< b may be the parent: the item offers it with sides exchanged.
+  int a = kGround, b = kGround;  ///< Body indices.
+  int interaction = 0;           ///< Index into System::interactions().
+  bool may_reverse = false;      ///< b may be the parent: the item offers it with sides exchanged.
 };
 
 /// How the tree holds one body: by which joint, on which parent.
 struct TreeLink {
-  int parent = kGround;           ///< Body index of the parent.
-  int interaction = -1;           ///< Joint to the parent; -1 for a free root.
+  int parent = kGround;  ///< Body index of the parent.
+  int interaction = -1;  ///< Joint to the parent; -1 for a free root.
 };
 
 /// Spanning forest of the bodies, rooted at the ground or at free bodies, and the order in which
@@ -30,14 +30,14 @@ struct TreeLink {
 /// the shape of the joint to the parent, so that one vector instruction serves several joints of
 /// one shape; each (chunk, shape) run is padded to whole blocks of kLanes.
 struct SpanningTree {
-  std::vector<TreeLink> link;          ///< By body.
-  std::vector<int> order;              ///< Bodies, parents first.
+  std::vector<TreeLink> link;                   ///< By body.
+  std::vector<int> order;                       ///< Bodies, parents first.
   std::vector<int> slot_of_body, body_of_slot;  ///< body_of_slot is -1 in padding lanes.
   std::vector<TreeRun> runs;
   std::vector<TreeChunk> chunks;
-  std::vector<char> in_tree;           ///< By interaction: eliminated along the tree.
-  std::vector<int> reversed;           ///< Interactions whose sides must be exchanged.
-  int slots = 0;                       ///< Padded: a multiple of kLanes.
+  std::vector<char> in_tree;  ///< By interaction: eliminated along the tree.
+  std::vector<int> reversed;  ///< Interactions whose sides must be exchanged.
+  int slots = 0;              ///< Padded: a multiple of kLanes.
 };
 
 /// Code of a joint's shape: equal codes take the same kernel. Free roots have their own.

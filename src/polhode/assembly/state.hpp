@@ -24,30 +24,32 @@ struct ExactSum {
 
 /// What happened so far: the balance that every run ends with. SI units.
 struct Ledger {
-  double initial_energy = 0.0;                 ///< T + V at the start [J].
-  double initial_potential = 0.0;              ///< V at the start [J].
+  double initial_energy = 0.0;                     ///< T + V at the start [J].
+  double initial_potential = 0.0;                  ///< V at the start [J].
   std::array<double, 3> initial_p{}, initial_l{};  ///< Momentum, angular momentum about the origin.
-  ExactSum dissipated, put_in;                 ///< [J]
-  std::array<ExactSum, 3> impulse, angular_impulse;  ///< Of loads and ground [N s, N m s].
-  double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;   ///< Largest magnitudes reached.
-  double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;   ///< Largest absolute drifts.
+  ExactSum dissipated, put_in;                     ///< [J]
+  std::array<ExactSum, 3> impulse, angular_impulse;         ///< Of loads and ground [N s, N m s].
+  double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;  ///< Largest magnitudes reached.
+  double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;  ///< Largest absolute drifts.
   double constraint_max = 0.0, velocity_constraint_max = 0.0;  ///< Largest residuals, scaled.
   std::int64_t steps = 0, rejected = 0, iterations = 0, factorisations = 0;
 };
 
 /// Everything that changes during a run. A value: copy it, save it, compare it bit for bit.
 struct State {
-  double t = 0.0;                   ///< [s]
-  std::vector<BodyBlock> blocks;    ///< By slot, see LaneOrder.
-  std::vector<double> lambda;       ///< Multipliers by row, acting at t_{n+αf} of the last step.
-  std::vector<double> history;      ///< Of interactions: turns of an angle, ...
-  int past_count = 0;               ///< Valid entries of the predictor's rings.
-  int past_next = 0;                ///< Ring position to be written next.
-  std::array<double, kPast> past_time{};  ///< Middles of the remembered steps [s], by ring position.
-  double dt_last = 0.0;             ///< Length of the last accepted step [s].
-  double dt_next = 0.0;             ///< What the step control wants next [s].
-  double error_last = 0.0;          ///< Error estimate of the last step [-].
-  int easy_steps = 0;               ///< Steps in a row that needed few iterations.
+  double t = 0.0;                 ///< [s]
+  std::vector<BodyBlock> blocks;  ///< By slot, see LaneOrder.
+  std::vector<double> lambda;     ///< Multipliers by row, acting at t_{n+αf} of the last step.
+  std::vector<double> history;    ///< Of interactions: turns of an angle, ...
+  int past_count = 0;             ///< Valid entries of the predictor's rings.
+  int past_next = 0;              ///< Ring position to be written next.
+  std::array<double, kPast>
+      past_time{};          ///< Middles of the remembered steps [s], by ring position.
+  double dt_last = 0.0;     ///< Length of the last accepted step [s].
+  double dt_next = 0.0;     ///< What the step control wants next [s].
+  double error_last = 0.0;  ///< Error estimate of the last step [-].
+  double turned = 0.0;      ///< Most a body can have turned since turns were counted [rad].
+  int easy_steps = 0;       ///< Steps in a row that needed few iterations.
   Ledger ledger;
 
   [[nodiscard]] BodyMotion motion(int slot) const;

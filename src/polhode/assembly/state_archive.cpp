@@ -140,6 +140,7 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
   archive(state.dt_last);
   archive(state.dt_next);
   archive(state.error_last);
+  archive(state.turned);
   archive(state.easy_steps);
   ledger(archive, state.ledger);
 }

@@ -24,9 +24,10 @@ void System::finish() {
     for (int i = 0; i < groups_[g]->size(); ++i) {
       const auto [a, b] = groups_[g]->bodies(i);
       if (a < kGround || a >= n || b < kGround || b >= n || (a == b))
-        throw InputError(format("{} '{}'", groups_[g]->kind(), groups_[g]->name(i)),
-                         a == b ? "acts between a body and itself" : "names a body that is not there",
-                         "Give two different bodies of this system, or one and the ground");
+        throw InputError(
+            format("{} '{}'", groups_[g]->kind(), groups_[g]->name(i)),
+            a == b ? "acts between a body and itself" : "names a body that is not there",
+            "Give two different bodies of this system, or one and the ground");
       const auto basis = groups_[g]->motion_basis(i);
       const int index = static_cast<int>(refs_.size());
       if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
@@ -65,7 +66,8 @@ void System::finish() {
     std::memset(static_cast<void*>(initial_.blocks.data()), 0,
                 initial_.blocks.size() * sizeof(BodyBlock));
   for (int s = 0; s < tree_.slots; ++s)
-    initial_.set_motion(s, tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
+    initial_.set_motion(s,
+                        tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
   initial_.lambda.assign(rows_, 0.0);
   initial_.history.assign(histories, 0.0);
 }

@@ -14,17 +14,17 @@ namespace polhode {
 /// A moving body of the system: what does not change during a run.
 struct BodyData {
   std::string name;
-  double mass = 1.0;               ///< [kg]
-  Mat3 inertia = Mat3::Identity(); ///< J_r about the centre of mass, body axes [kg m²].
+  double mass = 1.0;                ///< [kg]
+  Mat3 inertia = Mat3::Identity();  ///< J_r about the centre of mass, body axes [kg m²].
 };
 
 /// One interaction with its place in the numbering.
 struct InteractionRef {
-  int group = 0, item = 0;     ///< groups()[group], item-th of it.
+  int group = 0, item = 0;  ///< groups()[group], item-th of it.
   int a = kGround, b = kGround;
   int rows = 0;
-  int first_row = 0;           ///< Into State::lambda.
-  int first_history = 0;       ///< Into State::history.
+  int first_row = 0;      ///< Into State::lambda.
+  int first_history = 0;  ///< Into State::history.
 };
 
 /// The compiled model: numbered unknowns, grouped interactions, spanning tree. Immutable once
@@ -48,8 +48,10 @@ class System {
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
   [[nodiscard]] const SpanningTree& tree() const { return tree_; }
   [[nodiscard]] int slot(int body) const { return tree_.slot_of_body[body]; }
-  [[nodiscard]] double mean_mass() const { return mean_mass_; }   ///< m_ref of the scaling [kg].
-  [[nodiscard]] double length_scale() const { return length_; }   ///< ℓ: extent of the mechanism [m].
+  [[nodiscard]] double mean_mass() const { return mean_mass_; }  ///< m_ref of the scaling [kg].
+  [[nodiscard]] double length_scale() const {
+    return length_;
+  }  ///< ℓ: extent of the mechanism [m].
   /// Neither dampers nor loads that depend on time: every interaction stores all it takes.
   [[nodiscard]] bool conservative() const { return conservative_; }
   [[nodiscard]] const std::string& name(const InteractionRef& ref) const {

@@ -45,6 +45,7 @@ class Joint : public InteractionItem {
   // The contract of an interaction.
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int history_size() const { return angles(); }
+  [[nodiscard]] bool lazy_history() const { return true; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   void initialize(const PairStep& step, double* history) const;

@@ -10,6 +10,7 @@
 
 #include <polhode/assembly/system.hpp>
 #include <polhode/model/model.hpp>
+#include <polhode/solve/ledger.hpp>
 #include <polhode/solve/start.hpp>
 #include <polhode/solve/stepper.hpp>
 
@@ -17,13 +18,6 @@ namespace polhode {
 
 /// Why a run ended.
 enum class RunEnd { finished, not_converged, interrupted, limit };
-
-/// Energies and momenta at an instant. SI units, world axes, angular momentum about the origin.
-struct Balance {
-  double kinetic = 0.0, potential = 0.0;   ///< [J]
-  double put_in = 0.0, dissipated = 0.0;   ///< Since the start [J].
-  Vec3 linear_momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
-};
 
 /// How a joint stands at the state of a simulation.
 struct JointReport {

@@ -12,23 +12,25 @@ namespace polhode {
 enum class JacobianPolicy { every_iteration, every_step, automatic, never };
 
 struct NewtonOptions {
-  double tolerance = 1e-5;       ///< On the largest increment, |Δr|/ℓ or |Δθ| [-].
+  double tolerance = 1e-5;  ///< On the largest increment, |Δr|/ℓ or |Δθ| [-].
   int max_iterations = 12;
   JacobianPolicy jacobian = JacobianPolicy::automatic;
   bool line_search = true;
-  double max_rotation = 2.0;     ///< Largest |Θ| a body may turn in the step [-].
+  double max_rotation = 2.0;  ///< Largest |Θ| a body may turn in the step [-].
+  double energy_scale = 0.0;  ///< Size of the energies of the run so far [J].
 };
 
 /// How a Newton solve went. Not to converge is an outcome, not an exception: the stepper may
 /// halve the step and try again.
 struct NewtonReport {
   bool converged = false;
-  double t = 0.0;                  ///< Start of the step [s].
-  double dt = 0.0;                 ///< [s]
+  double t = 0.0;   ///< Start of the step [s].
+  double dt = 0.0;  ///< [s]
   int iterations = 0;
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
-  std::string reason;              ///< If not converged: "contracts too slowly", "turns too far" ...
-  std::string worst;               ///< Largest increment: "body 'forearm'".
+  double rotation = 0.0;           ///< Largest |Θ| of the step [-].
+  std::string reason;  ///< If not converged: "contracts too slowly", "turns too far" ...
+  std::string worst;   ///< Largest increment: "body 'forearm'".
   ConstraintCheck constraints;
   [[nodiscard]] std::string text() const;  ///< One paragraph, with what to try next.
 };

@@ -38,7 +38,7 @@ struct Iteration {
   bool solved = false;      ///< False: singular matrix or a value that is not finite.
   double increment = 0.0;   ///< Largest of |Δr|/ℓ and |Δθ| [-].
   double rotation = 0.0;    ///< Largest |θ| of the step after the update [-].
-  int worst_body = -1;      ///< Where it is.
+  int worst_body = -1;      ///< If not solved: whose pivot vanished, if known.
 };
 
 /// How well the constraints hold at the current iterate.
@@ -60,6 +60,8 @@ class NewtonEngine {
   /// `damping` in (0, 1]: part of the increment that is applied.
   virtual Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) = 0;
   [[nodiscard]] virtual ConstraintCheck check(const State& state, Trial& trial) = 0;
+  /// Body with the largest increment of the last iteration, for reports.
+  [[nodiscard]] virtual int worst_body() const = 0;
   /// Called after convergence: makes trial.lambda complete.
   virtual void end_step(const State& state, Trial& trial) = 0;
 };

@@ -88,8 +88,9 @@ inline void commit(BodyBlock* state, const MassBlock* mass, const TrialBlock* tr
         store3(s.a, at, (1.0 / (beta * dt)) * (mean_v - v_n) + (1.0 - 0.5 / beta) * a_n);
         store3(s.A, at, (1.0 / (beta * dt)) * (mean_W - W_n) + (1.0 - 0.5 / beta) * A_n);
         const P3 h = load9(t.Lambda, at) * inertia_times(mass[b], at, W);
-        store3(s.h_dot, at, (1.0 / (gamma * dt)) * (h - load3(t.h_n, at)) +
-                                (1.0 - 1.0 / gamma) * load3(s.h_dot, at));
+        store3(s.h_dot, at,
+               (1.0 / (gamma * dt)) * (h - load3(t.h_n, at)) +
+                   (1.0 - 1.0 / gamma) * load3(s.h_dot, at));
       }
       store3(s.v, at, v);
       store3(s.W, at, W);
@@ -117,7 +118,7 @@ inline void sums(const BodyBlock* state, const MassBlock* mass, const int* body_
                  const double* gravity, BodySums* out) {
   const P3 zero = {Pack{}, Pack{}, Pack{}};
   Pack kinetic{}, potential{}, p_scale{}, l_scale{};
-  P3 p = zero, l = zero;
+  P3 p = zero, l = zero, mr = zero;
   const P3 g = {broadcast(gravity[0]), broadcast(gravity[1]), broadcast(gravity[2])};
   for (int b = 0; b < blocks; ++b)
     for (int at = 0; at < kLanes; at += kWidth) {
@@ -125,14 +126,15 @@ inline void sums(const BodyBlock* state, const MassBlock* mass, const int* body_
       Pack m = load(mass[b].mass + at);
       for (int i = 0; i < kWidth; ++i)
         if (body_of_slot[b * kLanes + at + i] < 0) m[i] = 0.0;  // rotations are at rest there
-      const PM L = rotation(load(s.q[0] + at),
-                            P3{load(s.q[1] + at), load(s.q[2] + at), load(s.q[3] + at)});
+      const PM L =
+          rotation(load(s.q[0] + at), P3{load(s.q[1] + at), load(s.q[2] + at), load(s.q[3] + at)});
       const P3 W = load3(s.W, at), JW = inertia_times(mass[b], at, W), h = L * JW;
       const P3 v = load3(s.v, at), r = load3(s.r, at) - load3(s.r_rest, at);
       const P3 rp = m * cross(r, v);
       kinetic += 0.5 * (m * dot(v, v) + dot(W, JW));
       potential -= m * dot(g, r);
       p = p + m * v;
+      mr = mr + m * r;
       l = l + rp + h;
       p_scale += m * sqrt(dot(v, v));
       l_scale += sqrt(dot(rp, rp)) + sqrt(dot(h, h));
@@ -144,6 +146,7 @@ inline void sums(const BodyBlock* state, const MassBlock* mass, const int* body_
   for (int i = 0; i < 3; ++i) {
     out->p[i] = sum(p[i]);
     out->l[i] = sum(l[i]);
+    out->mr[i] = sum(mr[i]);
   }
 }
 

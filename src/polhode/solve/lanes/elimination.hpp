@@ -52,7 +52,8 @@ POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
 }
 
 /// The body's rows: own balance, what is attached to it, children.
-POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s, Row* A) {
+POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s,
+                                 Row* A) {
   EliminatedBody& e = v.body[slot];
   for (int i = 0; i < 3; ++i) {
     A[i] = s.mass[lane] * unit(i) + s.rhs[i][lane] * unit(7);
@@ -73,7 +74,8 @@ POLHODE_INLINE void shift_rows(const double* c, Row* M) {
 }
 
 /// Hands the rows M of an eliminated body to its parent.
-POLHODE_INLINE void give_to_parent(const TreeView& v, int slot, int lane, const BlockScratch& s, Row* M) {
+POLHODE_INLINE void give_to_parent(const TreeView& v, int slot, int lane, const BlockScratch& s,
+                                   Row* M) {
   // The joint's force on the parent turns with its arm: arm Fᵀ − F·arm I.
   const double along = s.F_dot_arm[lane];
   alignas(64) const double F_row[8] = {0, 0, 0, s.F[0][lane], s.F[1][lane], s.F[2][lane], 0, 0};
@@ -93,14 +95,16 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   constexpr JointLayout l = S::layout;
   const double* data = v.joint_data + v.joint[slot / kLanes] + lane;
   const auto kept = [&](int field) { return data[8 * field]; };
-  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot)) return false;
+  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot))
+    return false;
   Row M[6];
   collect_rows(v, slot, lane, s, M);
   // From memory on purpose: scalars of a row that was just stored.
   const double(*a)[8] = v.body[slot].A;
   asm volatile("" ::: "memory");
 
-  // M = [A X_r | A S_r | A x_g − ρ] for one free direction, [A X_r | · | A x_g − ρ] and N = A S_r else.
+  // M = [A X_r | A S_r | A x_g − ρ] for one free direction, [A X_r | · | A x_g − ρ] and N = A S_r
+  // else.
   Row T[6], N[6];
   for (int i = 0; i < 3; ++i) {
     T[i] = row_load(s.T[i][lane]);
@@ -109,8 +113,7 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   }
   for (int i = 0; i < 6; ++i) {
     M[i] = (M[i] + a[i][0] * T[0] + a[i][1] * T[1]) + a[i][2] * T[2];
-    if constexpr (S::ND > 0 || nq == 1)
-      M[i] += (a[i][3] * T[3] + a[i][4] * T[4]) + a[i][5] * T[5];
+    if constexpr (S::ND > 0 || nq == 1) M[i] += (a[i][3] * T[3] + a[i][4] * T[4]) + a[i][5] * T[5];
   }
   if constexpr (nq > 1) {
     Row Sr[6];
@@ -131,7 +134,8 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
     for (int i = 0; i < 6; ++i) left[i] = s.S_l[k][i][lane];
     Y[k] = ((left[0] * M[0] + left[1] * M[1]) + left[2] * M[2]) +
            ((left[3] * M[3] + left[4] * M[4]) + left[5] * M[5]);
-    alignas(64) const double stiffness[8] = {0, 0, 0, s.k_a[k][0][lane], s.k_a[k][1][lane], s.k_a[k][2][lane], 0, 0};
+    alignas(64) const double stiffness[8] = {
+        0, 0, 0, s.k_a[k][0][lane], s.k_a[k][1][lane], s.k_a[k][2][lane], 0, 0};
     Y[k] += row_load(stiffness);
     if constexpr (nq > 1) {
       const Row d = ((left[0] * N[0] + left[1] * N[1]) + left[2] * N[2]) +
@@ -219,7 +223,8 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
 
 /// Eliminates a body that floats freely: six directions, no parent.
 inline bool eliminate_root(const TreeView& v, int slot, int lane, const BlockScratch& s) {
-  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot)) return false;
+  if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot))
+    return false;
   Row A[6], Y[6];
   collect_rows(v, slot, lane, s, A);
   alignas(64) double D_inverse[6][8];
@@ -293,21 +298,36 @@ POLHODE_INLINE void back_substitute(const TreeView& v, int slot, int lane, doubl
 template <class F>
 POLHODE_INLINE void with_shape(int code, F&& f) {
   switch (code) {
-    case 1: return f.template operator()<Shape<0, 1>>();
-    case 2: return f.template operator()<Shape<0, 2>>();
-    case 3: return f.template operator()<Shape<0, 3>>();
-    case 4: return f.template operator()<Shape<1, 0>>();
-    case 5: return f.template operator()<Shape<1, 1>>();
-    case 6: return f.template operator()<Shape<1, 2>>();
-    case 7: return f.template operator()<Shape<1, 3>>();
-    case 8: return f.template operator()<Shape<2, 0>>();
-    case 9: return f.template operator()<Shape<2, 1>>();
-    case 10: return f.template operator()<Shape<2, 2>>();
-    case 11: return f.template operator()<Shape<2, 3>>();
-    case 12: return f.template operator()<Shape<3, 0>>();
-    case 13: return f.template operator()<Shape<3, 1>>();
-    case 14: return f.template operator()<Shape<3, 2>>();
-    default: return f.template operator()<Shape<3, 3>>();
+    case 1:
+      return f.template operator()<Shape<0, 1>>();
+    case 2:
+      return f.template operator()<Shape<0, 2>>();
+    case 3:
+      return f.template operator()<Shape<0, 3>>();
+    case 4:
+      return f.template operator()<Shape<1, 0>>();
+    case 5:
+      return f.template operator()<Shape<1, 1>>();
+    case 6:
+      return f.template operator()<Shape<1, 2>>();
+    case 7:
+      return f.template operator()<Shape<1, 3>>();
+    case 8:
+      return f.template operator()<Shape<2, 0>>();
+    case 9:
+      return f.template operator()<Shape<2, 1>>();
+    case 10:
+      return f.template operator()<Shape<2, 2>>();
+    case 11:
+      return f.template operator()<Shape<2, 3>>();
+    case 12:
+      return f.template operator()<Shape<3, 0>>();
+    case 13:
+      return f.template operator()<Shape<3, 1>>();
+    case 14:
+      return f.template operator()<Shape<3, 2>>();
+    default:
+      return f.template operator()<Shape<3, 3>>();
   }
 }
 
@@ -378,7 +398,8 @@ inline SweepResult down(const TreeView* view) {
       const int slot = v.slot_in_order[i], lane = slot % kLanes, b = slot / kLanes - first_block;
       back_substitute(v, slot, lane, scratch.wrench[b][lane]);
       row_store(scratch.X[b][lane], row_load(v.body[slot].X));
-      const double* x_a = v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;
+      const double* x_a =
+          v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;
       row_store(scratch.X_a[b][lane], row_load(x_a));
     }
     for (int r = chunk.first_run; r < chunk.last_run; ++r) {

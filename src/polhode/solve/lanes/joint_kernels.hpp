@@ -20,12 +20,12 @@ struct alignas(64) BlockScratch {
   double F[3][8];          ///< s f.
   double arm[3][8];        ///< Arm on the parent at t_{n+1}.
   double F_dot_arm[8];
-  double c_l[3][8];        ///< Lever of X_l.
-  double S_l[6][6][8];     ///< Left free directions [direction][component].
-  double k_a[6][3][8];     ///< Geometric stiffness of the projected rows, on Δθ of the parent.
-  double k_b[3][8];        ///< The same on Δθ of the body (universal shape's second rotation).
-  double F_tau[3][3][8];   ///< −F × τ of the sliding directions.
-  double F_t[3][8];        ///< F × t.
+  double c_l[3][8];       ///< Lever of X_l.
+  double S_l[6][6][8];    ///< Left free directions [direction][component].
+  double k_a[6][3][8];    ///< Geometric stiffness of the projected rows, on Δθ of the parent.
+  double k_b[3][8];       ///< The same on Δθ of the body (universal shape's second rotation).
+  double F_tau[3][3][8];  ///< −F × τ of the sliding directions.
+  double F_t[3][8];       ///< F × t.
 };
 
 template <int kTranslation, int kDirections>
@@ -36,7 +36,7 @@ struct Shape {
   static constexpr int omegas = 3 - ND;            ///< then free rotations.
   static constexpr int free = taus + omegas;
   static constexpr int directors = layout.directors();
-  static constexpr int of_a = ND == 3 ? 2 : 1;     ///< Directors 0..of_a−1 belong to a.
+  static constexpr int of_a = ND == 3 ? 2 : 1;  ///< Directors 0..of_a−1 belong to a.
   static constexpr int slides = layout.slides();
   static constexpr bool sliding = slides > 0;
   /// Row i of the direction rows: director `left(i)` of a · director `right(i)` of b.
@@ -71,8 +71,8 @@ POLHODE_INLINE void assemble_inertia(const TreeView& v, int block, int at, P3* r
   } else {
     const P3 a_n = load3(n.a, at);
     W = (v.c / dt) * Theta + (1.0 - v.c) * W_n + (dt * v.c_A) * load3(n.A, at);
-    acceleration = v.kappa * ((v.c / dt) * ((1.0 / dt) * u - v_n) + v.c_A * a_n) +
-                   (1.0 - v.kappa) * a_n;
+    acceleration =
+        v.kappa * ((v.c / dt) * ((1.0 / dt) * u - v_n) + v.c_A * a_n) + (1.0 - v.kappa) * a_n;
   }
   const P3 h = L * inertia_times(m, at, W);
   P3 h_dot = (v.kappa / dt) * (h - load3(t.h_n, at));
@@ -114,7 +114,8 @@ POLHODE_INLINE void assemble_inertia(const TreeView& v, int block, int at, P3* r
 
 POLHODE_INLINE void put_theta_rows(const P3* rows, const P3& rhs, int at, BlockScratch& s) {
   for (int i = 0; i < 3; ++i) {
-    const Pack columns[8] = {Pack{}, Pack{}, Pack{}, rows[i][0], rows[i][1], rows[i][2], Pack{}, rhs[i]};
+    const Pack columns[8] = {Pack{},     Pack{},     Pack{}, rows[i][0],
+                             rows[i][1], rows[i][2], Pack{}, rhs[i]};
     to_rows(columns, s.theta[i][at]);
   }
 }
@@ -122,10 +123,10 @@ POLHODE_INLINE void put_theta_rows(const P3* rows, const P3& rhs, int at, BlockS
 /// A joint's geometry at t_{n+1}.
 template <class S>
 struct JointGeometry {
-  P3 z_b, arm, u;                        ///< u = x_b − x_a.
+  P3 z_b, arm, u;  ///< u = x_b − x_a.
   P3 director[S::directors > 0 ? S::directors : 1];
   P3 slide[2];
-  Pack g[6];                             ///< Translation rows, then direction rows.
+  Pack g[6];  ///< Translation rows, then direction rows.
 };
 
 template <class S>
@@ -148,8 +149,10 @@ POLHODE_INLINE JointGeometry<S> joint_geometry(const TreeView& v, int block, int
   for (int i = 0; i < S::directors; ++i)
     q.director[i] = (i < S::of_a ? L_a : L_b) * get3(data, l.director() + 3 * i, at);
   for (int i = 0; i < S::slides; ++i) q.slide[i] = L_a * get3(data, l.slide() + 3 * i, at);
-  for (int i = 0; i < S::T; ++i) q.g[i] = S::T == 3 ? q.u[i] : dot(q.slide[S::sliding ? i : 0], q.u);
-  for (int i = 0; i < S::ND; ++i) q.g[S::T + i] = dot(q.director[S::left(i)], q.director[S::right(i)]);
+  for (int i = 0; i < S::T; ++i)
+    q.g[i] = S::T == 3 ? q.u[i] : dot(q.slide[S::sliding ? i : 0], q.u);
+  for (int i = 0; i < S::ND; ++i)
+    q.g[S::T + i] = dot(q.director[S::left(i)], q.director[S::right(i)]);
   return q;
 }
 
@@ -355,10 +358,17 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
 
     // Rows 0..2 of [X_r | S_r | x_g], X_r = [I, −ĉ; 0, I]; the unit part is left out.
     const Pack zero = Pack{};
-    const Pack minus_hat[3][3] = {{zero, c_r[2], -c_r[1]}, {-c_r[2], zero, c_r[0]}, {c_r[1], -c_r[0], zero}};
+    const Pack minus_hat[3][3] = {
+        {zero, c_r[2], -c_r[1]}, {-c_r[2], zero, c_r[0]}, {c_r[1], -c_r[0], zero}};
     for (int i = 0; i < 3; ++i) {
-      const Pack columns[8] = {zero, zero, zero, minus_hat[i][0], minus_hat[i][1], minus_hat[i][2],
-                               S::free == 1 ? S_r[0][0][i] : zero, x_r[i]};
+      const Pack columns[8] = {zero,
+                               zero,
+                               zero,
+                               minus_hat[i][0],
+                               minus_hat[i][1],
+                               minus_hat[i][2],
+                               S::free == 1 ? S_r[0][0][i] : zero,
+                               x_r[i]};
       to_rows(columns, s.T[i][at]);
     }
     if constexpr (S::free > 1)
@@ -477,7 +487,8 @@ void update_block(const TreeView& v, int block, const double (*X)[8], const doub
   }
 }
 
-inline void update_root_block(const TreeView& v, int block, const double (*X)[8], BlockMaxima& most) {
+inline void update_root_block(const TreeView& v, int block, const double (*X)[8],
+                              BlockMaxima& most) {
   for (int at = 0; at < kLanes; at += kWidth) {
     Pack x[8];
     to_columns(X[at], x);
@@ -500,8 +511,10 @@ void check_block(const TreeView& v, const int* body_of_slot, int block, double* 
       const Pack lambda = abs(load(data + 8 * (S::layout.lambda() + i) + at));
       most = max_keeping_nan(most, abs(q.g[i]));
       work += lambda * abs(q.g[i]);
-      if (i < S::T) size += lambda * reach;
-      else size += lambda;
+      if (i < S::T)
+        size += lambda * reach;
+      else
+        size += lambda;
     }
     for (int i = 0; i < kWidth; ++i) {
       if (body_of_slot[block * kLanes + at + i] < 0) continue;

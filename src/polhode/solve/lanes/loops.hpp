@@ -59,7 +59,8 @@ inline bool factor_loop(const TreeView& v, const TreeLoop& loop) {
 }
 
 /// Applies the factored block's inverse to n rows of `panels` × 8, each `width` doubles apart.
-POLHODE_INLINE void solve_rows(const TreeView& v, const TreeLoop& loop, double* x, int panels, int width) {
+POLHODE_INLINE void solve_rows(const TreeView& v, const TreeLoop& loop, double* x, int panels,
+                               int width) {
   const int n = loop.unknowns, w = 8 * loop.panels;
   const double* S = v.S + loop.S;
   const int* pivots = v.pivots + loop.nu;
@@ -114,13 +115,16 @@ inline bool eliminate_loop(const TreeView& v, int index) {
       const LaterLoop& column = v.later[a];
       const TreeLoop& target = v.loop[column.loop];
       const int count = loop.last_later - loop.first_later;
-      double* Q = v.S + v.product[loop.first_product + count * (b - loop.first_later) + a - loop.first_later];
+      double* Q =
+          v.S +
+          v.product[loop.first_product + count * (b - loop.first_later) + a - loop.first_later];
       const double* Ua = v.S + column.S_row;
       const int w = 8 * target.panels;
       for (int i = 0; i < other.unknowns; ++i)
         for (int k = 0; k < target.panels; ++k) {
           Row q = row_load(Q + i * w + 8 * k);
-          for (int j = 0; j < n; ++j) q -= L[i * 8 * loop.panels + j] * row_load(Ua + j * w + 8 * k);
+          for (int j = 0; j < n; ++j)
+            q -= L[i * 8 * loop.panels + j] * row_load(Ua + j * w + 8 * k);
           row_store(Q + i * w + 8 * k, q);
         }
     }
@@ -168,10 +172,10 @@ inline bool eliminate_common_loops(const TreeView& v, int slot) {
 
 /// Passes the loops open at a body on to its parent while the body is eliminated.
 /// S_l, S_r: nq × 6; P: 6 rows `stride` apart; D_inverse: rows of 8; Y = D⁻¹[Qᵀ | · | −β].
-__attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, int nq, const double* S_l,
-                                                  const double* S_r, const double* x_g,
-                                                  const double* c_l, const double* c_r,
-                                                  const double* P, int stride,
+__attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, int nq,
+                                                  const double* S_l, const double* S_r,
+                                                  const double* x_g, const double* c_l,
+                                                  const double* c_r, const double* P, int stride,
                                                   const double* D_inverse, const Row* Y) {
   for (int o = v.first_open[slot]; o < v.first_open[slot + 1]; ++o) {
     const LoopAtBody& here = v.open[o];
@@ -185,8 +189,10 @@ __attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, i
       Row projected[6];
       for (int d = 0; d < nq; ++d) {
         const double *l = S_l + 6 * d, *r = S_r + 6 * d;
-        projected[d] = ((l[0] * C[0] + l[1] * C[1]) + l[2] * C[2]) + ((l[3] * C[3] + l[4] * C[4]) + l[5] * C[5]);
-        e[d] = ((r[0] * R[0] + r[1] * R[1]) + r[2] * R[2]) + ((r[3] * R[3] + r[4] * R[4]) + r[5] * R[5]);
+        projected[d] = ((l[0] * C[0] + l[1] * C[1]) + l[2] * C[2]) +
+                       ((l[3] * C[3] + l[4] * C[4]) + l[5] * C[5]);
+        e[d] = ((r[0] * R[0] + r[1] * R[1]) + r[2] * R[2]) +
+               ((r[3] * R[3] + r[4] * R[4]) + r[5] * R[5]);
       }
       Row nu = row_load(v.nu + loop.nu + 8 * k);
       for (int i = 0; i < 6; ++i) nu += x_g[i] * R[i];

@@ -7,7 +7,7 @@ namespace polhode {
 
 /// Mass properties of eight bodies; lanes without a body hold mass 1 and the unit inertia.
 struct alignas(64) MassBlock {
-  Lane mass;          ///< [kg]
+  Lane mass;            ///< [kg]
   double J[6][kLanes];  ///< xx, yy, zz, xy, xz, yz about the centre of mass, body axes [kg m²].
 };
 
@@ -33,7 +33,7 @@ struct alignas(64) EdgeRows {
 /// Number of values a joint of a shape keeps per body: its layout in TreeView::joint_data, in
 /// units of one lane (eight doubles).
 struct JointLayout {
-  int translation = 0, directions = 0;   ///< Rows of each sort.
+  int translation = 0, directions = 0;  ///< Rows of each sort.
 
   [[nodiscard]] constexpr int free() const { return 6 - translation - directions; }
   [[nodiscard]] constexpr int directors() const { return directions == 0 ? 0 : directions + 1; }
@@ -70,11 +70,11 @@ struct JointLayout {
 
 /// A loop that is open at a body: the interaction's columns and rows carried along the tree.
 struct LoopAtBody {
-  int loop;           ///< Index into loops.
-  int pair;           ///< Where its C and Rᵀ stand (in rows of 8, see TreeView::pair_rows).
-  int parent_pair;    ///< The same at the parent; -1 if the parent is the ground.
+  int loop;             ///< Index into loops.
+  int pair;             ///< Where its C and Rᵀ stand (in rows of 8, see TreeView::pair_rows).
+  int parent_pair;      ///< The same at the parent; -1 if the parent is the ground.
   int first_at_parent;  ///< 1: this is the first writer into parent_pair.
-  int kept;           ///< Where γ and e stand, panels × free directions rows each.
+  int kept;             ///< Where γ and e stand, panels × free directions rows each.
 };
 
 /// One product e γ' subtracted from a block between two loops open at the same body.
@@ -85,20 +85,20 @@ struct LoopUpdate {
 
 /// A set of unknowns beside the tree: multipliers of a loop joint, couplings of distant bodies.
 struct TreeLoop {
-  int unknowns = 0, panels = 0;  ///< panels = ⌈unknowns/8⌉.
-  int common = -1;               ///< Slot of the lowest common ancestor; -1: the ground.
-  int common_pair = -1;          ///< Where C and Rᵀ stand at the common ancestor.
-  int S = 0;                     ///< Offset of the diagonal block.
-  int nu = 0;                    ///< Offset of ν, of the solution y and of the pivots.
-  int U = 0;                     ///< Rows of S⁻¹[R_common | · | ν], unknowns rows of 8.
+  int unknowns = 0, panels = 0;         ///< panels = ⌈unknowns/8⌉.
+  int common = -1;                      ///< Slot of the lowest common ancestor; -1: the ground.
+  int common_pair = -1;                 ///< Where C and Rᵀ stand at the common ancestor.
+  int S = 0;                            ///< Offset of the diagonal block.
+  int nu = 0;                           ///< Offset of ν, of the solution y and of the pivots.
+  int U = 0;                            ///< Rows of S⁻¹[R_common | · | ν], unknowns rows of 8.
   int first_later = 0, last_later = 0;  ///< Into TreeView::later.
-  int first_product = 0;         ///< Blocks S(b, a) of later loops b, a: into TreeView::product.
+  int first_product = 0;  ///< Blocks S(b, a) of later loops b, a: into TreeView::product.
 };
 
 /// Loop `loop` is eliminated after the present one and shares a block with it.
 struct LaterLoop {
-  int loop, S_row, S_column;   ///< S(present, later), S(later, present).
-  int common_pair;             ///< Pair of `later` at the present loop's common ancestor; -1: none.
+  int loop, S_row, S_column;  ///< S(present, later), S(later, present).
+  int common_pair;            ///< Pair of `later` at the present loop's common ancestor; -1: none.
 };
 
 /// Everything the tree kernels touch, as plain pointers: the kernels are compiled for several
@@ -108,39 +108,39 @@ struct TreeView {
   int bodies = 0, blocks = 0, chunks = 0;
   const TreeRun* run = nullptr;
   const TreeChunk* chunk = nullptr;
-  const int* slot_in_order = nullptr;     ///< Slots, parents first.
-  const int* parent = nullptr;            ///< Slot of the parent, −1 ground; by slot.
-  const int* gather = nullptr;            ///< Offset of the parent's lane in the trial, doubles; by slot.
-  const int* shape = nullptr;             ///< Shape code by slot.
-  const unsigned char* has_children = nullptr;    ///< Something is added into A before its turn.
-  const unsigned char* first_child = nullptr;     ///< This slot is the first writer at its parent.
-  const int* extra = nullptr;             ///< Index into extra_rows or −1; by slot.
-  const int* edge = nullptr;              ///< Index into edge_rows or −1; by slot.
-  const int* y_row = nullptr;             ///< First row in Y; by slot.
-  const int* joint = nullptr;             ///< Offset into joint_data, doubles; by block.
+  const int* slot_in_order = nullptr;  ///< Slots, parents first.
+  const int* parent = nullptr;         ///< Slot of the parent, −1 ground; by slot.
+  const int* gather = nullptr;  ///< Offset of the parent's lane in the trial, doubles; by slot.
+  const int* shape = nullptr;   ///< Shape code by slot.
+  const unsigned char* has_children = nullptr;  ///< Something is added into A before its turn.
+  const unsigned char* first_child = nullptr;   ///< This slot is the first writer at its parent.
+  const int* extra = nullptr;                   ///< Index into extra_rows or −1; by slot.
+  const int* edge = nullptr;                    ///< Index into edge_rows or −1; by slot.
+  const int* y_row = nullptr;                   ///< First row in Y; by slot.
+  const int* joint = nullptr;                   ///< Offset into joint_data, doubles; by block.
   // Data.
   const BodyBlock* state = nullptr;
-  TrialBlock* trial = nullptr;            ///< blocks + 1, the last one is the ground.
+  TrialBlock* trial = nullptr;  ///< blocks + 1, the last one is the ground.
   const MassBlock* mass = nullptr;
   double* joint_data = nullptr;
-  EliminatedBody* body = nullptr;         ///< By slot, and one for the ground.
-  RowData* Y = nullptr;                   ///< D⁻¹[Qᵀ | · | −β] of each free direction.
+  EliminatedBody* body = nullptr;  ///< By slot, and one for the ground.
+  RowData* Y = nullptr;            ///< D⁻¹[Qᵀ | · | −β] of each free direction.
   ExtraRows* extra_rows = nullptr;
   EdgeRows* edge_rows = nullptr;
   // Loops.
   int loops = 0, ground_loops = 0;
   TreeLoop* loop = nullptr;
   const LaterLoop* later = nullptr;
-  const int* product = nullptr;           ///< Offsets of S(b, a), row by row, by loop.
-  const int* ground_loop = nullptr;       ///< Loops whose common ancestor is the ground, in order.
-  const int* first_open = nullptr;        ///< By slot, size slots + 1: range in open.
+  const int* product = nullptr;      ///< Offsets of S(b, a), row by row, by loop.
+  const int* ground_loop = nullptr;  ///< Loops whose common ancestor is the ground, in order.
+  const int* first_open = nullptr;   ///< By slot, size slots + 1: range in open.
   const LoopAtBody* open = nullptr;
-  const int* first_update = nullptr;      ///< By slot: range in update.
+  const int* first_update = nullptr;  ///< By slot: range in update.
   const LoopUpdate* update = nullptr;
-  const int* first_common = nullptr;      ///< By slot: range in common: loops with this ancestor.
+  const int* first_common = nullptr;  ///< By slot: range in common: loops with this ancestor.
   const int* common = nullptr;
-  double* pair_rows = nullptr;            ///< C (6 × panels rows), then Rᵀ (6 × panels rows).
-  double* kept_rows = nullptr;            ///< γ and e of (body, loop).
+  double* pair_rows = nullptr;  ///< C (6 × panels rows), then Rᵀ (6 × panels rows).
+  double* kept_rows = nullptr;  ///< γ and e of (body, loop).
   double* S = nullptr;
   double* nu = nullptr;
   double* y = nullptr;
@@ -148,17 +148,17 @@ struct TreeView {
   double* U = nullptr;
   // Step.
   double gravity[3] = {0, 0, 0};
-  double scale = 0.0;                     ///< s_c = βΔt²/m_ref.
+  double scale = 0.0;  ///< s_c = βΔt²/m_ref.
   double alpha_f = 0.5, alpha_m = 0.5, beta = 0.25, gamma = 0.5, kappa = 1.0, c = 2.0, c_A = 0.0;
   double dt = 0.0;
-  double inverse_mass = 1.0;              ///< 1/m_ref.
-  double inverse_length = 1.0;            ///< 1/ℓ.
+  double inverse_mass = 1.0;    ///< 1/m_ref.
+  double inverse_length = 1.0;  ///< 1/ℓ.
   double damping = 1.0;
-  int first_iteration = 1;                ///< Step constants are made in this sweep.
+  int first_iteration = 1;  ///< Step constants are made in this sweep.
 };
 
 struct SweepResult {
-  double increment = 0.0;     ///< Largest |Δr|/ℓ or |Δθ|; NaN if a value was not finite.
+  double increment = 0.0;         ///< Largest |Δr|/ℓ or |Δθ|; NaN if a value was not finite.
   double rotation_squared = 0.0;  ///< Largest θ·θ after the update.
 };
 
@@ -166,11 +166,12 @@ struct SweepResult {
 struct BodySums {
   double kinetic = 0.0, gravity_potential = 0.0;
   double p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-  double p_scale = 0.0, l_scale = 0.0;   ///< Σ m|v|, Σ |r × mv| + |h|.
+  double mr[3] = {0, 0, 0};             ///< Σ m r.
+  double p_scale = 0.0, l_scale = 0.0;  ///< Σ m|v|, Σ |r × mv| + |h|.
 };
 
 struct PredictWeights {
-  double weight[kPast] = {0, 0, 0, 0};   ///< By ring position; used if count > 0.
+  double weight[kPast] = {0, 0, 0, 0};  ///< By ring position; used if count > 0.
   int count = 0;
 };
 

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/solve/ledger.hpp>
+#include <polhode/solve/tree_engine.hpp>
+
+namespace polhode {
+
+namespace {
+
+std::vector<int> without_rows(const System& system) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
+    if (system.interactions()[i].rows == 0) list.push_back(i);
+  return list;
+}
+
+std::vector<int> on_one_body(const System& system) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    if ((ref.a == kGround) != (ref.b == kGround)) list.push_back(i);
+  }
+  return list;
+}
+
+Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
+
+}  // namespace
+
+LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels)
+    : system_(&system),
+      kernels_(&kernels),
+      mass_(mass_blocks(system)),
+      working_(without_rows(system)),
+      outside_(on_one_body(system)),
+      outside_sweep_(system, on_one_body(system)) {
+  for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
+  for (const auto& list : {working_, outside_})
+    for (int i : list)
+      for (int body : {system.interactions()[i].a, system.interactions()[i].b})
+        if (body != kGround) touched_.push_back(body);
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  if (!touched_.empty()) steps_.resize(system.body_count() + 1);
+}
+
+BodySums LedgerKeeper::sums(const State& state) const {
+  BodySums s;
+  const double g[3] = {system_->gravity()[0], system_->gravity()[1], system_->gravity()[2]};
+  kernels_->sums(state.blocks.data(), mass_.data(), system_->tree().body_of_slot.data(),
+                 static_cast<int>(state.blocks.size()), g, &s);
+  return s;
+}
+
+double LedgerKeeper::stored(const State& state) const {
+  double potential = 0.0;
+  StepContext still;
+  still.t_n = state.t;
+  for (int i : working_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const BodyStep a = system_->instant(state, ref.a), b = system_->instant(state, ref.b);
+    const PairStep step{a, b, still, nullptr, state.history.data() + ref.first_history};
+    potential += system_->group(ref.group).work(ref.item, step).stored;
+  }
+  return potential;
+}
+
+void LedgerKeeper::begin(State& state) {
+  Ledger& l = state.ledger;
+  l = Ledger{};
+  at_n_ = sums(state);
+  potential_ = stored(state);
+  l.initial_potential = at_n_.gravity_potential + potential_;
+  l.initial_energy = at_n_.kinetic + l.initial_potential;
+  for (int i = 0; i < 3; ++i) {
+    l.initial_p[i] = at_n_.p[i];
+    l.initial_l[i] = at_n_.l[i];
+  }
+  l.energy_scale = at_n_.kinetic;
+  l.p_scale = at_n_.p_scale;
+  l.l_scale = at_n_.l_scale;
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::before_commit(State& state, const Trial& trial) {
+  if (!sums_are_of_state_) at_n_ = sums(state);
+  Ledger& l = state.ledger;
+  const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
+  for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
+  if (!steps_.empty()) steps_.back() = BodyStep::ground(alpha_f);
+  const auto step_of = [&](int body) -> const BodyStep& {
+    return body == kGround ? steps_.back() : steps_[body];
+  };
+  potential_ = 0.0;
+  for (int i : working_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const PairStep step{step_of(ref.a), step_of(ref.b), trial.context, nullptr,
+                        state.history.data() + ref.first_history};
+    const Work w = system_->group(ref.group).work(ref.item, step);
+    potential_ += w.stored;
+    l.dissipated.add(w.dissipated);
+    l.put_in.add(w.put_in);
+  }
+  if (outside_.empty()) return;
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
+  outside_sweep_.run(steps_, trial.context, trial.lambda.data(), state.history.data(),
+                     [&](int interaction, const PairStep& step, const PairTerms& terms) {
+                       const bool on_a = system_->interactions()[interaction].a != kGround;
+                       const Vec6& w = on_a ? terms.wrench_a : terms.wrench_b;
+                       const BodyStep& body = on_a ? step.a : step.b;
+                       const Vec3 f = w.head<3>();
+                       const Vec3 r_alpha = body.r_n + alpha_f * body.u;
+                       impulse += f;
+                       turning += r_alpha.cross(f) + w.tail<3>();
+                     });
+  for (int i = 0; i < 3; ++i) {
+    l.impulse[i].add(dt * impulse[i]);
+    l.angular_impulse[i].add(dt * turning[i]);
+  }
+}
+
+void LedgerKeeper::after_commit(State& state, const Trial& trial) {
+  at_n1_ = sums(state);
+  const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
+  // Gravity: m g at the centres of mass, averaged as all positions are.
+  const Vec3 moment = (1.0 - alpha_f) * vec(at_n_.mr) + alpha_f * vec(at_n1_.mr);
+  const Vec3 f = total_mass_ * system_->gravity(), m = moment.cross(system_->gravity());
+  for (int i = 0; i < 3; ++i) {
+    state.ledger.impulse[i].add(dt * f[i]);
+    state.ledger.angular_impulse[i].add(dt * m[i]);
+  }
+  at_n_ = at_n1_;
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::close_step(State& state) {
+  if (!sums_are_of_state_) {
+    at_n_ = sums(state);
+    potential_ = stored(state);
+    sums_are_of_state_ = true;
+  }
+  Ledger& l = state.ledger;
+  const BodySums& s = at_n_;
+  const double potential = s.gravity_potential + potential_;
+  const double energy = s.kinetic + potential;
+  l.energy_scale = std::max(l.energy_scale, s.kinetic + std::abs(potential - l.initial_potential));
+  l.p_scale = std::max(l.p_scale, s.p_scale);
+  l.l_scale = std::max(l.l_scale, s.l_scale);
+  l.energy_drift = std::max(l.energy_drift, std::abs(energy - l.initial_energy - l.put_in.value() +
+                                                     l.dissipated.value()));
+  double p = 0.0, angular = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    p = std::hypot(p, s.p[i] - l.initial_p[i] - l.impulse[i].value());
+    angular = std::hypot(angular, s.l[i] - l.initial_l[i] - l.angular_impulse[i].value());
+  }
+  l.p_drift = std::max(l.p_drift, p);
+  l.l_drift = std::max(l.l_drift, angular);
+}
+
+Balance LedgerKeeper::balance(const State& state) const {
+  const BodySums s = sums(state);
+  return {.kinetic = s.kinetic,
+          .potential = s.gravity_potential + stored(state),
+          .put_in = state.ledger.put_in.value(),
+          .dissipated = state.ledger.dissipated.value(),
+          .linear_momentum = vec(s.p),
+          .angular_momentum = vec(s.l)};
+}
+
+}  // namespace polhode

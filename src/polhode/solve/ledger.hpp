@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/solve/newton_system.hpp>
+#include <polhode/solve/trial.hpp>
+
+namespace polhode {
+
+/// Energies and momenta at an instant. SI units, world axes, angular momentum about the origin.
+struct Balance {
+  double kinetic = 0.0, potential = 0.0;  ///< [J]
+  double put_in = 0.0, dissipated = 0.0;  ///< Since the start [J].
+  Vec3 linear_momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
+};
+
+/// Keeps the balance of energy and momenta: what loads and ground put in over each step, and how
+/// far what the bodies hold is from that.
+class LedgerKeeper {
+ public:
+  LedgerKeeper(const System& system, const LaneKernels& kernels);
+
+  /// Starts the sums at a state.
+  void begin(State& state);
+  /// Adds what an accepted step did. Call with the trial converged, before and after the state
+  /// moves to t_{n+1}.
+  void before_commit(State& state, const Trial& trial);
+  void after_commit(State& state, const Trial& trial);
+  /// The next call is about another state than the last one.
+  void forget() { sums_are_of_state_ = false; }
+  /// Compares with the start; at the end of whole steps.
+  void close_step(State& state);
+  [[nodiscard]] Balance balance(const State& state) const;
+
+ private:
+  [[nodiscard]] BodySums sums(const State& state) const;
+  [[nodiscard]] double stored(const State& state) const;
+
+  const System* system_;
+  const LaneKernels* kernels_;
+  std::vector<MassBlock> mass_;
+  double total_mass_ = 0.0;
+  std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, put in.
+  std::vector<int> outside_;  ///< Interactions with exactly one moving body.
+  InteractionSweep outside_sweep_;
+  std::vector<int> touched_;  ///< Bodies of those.
+  std::vector<BodyStep> steps_;
+  BodySums at_n_, at_n1_;  ///< Of the state before and after the step.
+  bool sums_are_of_state_ = false;
+  double potential_ = 0.0;  ///< Stored by the interactions at the state.
+};
+
+}  // namespace polhode

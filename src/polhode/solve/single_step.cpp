@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <polhode/base/format.hpp>
+#include <polhode/solve/single_step.hpp>
+#include <polhode/solve/tree_engine.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
+constexpr double kNoMirrorBelow = 0.8;
+/// Turns are counted before two bodies can have turned by half a turn against each other [rad].
+constexpr double kCountTurnsAfter = 1.2;
+
+/// Weights that extrapolate the remembered mean velocities to the middle of the next step.
+PredictWeights extrapolation(const State& state, double middle, int degree) {
+  PredictWeights w;
+  const int count = std::min(state.past_count, degree + 1);
+  int used[kPast];
+  for (int k = 0; k < count; ++k) used[k] = (state.past_next - 1 - k + 2 * kPast) % kPast;
+  for (int k = 0; k < count; ++k) {
+    double weight = 1.0;
+    for (int j = 0; j < count; ++j) {
+      if (j == k) continue;
+      const double spread = state.past_time[used[k]] - state.past_time[used[j]];
+      if (spread == 0.0) return {};  // two stages about the same middle: start from v_n
+      weight *= (middle - state.past_time[used[j]]) / spread;
+    }
+    w.weight[used[k]] = weight;
+  }
+  w.count = count;
+  return w;
+}
+
+}  // namespace
+
+SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engine,
+                       const GeneralizedAlpha& ga, const LaneKernels& kernels, bool conserving)
+    : system_(&system),
+      engine_(std::move(engine)),
+      kernels_(&kernels),
+      ledger_(system, kernels),
+      mass_(mass_blocks(system)) {
+  trial_.context.ga = ga;
+  trial_.context.conserving = conserving;
+  size_blocks(system.initial_state(), trial_);
+  trial_.lambda.resize(system.rows());
+  trial_.lambda_centre.resize(system.rows());
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    const InteractionGroup& group = system.group(ref.group);
+    if (group.history_size(ref.item) > 0)
+      (group.lazy_history(ref.item) ? lazy_ : eager_).push_back(i);
+  }
+}
+
+void SingleStep::predict(const State& state, const Predictor& predictor) {
+  const StepContext& c = trial_.context;
+  const PredictWeights weights = predictor.degree < 0
+                                     ? PredictWeights{}
+                                     : extrapolation(state, c.t_n + 0.5 * c.dt, predictor.degree);
+  kernels_->predict(state.blocks.data(), mass_.data(), trial_.blocks.data(),
+                    static_cast<int>(state.blocks.size()), c.dt, &weights);
+  std::copy(state.lambda.begin(), state.lambda.end(), trial_.lambda.begin());
+  if (predictor.remember) predicted_ = trial_.blocks;
+}
+
+NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
+                              Predictor predictor) {
+  const Clock::time_point t0 = Clock::now();
+  trial_.context.t_n = state.t;
+  trial_.context.dt = dt;
+  predict(state, predictor);
+  const Clock::time_point t1 = Clock::now();
+  NewtonOptions scaled = options;
+  scaled.energy_scale = state.ledger.energy_scale;
+  NewtonReport report = solve_newton(*system_, state, trial_, *engine_, scaled);
+  const Clock::time_point t2 = Clock::now();
+  seconds_[0] += seconds(t0, t1);
+  seconds_[1] += seconds(t1, t2);
+  state.ledger.iterations += report.iterations;
+  if (!report.converged) return report;
+  if (report.rotation > kNoMirrorBelow && mirrored(state, report.worst)) {
+    report.converged = false;
+    report.reason = "reached the mirror image of a joint";
+    return report;
+  }
+  if (predictor.remember) estimate_error();
+
+  ledger_.before_commit(state, trial_);
+  commit_histories(state, report.rotation);
+  std::copy(trial_.lambda.begin(), trial_.lambda.end(), state.lambda.begin());
+  const GeneralizedAlpha& ga = trial_.context.ga;
+  TreeView method;
+  method.dt = dt;
+  method.beta = ga.beta;
+  method.gamma = ga.gamma;
+  method.c = ga.c;
+  method.c_A = ga.c_A;
+  kernels_->commit(state.blocks.data(), mass_.data(), trial_.blocks.data(),
+                   static_cast<int>(state.blocks.size()), &method, state.past_next);
+  state.past_time[state.past_next] = state.t + 0.5 * dt;
+  state.past_next = (state.past_next + 1) % kPast;
+  state.past_count = std::min(kPast, state.past_count + 1);
+  state.t += dt;
+  state.dt_last = dt;
+  state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);
+  ledger_.after_commit(state, trial_);
+  seconds_[2] += seconds(t2, Clock::now());
+  return report;
+}
+
+bool SingleStep::mirrored(const State& state, std::string& name) const {
+  for (const InteractionRef& ref : system_->interactions()) {
+    if (ref.rows == 0) continue;
+    const BodyStep a = body_step(*system_, state, trial_, ref.a);
+    const BodyStep b = body_step(*system_, state, trial_, ref.b);
+    const PairStep step{a, b, trial_.context, trial_.lambda.data() + ref.first_row,
+                        state.history.data() + ref.first_history};
+    if (system_->group(ref.group).acceptable(ref.item, step)) continue;
+    name = format("{} '{}'", system_->group(ref.group).kind(), system_->name(ref));
+    return true;
+  }
+  return false;
+}
+
+void SingleStep::commit_histories(State& state, double rotation) {
+  const auto commit = [&](int interaction) {
+    const InteractionRef& ref = system_->interactions()[interaction];
+    const BodyStep a = body_step(*system_, state, trial_, ref.a);
+    const BodyStep b = body_step(*system_, state, trial_, ref.b);
+    double* history = state.history.data() + ref.first_history;
+    const PairStep step{a, b, trial_.context, trial_.lambda.data() + ref.first_row, history};
+    system_->group(ref.group).commit(ref.item, step, history);
+  };
+  for (int i : eager_) commit(i);
+  if (lazy_.empty()) return;
+  // Two bodies may turn against each other; what they turned before this step was below the limit.
+  state.turned += 2.0 * rotation;
+  if (state.turned <= kCountTurnsAfter) return;
+  for (int i : lazy_) commit(i);
+  state.turned = 0.0;
+}
+
+void SingleStep::estimate_error() {
+  double most = 0.0;
+  const double per_length = 1.0 / system_->length_scale();
+  for (int s = 0; s < system_->tree().slots; ++s) {
+    if (system_->tree().body_of_slot[s] < 0) continue;
+    const TrialBlock& t = trial_.blocks[s / kLanes];
+    const TrialBlock& p = predicted_[s / kLanes];
+    const int l = s % kLanes;
+    double moved = 0.0, turned = 0.0, angle = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      moved = std::hypot(moved, t.u[i][l] - p.u[i][l]);
+      turned = std::hypot(turned, t.theta[i][l] - p.theta[i][l]);
+      angle = std::hypot(angle, t.theta[i][l]);
+    }
+    most = std::max({most, per_length * moved, turned + angle * angle * angle});
+  }
+  error_ = most / 12.0;
+}
+
+std::vector<std::pair<std::string, double>> SingleStep::phases() const {
+  return {{"predictor", seconds_[0]}, {"newton", seconds_[1]}, {"acceptance", seconds_[2]}};
+}
+
+}  // namespace polhode

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/solve/newton_system.hpp>
+#include <polhode/solve/tree_loops.hpp>
+
+namespace polhode {
+
+/// Newton iterations by elimination along the tree: the same equations and iterates as the sparse
+/// engine with the momentum form, in two sweeps over the bodies.
+/// Derivation: docs/theory/elimination_along_the_tree.md.
+class TreeEngine final : public NewtonEngine {
+ public:
+  /// @param isa  See lane_kernels().
+  explicit TreeEngine(const System& system, const std::string& isa = "automatic");
+
+  [[nodiscard]] std::string name() const override { return "tree"; }
+  void begin_step(const State& state, Trial& trial) override;
+  Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
+  [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
+  void end_step(const State& state, Trial& trial) override;
+
+  [[nodiscard]] const char* instruction_set() const { return kernels_->name; }
+  /// Multiplications and additions of one iteration, to choose between solvers.
+  [[nodiscard]] double flops() const { return plan_.flops; }
+  [[nodiscard]] const TreeLoopPlan& plan() const { return plan_; }
+  /// Body with the largest increment of the last iteration.
+  [[nodiscard]] int worst_body() const override;
+  /// Bytes of memory the engine holds.
+  [[nodiscard]] std::size_t memory() const;
+
+ private:
+  void lay_out();
+  void fill_joint_constants();
+  void set_step(const State& state, Trial& trial);
+  void evaluate_extras(const State& state, const Trial& trial);
+  void add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
+  void move_multipliers(Trial& trial, double damping);
+  template <class Move>
+  void for_each_tree_joint(Move&& move);
+
+  const System* system_;
+  const LaneKernels* kernels_;
+  TreeLoopPlan plan_;
+  InteractionSweep sweep_;        ///< Over what the tree does not hold.
+  std::vector<BodyStep> steps_;   ///< By body, the ground last; only where needed.
+  std::vector<int> touched_;      ///< Bodies of extras.
+  std::vector<int> extra_index_;  ///< By interaction: index into plan_.extras.
+  TreeView view_;
+
+  // Storage behind the view.
+  std::vector<int> slot_in_order_, parent_, gather_, shape_, y_row_, joint_;
+  std::vector<unsigned char> has_children_, first_child_;
+  std::vector<MassBlock> mass_;
+  struct alignas(64) LaneData {
+    double x[8];
+  };
+  std::vector<LaneData> joint_data_, Y_, pair_, kept_, S_, nu_, y_, U_;
+  std::vector<int> pivots_;
+  std::vector<EliminatedBody> body_;
+  std::vector<ExtraRows> extra_rows_;
+  std::vector<EdgeRows> edge_rows_;
+};
+
+/// Mass properties by slot, for the kernels that need nothing else.
+[[nodiscard]] std::vector<MassBlock> mass_blocks(const System& system);
+
+}  // namespace polhode

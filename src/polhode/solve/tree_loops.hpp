@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include <polhode/assembly/system.hpp>
+#include <polhode/solve/lanes/tree_data.hpp>
+
+namespace polhode {
+
+/// An interaction that the tree does not hold: loop joint, spring, load.
+struct TreeExtra {
+  int interaction = -1;
+  int slot_a = -1, slot_b = -1;  ///< −1: the ground.
+  int rows = 0;
+  int edge = -1;  ///< Its bodies are parent and child: index of the edge.
+  bool edge_child_is_b = true;
+  int loop = -1;                 ///< Index of its loop, if it needs one.
+  int pair_a = -1, pair_b = -1;  ///< Where its loop's columns and rows stand.
+  /// Rows of a that depend on b's motion, and the other way, carried as further unknowns of the
+  /// loop: components [coupled_from, 6); 6: none.
+  int coupled_from = 6;
+};
+
+/// Symbolic part of elimination along the tree with loops: what is carried where, in which order
+/// loops are eliminated, which blocks between loops fill in.
+/// docs/theory/elimination_along_the_tree.md
+struct TreeLoopPlan {
+  std::vector<TreeExtra> extras;
+  std::vector<int> extra_of_slot;  ///< Index of a slot's extra rows, −1 none.
+  std::vector<int> edge_of_slot;   ///< Index of the edge to the parent, −1 none.
+  int extra_count = 0, edge_count = 0;
+
+  std::vector<TreeLoop> loops;
+  std::vector<LaterLoop> later;
+  std::vector<int> product;
+  std::vector<int> ground_loops;
+  std::vector<int> first_open;
+  std::vector<LoopAtBody> open;
+  std::vector<int> first_update;
+  std::vector<LoopUpdate> update;
+  std::vector<int> first_common, common;
+  int pair_rows = 0, kept_rows = 0, S_size = 0, nu_size = 0, U_rows = 0;  ///< Rows of 8; doubles.
+  int most_open = 0;   ///< Most loops open at one body.
+  double flops = 0.0;  ///< Multiplications and additions of one elimination.
+};
+
+[[nodiscard]] TreeLoopPlan plan_tree_loops(const System& system);
+
+}  // namespace polhode
