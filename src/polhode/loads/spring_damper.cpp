@@ -94,6 +94,7 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
 
   t.wrench_b << F, s.z_b.at_alpha.cross(F);
   t.wrench_a << -F, -s.z_a.at_alpha.cross(F);
+  // Force and arm: @eq{ga-wrench-r-tangent} @eq{ga-moment-tangent}
   const Mat3x12 D_m_b = hat(s.z_b.at_alpha) * D_F, D_m_a = -hat(s.z_a.at_alpha) * D_F;
   t.D_ba << D_F.leftCols<6>(), D_m_b.leftCols<6>();
   t.D_bb << D_F.rightCols<6>(), D_m_b.rightCols<6>();
