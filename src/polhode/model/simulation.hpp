@@ -21,26 +21,27 @@ enum class RunEnd { finished, not_converged, interrupted, limit };
 
 /// How a joint stands at the state of a simulation.
 struct JointReport {
-  std::vector<double> coordinates;  ///< Free coordinates, user's order a→b, turns counted [rad or m].
-  std::vector<double> rates;        ///< Their rates.
-  Vec3 force = Vec3::Zero();        ///< That a exerts on b, world axes [N].
-  Vec3 moment = Vec3::Zero();       ///< At the joint's point on b [N m].
-  double residual = 0.0;            ///< Largest |g| of its rows [m or -].
+  std::vector<double>
+      coordinates;             ///< Free coordinates, user's order a→b, turns counted [rad or m].
+  std::vector<double> rates;   ///< Their rates.
+  Vec3 force = Vec3::Zero();   ///< That a exerts on b, world axes [N].
+  Vec3 moment = Vec3::Zero();  ///< At the joint's point on b [N m].
+  double residual = 0.0;       ///< Largest |g| of its rows [m or -].
 };
 
 /// The figures a run ends with; `run --json` prints them under these names.
 struct RunSummary {
   RunEnd end = RunEnd::finished;
-  std::string message;              ///< For a run that did not finish: what happened and what to try.
+  std::string message;  ///< For a run that did not finish: what happened and what to try.
   double t = 0.0;
   std::int64_t steps = 0, rejected_steps = 0, newton_iterations = 0;
   double energy_drift = 0.0, linear_momentum_drift = 0.0, angular_momentum_drift = 0.0;
   double constraint_residual_max = 0.0, velocity_constraint_residual_max = 0.0;
   double wall_time_s = 0.0, cpu_time_s = 0.0;
-  std::vector<std::pair<std::string, double>> phases;   ///< Name, seconds.
+  std::vector<std::pair<std::string, double>> phases;  ///< Name, seconds.
   std::string result_hash, solver, instruction_set, version;
   int order = 2;
-  std::string narration;            ///< What was chosen and why, a few lines.
+  std::string narration;  ///< What was chosen and why, a few lines.
 };
 
 /// A compiled model with its state and method: what steps, runs and is looked at.
@@ -74,8 +75,11 @@ class Simulation {
   // What stands at the present state; bodies and joints by index in the Model. Motions of model
   // bodies are of their centre of mass; fixed bodies stand still.
   [[nodiscard]] BodyMotion body(int body) const;
-  /// Position, velocity and acceleration of a point of a body, Z from the centre of mass, body axes.
-  struct PointMotion { Vec3 position, velocity, acceleration; };
+  /// Position, velocity and acceleration of a point of a body, Z from the centre of mass, body
+  /// axes.
+  struct PointMotion {
+    Vec3 position, velocity, acceleration;
+  };
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
   [[nodiscard]] Balance balance() const;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/model/method.hpp>
+#include <polhode/solve/sparse_engine.hpp>
+#include <polhode/solve/tree_engine.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Newton tolerances; the higher orders resolve smaller errors.
+constexpr double kTolerance = 1e-5, kToleranceHighOrder = 1e-7;
+/// Error of automatic steps if the user gives none.
+constexpr double kDefaultError = 1e-6;
+/// Below this many loops open at one body the tree is ahead whatever the rest.
+constexpr int kFewOpenLoops = 6;
+/// The tree does about this many times more operations a second than the block LU.
+constexpr double kTreeAdvantage = 2.5;
+
+JacobianPolicy jacobian_policy(const std::string& word) {
+  if (word == "automatic") return JacobianPolicy::automatic;
+  if (word == "every_iteration") return JacobianPolicy::every_iteration;
+  if (word == "every_step") return JacobianPolicy::every_step;
+  if (word == "never") return JacobianPolicy::never;
+  throw InputError("analysis.jacobian", format("'{}' is not known", word),
+                   "Use one of: automatic, every_iteration, every_step, never");
+}
+
+/// Order of accuracy, with what speaks against it.
+int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
+  const bool composable =
+      a.rho_inf == 1.0 && system.conservative() && a.momentum_rate == "momentum";
+  if (!a.order) {
+    if (!a.tolerance || a.step) return 2;
+    const int order = composable ? 6 : 2;
+    narration += format("The tolerance of {:g} chose order {} with automatic steps: {}.\n",
+                        *a.tolerance, order,
+                        composable ? "the model is conservative"
+                                   : "higher orders need a conservative model and rho_inf = 1");
+    return order;
+  }
+  const int order = *a.order;
+  if (order == 2) return order;
+  const auto refuse = [&](const std::string& why, const std::string& mend) {
+    throw InputError("analysis.order", format("is {}, but {}", order, why), mend);
+  };
+  if (order != 4 && order != 6 && order != 8) refuse("only 2, 4, 6 and 8 exist", "Use one of them");
+  if (a.rho_inf != 1.0)
+    refuse(format("rho_inf is {:g}: stages that run backwards in time would feed in what the "
+                  "others damp",
+                  a.rho_inf),
+           "Set rho_inf: 1, or order: 2");
+  if (!system.conservative())
+    refuse(
+        "the model has dampers or loads that depend on time: stages that run backwards in time "
+        "would feed energy in",
+        "Use order: 2 for this model");
+  if (a.momentum_rate != "momentum")
+    refuse("only the momentum form of the rate is symmetric in time",
+           "Set momentum_rate: momentum, or order: 2");
+  if (order == 4 && !a.step)
+    refuse("automatic steps exist for orders 2, 6 and 8", "Give a step, or use order: 6");
+  return order;
+}
+
+std::unique_ptr<NewtonEngine> choose_engine(const System& system, const AnalysisSpec& a,
+                                            MomentumRate rate, JacobianPolicy policy,
+                                            std::string& narration) {
+  const bool tree_fits = rate == MomentumRate::momentum && policy != JacobianPolicy::every_step &&
+                         policy != JacobianPolicy::never;
+  if (a.solver == "tree" && !tree_fits)
+    throw InputError("analysis.solver",
+                     "'tree' has the momentum form of the rate and factors in every iteration only",
+                     "Use solver: block_lu with this momentum_rate or jacobian");
+  if (a.solver != "automatic" && a.solver != "tree")
+    return std::make_unique<SparseEngine>(system, a.solver, rate);
+  if (!tree_fits) {
+    narration += "Solver: block LU, as the tree does not have this momentum_rate or jacobian.\n";
+    return std::make_unique<SparseEngine>(system, "block_lu", rate);
+  }
+  auto tree = std::make_unique<TreeEngine>(system, a.isa);
+  if (a.solver == "tree" || tree->plan().most_open <= kFewOpenLoops) return tree;
+  auto sparse = std::make_unique<SparseEngine>(system, "block_lu", rate);
+  if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
+  narration +=
+      format("Solver: block LU, as up to {} loops are open at one body.\n", tree->plan().most_open);
+  return sparse;
+}
+
+}  // namespace
+
+Method choose_method(const System& system, const AnalysisSpec& a) {
+  Method m;
+  m.ga = GeneralizedAlpha::from_spectral_radius(a.rho_inf);
+  m.kernels = &lane_kernels(a.isa);
+  const JacobianPolicy policy = jacobian_policy(a.jacobian);
+  StepControl& c = m.control;
+  c.order = choose_order(system, a, m.narration);
+  c.step = a.step;
+  c.tolerance = a.tolerance.value_or(kDefaultError);
+  c.horizon = a.duration;
+  c.min_step = a.min_step.value_or(0.0);
+  c.max_step = a.max_step.value_or(0.0);
+  c.conserving = a.conserving;
+  c.newton.tolerance = a.newton_tolerance > 0.0 ? a.newton_tolerance
+                       : c.order > 4            ? kToleranceHighOrder
+                                                : kTolerance;
+  c.newton.max_iterations = a.max_iterations;
+  c.newton.jacobian = policy;
+  c.newton.line_search = a.line_search;
+  c.newton.max_rotation = a.max_step_rotation;
+  m.engine = choose_engine(system, a, momentum_rate(a.momentum_rate), policy, m.narration);
+  return m;
+}
+
+}  // namespace polhode

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+#include <polhode/assembly/state_archive.hpp>
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/body/point_motion.hpp>
+#include <polhode/model/build_system.hpp>
+#include <polhode/model/method.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+
+namespace {
+
+double wall_clock() {
+  using namespace std::chrono;
+  return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+double cpu_clock() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Above this many bodies the start does not solve for multipliers that the method does not need.
+constexpr int kSmallSystem = 2000;
+/// How far assembling the start may move a body that was said to be in place, and one that was not.
+constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
+/// Two times closer than this part of the distance between outputs are the same.
+constexpr double kSameTime = 1e-9;
+
+}  // namespace
+
+struct Simulation::Impl {
+  Model model;
+  SystemMap map;
+  System system;
+  Method method;
+  std::unique_ptr<Stepper> stepper;
+  State state;
+  StartReport start_report;
+  RunSummary figures;  ///< Times, end and message; the rest is in the state.
+  std::string narration, engine_name;
+  double start_seconds = 0.0, output_seconds = 0.0;
+  // What stands at t_n is solved for once per state.
+  std::unique_ptr<InstantSolver> instant_solver;
+  InstantSolution instant;
+  std::int64_t instant_step = -1;
+
+  explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
+    method = choose_method(system, model.analysis);
+    narration = method.narration;
+    engine_name = method.engine->name();
+    stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
+                                        *method.kernels);
+  }
+
+  void start_consistently() {
+    const double t0 = wall_clock();
+    state = system.initial_state();
+    const bool small = system.body_count() <= kSmallSystem;
+    const AnalysisSpec& a = model.analysis;
+    StartOptions options;
+    options.multipliers = small;
+    options.smooth_multipliers =
+        a.smooth_multipliers && small && a.step && method.control.order == 2;
+    start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
+    refuse_bad_start();
+    stepper->begin(state);
+    state.ledger.constraint_max = 0.0;
+    start_seconds = wall_clock() - t0;
+  }
+
+  void refuse_bad_start() const {
+    const StartReport& r = start_report;
+    if (!r.assembled) {
+      std::string names;
+      for (const std::string& n : r.unsatisfied) names += (names.empty() ? "" : ", ") + n;
+      throw InputError("the start",
+                       format("cannot be assembled: {} contradict one another{}",
+                              names.empty() ? "the joints" : names,
+                              format(" (largest residual {:.2g})", r.position_residual)),
+                       "Check positions and axes of these joints; 'polhode check' lists residuals");
+    }
+    bool to_assemble = false;
+    for (const JointSpec& j : model.joints) to_assemble = to_assemble || j.assembled_start;
+    const double given = model.analysis.assembly_tolerance;
+    const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
+    if (r.largest_move > allowed)
+      throw InputError("the start",
+                       format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
+                              "radians), more than analysis.assembly_tolerance = {:.2g}",
+                              r.moved_body, r.largest_move, allowed),
+                       "Give the body's position closer to where its joints want it, or raise "
+                       "assembly_tolerance");
+  }
+
+  const InstantSolution& at_instant() {
+    if (instant_step == state.ledger.steps) return instant;
+    if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
+    State copy = state;
+    const VelocityReport v = instant_solver->project_velocities(copy);
+    figures.velocity_constraint_residual_max =
+        std::max(figures.velocity_constraint_residual_max, v.residual_before);
+    instant = instant_solver->accelerations(copy);
+    instant_step = state.ledger.steps;
+    return instant;
+  }
+};
+
+Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
+  impl_->start_consistently();
+}
+
+Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(std::move(model))) {
+  if (state.blocks.size() != impl_->system.initial_state().blocks.size() ||
+      state.lambda.size() != impl_->system.initial_state().lambda.size())
+    throw InputError("restart", "the state belongs to another model",
+                     "Restart with the model it was saved from");
+  impl_->state = std::move(state);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+const Model& Simulation::model() const { return impl_->model; }
+const System& Simulation::system() const { return impl_->system; }
+const State& Simulation::state() const { return impl_->state; }
+const StartReport& Simulation::start_report() const { return impl_->start_report; }
+
+StepReport Simulation::step(double t_limit) {
+  const double wall = wall_clock(), cpu = cpu_clock();
+  StepReport report = impl_->stepper->advance(impl_->state, t_limit);
+  impl_->figures.wall_time_s += wall_clock() - wall;
+  impl_->figures.cpu_time_s += cpu_clock() - cpu;
+  return report;
+}
+
+RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
+                           const std::function<void(Simulation&)>& on_step,
+                           const std::atomic<bool>* stop) {
+  Impl& s = *impl_;
+  const double end = s.model.analysis.duration;
+  const std::optional<double> every = s.model.output.every;
+  const bool automatic = !s.model.analysis.step;
+  const double wall = wall_clock(), cpu = cpu_clock();
+  const auto look = [&] {
+    const double t0 = wall_clock();
+    s.at_instant();  // the velocity residual is part of the figures
+    if (observe) observe(*this);
+    s.output_seconds += wall_clock() - t0;
+  };
+  const auto output_after = [&](double t) {
+    return every ? (std::floor(t / *every + kSameTime) + 1.0) * *every : end;
+  };
+  if (s.state.ledger.steps == 0) look();
+  s.figures.end = RunEnd::finished;
+  double next = output_after(s.state.t);
+  while (s.state.t < end * (1.0 - kSameTime)) {
+    if (stop && stop->load()) {
+      s.figures.end = RunEnd::interrupted;
+      break;
+    }
+    const StepReport report = s.stepper->advance(s.state, automatic ? std::min(next, end) : end);
+    if (!report.accepted) {
+      s.figures.end = RunEnd::not_converged;
+      s.figures.message = report.message;
+      break;
+    }
+    if (on_step) on_step(*this);
+    const bool finished = s.state.t >= end * (1.0 - kSameTime);
+    if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
+      look();
+      next = output_after(s.state.t);
+    }
+  }
+  s.figures.wall_time_s += wall_clock() - wall;
+  s.figures.cpu_time_s += cpu_clock() - cpu;
+  return summary();
+}
+
+RunSummary Simulation::summary() const {
+  const Impl& s = *impl_;
+  const Ledger& l = s.state.ledger;
+  const auto relative = [](double drift, double scale) {
+    return scale > 0.0 ? drift / scale : drift;
+  };
+  RunSummary r = s.figures;
+  r.t = s.state.t;
+  r.steps = l.steps;
+  r.rejected_steps = l.rejected;
+  r.newton_iterations = l.iterations;
+  r.energy_drift = relative(l.energy_drift, l.energy_scale);
+  r.linear_momentum_drift = relative(l.p_drift, l.p_scale);
+  r.angular_momentum_drift = relative(l.l_drift, l.l_scale);
+  r.constraint_residual_max = l.constraint_max;
+  r.phases = {{"start", s.start_seconds}};
+  for (const auto& phase : s.stepper->phases()) r.phases.push_back(phase);
+  r.phases.emplace_back("output", s.output_seconds);
+  r.result_hash = state_hash();
+  r.solver = s.engine_name;
+  r.instruction_set = s.method.kernels->name;
+  r.version = POLHODE_VERSION;
+  r.order = s.method.control.order;
+  r.narration = s.narration;
+  return r;
+}
+
+BodyMotion Simulation::body(int body) const {
+  const int index = impl_->map.body[body];
+  if (index != kGround) return impl_->system.motion(impl_->state, index);
+  const BodySpec& fixed = impl_->model.bodies[body];
+  BodyMotion m;
+  m.r = fixed.position;
+  m.q = fixed.orientation;
+  return m;
+}
+
+Simulation::PointMotion Simulation::point(int body, const Vec3& Z) const {
+  const BodyMotion m = this->body(body);
+  const int index = impl_->map.body[body];
+  const Pose pose{m.r, m.Lambda()};
+  if (index == kGround) return {point_position(pose, Z), Vec3::Zero(), Vec3::Zero()};
+  const InstantSolution& now = impl_->at_instant();
+  const Velocities rates{m.v, m.omega()};
+  return {point_position(pose, Z), point_velocity(pose, rates, Z),
+          point_acceleration(pose, rates, {now.r_ddot[index], now.alpha[index]}, Z)};
+}
+
+JointReport Simulation::joint(int joint, bool joint_axes) const {
+  const System& system = impl_->system;
+  const int interaction = impl_->map.joint[joint];
+  const InteractionRef& ref = system.interactions()[interaction];
+  const InstantSolution& now = impl_->at_instant();
+  const BodyStep a = system.instant(impl_->state, ref.a), b = system.instant(impl_->state, ref.b);
+  StepContext context;
+  context.t_n = impl_->state.t;
+  const PairStep step{a, b, context, now.lambda.data() + ref.first_row,
+                      impl_->state.history.data() + ref.first_history};
+  const Joint& item = joint_at(system, interaction);
+  const JointCoordinates free = item.coordinates(step);
+  const Reaction reaction = item.reaction(step, joint_axes);
+  JointReport report;
+  report.coordinates.assign(free.value.begin(), free.value.begin() + free.count);
+  report.rates.assign(free.rate.begin(), free.rate.begin() + free.count);
+  report.force = reaction.force;
+  report.moment = reaction.moment;
+  report.residual =
+      item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
+  return report;
+}
+
+Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
+
+std::string Simulation::state_hash() const {
+  return polhode::state_hash(impl_->system, impl_->state);
+}
+
+}  // namespace polhode
