@@ -85,7 +85,10 @@ void add(Fingerprint& f, const LoadSpec& l) {
   f.number(l.body_fixed);
   f.number(l.vector.has_value());
   if (l.vector)
-    for (const TimeFunctionPtr& component : *l.vector) f.function(*component);
+    for (const TimeFunctionPtr& component : *l.vector) {
+      f.number(component != nullptr);
+      if (component) f.function(*component);
+    }
   f.map(l.parameters);
 }
 

@@ -13,6 +13,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/io/file_error.hpp>
+#include <polhode/model/build_system.hpp>
 
 namespace polhode {
 
@@ -73,13 +74,27 @@ std::vector<std::string> body_header() {
   return header;
 }
 
+/// The free coordinates of a joint: x, y, z are displacements, rx, ry, rz angles.
+std::vector<std::string> coordinate_names(const Simulation& simulation, int joint) {
+  const System& system = simulation.system();
+  const JointSpec& spec = simulation.model().joints[static_cast<std::size_t>(joint)];
+  const auto& interactions = system.interactions();
+  for (std::size_t i = 0; i < interactions.size(); ++i)
+    if (system.group(interactions[i].group).kind() == Joint::kKind &&
+        system.name(interactions[i]) == spec.name)
+      return joint_at(system, static_cast<int>(i)).coordinate_names();
+  return {};
+}
+
 std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
   std::vector<std::string> header{"t [s]"};
   extend(header, vector_header("f", "N"));
   extend(header, vector_header("m", "N m"));
-  const auto count = simulation.joint(joint).coordinates.size();
-  for (std::size_t k = 0; k < count; ++k) header.push_back(format("q{} [rad or m]", k + 1));
-  for (std::size_t k = 0; k < count; ++k) header.push_back(format("rate{} [rad/s or m/s]", k + 1));
+  const std::vector<std::string> names = coordinate_names(simulation, joint);
+  for (const char* quantity : {"", "rate "})
+    for (const std::string& name : names)
+      header.push_back(format("{}{} [{}{}]", quantity, name, name[0] == 'r' ? "rad" : "m",
+                              *quantity == '\0' ? "" : "/s"));
   return header;
 }
 

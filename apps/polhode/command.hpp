@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace polhode::cli {
+
+/// What the program ends with; documented in docs/reference/cli.md.
+enum ExitCode : int {
+  kOk = 0,
+  kInternalError = 1,  ///< A fault of Polhode.
+  kUsage = 2,          ///< The command line is wrong.
+  kModelInvalid = 3,   ///< The model is wrong.
+  kNotConverged = 4,   ///< A step did not converge; the last state was written.
+  kInputOutput = 5,    ///< A file could not be read or written.
+  kCheckFailed = 6,    ///< `check` or `doctor` found something.
+  kLimit = 75,         ///< Stopped at --wall-limit, with a checkpoint.
+  kInterrupted = 130,  ///< Stopped by Ctrl-C, with a checkpoint.
+};
+
+/// Does the work of a command and returns the exit code.
+using Action = std::function<int()>;
+
+/// A command of the program.
+struct Command {
+  const char* name;
+  const char* summary;  ///< One line.
+  Action (*add_options)(CLI::App& command);
+};
+
+/// Every command, in the order of the help text.
+[[nodiscard]] const std::vector<Command>& commands();
+
+struct ModelArguments;
+/// --set PATH=VALUE of the commands that read a model.
+void add_set_option(CLI::App& command, ModelArguments& arguments);
+
+// One file of commands/ each.
+Action add_run(CLI::App& command);
+Action add_check(CLI::App& command);
+Action add_info(CLI::App& command);
+Action add_schema(CLI::App& command);
+Action add_examples(CLI::App& command);
+Action add_doctor(CLI::App& command);
+
+}  // namespace polhode::cli

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <polhode/base/format.hpp>
+#include <polhode/solve/rank_report.hpp>
+#include <polhode/solve/tangent_check.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "run_report.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct Options {
+  ModelArguments model;
+  bool tangents = false, json = false;
+};
+
+/// What deserves a look though the model can be run.
+std::vector<std::string> warnings(const Simulation& simulation, const RankReport& rank) {
+  std::vector<std::string> list;
+  const StartReport& start = simulation.start_report();
+  if (start.largest_move > 1e-6)
+    list.push_back(
+        format("The start is not assembled: |g| is {:.2g}; body '{}' was moved by {:.2g} "
+               "of the mechanism's size. Check the positions of the joints.",
+               start.position_residual, start.moved_body, start.largest_move));
+  if (start.velocity_change > 1e-6)
+    list.push_back(
+        format("The velocities do not fit the joints: |G v| is {:.2g}; they were changed "
+               "by up to {:.2g}.",
+               start.velocity_residual, start.velocity_change));
+  if (rank.redundant > 0) {
+    std::string names;
+    for (const std::string& name : rank.names) names += (names.empty() ? "" : ", ") + name;
+    list.push_back(
+        format("{} of {} constraint rows are redundant; they involve {}. The motion is "
+               "unique, but how the reactions share these rows is not: the smallest "
+               "ones are reported.",
+               rank.redundant, rank.rows, names));
+  }
+  if (rank.mobility == 0 && simulation.system().body_count() > 0)
+    list.emplace_back("The mobility is 0: nothing can move.");
+  return list;
+}
+
+TangentReport tangents_of(const Simulation& simulation) {
+  const AnalysisSpec& analysis = simulation.model().analysis;
+  const double dt = analysis.step.value_or(1e-3 * analysis.duration);
+  return check_tangents(simulation.system(), simulation.state(), dt, analysis.rho_inf,
+                        momentum_rate(analysis.momentum_rate));
+}
+
+int check(const Options& options) {
+  const Simulation simulation(load_model(options.model));
+  const RankReport rank = rank_report(simulation.system(), simulation.state());
+  const std::vector<std::string> notes = warnings(simulation, rank);
+  std::optional<TangentReport> tangents;
+  if (options.tangents) tangents = tangents_of(simulation);
+  const bool failed = tangents && !(tangents->error <= kTangentTolerance);
+  const StartReport& start = simulation.start_report();
+
+  if (options.json) {
+    nlohmann::ordered_json json = {{"valid", true},
+                                   {"bodies", simulation.model().bodies.size()},
+                                   {"moving_bodies", simulation.system().body_count()},
+                                   {"joints", simulation.model().joints.size()},
+                                   {"loads", simulation.model().loads.size()},
+                                   {"constraint_rows", rank.rows},
+                                   {"rank", rank.rank},
+                                   {"redundant_rows", rank.redundant},
+                                   {"redundant", rank.names},
+                                   {"mobility", rank.mobility},
+                                   {"start",
+                                    {{"position_residual", start.position_residual},
+                                     {"largest_move", start.largest_move},
+                                     {"moved_body", start.moved_body},
+                                     {"velocity_residual", start.velocity_residual},
+                                     {"velocity_change", start.velocity_change}}},
+                                   {"warnings", notes}};
+    if (tangents)
+      json["tangents"] = {{"error", tangents->error}, {"row", tangents->row}, {"column", tangents->column}, {"passed", !failed}};
+    print(json.dump(2) + "\n");
+  } else {
+    std::vector<std::vector<std::string>> rows{
+        {"bodies", format("{}", simulation.model().bodies.size()),
+         format("{} of them move", simulation.system().body_count())},
+        {"joints", format("{}", simulation.model().joints.size())},
+        {"loads", format("{}", simulation.model().loads.size())},
+        {"mobility", format("{}", rank.mobility), "independent motions at the start"},
+        {"constraint rows", format("{}", rank.rows),
+         format("rank {}, {} redundant", rank.rank, rank.redundant)},
+        {"start, |g|", format("{:.1e}", start.position_residual),
+         format("assembling moved bodies by up to {:.1e}", start.largest_move)},
+        {"start, |G v|", format("{:.1e}", start.velocity_residual),
+         format("projection changed velocities by up to {:.1e}", start.velocity_change)},
+        {"solver", simulation.summary().solver}};
+    if (tangents)
+      rows.push_back({"tangents", format("{:.1e}", tangents->error),
+                      failed ? "WRONG: " + tangents->text() : "against central differences"});
+    print(table(rows));
+    for (const std::string& note : notes) say("warning: " + note);
+  }
+  return failed ? kCheckFailed : kOk;
+}
+
+}  // namespace
+
+Action add_check(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
+  add_set_option(command, options->model);
+  command.add_flag("--tangents", options->tangents,
+                   "Compare the assembled tangent with central differences");
+  command.add_flag("--json", options->json, "Print the findings as one JSON object");
+  return [options] { return check(*options); };
+}
+
+}  // namespace polhode::cli

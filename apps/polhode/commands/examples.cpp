@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <memory>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/diagnostics.hpp>
+#include <polhode/io/example_models.hpp>
+#include <polhode/io/file_error.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "example_texts.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct Options {
+  std::string name, output;
+  std::vector<std::string> sets;
+};
+
+/// The title in a model's text, or "".
+std::string title_of(const std::string& text) {
+  constexpr std::string_view kKey = "\ntitle:";
+  const std::size_t at = ("\n" + text).find(kKey);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = text.find_first_not_of(" \"'", at + kKey.size() - 1);
+  const std::size_t end = text.find_first_of("\"'\n", begin);
+  return begin == std::string::npos ? "" : text.substr(begin, end - begin);
+}
+
+std::string listing() {
+  std::vector<std::vector<std::string>> examples, generators;
+  for (const ExampleText& example : example_texts())
+    examples.push_back({example.name, title_of(example.text)});
+  for (const ModelGenerator& generator : model_generators()) {
+    std::string values;
+    for (const GeneratorParameter& p : generator.parameters)
+      values += format(" --set {}={}", p.name, p.standard);
+    generators.push_back({generator.name + values, generator.meaning});
+  }
+  std::string text;
+  if (!examples.empty()) text += "Examples:\n" + table(examples) + "\n";
+  return text + "Models of any size:\n" + table(generators) +
+         "\nWrite one with:  polhode examples NAME > model.yaml\n";
+}
+
+std::map<std::string, std::string> values_of(const std::vector<std::string>& sets) {
+  std::map<std::string, std::string> values;
+  for (const std::string& set : sets) {
+    const std::size_t equals = set.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw InputError("--set", format("'{}' is not of the form name=value", set),
+                       "Write for instance --set N=40");
+    values[set.substr(0, equals)] = set.substr(equals + 1);
+  }
+  return values;
+}
+
+std::string text_of(const Options& options) {
+  std::vector<std::string> names;
+  for (const ModelGenerator& generator : model_generators()) {
+    if (generator.name == options.name) return generate_model(generator, values_of(options.sets));
+    names.push_back(generator.name);
+  }
+  for (const ExampleText& example : example_texts()) {
+    if (example.name != options.name) {
+      names.push_back(example.name);
+      continue;
+    }
+    if (!options.sets.empty())
+      throw InputError("--set", format("the example '{}' takes no values", example.name),
+                       "Set them when it is run: polhode run model.yaml --set ...");
+    return example.text;
+  }
+  throw InputError("examples", format("there is no example '{}'", options.name),
+                   format("{}Examples: {}", did_you_mean(options.name, names), name_list(names)));
+}
+
+}  // namespace
+
+Action add_examples(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("NAME", options->name, "Example to write; left out: list them");
+  command.add_option("--set", options->sets, "A value of a generated model, e.g. N=40")
+      ->take_all()
+      ->expected(1)
+      ->type_name("NAME=VALUE");
+  command.add_option("-o,--output", options->output, "File to write; left out: stdout")
+      ->type_name("FILE");
+  return [options] {
+    try {
+      const std::string text = options->name.empty() ? listing() : text_of(*options);
+      if (options->output.empty())
+        print(text);
+      else
+        write_file_atomically(options->output, text);
+      return kOk;
+    } catch (const InputError& error) {  // Arguments are wrong, not a model.
+      say(error.what());
+      return kUsage;
+    }
+  };
+}
+
+}  // namespace polhode::cli

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/body/shapes.hpp>
+#include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "run_report.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+/// Tables of a large model stop after this many lines.
+constexpr std::size_t kMostLines = 40;
+
+struct Options {
+  ModelArguments model;
+  std::string kinds;
+  bool json = false;
+};
+
+/// A kind of joint, load or shape as the listing shows it.
+struct KindLine {
+  std::string name, meaning, more;
+  std::vector<std::string> takes;
+};
+
+std::string with_unit(const Parameter& p) {
+  return p.unit == "-" ? p.name : format("{} [{}]", p.name, p.unit);
+}
+
+std::vector<KindLine> kind_lines(const std::string& kinds) {
+  std::vector<KindLine> lines;
+  if (kinds == "joints")
+    for (const JointKind& kind : joint_kinds()) {
+      KindLine line{kind.name, kind.meaning, "free: " + kind.free, {}};
+      for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
+      lines.push_back(std::move(line));
+    }
+  if (kinds == "loads")
+    for (const LoadKind& kind : load_kinds()) {
+      KindLine line{kind.name, kind.meaning, "", {}};
+      if (!kind.vector.empty()) line.takes.push_back(kind.vector);
+      for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
+      lines.push_back(std::move(line));
+    }
+  if (kinds == "shapes")
+    for (const ShapeKind& kind : shape_kinds()) {
+      KindLine line{kind.name, kind.meaning, "", {}};
+      for (const ShapeSize& size : kind.sizes) line.takes.push_back(size.name);
+      lines.push_back(std::move(line));
+    }
+  return lines;
+}
+
+std::string joined(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& item : list) text += (text.empty() ? "" : ", ") + item;
+  return text;
+}
+
+void print_kinds(const Options& options) {
+  const std::vector<KindLine> lines = kind_lines(options.kinds);
+  if (options.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const KindLine& line : lines)
+      json.push_back({{"name", line.name}, {"meaning", line.meaning}, {"takes", line.takes}});
+    print(json.dump(2) + "\n");
+    return;
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const KindLine& line : lines)
+    rows.push_back({line.name, line.meaning, line.more, joined(line.takes)});
+  print(table(rows));
+}
+
+std::string name_of(const Model& model, int body) {
+  return body == kGround ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
+}
+
+std::string numbers(const Vec3& x) { return format("{:.4g} {:.4g} {:.4g}", x[0], x[1], x[2]); }
+
+/// Adds a line for each item, at most kMostLines of them.
+template <class Items, class Line>
+std::string section(const std::string& heading, const std::vector<std::string>& columns,
+                    const Items& items, Line line) {
+  if (items.empty()) return "";
+  std::vector<std::vector<std::string>> rows{columns};
+  for (std::size_t i = 0; i < items.size() && i < kMostLines; ++i) rows.push_back(line(items[i]));
+  std::string text = format("\n{}: {}\n", heading, items.size()) + table(rows);
+  if (items.size() > kMostLines) text += format("  and {} more\n", items.size() - kMostLines);
+  return text;
+}
+
+std::string describe(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  double mass = 0.0;
+  for (const BodySpec& body : model.bodies) mass += body.fixed ? 0.0 : body.mass;
+  const RunSummary summary = simulation.summary();
+  std::string text =
+      table({{"title", model.title},
+             {"gravity", numbers(model.gravity) + " m/s^2"},
+             {"moving bodies", format("{}", simulation.system().body_count()),
+              format("{:.6g} kg together", mass)},
+             {"constraint rows", format("{}", simulation.system().rows())},
+             {"analysis", model.analysis.type, format("{:.6g} s", model.analysis.duration)},
+             {"solver", summary.solver, summary.instruction_set},
+             {"order", format("{}", summary.order)}},
+            "");
+  if (!summary.narration.empty()) text += "\n" + summary.narration + "\n";
+  text += section("Bodies", {"name", "mass [kg]", "inertia xx yy zz [kg m^2]", "position [m]"},
+                  model.bodies, [](const BodySpec& b) -> std::vector<std::string> {
+                    if (b.fixed) return {b.name, "fixed", "", numbers(b.position)};
+                    return {b.name, format("{:.6g}", b.mass), numbers(b.inertia.diagonal()),
+                            numbers(b.position)};
+                  });
+  text += section("Joints", {"name", "type", "bodies"}, model.joints, [&](const JointSpec& j) {
+    return std::vector<std::string>{j.name, j.type,
+                                    name_of(model, j.a) + " - " + name_of(model, j.b)};
+  });
+  text += section("Loads", {"name", "type", "acts on"}, model.loads, [&](const LoadSpec& l) {
+    std::string on = name_of(model, l.b);
+    if (l.a != kGround) on = name_of(model, l.a) + " - " + on;
+    if (!l.joint.empty()) on = "joint " + l.joint;
+    return std::vector<std::string>{l.name, l.type, on};
+  });
+  return text;
+}
+
+std::string describe_json(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const RunSummary summary = simulation.summary();
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (const BodySpec& b : model.bodies)
+    bodies.push_back({{"name", b.name},
+                      {"fixed", b.fixed},
+                      {"mass", b.mass},
+                      {"position", {b.position[0], b.position[1], b.position[2]}}});
+  nlohmann::ordered_json joints = nlohmann::ordered_json::array();
+  for (const JointSpec& j : model.joints)
+    joints.push_back({{"name", j.name},
+                      {"type", j.type},
+                      {"bodies", {name_of(model, j.a), name_of(model, j.b)}}});
+  nlohmann::ordered_json loads = nlohmann::ordered_json::array();
+  for (const LoadSpec& l : model.loads) loads.push_back({{"name", l.name}, {"type", l.type}});
+  const nlohmann::ordered_json json = {{"title", model.title},
+                                       {"moving_bodies", simulation.system().body_count()},
+                                       {"constraint_rows", simulation.system().rows()},
+                                       {"solver", summary.solver},
+                                       {"instruction_set", summary.instruction_set},
+                                       {"order", summary.order},
+                                       {"bodies", bodies},
+                                       {"joints", joints},
+                                       {"loads", loads}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+Action add_info(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)");
+  add_set_option(command, options->model);
+  command.add_option("--kinds", options->kinds, "List what exists: joints, loads or shapes")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"joints", "loads", "shapes"}));
+  command.add_flag("--json", options->json, "Print it as JSON");
+  return [options] {
+    if (!options->kinds.empty()) {
+      print_kinds(*options);
+      return kOk;
+    }
+    if (options->model.file.empty()) {
+      say("polhode info: names no model. Give a MODEL, or --kinds joints, loads or shapes.");
+      return kUsage;
+    }
+    const Simulation simulation(load_model(options->model));
+    print(options->json ? describe_json(simulation) : describe(simulation));
+    return kOk;
+  };
+}
+
+}  // namespace polhode::cli

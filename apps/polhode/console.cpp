@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "console.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/io/read_model.hpp>
+
+namespace polhode::cli {
+
+Model load_model(const ModelArguments& arguments) {
+  (void)read_file(arguments.file);  // A missing file is a matter of input, not of the model.
+  return read_model(arguments.file, arguments.overrides);
+}
+
+void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw FileError::from_errno("stdout", "cannot be written");
+}
+
+std::string table(const std::vector<std::vector<std::string>>& rows, const std::string& indent) {
+  std::vector<std::size_t> widths;
+  // Letters beyond ASCII take several bytes, and one place.
+  const auto width = [](const std::string& cell) {
+    return static_cast<std::size_t>(
+        std::count_if(cell.begin(), cell.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  };
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (widths.size() <= i) widths.push_back(0);
+      widths[i] = std::max(widths[i], width(row[i]));
+    }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = indent;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string space(widths[i] - width(row[i]), ' ');
+      const bool number = !row[i].empty() && (std::isdigit(static_cast<unsigned char>(row[i][0])) ||
+                                              (row[i][0] == '-' && row[i].size() > 1));
+      line += (i == 0 ? "" : "  ") + (number ? space + row[i] : row[i] + space);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string seconds(double value) {
+  const double size = std::abs(value);
+  if (size == 0.0) return "0 s";
+  if (size < 1e-6) return format("{:.3g} ns", 1e9 * value);
+  if (size < 1e-3) return format("{:.3g} µs", 1e6 * value);
+  if (size < 1.0) return format("{:.3g} ms", 1e3 * value);
+  return value < 1000 ? format("{:.3g} s", value) : format("{:.0f} s", value);
+}
+
+double wall_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Progress::Progress(bool wanted, double duration)
+    : on_(wanted && ::isatty(STDERR_FILENO) == 1), duration_(duration), start_(wall_clock()) {}
+
+void Progress::show(const Simulation& simulation) {
+  if (!on_) return;
+  const double now = wall_clock();
+  if (first_t_ < 0.0) first_t_ = simulation.time();
+  if (now < next_) return;
+  next_ = now + 0.2;
+  const double t = simulation.time();
+  const double done = t - first_t_;
+  std::string line =
+      format("{:5.1f} %  t = {:.4g} s of {:.4g} s", 100.0 * t / duration_, t, duration_);
+  const Ledger& ledger = simulation.state().ledger;
+  if (ledger.steps > 0)
+    line += format("  step {}  {:.1f} iterations", seconds(simulation.state().dt_last),
+                   static_cast<double>(ledger.iterations) / static_cast<double>(ledger.steps));
+  if (done > 0.0 && now > start_ + 1.0)
+    line += format("  {} left", seconds((now - start_) * (duration_ - t) / done));
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+  visible_ = true;
+}
+
+void Progress::clear() {
+  if (visible_) std::fprintf(stderr, "\r\033[K");
+  visible_ = false;
+}
+
+}  // namespace polhode::cli

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/diagnostics.hpp>
+#include <polhode/io/file_error.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+
+namespace polhode::cli {
+namespace {
+
+/// Words a user may have meant: commands, or the options of a command.
+std::string suggestion(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> options;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  return did_you_mean(word, options);
+}
+
+int usage(const std::string& program, const std::string& what) {
+  say(format("{}: {} Run '{} --help' to see what it takes.", program, what, program));
+  return kUsage;
+}
+
+int unknown_command(const std::string& word) {
+  std::vector<std::string> names;
+  for (const Command& command : commands()) names.emplace_back(command.name);
+  return usage("polhode", format("there is no command '{}'. {}Commands: {}.", word,
+                                 did_you_mean(word, names), name_list(names)));
+}
+
+/// What CLI11 says, as a sentence.
+std::string sentence(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+  return text + ".";
+}
+
+int main_program(int argc, char** argv) {
+  CLI::App app("Polhode: dynamics of mechanisms, exact where physics is exact.", "polhode");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "polhode " POLHODE_VERSION);
+  app.footer("Start with:  polhode examples n_four_bar > model.yaml && polhode run model.yaml");
+  std::vector<std::pair<CLI::App*, Action>> actions;
+  for (const Command& command : commands()) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    actions.emplace_back(sub, command.add_options(*sub));
+  }
+
+  const std::string first = argc > 1 ? argv[1] : "-";
+  const auto known = [&](const Command& c) { return first == c.name; };
+  if (first.substr(0, 1) != "-" && std::none_of(commands().begin(), commands().end(), known))
+    return unknown_command(first);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& request) {
+    return app.exit(request);
+  } catch (const CLI::CallForVersion& request) {
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    for (const auto& [sub, action] : actions) {
+      if (!sub->parsed()) continue;
+      const std::string program = "polhode " + sub->get_name();
+      const std::vector<std::string> rest = app.remaining(true);
+      if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())
+        return usage(program, format("does not take '{}'. {}", rest[0], suggestion(*sub, rest[0])));
+      return usage(program, sentence(error.what()));
+    }
+    return usage("polhode", sentence(error.what()));
+  }
+  for (const auto& [sub, action] : actions)
+    if (sub->parsed()) return action();
+  return kUsage;
+}
+
+}  // namespace
+}  // namespace polhode::cli
+
+int main(int argc, char** argv) {
+  using namespace polhode;
+  try {
+    return cli::main_program(argc, argv);
+  } catch (const ModelErrors& errors) {
+    cli::say(errors.text());
+    return cli::kModelInvalid;
+  } catch (const InputError& error) {
+    cli::say(error.what());
+    return cli::kModelInvalid;
+  } catch (const FileError& error) {
+    cli::say(error.what());
+    return cli::kInputOutput;
+  } catch (const std::bad_alloc&) {
+    cli::say("polhode: the memory is exhausted. Run a smaller model, or on a larger machine.");
+    return cli::kInternalError;
+  } catch (const std::exception& error) {
+    cli::say(
+        format("polhode: internal error: {}. This is a fault of Polhode; report it with the "
+               "model.",
+               error.what()));
+    return cli::kInternalError;
+  }
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_report.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include <polhode/base/format.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+
+namespace polhode::cli {
+
+std::string end_name(int exit_code) {
+  switch (exit_code) {
+    case kOk:
+      return "finished";
+    case kNotConverged:
+      return "not_converged";
+    case kLimit:
+      return "limit";
+    default:
+      return "interrupted";
+  }
+}
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string summary_json(const RunSummary& s, int exit_code, const std::string& folder,
+                         std::size_t frames) {
+  nlohmann::ordered_json phases = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : s.phases) phases[name] = value;
+  nlohmann::ordered_json json = {
+      {"end", end_name(exit_code)},
+      {"exit_code", exit_code},
+      {"message", s.message},
+      {"t", s.t},
+      {"steps", s.steps},
+      {"rejected_steps", s.rejected_steps},
+      {"newton_iterations", s.newton_iterations},
+      {"energy_drift", s.energy_drift},
+      {"linear_momentum_drift", s.linear_momentum_drift},
+      {"angular_momentum_drift", s.angular_momentum_drift},
+      {"constraint_residual_max", s.constraint_residual_max},
+      {"velocity_constraint_residual_max", s.velocity_constraint_residual_max},
+      {"wall_time_s", s.wall_time_s},
+      {"cpu_time_s", s.cpu_time_s},
+      {"phases", phases},
+      {"result_hash", s.result_hash},
+      {"order", s.order},
+      {"solver", s.solver},
+      {"instruction_set", s.instruction_set},
+      {"version", s.version.empty() ? POLHODE_VERSION : s.version},
+      {"narration", s.narration},
+      {"results", folder},
+      {"frames", frames},
+  };
+  return json.dump(2);
+}
+
+std::string summary_table(const RunSummary& s) {
+  const auto small = [](double x) { return format("{:.1e}", x); };
+  const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
+  std::vector<std::vector<std::string>> rows{
+      {"time reached", format("{:.6g} s", s.t)},
+      {"steps", format("{}", s.steps), format("{} rejected, order {}", s.rejected_steps, s.order)},
+      {"Newton iterations", format("{}", s.newton_iterations),
+       format("{:.2f} a step", static_cast<double>(s.newton_iterations) / steps)},
+      {"energy drift", small(s.energy_drift), "of the largest energy"},
+      {"linear momentum drift", small(s.linear_momentum_drift), "of the largest momentum"},
+      {"angular momentum drift", small(s.angular_momentum_drift), "of the largest"},
+      {"constraint residual", small(s.constraint_residual_max), "largest of the run"},
+      {"velocity constraint residual", small(s.velocity_constraint_residual_max),
+       "largest of the run"},
+      {"time", seconds(s.wall_time_s),
+       format("{} of one processor, {} a step", seconds(s.cpu_time_s),
+              seconds(s.cpu_time_s / steps))},
+  };
+  for (const auto& [name, value] : s.phases) rows.push_back({"  " + name, seconds(value)});
+  rows.push_back({"solver", s.solver, s.instruction_set});
+  rows.push_back({"result hash", s.result_hash.substr(0, 16)});
+  return table(rows);
+}
+
+}  // namespace polhode::cli

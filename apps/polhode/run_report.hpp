@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/model/simulation.hpp>
+
+namespace polhode::cli {
+
+/// "finished", "not_converged", "interrupted" or "limit", by the exit code.
+[[nodiscard]] std::string end_name(int exit_code);
+
+/// The figures of a run as one JSON object.
+[[nodiscard]] std::string summary_json(const RunSummary& summary, int exit_code,
+                                       const std::string& folder, std::size_t frames);
+
+/// The ledger for people: energy, momenta, constraints, iterations, time by phase.
+[[nodiscard]] std::string summary_table(const RunSummary& summary);
+
+/// "1 body", "3 bodies".
+[[nodiscard]] std::string counted(std::size_t count, const std::string& one,
+                                  const std::string& many);
+
+}  // namespace polhode::cli

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Everything that is tested, in the order of what fails fastest. This is what CI runs.
+#
+#   scripts/test.sh            all of it
+#   scripts/test.sh --quick    release build and unit tests only
+#
+# Ends with a line "N passed, N failed" and exits 1 if something failed.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+quick=no
+[ "${1:-}" = --quick ] && quick=yes
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+jobs=$(nproc)
+passed=0
+failed=0
+failures=()
+logs=build/test-logs
+mkdir -p "$logs"
+
+heading() { printf '\n== %s (%s min)\n' "$1" "$((SECONDS / 60))"; }
+
+# One test of its own: a command that succeeds or fails.
+check() {
+  local name=$1
+  shift
+  heading "$name"
+  if "$@"; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    failures+=("$name")
+    return 1
+  fi
+}
+
+# The tests of a build folder, counted one by one.
+tests() {
+  local name=$1 folder=$2
+  shift 2
+  local log="$logs/${name// /-}.log" summary bad total
+  heading "$name"
+  ctest --test-dir "$folder" --output-on-failure --no-tests=error -j "$jobs" "$@" >"$log" 2>&1
+  local result=$?
+  summary=$(grep -E 'tests passed, [0-9]+ tests? failed out of [0-9]+' "$log" | tail -1)
+  bad=$(sed -E 's/.*passed, ([0-9]+) tests? failed.*/\1/' <<<"$summary")
+  total=$(sed -E 's/.*out of ([0-9]+).*/\1/' <<<"$summary")
+  if [ -z "$summary" ]; then
+    tail -50 "$log"
+    failed=$((failed + 1))
+    failures+=("$name: the tests did not start")
+    return 1
+  fi
+  echo "$summary"
+  passed=$((passed + total - bad))
+  failed=$((failed + bad))
+  if [ "$result" != 0 ]; then
+    grep -vE '^ *[0-9]+/[0-9]+ Test .* Passed|^ +Start ' "$log" | tail -150
+    failures+=("$name, see $log")
+  fi
+}
+
+configure_and_build() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" "$@" >"$logs/configure-$preset.log" 2>&1 ||
+    { cat "$logs/configure-$preset.log"; return 1; }
+  cmake --build "build/$preset" -j "$jobs" ${targets:+--target $targets}
+}
+
+finish() {
+  echo
+  for failure in "${failures[@]}"; do echo "failed: $failure"; done
+  command -v ccache >/dev/null && ccache -s 2>/dev/null | grep -iE '^ *(hits|misses):' | head -2
+  echo "$((SECONDS / 60)) min $((SECONDS % 60)) s"
+  echo "$passed passed, $failed failed"
+  [ "$failed" = 0 ]
+  exit
+}
+
+check "packages" bash scripts/packages.sh build test || finish
+if [ "$quick" = yes ]; then
+  targets="polhode_cli polhode_unit_tests" check "release build" configure_and_build release || finish
+  tests "unit tests" build/release -L unit
+  finish
+fi
+
+check "format" bash scripts/format.sh --check
+benchmarks=OFF
+[ -f benchmarks/CMakeLists.txt ] && benchmarks=ON
+check "release build" configure_and_build release -DPOLHODE_BUILD_BENCHMARKS=$benchmarks &&
+  tests "release tests" build/release
+
+# Address and undefined-behaviour sanitizers, on what is fast enough under them; the corpus of the
+# fuzzer (tests/fuzz/run.sh) is read by the unit tests, so it is replayed here.
+targets="polhode_cli polhode_unit_tests" check "sanitizer build" configure_and_build dev &&
+  tests "unit tests under sanitizers" build/dev -L unit
+
+finish
