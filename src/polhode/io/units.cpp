@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/units.hpp>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -164,7 +165,7 @@ class UnitParser {
     const std::size_t start = at_;
     while (at_ < text_.size() &&
            std::string_view(" */^()").find(text_[at_]) == std::string_view::npos &&
-           !text_.substr(at_).starts_with("\xC2\xB7"))
+           !text_.substr(at_).starts_with("\xC2\xB7") && !is_superscript())
       ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
     const std::optional<Unit> unit = named_unit(word);
@@ -183,6 +184,12 @@ class UnitParser {
     return true;
   }
 
+  /// A small 2 or 3.
+  [[nodiscard]] bool is_superscript() const {
+    const std::string_view rest = text_.substr(std::min(at_, text_.size()));
+    return rest.starts_with("\xC2\xB2") || rest.starts_with("\xC2\xB3");
+  }
+
   bool power(Unit& unit) {
     int n = 0;
     if (at_ < text_.size() && text_[at_] == '^') {
@@ -190,8 +197,7 @@ class UnitParser {
       const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), n);
       if (error != std::errc() || std::abs(n) > 9) return fail("'^' needs a whole number");
       at_ = static_cast<std::size_t>(end - text_.data());
-    } else if (text_.substr(at_).starts_with("\xC2\xB2") ||
-               text_.substr(at_).starts_with("\xC2\xB3")) {
+    } else if (is_superscript()) {
       n = text_[at_ + 1] == '\xB2' ? 2 : 3;
       at_ += 2;
     } else {
