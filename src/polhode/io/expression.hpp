@@ -13,6 +13,9 @@
 
 namespace polhode {
 
+/// A step of an expression's program.
+enum class ExpressionOp : unsigned char;
+
 /// What is known of the dimension of a value in an expression.
 enum class Certainty : unsigned char {
   kPure,   ///< A number; where a dimension is wanted it counts in the user's base units.
@@ -64,9 +67,8 @@ class Expression {
 
  private:
   friend class ExpressionParser;
-  enum class Op : unsigned char;
   struct Instruction {
-    Op op;
+    ExpressionOp op;
     double value = 0.0;
   };
   std::vector<Instruction> program_;

@@ -9,6 +9,8 @@
 namespace polhode {
 namespace {
 
+constexpr std::size_t kMostSuggestions = 1000;
+
 std::string expected(const Field& field) {
   std::string unit = field.dimension.si_unit();
   return field.dimension.name() + (unit.empty() ? "" : " (" + unit + ")");
@@ -385,9 +387,13 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node,
   if (node.text == "ground") return kGround;
   const auto found = context.bodies.find(node.text);
   if (found != context.bodies.end()) return found->second;
-  const std::vector<std::string> names = context.body_names();
-  context.fault(node, path, "unknown body " + quote(node.text),
-                did_you_mean(node.text, names) + "Bodies: " + name_list(names) + ".");
+  // With very many faults the search for what was meant would take minutes.
+  std::string mend = "Give the name of a body.";
+  if (context.diagnostics.size() < kMostSuggestions) {
+    const std::vector<std::string> names = context.body_names();
+    mend = did_you_mean(node.text, names) + "Bodies: " + name_list(names) + ".";
+  }
+  context.fault(node, path, "unknown body " + quote(node.text), mend);
   return std::nullopt;
 }
 

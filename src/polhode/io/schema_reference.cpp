@@ -111,7 +111,7 @@ std::string reference_markdown() {
       "A number stands alone (`2.5`), with its unit after a blank (`30 deg`, `5 N/mm`, "
       "`100 kg/m^3`), or as an expression of the `variables` (`-speed*L/2`), which may be followed "
       "by a unit (`2*pi rad/s`). Where a value may depend on time, an expression may use `t`, and "
-      "a table may stand instead of it.\n\n"
+      "a table may stand instead of it; `t` counts from the start in the file's unit of time.\n\n"
       "Without a unit a number counts in the `units` of the file. Dimensions are followed through "
       "expressions: a variable with a unit is of that dimension, a variable without one is of any. "
       "Angles may be left out of products, so that a speed may be an angular velocity times a "

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include <polhode/io/expression.hpp>
+
+namespace polhode {
+
+/// What a step of an expression's program does to the stack of values.
+enum class ExpressionOp : unsigned char {
+  kPush,
+  kTime,
+  kScale,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kPower,
+  kNegate,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr,
+  kNot,
+  kChoose,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kAtan2,
+  kSinh,
+  kCosh,
+  kTanh,
+  kExp,
+  kLog,
+  kLog10,
+  kSqrt,
+  kAbs,
+  kSign,
+  kFloor,
+  kMin,
+  kMax,
+};
+
+/// What a function wants and gives.
+enum class FunctionRule : unsigned char {
+  kAngleToNumber,
+  kNumberToAngle,
+  kNumber,
+  kRoot,
+  kKeep,
+  kKeepTwo,
+  kQuotientToAngle,
+  kToNumber,
+  kPower
+};
+
+/// A function by name.
+struct ExpressionFunction {
+  const char* name;
+  ExpressionOp op;
+  int arguments;
+  FunctionRule rule;
+};
+inline constexpr std::array kExpressionFunctions = {
+    ExpressionFunction{"sin", ExpressionOp::kSin, 1, FunctionRule::kAngleToNumber},
+    ExpressionFunction{"cos", ExpressionOp::kCos, 1, FunctionRule::kAngleToNumber},
+    ExpressionFunction{"tan", ExpressionOp::kTan, 1, FunctionRule::kAngleToNumber},
+    ExpressionFunction{"asin", ExpressionOp::kAsin, 1, FunctionRule::kNumberToAngle},
+    ExpressionFunction{"acos", ExpressionOp::kAcos, 1, FunctionRule::kNumberToAngle},
+    ExpressionFunction{"atan", ExpressionOp::kAtan, 1, FunctionRule::kNumberToAngle},
+    ExpressionFunction{"atan2", ExpressionOp::kAtan2, 2, FunctionRule::kQuotientToAngle},
+    ExpressionFunction{"sinh", ExpressionOp::kSinh, 1, FunctionRule::kNumber},
+    ExpressionFunction{"cosh", ExpressionOp::kCosh, 1, FunctionRule::kNumber},
+    ExpressionFunction{"tanh", ExpressionOp::kTanh, 1, FunctionRule::kNumber},
+    ExpressionFunction{"exp", ExpressionOp::kExp, 1, FunctionRule::kNumber},
+    ExpressionFunction{"log", ExpressionOp::kLog, 1, FunctionRule::kNumber},
+    ExpressionFunction{"log10", ExpressionOp::kLog10, 1, FunctionRule::kNumber},
+    ExpressionFunction{"sqrt", ExpressionOp::kSqrt, 1, FunctionRule::kRoot},
+    ExpressionFunction{"abs", ExpressionOp::kAbs, 1, FunctionRule::kKeep},
+    ExpressionFunction{"sign", ExpressionOp::kSign, 1, FunctionRule::kToNumber},
+    ExpressionFunction{"floor", ExpressionOp::kFloor, 1, FunctionRule::kNumber},
+    ExpressionFunction{"min", ExpressionOp::kMin, 2, FunctionRule::kKeepTwo},
+    ExpressionFunction{"max", ExpressionOp::kMax, 2, FunctionRule::kKeepTwo},
+    ExpressionFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
+};
+
+/// Values at once on the stack; the parser refuses what needs more.
+inline constexpr int kStackSize = 128;
+
+}  // namespace polhode
