@@ -64,9 +64,10 @@ struct Participants {
   int a = kGround, b = kGround;
 };
 
-/// Which rows of the two bodies depend on each other's motion beyond the multipliers' own: nothing,
-/// the moments only, or all. Elimination along the tree carries no more than that.
-enum class Coupling { none, moments, all };
+/// How the wrenches on a and b depend on the other body's motion, beyond the multipliers' own
+/// columns: not at all; only as a couple, whose moments on a and b are equal and opposite and
+/// depend on rotations alone; or in any way. Elimination along the tree carries no more than that.
+enum class Coupling { none, couple, all };
 
 /// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
 struct InteractionItem {

@@ -54,7 +54,7 @@ class Joint : public InteractionItem {
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
     return parts_.planes > 0 || parts_.distance ? Coupling::all
-           : parts_.axes > 0                    ? Coupling::moments
+           : parts_.axes > 0                    ? Coupling::couple
                                                 : Coupling::none;
   }
   [[nodiscard]] bool reversible() const;

@@ -35,13 +35,13 @@ Iteration SparseEngine::iterate(const State& state, Trial& trial, bool refactor,
 void SparseEngine::move(const State& state, Trial& trial, double damping, Iteration& done) {
   const System& system = newton_.system();
   const double per_length = 1.0 / system.length_scale();
+  worst_body_ = -1;
   for (int b = 0; b < system.body_count(); ++b) {
     const Vec3 D_r = x_.segment<3>(6 * b), D_theta = x_.segment<3>(6 * b + 3);
     const double size =
         std::max(per_length * D_r.lpNorm<Eigen::Infinity>(), D_theta.lpNorm<Eigen::Infinity>());
-    if (done.worst_body < 0 || size > done.increment) {
+    if (worst_body_ < 0 || size > done.increment) {
       done.increment = size;
-      done.worst_body = b;
       worst_body_ = b;
     }
     const int slot = system.slot(b), lane = slot % kLanes;

@@ -264,8 +264,13 @@ void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Tri
       A[i][7] -= s * wrench[i];
     }
   };
-  add_own(x.slot_a, terms.wrench_a, terms.D_aa);
-  add_own(x.slot_b, terms.wrench_b, terms.D_bb);
+  if (x.coupling == Coupling::couple) {  // see below: the couple takes the rest
+    add_own(x.slot_a, terms.wrench_a, terms.D_aa + terms.D_ba);
+    add_own(x.slot_b, terms.wrench_b, terms.D_bb + terms.D_ab);
+  } else {
+    add_own(x.slot_a, terms.wrench_a, terms.D_aa);
+    add_own(x.slot_b, terms.wrench_b, terms.D_bb);
+  }
   if (x.edge >= 0) {
     EdgeRows& e = edge_rows_[x.edge];
     const Mat6& K_bp = x.edge_child_is_b ? terms.D_ba : terms.D_ab;
@@ -292,13 +297,8 @@ void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Tri
     nu[k] = terms.g[k] + (exact ? kProximalOfLoops * s * (lambda - trial.lambda_centre[first + k])
                                 : terms.compliance[k] * lambda);
   }
-  const int coupled = 6 - x.coupled_from, at_a = x.rows, at_b = x.rows + coupled;
   for (int k = x.rows; k < loop.unknowns; ++k) S[width * k + k] = -1.0;
-  // Rows and columns of one body: B, G of the multipliers; own_at: unknowns that act on this
-  // body's rows; other_at: unknowns made by this body's motion through D (rows of the other body).
-  const auto write = [&](int pair, const auto& B, const auto& G, int own_at, int other_at,
-                         const Mat6& D) {
-    if (pair < 0) return;
+  const auto write_multipliers = [&](int pair, const auto& B, const auto& G) {
     double* C = view_.pair_rows + 8 * pair;
     double* Rt = C + 6 * width;
     for (int i = 0; i < 6; ++i) {
@@ -307,14 +307,36 @@ void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Tri
         C[width * i + k] = -B(i, k);
         Rt[width * i + k] = G(k, i);
       }
-      for (int k = 0; k < coupled; ++k) {
-        if (x.coupled_from + k == i) C[width * i + own_at + k] = 1.0;
-        Rt[width * i + other_at + k] = -s * D(x.coupled_from + k, i);
-      }
     }
   };
-  write(x.pair_a, terms.B_a, terms.G_a, at_a, at_b, terms.D_ba);
-  write(x.pair_b, terms.B_b, terms.G_b, at_b, at_a, terms.D_ab);
+  if (x.pair_a >= 0) write_multipliers(x.pair_a, terms.B_a, terms.G_a);
+  if (x.pair_b >= 0) write_multipliers(x.pair_b, terms.B_b, terms.G_b);
+  if (x.coupling == Coupling::none) return;
+  double *C_a = view_.pair_rows + 8 * x.pair_a, *C_b = view_.pair_rows + 8 * x.pair_b;
+  double *R_a = C_a + 6 * width, *R_b = C_b + 6 * width;
+  if (x.coupling == Coupling::couple) {
+    // ζ = −s (D_ba Δθ_a − D_ab Δθ_b) acts on b, −ζ on a.
+    for (int k = 0; k < 3; ++k) {
+      const int z = x.rows + k;
+      C_a[width * (3 + k) + z] = -1.0;
+      C_b[width * (3 + k) + z] = 1.0;
+      for (int i = 3; i < 6; ++i) {
+        R_a[width * i + z] = -s * terms.D_ba(3 + k, i);
+        R_b[width * i + z] = s * terms.D_ab(3 + k, i);
+      }
+    }
+    return;
+  }
+  // −s D_ab Δx_b acts on a, −s D_ba Δx_a on b.
+  for (int k = 0; k < 6; ++k) {
+    const int on_a = x.rows + k, on_b = x.rows + 6 + k;
+    C_a[width * k + on_a] = 1.0;
+    C_b[width * k + on_b] = 1.0;
+    for (int i = 0; i < 6; ++i) {
+      R_b[width * i + on_a] = -s * terms.D_ab(k, i);
+      R_a[width * i + on_b] = -s * terms.D_ba(k, i);
+    }
+  }
 }
 
 void TreeEngine::move_multipliers(Trial& trial, double damping) {

@@ -56,8 +56,8 @@ class Planner {
         x.edge = plan_.edge_of_slot[child];
         x.edge_child_is_b = b_is_child;
       } else {
-        x.coupled_from = coupling == Coupling::moments ? 3 : 0;
-        unknowns += 2 * (6 - x.coupled_from);
+        x.coupling = coupling;
+        unknowns += coupling == Coupling::couple ? 3 : 12;
       }
     }
     if (unknowns > 0) {

@@ -19,9 +19,9 @@ struct TreeExtra {
   bool edge_child_is_b = true;
   int loop = -1;                 ///< Index of its loop, if it needs one.
   int pair_a = -1, pair_b = -1;  ///< Where its loop's columns and rows stand.
-  /// Rows of a that depend on b's motion, and the other way, carried as further unknowns of the
-  /// loop: components [coupled_from, 6); 6: none.
-  int coupled_from = 6;
+  /// How its distant bodies are coupled; the loop has further unknowns for that: the couple (3),
+  /// or what each body's rows owe to the other's motion (12).
+  Coupling coupling = Coupling::none;
 };
 
 /// Symbolic part of elimination along the tree with loops: what is carried where, in which order

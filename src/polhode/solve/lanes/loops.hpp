@@ -15,57 +15,96 @@ POLHODE_INLINE double* pair_row(const TreeView& v, int pair, int panels, int i) 
   return v.pair_rows + 8 * (pair + panels * i);
 }
 
-/// LU of the loop's own block with row exchanges, in place; its rows are 8 · panels apart.
+/// Row c: ones where the column is beyond c.
+alignas(64) inline constexpr double kBeyond[8][8] = {
+    {0, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 1, 1, 1, 1},
+    {0, 0, 0, 0, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 1, 1},
+    {0, 0, 0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 0, 0, 0}};
+
+/// LU of the loop's own block with row exchanges, in place, inverses of the pivots on the
+/// diagonal; its rows are 8 · panels apart.
 inline bool factor_loop(const TreeView& v, const TreeLoop& loop) {
-  const int n = loop.unknowns, w = 8 * loop.panels;
+  const int n = loop.unknowns, panels = loop.panels, w = 8 * panels;
   double* S = v.S + loop.S;
   int* pivots = v.pivots + loop.nu;
   for (int c = 0; c < n; ++c) {
     int p = c;
     double most = __builtin_fabs(S[c * w + c]);
-    for (int i = c + 1; i < n; ++i)
-      if (__builtin_fabs(S[i * w + c]) > most) {
-        most = __builtin_fabs(S[i * w + c]);
+    for (int i = c + 1; i < n; ++i) {
+      const double size = __builtin_fabs(S[i * w + c]);
+      if (size > most) {
+        most = size;
         p = i;
       }
+    }
     pivots[c] = p;
     if (!(most > 0.0)) return false;
     if (p != c)
-      for (int k = 0; k < loop.panels; ++k) {
-        const Row x = row_load(S + c * w + 8 * k), y = row_load(S + p * w + 8 * k);
-        row_store(S + c * w + 8 * k, y);
-        row_store(S + p * w + 8 * k, x);
+      for (int k = 0; k < w; k += 8) {
+        const Row x = row_load(S + c * w + k), y = row_load(S + p * w + k);
+        row_store(S + c * w + k, y);
+        row_store(S + p * w + k, x);
       }
     const double inverse = 1.0 / S[c * w + c];
     S[c * w + c] = inverse;
+    const int first = c / 8;
+    const Row beyond = multiply(row_load(S + c * w + 8 * first), row_load(kBeyond[c % 8]));
     for (int i = c + 1; i < n; ++i) {
       const double factor = S[i * w + c] * inverse;
-      if (factor == 0.0) continue;
-      for (int k = c / 8; k < loop.panels; ++k) {
-        // Only columns beyond c: those before hold factors already.
-        alignas(64) double row[8];
-        row_store(row, row_load(S + i * w + 8 * k) - factor * row_load(S + c * w + 8 * k));
-        const int from = c + 1 - 8 * k;
-        if (from <= 0) {
-          row_store(S + i * w + 8 * k, row_load(row));
-        } else {
-          for (int j = from; j < 8; ++j) S[i * w + 8 * k + j] = row[j];
-        }
-      }
+      row_store(S + i * w + 8 * first, row_load(S + i * w + 8 * first) - factor * beyond);
+      for (int k = first + 1; k < panels; ++k)
+        row_store(S + i * w + 8 * k,
+                  row_load(S + i * w + 8 * k) - factor * row_load(S + c * w + 8 * k));
       S[i * w + c] = factor;
     }
   }
   return true;
 }
 
-/// Applies the factored block's inverse to n rows of `panels` × 8, each `width` doubles apart.
-POLHODE_INLINE void solve_rows(const TreeView& v, const TreeLoop& loop, double* x, int panels,
-                               int width) {
+/// Applies the inverse of a factored block of n unknowns to one panel of rows `width` apart.
+template <int n>
+POLHODE_INLINE void solve_panel(const double* S, const int* pivots, double* x, int width) {
+  Row r[n];
+  for (int c = 0; c < n; ++c)
+    if (pivots[c] != c) {
+      const Row t = row_load(x + c * width);
+      row_store(x + c * width, row_load(x + pivots[c] * width));
+      row_store(x + pivots[c] * width, t);
+    }
+  for (int i = 0; i < n; ++i) r[i] = row_load(x + i * width);
+#pragma GCC unroll 8
+  for (int c = 0; c < n; ++c)
+#pragma GCC unroll 8
+    for (int i = c + 1; i < n; ++i) r[i] -= S[i * 8 + c] * r[c];
+#pragma GCC unroll 8
+  for (int c = n - 1; c >= 0; --c) {
+    r[c] = S[c * 8 + c] * r[c];
+#pragma GCC unroll 8
+    for (int i = 0; i < c; ++i) r[i] -= S[i * 8 + c] * r[c];
+  }
+  for (int i = 0; i < n; ++i) row_store(x + i * width, r[i]);
+}
+
+/// Applies the factored block's inverse to `panels` × 8 columns, rows `width` doubles apart.
+inline void solve_rows(const TreeView& v, const TreeLoop& loop, double* x, int panels, int width) {
   const int n = loop.unknowns, w = 8 * loop.panels;
   const double* S = v.S + loop.S;
   const int* pivots = v.pivots + loop.nu;
   for (int k = 0; k < panels; ++k) {
     double* column = x + 8 * k;
+    switch (n) {
+      case 3:
+        solve_panel<3>(S, pivots, column, width);
+        continue;
+      case 5:
+        solve_panel<5>(S, pivots, column, width);
+        continue;
+      case 8:
+        solve_panel<8>(S, pivots, column, width);
+        continue;
+      default:
+        break;
+    }
     Row r[24];
     for (int i = 0; i < n; ++i) r[i] = row_load(column + i * width);
     for (int c = 0; c < n; ++c)

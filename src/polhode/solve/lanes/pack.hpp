@@ -73,6 +73,11 @@ POLHODE_INLINE Row operator*(double s, const Row& a) {
   for (int i = 0; i < kParts; ++i) r.part[i] = s * a.part[i];
   return r;
 }
+POLHODE_INLINE Row multiply(const Row& a, const Row& b) {
+  Row r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
+  return r;
+}
 POLHODE_INLINE Row& operator+=(Row& a, const Row& b) { return a = a + b; }
 POLHODE_INLINE Row& operator-=(Row& a, const Row& b) { return a = a - b; }
 POLHODE_INLINE Row row_zero() { return Row{}; }
