@@ -58,7 +58,7 @@ std::string form(const Field& field) {
     case kVariables:
       return "map from names to numbers";
     case kNamed:
-      return "map from names to " + field.table + "s";
+      return "map from names, see " + field.table;
     case kSection:
       break;
   }
@@ -76,6 +76,8 @@ std::string bounds(const Range& range) {
 std::string cell(std::string text) {
   for (std::size_t k = 0; (k = text.find('|', k)) != std::string::npos; k += 2)
     text.insert(k, "\\");
+  for (std::size_t k = 0; (k = text.find('<', k)) != std::string::npos; k += 4)
+    text.replace(k, 1, "&lt;");
   return text;
 }
 
