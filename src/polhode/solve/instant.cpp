@@ -152,7 +152,7 @@ struct InstantSolver::Impl {
       if (!correction.allFinite()) return {};
       x += correction;
       if (rows == 0) return outcome;
-      const double scale = rows_times(x, G_x) + rhs.tail(rows).lpNorm<Eigen::Infinity>();
+      const double scale = rows_times(x, G_x) + rhs.lpNorm<Eigen::Infinity>();
       const Vec left = rhs.tail(rows) - G_x;
       outcome.residual = left.lpNorm<Eigen::Infinity>();
       if (outcome.residual <= 16.0 * kRoundOff * scale) return outcome;
@@ -301,7 +301,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   const int bodies = system.body_count();
   VelocityReport report;
   s.take(state);
-  bool at_round_off = true;
+  double largest_scale = 0.0;
   const auto velocity = [&](int body) {
     Vec6 v = Vec6::Zero();
     if (body != kGround) v << s.steps[body].v_n1, s.steps[body].Lambda_n1 * s.steps[body].W_n1;
@@ -321,13 +321,13 @@ VelocityReport InstantSolver::project_velocities(State& state) {
             sum += a + b;
             scale += std::abs(a) + std::abs(b);
           }
-          report.residual_before = std::max(report.residual_before, std::abs(sum));
-          if (!(std::abs(sum) <= 16.0 * kRoundOff * scale)) at_round_off = false;
+          if (!(std::abs(sum) <= report.residual_before)) report.residual_before = std::abs(sum);
+          largest_scale = std::max(largest_scale, scale);
         }
       },
       true);
   report.residual = report.residual_before;
-  if (at_round_off) return report;
+  if (report.residual <= 32.0 * kRoundOff * largest_scale) return report;
 
   s.prepare();
   s.put_masses();
