@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
 #include <polhode/assembly/interaction.hpp>
 
 namespace polhode {
 
-void PairTerms::set_zero() {
+void PairTerms::set_zero() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
+
+void PairTerms::set_values_zero() {
   wrench_a.setZero();
   wrench_b.setZero();
-  D_aa.setZero();
-  D_ab.setZero();
-  D_ba.setZero();
-  D_bb.setZero();
-  B_a.setZero();
-  B_b.setZero();
-  G_a.setZero();
-  G_b.setZero();
   g.setZero();
   compliance.setZero();
 }

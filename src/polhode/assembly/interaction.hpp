@@ -20,8 +20,9 @@ inline constexpr int kMaxRows = 6;
 /// What one interaction between bodies a and b gives for the current trial step.
 ///
 /// Wrenches are (force [N], moment about the centre of mass [N m]), world components, at
-/// t_{n+αf}; increments are (Δr, Δθ), world. A constraint's force on body i is +λ times its
-/// column B_i, and belongs to the wrench. Everything about the ground stays zero and unread.
+/// t_{n+αf}; increments are (Δr, Δθ), world. Without StepContext::tangents, D and G are not read. A
+/// constraint's force on body i is +λ times its column B_i, and belongs to the wrench. Everything
+/// about the ground stays zero and unread.
 struct PairTerms {
   Vec6 wrench_a, wrench_b;               ///< Of everything, multipliers included.
   Mat6 D_aa, D_ab, D_ba, D_bb;           ///< D_ij: wrench of i by the increment of j.
@@ -31,6 +32,7 @@ struct PairTerms {
   Vec6 compliance;  ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
 
   void set_zero();
+  void set_values_zero();  ///< Wrenches, values and compliance only.
 };
 
 /// One interaction's view of the step.
@@ -146,7 +148,7 @@ class Group final : public InteractionGroup {
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {
     for (std::size_t k = 0; k < list.size(); ++k) {
-      terms[k].set_zero();
+      steps[k].context.tangents ? terms[k].set_zero() : terms[k].set_values_zero();
       at(list[k]).evaluate(steps[k], terms[k]);
     }
   }

@@ -67,8 +67,9 @@ void Joint::evaluate(const PairStep& step, PairTerms& t) const {
   const PairRows G{t.G_a.data(), t.G_b.data()}, B{t.B_a.data(), t.B_b.data()};
   parts_.for_each([&](const auto& part, int row) {
     part.residual(q_n1, t.g.data() + row);
-    part.gradient(q_n1, row, G);
     part.gradient(q_alpha, row, B);
+    if (!step.context.tangents) return;
+    part.gradient(q_n1, row, G);
     part.add_wrench_tangent(q_alpha, q_n1, af, step.lambda + row, t);
   });
   t.wrench_a = times(B.a, step.lambda, rows_);

@@ -105,7 +105,9 @@ void LedgerKeeper::before_commit(State& state, const Trial& trial) {
   }
   if (outside_.empty()) return;
   Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
-  outside_sweep_.run(steps_, trial.context, trial.lambda.data(), state.history.data(),
+  StepContext values_only = trial.context;
+  values_only.tangents = false;
+  outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(),
                      [&](int interaction, const PairStep& step, const PairTerms& terms) {
                        const bool on_a = system_->interactions()[interaction].a != kGround;
                        const Vec6& w = on_a ? terms.wrench_a : terms.wrench_b;

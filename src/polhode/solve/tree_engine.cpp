@@ -395,8 +395,10 @@ ConstraintCheck TreeEngine::check(const State& state, Trial& trial) {
   if (plan_.loops.empty()) return c;
   for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
   steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+  StepContext values_only = trial.context;
+  values_only.tangents = false;
   sweep_.run(
-      steps_, trial.context, trial.lambda.data(), state.history.data(),
+      steps_, values_only, trial.lambda.data(), state.history.data(),
       [&](int interaction, const PairStep& step, const PairTerms& terms) {
         const InteractionRef& ref = system_->interactions()[interaction];
         const double reach =

@@ -12,6 +12,7 @@ struct StepContext {
   double t_n = 0.0;        ///< Start of the step [s].
   double dt = 0.0;         ///< Length of the step [s]; negative in stages of orders 4 to 8.
   bool conserving = true;  ///< Potentials in discrete-gradient form.
+  bool tangents = true;    ///< Tangents and G are wanted; else only wrenches and values.
 
   [[nodiscard]] double t_alpha() const { return t_n + ga.alpha_f * dt; }  ///< t_{n+αf} [s].
   [[nodiscard]] double t_n1() const { return t_n + dt; }                  ///< [s]

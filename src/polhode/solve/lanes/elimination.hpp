@@ -51,6 +51,43 @@ POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
   return true;
 }
 
+/// The same in closed form.
+template <>
+POLHODE_INLINE bool invert<2>(const double (*D)[8], double (*inverse)[8]) {
+  const double det = D[0][0] * D[1][1] - D[0][1] * D[1][0];
+  const double size = __builtin_fabs(D[0][0] * D[1][1]) + __builtin_fabs(D[0][1] * D[1][0]);
+  if (!(__builtin_fabs(det) > 1e-14 * size)) return false;
+  const double k = 1.0 / det;
+  inverse[0][0] = k * D[1][1];
+  inverse[0][1] = -k * D[0][1];
+  inverse[1][0] = -k * D[1][0];
+  inverse[1][1] = k * D[0][0];
+  return true;
+}
+
+template <>
+POLHODE_INLINE bool invert<3>(const double (*D)[8], double (*inverse)[8]) {
+  const double c00 = D[1][1] * D[2][2] - D[1][2] * D[2][1];
+  const double c01 = D[1][2] * D[2][0] - D[1][0] * D[2][2];
+  const double c02 = D[1][0] * D[2][1] - D[1][1] * D[2][0];
+  const double det = D[0][0] * c00 + D[0][1] * c01 + D[0][2] * c02;
+  const double size = __builtin_fabs(D[0][0] * D[1][1] * D[2][2]) +
+                      __builtin_fabs(D[0][1] * D[1][2] * D[2][0]) +
+                      __builtin_fabs(D[0][2] * D[1][0] * D[2][1]);
+  if (!(__builtin_fabs(det) > 1e-15 * size)) return false;
+  const double k = 1.0 / det;
+  inverse[0][0] = k * c00;
+  inverse[1][0] = k * c01;
+  inverse[2][0] = k * c02;
+  inverse[0][1] = k * (D[0][2] * D[2][1] - D[0][1] * D[2][2]);
+  inverse[1][1] = k * (D[0][0] * D[2][2] - D[0][2] * D[2][0]);
+  inverse[2][1] = k * (D[0][1] * D[2][0] - D[0][0] * D[2][1]);
+  inverse[0][2] = k * (D[0][1] * D[1][2] - D[0][2] * D[1][1]);
+  inverse[1][2] = k * (D[0][2] * D[1][0] - D[0][0] * D[1][2]);
+  inverse[2][2] = k * (D[0][0] * D[1][1] - D[0][1] * D[1][0]);
+  return true;
+}
+
 /// The body's rows: own balance, what is attached to it, children.
 POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s,
                                  Row* A) {
