@@ -81,9 +81,10 @@ struct InteractionItem {
   /// The history only counts turns: it may be committed after several steps, before the bodies
   /// have turned by half a turn against each other.
   [[nodiscard]] bool lazy_history() const { return false; }
-  [[nodiscard]] bool conservative() const {
-    return true;
-  }  ///< Neither dissipates nor depends on time.
+  /// Stores all the energy it takes: neither dissipates nor puts in work.
+  [[nodiscard]] bool conservative() const { return true; }
+  /// Takes energy for good: does not go with steps that run backwards in time.
+  [[nodiscard]] bool dissipates() const { return false; }
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
@@ -111,6 +112,7 @@ class InteractionGroup {
   [[nodiscard]] virtual int history_size(int i) const = 0;
   [[nodiscard]] virtual bool lazy_history(int i) const = 0;
   [[nodiscard]] virtual bool conservative(int i) const = 0;
+  [[nodiscard]] virtual bool dissipates(int i) const = 0;
   [[nodiscard]] virtual std::optional<MotionBasis> motion_basis(int i) const = 0;
   [[nodiscard]] virtual Coupling coupling(int i) const = 0;
   [[nodiscard]] virtual bool reversible(int i) const = 0;
@@ -141,6 +143,7 @@ class Group final : public InteractionGroup {
   int history_size(int i) const override { return at(i).history_size(); }
   bool lazy_history(int i) const override { return at(i).lazy_history(); }
   bool conservative(int i) const override { return at(i).conservative(); }
+  bool dissipates(int i) const override { return at(i).dissipates(); }
   std::optional<MotionBasis> motion_basis(int i) const override { return at(i).motion_basis(); }
   Coupling coupling(int i) const override { return at(i).coupling(); }
   bool reversible(int i) const override { return at(i).reversible(); }

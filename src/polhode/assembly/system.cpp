@@ -36,6 +36,7 @@ void System::finish() {
       rows_ += refs_.back().rows;
       histories += groups_[g]->history_size(i);
       conservative_ = conservative_ && groups_[g]->conservative(i);
+      dissipates_ = dissipates_ || groups_[g]->dissipates(i);
     }
   tree_ = build_spanning_tree(n, static_cast<int>(refs_.size()), candidates, shapes);
   for (int index : tree_.reversed) {

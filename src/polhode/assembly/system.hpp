@@ -54,6 +54,8 @@ class System {
   }  ///< ℓ: extent of the mechanism [m].
   /// Neither dampers nor loads that depend on time: every interaction stores all it takes.
   [[nodiscard]] bool conservative() const { return conservative_; }
+  /// Something takes energy for good, as dampers do.
+  [[nodiscard]] bool dissipates() const { return dissipates_; }
   [[nodiscard]] const std::string& name(const InteractionRef& ref) const {
     return groups_[ref.group]->name(ref.item);
   }
@@ -76,7 +78,7 @@ class System {
   Vec3 gravity_ = Vec3::Zero();
   int rows_ = 0;
   double mean_mass_ = 1.0, length_ = 1.0;
-  bool conservative_ = true;
+  bool conservative_ = true, dissipates_ = false;
 };
 
 template <class Item>

@@ -22,6 +22,7 @@ class SpringDamper : public InteractionItem {
   explicit SpringDamper(const LoadDescription& load);
 
   [[nodiscard]] bool conservative() const { return c_ == 0.0; }
+  [[nodiscard]] bool dissipates() const { return c_ != 0.0; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// Distance of the points at t_{n+1} [m].

@@ -16,6 +16,7 @@ class TorsionalSpring : public InteractionItem {
   explicit TorsionalSpring(const LoadDescription& load);
 
   [[nodiscard]] bool conservative() const { return c_ == 0.0; }
+  [[nodiscard]] bool dissipates() const { return c_ != 0.0; }
   [[nodiscard]] int history_size() const { return 1; }  ///< The angle at t_n.
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;

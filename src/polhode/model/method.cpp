@@ -30,14 +30,14 @@ JacobianPolicy jacobian_policy(const std::string& word) {
 /// Order of accuracy, with what speaks against it.
 int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
   const bool composable =
-      a.rho_inf == 1.0 && system.conservative() && a.momentum_rate == "momentum";
+      a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
   if (!a.order) {
     if (!a.tolerance || a.step) return 2;
     const int order = composable ? 6 : 2;
     narration += format("The tolerance of {:g} chose order {} with automatic steps: {}.\n",
                         *a.tolerance, order,
-                        composable ? "the model is conservative"
-                                   : "higher orders need a conservative model and rho_inf = 1");
+                        composable ? "nothing in the model dissipates"
+                                   : "higher orders need rho_inf = 1 and a model without dampers");
     return order;
   }
   const int order = *a.order;
@@ -51,11 +51,9 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
                   "others damp",
                   a.rho_inf),
            "Set rho_inf: 1, or order: 2");
-  if (!system.conservative())
-    refuse(
-        "the model has dampers or loads that depend on time: stages that run backwards in time "
-        "would feed energy in",
-        "Use order: 2 for this model");
+  if (system.dissipates())
+    refuse("the model has dampers: stages that run backwards in time would feed energy in",
+           "Use order: 2 for this model");
   if (a.momentum_rate != "momentum")
     refuse("only the momentum form of the rate is symmetric in time",
            "Set momentum_rate: momentum, or order: 2");
