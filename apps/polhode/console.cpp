@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 #include <polhode/base/format.hpp>
 #include <polhode/io/file_error.hpp>
@@ -26,7 +28,20 @@ void print(const std::string& text) {
     throw FileError::from_errno("stdout", "cannot be written");
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows, const std::string& indent) {
+namespace {
+
+/// A number, alone or with a unit: "12", "-1.5e-3", "3.2 ms"; but no version and no sentence.
+bool is_number(const std::string& cell) {
+  char* end = nullptr;
+  std::strtod(cell.c_str(), &end);
+  const std::string_view rest(end);
+  return end != cell.c_str() && (rest.empty() || (rest[0] == ' ' && rest.size() <= 6));
+}
+
+}  // namespace
+
+std::string table(const std::vector<std::vector<std::string>>& rows, const std::string& indent,
+                  bool numbers_right) {
   std::vector<std::size_t> widths;
   // Letters beyond ASCII take several bytes, and one place.
   const auto width = [](const std::string& cell) {
@@ -43,8 +58,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows, const std::
     std::string line = indent;
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string space(widths[i] - width(row[i]), ' ');
-      const bool number = !row[i].empty() && (std::isdigit(static_cast<unsigned char>(row[i][0])) ||
-                                              (row[i][0] == '-' && row[i].size() > 1));
+      const bool number = numbers_right && is_number(row[i]);
       line += (i == 0 ? "" : "  ") + (number ? space + row[i] : row[i] + space);
     }
     line.erase(line.find_last_not_of(' ') + 1);

@@ -25,9 +25,10 @@ void say(const std::string& line);
 /// Text on stdout, as it is. @throws FileError if stdout takes no more.
 void print(const std::string& text);
 
-/// Columns side by side, each as wide as its widest cell; numbers to the right.
+/// Columns side by side, each as wide as its widest cell; numbers, with a unit or without, to the
+/// right.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows,
-                                const std::string& indent = "  ");
+                                const std::string& indent = "  ", bool numbers_right = true);
 
 /// 3 significant figures and a unit that suits: 1.23 s, 45 ms.
 [[nodiscard]] std::string seconds(double value);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
 #include <polhode/solve/rank_report.hpp>
 #include <polhode/solve/tangent_check.hpp>
 
@@ -35,13 +36,11 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "by up to {:.2g}.",
                start.velocity_residual, start.velocity_change));
   if (rank.redundant > 0) {
-    std::string names;
-    for (const std::string& name : rank.names) names += (names.empty() ? "" : ", ") + name;
     list.push_back(
         format("{} of {} constraint rows are redundant; they involve {}. The motion is "
                "unique, but how the reactions share these rows is not: the smallest "
                "ones are reported.",
-               rank.redundant, rank.rows, names));
+               rank.redundant, rank.rows, name_list(rank.names, 12)));
   }
   if (rank.mobility == 0 && simulation.system().body_count() > 0)
     list.emplace_back("The mobility is 0: nothing can move.");
@@ -83,7 +82,10 @@ int check(const Options& options) {
                                      {"velocity_change", start.velocity_change}}},
                                    {"warnings", notes}};
     if (tangents)
-      json["tangents"] = {{"error", tangents->error}, {"row", tangents->row}, {"column", tangents->column}, {"passed", !failed}};
+      json["tangents"] = {{"error", tangents->error},
+                          {"row", tangents->row},
+                          {"column", tangents->column},
+                          {"passed", !failed}};
     print(json.dump(2) + "\n");
   } else {
     std::vector<std::vector<std::string>> rows{

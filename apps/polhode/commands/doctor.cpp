@@ -113,7 +113,7 @@ int doctor() {
     rows.push_back({finding.passed ? "ok" : "FAILED", finding.what, finding.result});
     passed = passed && finding.passed;
   }
-  print(table(rows, ""));
+  print(table(rows, "", false));
   return passed ? kOk : kCheckFailed;
 }
 

@@ -113,7 +113,7 @@ std::string describe(const Simulation& simulation) {
              {"analysis", model.analysis.type, format("{:.6g} s", model.analysis.duration)},
              {"solver", summary.solver, summary.instruction_set},
              {"order", format("{}", summary.order)}},
-            "");
+            "", false);
   if (!summary.narration.empty()) text += "\n" + summary.narration + "\n";
   text += section("Bodies", {"name", "mass [kg]", "inertia xx yy zz [kg m^2]", "position [m]"},
                   model.bodies, [](const BodySpec& b) -> std::vector<std::string> {

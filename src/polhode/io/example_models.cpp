@@ -48,8 +48,9 @@ class ModelText {
                     a < 0 ? "ground" : format("b{}", a), b, list(at),
                     axis.empty() ? "" : ", axis: " + axis);
   }
-  std::string end(const std::string& analysis) {
+  std::string end(const std::string& analysis, const std::string& output) {
     text_ += "\nanalysis: {type: dynamics, " + analysis + "}\n";
+    text_ += "output: {every: " + output + "}\n";
     return std::move(text_);
   }
 
@@ -77,7 +78,7 @@ std::string n_four_bar(const Values& values) {
     // The bar is named first: a positive angle turns the upright.
     m.joint("revolute", bars[i], uprights[i + 1], Vec3(i + 1, 1, 0), "z");
   }
-  return m.end("duration: 10 s, step: 10 ms");
+  return m.end("duration: 10 s, step: 10 ms", "100 ms");
 }
 
 constexpr double kRod = 0.1;  ///< Length of the rods of chains and trees [m].
@@ -102,7 +103,7 @@ std::string chain(const Values& values) {
   for (int i = 0; i < N; ++i)
     m.joint(joint.c_str(), i - 1, i, Vec3(kRod * i, 0, 0),
             joint == "revolute" ? hinge_axis(i) : "");
-  return m.end("duration: 1 s, step: 5 ms");
+  return m.end("duration: 1 s, step: 5 ms", "50 ms");
 }
 
 /// Rod i hangs on the end of rod (i − 1)/2; every rod lies along x at the start, its end a little
@@ -122,7 +123,7 @@ std::string binary_tree(const Values& values) {
   m.begin_joints();
   for (int i = 0; i < N; ++i)
     m.joint("revolute", i == 0 ? kGround : (i - 1) / 2, i, begins[i], hinge_axis(i));
-  return m.end("duration: 1 s, step: 5 ms");
+  return m.end("duration: 1 s, step: 5 ms", "50 ms");
 }
 
 }  // namespace

@@ -89,14 +89,6 @@ Id text_type() {
   return type;
 }
 
-Id fixed_text_type(std::size_t length) {
-  Id type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  return type;
-}
-
 }  // namespace
 
 std::size_t Channel::size() const {
@@ -192,13 +184,14 @@ struct Hdf5File::Impl {
   }
 
   void text_attribute(hid_t object, const std::string& name, const std::string& value) {
-    const Id type = fixed_text_type(value.size());
+    const Id type = text_type();  // Of any length: Python reads it as text, not as bytes.
+    const char* text = value.c_str();
     const Id space(H5Screate(H5S_SCALAR), H5Sclose);
     const Id attribute(
         H5Acreate2(object, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);
     if (!attribute.valid()) fail("cannot hold an attribute");
-    require(H5Awrite(attribute.get(), type.get(), value.c_str()), "cannot hold an attribute");
+    require(H5Awrite(attribute.get(), type.get(), &text), "cannot hold an attribute");
   }
 
   /// The group of that path, made if it is missing.

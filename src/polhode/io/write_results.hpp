@@ -13,11 +13,11 @@ namespace polhode {
 
 /// Where results come from; kept with them.
 struct Provenance {
-  std::string version;  ///< Of Polhode.
-  std::string solver, instruction_set;
-  std::string model_file;              ///< Name without folders.
-  std::string model_text;              ///< As read, overrides not applied.
-  std::vector<std::string> overrides;  ///< As given with --set.
+  std::string version{};  ///< Of Polhode.
+  std::string solver{}, instruction_set{};
+  std::string model_file{};              ///< Name without folders.
+  std::string model_text{};              ///< As read, overrides not applied.
+  std::vector<std::string> overrides{};  ///< As given with --set.
 };
 
 /// Names and shapes that a results file is laid out by.

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <polhode/io/example_models.hpp>
+#include <support/program.hpp>
+
+#ifdef POLHODE_CLI
+namespace polhode {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr const char* kPendulum = R"(format: 1
+title: Double pendulum
+gravity: [0, 0, -9.81]
+bodies:
+  upper: {shape: {box: [1, 0.05, 0.05]}, density: 1000, position: [0.5, 0, 0]}
+  lower: {shape: {box: [1, 0.05, 0.05]}, density: 1000, position: [1.5, 0, 0]}
+joints:
+  A: {type: revolute, bodies: [ground, upper], at: [0, 0, 0], axis: y}
+  B: {type: spherical, bodies: [upper, lower], at: [1, 0, 0]}
+analysis: {type: dynamics, duration: 1 s, step: 10 ms}
+output:
+  every: 20 ms
+  paraview: true
+  probes:
+    tip: {body: lower, point: [0.5, 0, 0], every: 50 ms}
+    A: {joint: A}
+)";
+
+/// A folder with a model in it, where the program is run.
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() { write("model.yaml", kPendulum); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    return test::text_of(folder_ / name);
+  }
+  [[nodiscard]] bool exists(const std::string& name) const {
+    return std::filesystem::exists(folder_ / name);
+  }
+  test::Program start(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), POLHODE_CLI);
+    return {arguments, folder_ / ""};
+  }
+  test::ProgramResult run(const std::vector<std::string>& arguments) const {
+    return start(arguments).wait();
+  }
+  /// The text of a key in the JSON object that a run printed.
+  static std::string value(const std::string& json, const std::string& key) {
+    const std::size_t at = json.find("\"" + key + "\": ");
+    if (at == std::string::npos) return "missing";
+    const std::size_t begin = at + key.size() + 4;
+    std::string text = json.substr(begin, json.find('\n', begin) - begin);
+    if (text.back() == ',') text.pop_back();
+    return text;
+  }
+
+  test::Scratch folder_;
+};
+
+TEST_F(CommandLine, HelpsWithAMistypedCommand) {
+  const auto result = run({"rum", "model.yaml"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.err,
+            "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, check, info, "
+            "schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
+}
+
+TEST_F(CommandLine, HelpsWithAMistypedOption) {
+  const auto result = run({"run", "model.yaml", "--jsn"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("does not take '--jsn'. Did you mean '--json'?"));
+}
+
+TEST_F(CommandLine, WantsAModel) {
+  const auto result = run({"run"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, StartsWith("polhode run: "));
+}
+
+TEST_F(CommandLine, EndsWith5ForAMissingFile) {
+  const auto result = run({"run", "absent.yaml"});
+  EXPECT_EQ(result.code, 5);
+  EXPECT_THAT(result.err, HasSubstr("absent.yaml: cannot be opened (No such file or directory)"));
+}
+
+TEST_F(CommandLine, EndsWith3ForAWrongModelAndNamesThePlace) {
+  write("bad.yaml", "format: 1\nbodies:\n  a: {mass: -1, inertia: [1, 1, 1]}\n");
+  for (const char* command : {"run", "check", "info"}) {
+    const auto result = run({command, "bad.yaml"});
+    EXPECT_EQ(result.code, 3) << command;
+    EXPECT_THAT(result.err, HasSubstr("bad.yaml:3:")) << command;
+    EXPECT_EQ(result.out, "") << command;
+  }
+  EXPECT_FALSE(exists("bad.results"));
+}
+
+TEST_F(CommandLine, EndsWith5WhenResultsCannotBeWritten) {
+  write("taken", "a file where a folder should be");
+  const auto result = run({"run", "model.yaml", "-o", "taken/results"});
+  EXPECT_EQ(result.code, 5);
+  EXPECT_THAT(result.err, HasSubstr("taken/results"));
+}
+
+TEST_F(CommandLine, RunsAndWritesWhatTheModelAsksFor) {
+  const auto result = run({"run", "model.yaml"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("energy drift"), HasSubstr("steps")));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("Double pendulum"), HasSubstr("model.results")));
+  EXPECT_THAT(result.err, Not(HasSubstr("\r"))) << "a progress line off a terminal";
+  for (const char* file : {"results.h5", "checkpoint.pst", "probes/tip.csv", "probes/A.csv",
+                           "paraview/results.pvd", "paraview/results/000050.vtp"})
+    EXPECT_TRUE(exists(std::string("model.results/") + file)) << file;
+  const std::string tip = read("model.results/probes/tip.csv");
+  EXPECT_THAT(tip, StartsWith("t [s],x [m],y [m],z [m],vx [m/s],vy [m/s],vz [m/s],ax [m/s^2],"
+                              "ay [m/s^2],az [m/s^2]\n0,2,0,0,0,0,0,"));
+  EXPECT_EQ(std::count(tip.begin(), tip.end(), '\n'), 22);  // Header, and 0 to 1 s by 50 ms.
+  const std::string hinge = read("model.results/probes/A.csv");
+  EXPECT_THAT(hinge, StartsWith("t [s],fx [N],fy [N],fz [N],mx [N m],my [N m],mz [N m],rz [rad],"
+                                "rate rz [rad/s]\n"));
+  EXPECT_EQ(std::count(hinge.begin(), hinge.end(), '\n'), 52);  // By output.every, 20 ms.
+}
+
+TEST_F(CommandLine, PrintsOneJsonObjectAndKeepsQuiet) {
+  const auto result = run({"run", "model.yaml", "--json", "--quiet", "-o", "out"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, StartsWith("{\n"));
+  for (const char* key :
+       {"rejected_steps", "newton_iterations", "energy_drift", "linear_momentum_drift",
+        "angular_momentum_drift", "constraint_residual_max", "velocity_constraint_residual_max",
+        "wall_time_s", "cpu_time_s", "phases", "result_hash"})
+    EXPECT_NE(value(result.out, key), "missing") << key;
+  EXPECT_EQ(value(result.out, "steps"), "100");
+  EXPECT_EQ(value(result.out, "frames"), "51");
+  EXPECT_EQ(value(result.out, "end"), "\"finished\"");
+  EXPECT_TRUE(exists("out/results.h5"));
+}
+
+TEST_F(CommandLine, ContinuesFromACheckpointBitForBit) {
+  const auto straight = run({"run", "model.yaml", "--json", "--quiet", "-o", "straight"});
+  ASSERT_EQ(straight.code, 0) << straight.err;
+  ASSERT_EQ(
+      run({"run", "model.yaml", "--quiet", "-o", "part", "--set", "analysis.duration=0.37 s"}).code,
+      0);
+  const auto rest = run(
+      {"run", "model.yaml", "--json", "--quiet", "-o", "part", "--restart", "part/checkpoint.pst"});
+  ASSERT_EQ(rest.code, 0) << rest.err;
+  EXPECT_EQ(value(rest.out, "result_hash"), value(straight.out, "result_hash"));
+  EXPECT_EQ(value(rest.out, "steps"), "100");
+  // The tables are those of the straight run; the frame at 0.37 s, where the part ended, is more.
+  EXPECT_EQ(read("part/probes/tip.csv"), read("straight/probes/tip.csv"));
+  EXPECT_EQ(value(rest.out, "frames"), "52");
+}
+
+TEST_F(CommandLine, StopsAtTheWallLimitWithACheckpoint) {
+  const auto stopped = run({"run", "model.yaml", "--wall-limit", "0"});
+  EXPECT_EQ(stopped.code, 75);
+  EXPECT_THAT(stopped.err, HasSubstr("--restart model.results/checkpoint.pst"));
+  const auto rest =
+      run({"run", "model.yaml", "--restart", "model.results/checkpoint.pst", "--json", "--quiet"});
+  const auto straight = run({"run", "model.yaml", "--json", "--quiet", "-o", "straight"});
+  ASSERT_EQ(rest.code, 0) << rest.err;
+  EXPECT_EQ(value(rest.out, "result_hash"), value(straight.out, "result_hash"));
+  EXPECT_EQ(value(rest.out, "frames"), "51");
+}
+
+TEST_F(CommandLine, FinishesTheStepAndSavesWhenInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    test::Program program = start({"run", "model.yaml", "--set", "analysis.duration=1e7 s", "--set",
+                                   "output.paraview=false"});
+    for (int i = 0; i < 200 && !exists("model.results/probes/A.csv"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    program.signal(signal);
+    const auto result = program.wait();
+    EXPECT_EQ(result.code, 130);
+    EXPECT_THAT(result.err, HasSubstr("Stopped at t = "));
+    EXPECT_TRUE(exists("model.results/checkpoint.pst"));
+    std::filesystem::remove_all(folder_ / "model.results");
+  }
+}
+
+TEST_F(CommandLine, LeavesReadableFilesWhenItIsKilled) {
+  test::Program program = start({"run", "model.yaml", "--set", "analysis.duration=1e7 s", "--set",
+                                 "analysis.checkpoint_every=0.05"});
+  for (int i = 0; i < 200 && !exists("model.results/checkpoint.pst"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  program.signal(SIGKILL);
+  EXPECT_EQ(program.wait().code, -1);
+  const std::string table = read("model.results/probes/A.csv");
+  EXPECT_GT(table.size(), 100u);
+  EXPECT_EQ(table.back(), '\n');
+  const std::string list = read("model.results/paraview/results.pvd");
+  EXPECT_THAT(list, HasSubstr("</VTKFile>"));
+  const std::size_t last = list.rfind("file=\"") + 6;
+  const std::string picture = list.substr(last, list.find('"', last) - last);
+  EXPECT_THAT(read("model.results/paraview/" + picture), HasSubstr("</VTKFile>"));
+  // The results are continued from the last checkpoint, frames after it are dropped.
+  const auto rest = run({"run", "model.yaml", "--restart", "model.results/checkpoint.pst", "--set",
+                         "analysis.duration=1e7 s", "--wall-limit", "0.2", "--quiet"});
+  EXPECT_EQ(rest.code, 75) << rest.err;
+}
+
+TEST_F(CommandLine, EndsWith4AndKeepsTheLastStateWhenAStepDoesNotConverge) {
+  const auto result = run({"run", "model.yaml", "--set", "analysis.max_iterations=1", "--set",
+                           "analysis.min_step=10 ms"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("body '"));
+  EXPECT_TRUE(exists("model.results/checkpoint.pst"));
+  EXPECT_TRUE(exists("model.results/results.h5"));
+}
+
+TEST_F(CommandLine, RefusesACheckpointThatIsNone) {
+  const auto result = run({"run", "model.yaml", "--restart", "model.yaml"});
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("model.yaml: is not a Polhode checkpoint"));
+}
+
+TEST_F(CommandLine, ChecksMobilityAndTangents) {
+  const auto result = run({"check", "model.yaml", "--tangents", "--json"});
+  ASSERT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_EQ(value(result.out, "mobility"), "4");  // One hinge, one ball.
+  EXPECT_EQ(value(result.out, "constraint_rows"), "8");
+  EXPECT_EQ(value(result.out, "redundant_rows"), "0");
+  EXPECT_EQ(value(result.out, "passed"), "true");
+}
+
+TEST_F(CommandLine, NamesRedundantJoints) {
+  write("door.yaml", R"(format: 1
+bodies:
+  door: {mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}
+joints:
+  low: {type: revolute, bodies: [ground, door], at: [0, 0, -1], axis: z}
+  high: {type: revolute, bodies: [ground, door], at: [0, 0, 1], axis: z}
+analysis: {duration: 0.1 s, step: 10 ms}
+)");
+  const auto result = run({"check", "door.yaml"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, HasSubstr("rank 5, 5 redundant"));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("'low'"), HasSubstr("'high'")));
+}
+
+TEST_F(CommandLine, TellsWhatAModelHoldsAndWhichKindsExist) {
+  const auto info = run({"info", "model.yaml"});
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, AllOf(HasSubstr("upper"), HasSubstr("2.5"), HasSubstr("spherical"),
+                              HasSubstr("constraint rows  8")));
+  EXPECT_THAT(run({"info", "--kinds", "joints"}).out,
+              AllOf(HasSubstr("revolute"), HasSubstr("universal")));
+  EXPECT_THAT(run({"info", "--kinds", "loads"}).out, HasSubstr("spring_damper"));
+  EXPECT_THAT(run({"info", "--kinds", "shapes"}).out, HasSubstr("capsule"));
+  EXPECT_EQ(run({"info", "--kinds", "jonts"}).code, 2);
+  EXPECT_EQ(run({"info"}).code, 2);
+}
+
+TEST_F(CommandLine, WritesTheSchemaAndTheReference) {
+  EXPECT_THAT(run({"schema"}).out, AllOf(StartsWith("{"), HasSubstr("\"revolute\"")));
+  EXPECT_THAT(run({"schema", "--markdown"}).out, AllOf(HasSubstr("#"), HasSubstr("revolute")));
+}
+
+TEST_F(CommandLine, ListsAndWritesExamples) {
+  const auto list = run({"examples"});
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(list.out, AllOf(HasSubstr("n_four_bar --set N=40"), HasSubstr("binary_tree")));
+  ASSERT_EQ(
+      run({"examples", "chain", "--set", "N=3", "--set", "joint=spherical", "-o", "c.yaml"}).code,
+      0);
+  EXPECT_EQ(run({"run", "c.yaml", "--quiet", "--set", "analysis.duration=50 ms"}).code, 0);
+  const auto unknown = run({"examples", "chian"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("Did you mean 'chain'?"));
+  EXPECT_EQ(run({"examples", "chain", "--set", "N=0"}).code, 2);
+  EXPECT_EQ(run({"examples", "chain", "--set", "M=3"}).code, 2);
+}
+
+TEST_F(CommandLine, FindsItselfWell) {
+  const auto result = run({"doctor"});
+  EXPECT_EQ(result.code, 0) << result.out;
+  EXPECT_THAT(result.out, Not(HasSubstr("FAILED")));
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && defined(NDEBUG)
+// Processor time, the least of a few runs, so that a busy machine does not count.
+TEST_F(CommandLine, StartsWithin50Milliseconds) {
+  double least = 1e9;
+  for (int i = 0; i < 5; ++i)
+    least = std::min(least, run({"run", "model.yaml", "--quiet", "--set", "analysis.duration=10 ms",
+                                 "--set", "output.paraview=false"})
+                                .cpu_seconds);
+  EXPECT_LT(least, 0.05);
+}
+#endif
+
+}  // namespace
+}  // namespace polhode
+#endif

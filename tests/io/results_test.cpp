@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/write_results.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <polhode/base/error.hpp>
+#include <polhode/io/file_error.hpp>
+#include <support/scratch.hpp>
+
+namespace polhode {
+namespace {
+
+using testing::HasSubstr;
+
+ResultsLayout layout(int bodies) {
+  ResultsLayout l;
+  l.title = "Test";
+  for (int i = 0; i < bodies; ++i) l.bodies.push_back("b" + std::to_string(i));
+  l.joints = {{"hinge", "revolute", 1}, {"ball", "spherical", 3}, {"weld", "fixed", 0}};
+  return l;
+}
+
+/// A frame in which every number is known from the frame's number k and its place.
+ResultsFrame frame(const ResultsLayout& l, int k) {
+  ResultsFrame f;
+  f.t = 0.5 * k;
+  for (std::size_t i = 0; i < l.bodies.size(); ++i) {
+    f.position.emplace_back(k, static_cast<double>(i), 0.25);
+    f.velocity.emplace_back(-k, 1.0, 2.0);
+    f.angular_velocity.emplace_back(k, 2.0 * k, 3.0 * k);
+    f.orientation.emplace_back(-0.5, 0.5, 0.5, 0.5);  // w < 0: shown with the other sign.
+  }
+  for (std::size_t j = 0; j < l.joints.size(); ++j) {
+    f.force.emplace_back(k, static_cast<double>(j), 7.0);
+    f.moment.emplace_back(1.0, 2.0, k);
+  }
+  for (int c = 0; c < l.coordinates(); ++c) {
+    f.coordinates.push_back(10.0 * c + k);
+    f.rates.push_back(-10.0 * c - k);
+  }
+  f.balance.kinetic = k;
+  f.balance.potential = 2.0 * k;
+  f.steps = k;
+  return f;
+}
+
+/// Runs a Python text with h5py and returns what it prints; "no h5py" if there is none.
+std::string python(const std::string& code) {
+  const test::Scratch scratch;
+  std::ofstream(scratch / "code.py") << code;
+  const std::string interpreter =
+      std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+  if (std::system((interpreter + " -c 'import h5py' 2>/dev/null").c_str()) != 0) return "no h5py";
+  std::FILE* pipe = popen((interpreter + " " + (scratch / "code.py") + " 2>&1").c_str(), "r");
+  std::string output;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
+  pclose(pipe);
+  return output;
+}
+
+TEST(ResultsFile, IsReadWithThreeLinesOfPython) {
+  const test::Scratch scratch;
+  const ResultsLayout l = layout(3);
+  ResultsFile file(scratch / "results.h5", l, {.version = "1.2.3", .model_text = "format: 1\n"});
+  for (int k = 0; k < 5; ++k) file.append(frame(l, k));
+  file.close();
+  const std::string output = python(R"(
+import h5py
+results = h5py.File(")" + scratch / "results.h5" +
+                                    R"(")
+print(results["time"][:], results["bodies/b2/position"][:, 0])
+print(results["bodies/b1/orientation"][4], results["bodies/b1/position"].attrs["unit"])
+print(results["joints/ball/coordinates"][2], results["joints/hinge/force"][3], "weld" in results["joints"])
+print(results["packed/bodies/position"].shape, results["packed/bodies/names"].asstr()[:])
+print(results["energy/total"][4], results["solver/steps"][4], results["solver/steps"].dtype)
+print(results["provenance"].attrs["version"], results["provenance/model"].asstr()[0])
+)");
+  if (output == "no h5py") GTEST_SKIP() << "h5py is not installed";
+  EXPECT_EQ(output,
+            "[0.  0.5 1.  1.5 2. ] [0. 1. 2. 3. 4.]\n"
+            "[ 0.5 -0.5 -0.5 -0.5] m\n"
+            "[12. 22. 32.] [3. 0. 7.] True\n"
+            "(5, 3, 3) ['b0' 'b1' 'b2']\n"
+            "12.0 4 int64\n"
+            "1.2.3 format: 1\n\n");
+}
+
+TEST(ResultsFile, ContinuesAtATimeAndDropsWhatCameLater) {
+  const test::Scratch scratch;
+  const ResultsLayout l = layout(2);
+  {
+    ResultsFile file(scratch / "results.h5", l, {});
+    for (int k = 0; k < 8; ++k) file.append(frame(l, k));
+  }
+  ResultsFile file = ResultsFile::append_to(scratch / "results.h5", l, 1.5);
+  EXPECT_EQ(file.frames(), 4u);  // Times 0, 0.5, 1 and 1.5.
+  file.append(frame(l, 100));
+  file.close();
+  ResultsFile again = ResultsFile::append_to(scratch / "results.h5", l, 1e9);
+  EXPECT_EQ(again.frames(), 5u);
+}
+
+TEST(ResultsFile, RefusesToContinueTheResultsOfAnotherModel) {
+  const test::Scratch scratch;
+  { ResultsFile file(scratch / "results.h5", layout(2), {}); }
+  try {
+    (void)ResultsFile::append_to(scratch / "results.h5", layout(3), 0.0);
+    FAIL() << "continued";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("belongs to another model"));
+    EXPECT_THAT(error.what(), HasSubstr("-o"));
+  }
+}
+
+TEST(ResultsFile, SaysWhichFileItCannotWrite) {
+  try {
+    ResultsFile file("/no/such/folder/results.h5", layout(1), {});
+    FAIL() << "written";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/no/such/folder/results.h5: cannot be written"));
+  }
+}
+
+TEST(ResultsFile, HoldsAModelWithoutJoints) {
+  const test::Scratch scratch;
+  ResultsLayout l = layout(1);
+  l.joints.clear();
+  ResultsFile file(scratch / "results.h5", l, {});
+  file.append(frame(l, 0));
+  EXPECT_NO_THROW(file.close());
+}
+
+// The number of complete frames is the length of `time`; a writer that is killed at any moment
+// leaves at least the frames older than the time it may hold them back.
+TEST(ResultsFile, IsWholeAfterItsWriterWasKilled) {
+  const test::Scratch scratch;
+  const ResultsLayout l = layout(20);
+  for (const int milliseconds : {60, 137, 211, 305}) {
+    const std::string path = scratch / "killed.h5";
+    const pid_t writer = fork();
+    if (writer == 0) {
+      alarm(10);  // Ends by itself should the test be killed.
+      ResultsFile file(path, l, {});
+      for (int k = 0;; ++k) file.append(frame(l, k));
+    }
+    usleep(static_cast<useconds_t>(1000 * milliseconds));
+    kill(writer, SIGKILL);
+    waitpid(writer, nullptr, 0);
+    const std::string output = python(R"(
+import h5py
+f = h5py.File(")" + path + R"(")
+n = len(f["time"])
+k = 2 * f["time"][:]
+good = n > 0 and list(k) == list(range(n))
+for name in ["bodies/b7/position", "packed/bodies/angular_velocity", "joints/hinge/force"]:
+    good = good and (f[name][:n].reshape(n, -1)[:, 0] == k).all()
+print(good and (f["energy/potential"][:n] == 2 * k).all() and (f["solver/steps"][:n] == k).all())
+)");
+    if (output == "no h5py") GTEST_SKIP() << "h5py is not installed";
+    EXPECT_EQ(output, "True\n") << "killed after " << milliseconds << " ms";
+  }
+}
+
+}  // namespace
+}  // namespace polhode
