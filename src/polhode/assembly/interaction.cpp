@@ -7,6 +7,14 @@ namespace polhode {
 
 void PairTerms::set_zero() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
 
+void PairTerms::set_sums_zero() {
+  set_values_zero();
+  D_aa.setZero();
+  D_ab.setZero();
+  D_ba.setZero();
+  D_bb.setZero();
+}
+
 void PairTerms::set_values_zero() {
   wrench_a.setZero();
   wrench_b.setZero();

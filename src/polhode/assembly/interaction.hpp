@@ -32,6 +32,8 @@ struct PairTerms {
   Vec6 compliance;  ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
 
   void set_zero();
+  /// All but B and G, whose columns and rows an interaction with multipliers fills.
+  void set_sums_zero();
   void set_values_zero();  ///< Wrenches, values and compliance only.
 };
 
@@ -68,7 +70,8 @@ struct Participants {
 
 /// How the wrenches on a and b depend on the other body's motion, beyond the multipliers' own
 /// columns: not at all; only as a couple, whose moments on a and b are equal and opposite and
-/// depend on rotations alone; or in any way. Elimination along the tree carries no more than that.
+/// depend on rotations alone; or in any way. In the first two cases all tangents are of moments by
+/// rotations. Elimination along the tree carries no more than that.
 enum class Coupling { none, couple, all };
 
 /// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
@@ -151,7 +154,7 @@ class Group final : public InteractionGroup {
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {
     for (std::size_t k = 0; k < list.size(); ++k) {
-      steps[k].context.tangents ? terms[k].set_zero() : terms[k].set_values_zero();
+      steps[k].context.tangents ? terms[k].set_sums_zero() : terms[k].set_values_zero();
       at(list[k]).evaluate(steps[k], terms[k]);
     }
   }

@@ -10,13 +10,13 @@ namespace polhode {
 namespace {
 
 /// An increment below this leaves a quadratic remainder below round-off: no polish is needed.
-constexpr double kNoPolishBelow = 1e-9;
+constexpr double kNoPolishBelow = 1e-10;
 /// An increment above this is no Newton iteration any more.
 constexpr double kDiverged = 1e3;
 /// Increments above this are watched by the line search.
 constexpr double kLarge = 0.05;
 /// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.
-constexpr double kEnergyLeak = 1e-13;
+constexpr double kEnergyLeak = 1e-14;
 constexpr double kRoundOff = 4.4e-16;
 
 /// Damping: goes back to the iterate before a step that made things worse, and takes less of it.

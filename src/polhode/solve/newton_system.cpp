@@ -55,6 +55,7 @@ InteractionSweep::InteractionSweep(const System& system, std::vector<int> intera
   items_.reserve(most);
   pair_steps_.reserve(most);
   terms_.resize(most);
+  for (PairTerms& t : terms_) t.set_zero();
 }
 
 void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> steps,

@@ -119,6 +119,7 @@ void TreeEngine::lay_out() {
       if (body != kGround) touched_.push_back(body);
   }
   std::sort(touched_.begin(), touched_.end());
+  for (const TreeExtra& x : plan_.extras) rates_ = rates_ || x.rows == 0;
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   if (!touched_.empty()) steps_.resize(system_->body_count() + 1);
 
@@ -241,13 +242,21 @@ void TreeEngine::end_step(const State&, Trial& trial) {
   for_each_tree_joint([&](double& lane, int row) { trial.lambda[row] = lane; });
 }
 
+void TreeEngine::take_steps(const State& state, const Trial& trial, bool first) {
+  if (first) {
+    for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
+    steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+    return;
+  }
+  for (int body : touched_) update_body_step(*system_, state, trial, body, steps_[body], rates_);
+}
+
 void TreeEngine::evaluate_extras(const State& state, const Trial& trial) {
   if (plan_.extras.empty()) return;
   for (ExtraRows& e : extra_rows_) std::memset(e.A, 0, sizeof e.A);
   for (EdgeRows& e : edge_rows_) std::memset(static_cast<void*>(&e), 0, sizeof e);
   if (!S_.empty()) std::memset(S_.data(), 0, S_.size() * sizeof(LaneData));
-  for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
-  steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+  take_steps(state, trial, view_.first_iteration != 0);
   sweep_.run(steps_, trial.context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& terms) {
                add_extra(plan_.extras[extra_index_[interaction]], terms, trial);
@@ -259,10 +268,10 @@ void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Tri
   const auto add_own = [&](int slot, const Vec6& wrench, const Mat6& D) {
     if (slot < 0) return;
     RowData* A = extra_rows_[plan_.extra_of_slot[slot]].A;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j) A[i][j] -= s * D(i, j);
-      A[i][7] -= s * wrench[i];
-    }
+    const int first = x.rotations_only ? 3 : 0;  // where D has anything
+    for (int i = first; i < 6; ++i)
+      for (int j = first; j < 6; ++j) A[i][j] -= s * D(i, j);
+    for (int i = 0; i < 6; ++i) A[i][7] -= s * wrench[i];
   };
   if (x.coupling == Coupling::couple) {  // see below: the couple takes the rest
     add_own(x.slot_a, terms.wrench_a, terms.D_aa + terms.D_ba);
@@ -393,8 +402,7 @@ ConstraintCheck TreeEngine::check(const State& state, Trial& trial) {
     c.worst_row = system_->interactions()[joint].first_row;
   }
   if (plan_.loops.empty()) return c;
-  for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
-  steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+  take_steps(state, trial, false);
   StepContext values_only = trial.context;
   values_only.tangents = false;
   sweep_.run(

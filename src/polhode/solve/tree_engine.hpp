@@ -37,6 +37,8 @@ class TreeEngine final : public NewtonEngine {
   void lay_out();
   void fill_joint_constants();
   void set_step(const State& state, Trial& trial);
+  /// Steps of the bodies that extras act on; `first`: of the step, else only t_{n+1} has changed.
+  void take_steps(const State& state, const Trial& trial, bool first);
   void evaluate_extras(const State& state, const Trial& trial);
   void add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
   void move_multipliers(Trial& trial, double damping);
@@ -49,6 +51,7 @@ class TreeEngine final : public NewtonEngine {
   InteractionSweep sweep_;        ///< Over what the tree does not hold.
   std::vector<BodyStep> steps_;   ///< By body, the ground last; only where needed.
   std::vector<int> touched_;      ///< Bodies of extras.
+  bool rates_ = false;            ///< Some extra may want velocities at t_{n+1}.
   std::vector<int> extra_index_;  ///< By interaction: index into plan_.extras.
   TreeView view_;
 

@@ -48,6 +48,7 @@ class Planner {
       if (s >= 0 && plan_.extra_of_slot[s] < 0) plan_.extra_of_slot[s] = plan_.extra_count++;
     int unknowns = x.rows;
     const Coupling coupling = system_.group(ref.group).coupling(ref.item);
+    x.rotations_only = coupling != Coupling::all;
     if (x.slot_a >= 0 && x.slot_b >= 0 && coupling != Coupling::none) {
       const bool b_is_child = parent_[x.slot_b] == x.slot_a;
       if (b_is_child || parent_[x.slot_a] == x.slot_b) {

@@ -22,6 +22,7 @@ struct TreeExtra {
   /// How its distant bodies are coupled; the loop has further unknowns for that: the couple (3),
   /// or what each body's rows owe to the other's motion (12).
   Coupling coupling = Coupling::none;
+  bool rotations_only = false;  ///< Its tangents are of moments by rotations.
 };
 
 /// Symbolic part of elimination along the tree with loops: what is carried where, in which order

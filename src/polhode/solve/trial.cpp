@@ -52,31 +52,37 @@ void start_trial(const System& system, const State& state, Trial& trial) {
 }
 
 /// @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot} @eq{eq:td-incremental-rotation}
-BodyStep body_step(const System& system, const State& state, const Trial& trial, int body) {
-  const StepContext& context = trial.context;
-  const GeneralizedAlpha& ga = context.ga;
-  if (body == kGround) return BodyStep::ground(ga.alpha_f);
+void update_body_step(const System& system, const State& state, const Trial& trial, int body,
+                      BodyStep& s, bool rates) {
   const int slot = system.slot(body), lane = slot % kLanes;
   const TrialBlock& t = trial.blocks[slot / kLanes];
-  const BodyBlock& n = state.blocks[slot / kLanes];
-  BodyStep s;
-  s.r_n = get(n.r, lane);
   s.r_n1 = get(t.r, lane);
-  s.Lambda_n = get(t.Lambda_n, lane);
   s.Lambda_n1 = get(t.Lambda, lane);
   s.u = get(t.u, lane);
   s.theta = get(t.theta, lane);
+  if (!rates) return;
+  const GeneralizedAlpha& ga = trial.context.ga;
+  s.v_n1 = s.rate * s.u + (1.0 - ga.c) * s.v_n;
+  s.W_n1 = s.rate * (s.Lambda_n.transpose() * s.theta) + (1.0 - ga.c) * s.W_n;
+  if (ga.c_A == 0.0) return;
+  const BodyBlock& n = state.blocks[slot / kLanes];
+  s.v_n1 += trial.context.dt * ga.c_A * get(n.a, lane);
+  s.W_n1 += trial.context.dt * ga.c_A * get(n.A, lane);
+}
+
+BodyStep body_step(const System& system, const State& state, const Trial& trial, int body) {
+  const GeneralizedAlpha& ga = trial.context.ga;
+  if (body == kGround) return BodyStep::ground(ga.alpha_f);
+  const int slot = system.slot(body), lane = slot % kLanes;
+  const BodyBlock& n = state.blocks[slot / kLanes];
+  BodyStep s;
+  s.r_n = get(n.r, lane);
+  s.Lambda_n = get(trial.blocks[slot / kLanes].Lambda_n, lane);
   s.v_n = get(n.v, lane);
   s.W_n = get(n.W, lane);
   s.alpha_f = ga.alpha_f;
-  s.rate = ga.c / context.dt;
-  const Vec3 Theta = s.Lambda_n.transpose() * s.theta;
-  s.v_n1 = s.rate * s.u + (1.0 - ga.c) * s.v_n;
-  s.W_n1 = s.rate * Theta + (1.0 - ga.c) * s.W_n;
-  if (ga.c_A != 0.0) {
-    s.v_n1 += context.dt * ga.c_A * get(n.a, lane);
-    s.W_n1 += context.dt * ga.c_A * get(n.A, lane);
-  }
+  s.rate = ga.c / trial.context.dt;
+  update_body_step(system, state, trial, body, s, true);
   return s;
 }
 

@@ -11,9 +11,9 @@ namespace polhode {
 /// The step being solved.
 struct Trial {
   StepContext context;
-  std::vector<TrialBlock> blocks;      ///< By slot; the last block is the ground.
-  std::vector<double> lambda;          ///< By row, current iterate.
-  std::vector<double> lambda_centre;   ///< By row: proximal centre; zero until converged.
+  std::vector<TrialBlock> blocks;     ///< By slot; the last block is the ground.
+  std::vector<double> lambda;         ///< By row, current iterate.
+  std::vector<double> lambda_centre;  ///< By row: proximal centre; zero until converged.
 
   /// s = βΔt²/m_ref: momentum rows are multiplied by it, λ̂ = s λ.
   [[nodiscard]] double scale(const System& system) const {
@@ -30,23 +30,26 @@ void start_trial(const System& system, const State& state, Trial& trial);
 /// Body's step from the state at t_n and the trial at t_{n+1}; velocities by Newmark.
 [[nodiscard]] BodyStep body_step(const System& system, const State& state, const Trial& trial,
                                  int body);
+/// Renews what an iteration changed: t_{n+1}; velocities there only if `rates`.
+void update_body_step(const System& system, const State& state, const Trial& trial, int body,
+                      BodyStep& step, bool rates);
 /// Replaces a body's u, θ in the trial, and with them r and Λ at t_{n+1}.
 void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const Vec3& theta);
 
 /// How one Newton iteration went.
 struct Iteration {
-  bool solved = false;      ///< False: singular matrix or a value that is not finite.
-  double increment = 0.0;   ///< Largest of |Δr|/ℓ and |Δθ| [-].
-  double rotation = 0.0;    ///< Largest |θ| of the step after the update [-].
-  int worst_body = -1;      ///< If not solved: whose pivot vanished, if known.
+  bool solved = false;     ///< False: singular matrix or a value that is not finite.
+  double increment = 0.0;  ///< Largest of |Δr|/ℓ and |Δθ| [-].
+  double rotation = 0.0;   ///< Largest |θ| of the step after the update [-].
+  int worst_body = -1;     ///< If not solved: whose pivot vanished, if known.
 };
 
 /// How well the constraints hold at the current iterate.
 struct ConstraintCheck {
-  double residual = 0.0;     ///< Largest |g| [m or -].
+  double residual = 0.0;  ///< Largest |g| [m or -].
   int worst_row = -1;
   double work_defect = 0.0;  ///< Σ |λ g|: the energy that the multipliers may leak [J].
-  double work_scale = 0.0;   ///< Σ |λ|(ℓ + |x|): times round-off, the least that can be asked [J].
+  double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the least that can be asked [J].
 };
 
 /// One way of doing the Newton iterations of a step: assemble, solve, update.

@@ -283,35 +283,41 @@ inline bool eliminate_root(const TreeView& v, int slot, int lane, const BlockScr
   return true;
 }
 
+/// What a root has instead of a joint's shape.
+struct RootShape {
+  static constexpr JointLayout layout{0, 0};
+  static constexpr int free = 6;
+};
+
 /// Increment of a body from its parent's, and A Δx − ρ. Loops' solutions are already there.
-POLHODE_INLINE void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
+template <class S>
+void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
+  constexpr int nq = S::free;
+  constexpr JointLayout l = S::layout;
   EliminatedBody& e = v.body[slot];
   const double* x_a = v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;
   const RowData* y = v.Y + v.y_row[slot];
-  const JointLayout l = JointLayout::of_code(v.shape[slot]);
-  const int nq = l.free();
-  double q[6];
+  double q[nq > 0 ? nq : 1];
   for (int k = 0; k < nq; ++k) {
     const double* Y = y[k];
     q[k] = -(((Y[0] * x_a[0] + Y[1] * x_a[1]) + Y[2] * x_a[2]) +
              ((Y[3] * x_a[3] + Y[4] * x_a[4]) + Y[5] * x_a[5]) + Y[7]);
   }
-  const int open = v.first_open[slot + 1] - v.first_open[slot];
-  if (open > 0) subtract_loops(v, slot, nq, q);
+  const bool open = v.first_open[slot + 1] != v.first_open[slot];
+  if (open) subtract_loops(v, slot, nq, q);
   double x[6];
-  if (l.root()) {
+  if constexpr (l.root()) {
     for (int i = 0; i < 6; ++i) x[i] = q[i];
   } else {
     const double* data = v.joint_data + v.joint[slot / kLanes] + lane;
     const auto kept = [&](int field) { return data[8 * field]; };
-    const int c = l.c_r(), g = l.x_g(), S = l.S_r();
-    const double cx = kept(c), cy = kept(c + 1), cz = kept(c + 2);
-    x[0] = x_a[0] + (x_a[4] * cz - x_a[5] * cy) + kept(g);
-    x[1] = x_a[1] + (x_a[5] * cx - x_a[3] * cz) + kept(g + 1);
-    x[2] = x_a[2] + (x_a[3] * cy - x_a[4] * cx) + kept(g + 2);
-    for (int i = 3; i < 6; ++i) x[i] = x_a[i] + kept(g + i);
+    const double cx = kept(l.c_r()), cy = kept(l.c_r() + 1), cz = kept(l.c_r() + 2);
+    x[0] = x_a[0] + (x_a[4] * cz - x_a[5] * cy) + kept(l.x_g());
+    x[1] = x_a[1] + (x_a[5] * cx - x_a[3] * cz) + kept(l.x_g() + 1);
+    x[2] = x_a[2] + (x_a[3] * cy - x_a[4] * cx) + kept(l.x_g() + 2);
+    for (int i = 3; i < 6; ++i) x[i] = x_a[i] + kept(l.x_g() + i);
     for (int k = 0; k < nq; ++k)
-      for (int i = 0; i < 6; ++i) x[i] += q[k] * kept(S + 6 * k + i);
+      for (int i = 0; i < 6; ++i) x[i] += q[k] * kept(l.S_r() + 6 * k + i);
   }
   for (int i = 0; i < 6; ++i) e.X[i] = x[i];
   e.X[6] = 0.0;
@@ -327,7 +333,7 @@ POLHODE_INLINE void back_substitute(const TreeView& v, int slot, int lane, doubl
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) wrench[i] += edge.K_bp[i][j] * x_a[j];
   }
-  if (open > 0) add_loop_forces(v, slot, wrench);
+  if (open) add_loop_forces(v, slot, wrench);
   if (v.first_common[slot] != v.first_common[slot + 1]) solve_common_loops(v, slot);
 }
 
@@ -423,17 +429,19 @@ inline SweepResult down(const TreeView* view) {
   for (int c = 0; c < v.chunks; ++c) {
     const TreeChunk& chunk = v.chunk[c];
     const int first_block = v.run[chunk.first_run].first_block;
-    const TreeRun& last = v.run[chunk.last_run - 1];
     for (int r = chunk.first_run; r < chunk.last_run; ++r) {  // padding lanes stay at rest
       const int b = v.run[r].first_block + v.run[r].blocks - 1 - first_block;
       for (int lane = 0; lane < 8; ++lane)
         for (int i = 0; i < 8; ++i)
           scratch.X[b][lane][i] = scratch.X_a[b][lane][i] = scratch.wrench[b][lane][i] = 0.0;
     }
-    (void)last;
     for (int i = chunk.first; i < chunk.last; ++i) {
       const int slot = v.slot_in_order[i], lane = slot % kLanes, b = slot / kLanes - first_block;
-      back_substitute(v, slot, lane, scratch.wrench[b][lane]);
+      if (v.shape[slot] == 0)
+        back_substitute<RootShape>(v, slot, lane, scratch.wrench[b][lane]);
+      else
+        with_shape(v.shape[slot],
+                   [&]<class S>() { back_substitute<S>(v, slot, lane, scratch.wrench[b][lane]); });
       row_store(scratch.X[b][lane], row_load(v.body[slot].X));
       const double* x_a =
           v.parent[slot] < 0 ? v.body[v.blocks * kLanes].X : v.body[v.parent[slot]].X;

@@ -168,9 +168,14 @@ inline bool eliminate_loop(const TreeView& v, int index) {
         }
     }
     for (int i = 0; i < other.unknowns; ++i) {
-      double s = 0.0;
-      for (int j = 0; j < n; ++j) s += L[i * 8 * loop.panels + j] * U[8 * j + 7];
-      v.nu[other.nu + i] -= s;
+      double s0 = 0.0, s1 = 0.0;
+      const double* l = L + i * 8 * loop.panels;
+      for (int j = 0; j + 1 < n; j += 2) {
+        s0 += l[j] * U[8 * j + 7];
+        s1 += l[j + 1] * U[8 * j + 15];
+      }
+      if (n % 2) s0 += l[n - 1] * U[8 * n - 1];
+      v.nu[other.nu + i] -= s0 + s1;
     }
     if (loop.common >= 0 && row.common_pair >= 0) {
       for (int c = 0; c < 6; ++c) {
@@ -293,19 +298,17 @@ __attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, i
 inline void solve_loop(const TreeView& v, int index) {
   const TreeLoop& loop = v.loop[index];
   const double* U = v.U + 8 * loop.U;
-  const double* x = loop.common >= 0 ? v.body[loop.common].X : nullptr;
+  const Row x = row_load(v.body[loop.common >= 0 ? loop.common : v.blocks * kLanes].X);
   double* y = v.y + loop.nu;
   for (int i = 0; i < loop.unknowns; ++i) {
-    double s = U[8 * i + 7];
-    if (x)
-      for (int j = 0; j < 6; ++j) s += U[8 * i + j] * x[j];
+    Row s = multiply(row_load(U + 8 * i), x);  // U_i · [Δx_common, 0, 1]
     for (int a = loop.first_later; a < loop.last_later; ++a) {
       const TreeLoop& other = v.loop[v.later[a].loop];
       const double* S = v.S + v.later[a].S_row + 8 * other.panels * i;
-      const double* z = v.y + other.nu;
-      for (int j = 0; j < other.unknowns; ++j) s += S[j] * z[j];
+      for (int k = 0; k < other.panels; ++k)
+        s += multiply(row_load(S + 8 * k), row_load(v.y + other.nu + 8 * k));
     }
-    y[i] = -s;
+    y[i] = -row_sum(s);
   }
 }
 
@@ -319,12 +322,10 @@ inline void subtract_loops(const TreeView& v, int slot, int nq, double* q) {
   for (int o = v.first_open[slot]; o < v.first_open[slot + 1]; ++o) {
     const LoopAtBody& here = v.open[o];
     const TreeLoop& loop = v.loop[here.loop];
-    const double* y = v.y + loop.nu;
-    for (int d = 0; d < nq; ++d) {
-      const double* gamma = v.kept_rows + 8 * (here.kept + loop.panels * d);
-      double s = 0.0;
-      for (int j = 0; j < loop.unknowns; ++j) s += gamma[j] * y[j];
-      q[d] -= s;
+    for (int k = 0; k < loop.panels; ++k) {
+      const Row y = row_load(v.y + loop.nu + 8 * k);
+      for (int d = 0; d < nq; ++d)
+        q[d] -= row_sum(multiply(row_load(v.kept_rows + 8 * (here.kept + loop.panels * d + k)), y));
     }
   }
 }
@@ -334,12 +335,10 @@ inline void add_loop_forces(const TreeView& v, int slot, double* wrench) {
   for (int o = v.first_open[slot]; o < v.first_open[slot + 1]; ++o) {
     const LoopAtBody& here = v.open[o];
     const TreeLoop& loop = v.loop[here.loop];
-    const double* y = v.y + loop.nu;
-    for (int i = 0; i < 6; ++i) {
-      const double* C = pair_row(v, here.pair, loop.panels, i);
-      double s = 0.0;
-      for (int j = 0; j < loop.unknowns; ++j) s += C[j] * y[j];
-      wrench[i] += s;
+    for (int k = 0; k < loop.panels; ++k) {
+      const Row y = row_load(v.y + loop.nu + 8 * k);
+      for (int i = 0; i < 6; ++i)
+        wrench[i] += row_sum(multiply(row_load(pair_row(v, here.pair, loop.panels, i) + 8 * k), y));
     }
   }
 }

@@ -4,6 +4,11 @@
 // forced inline or lives in that namespace, so that no code of one set leaks into another.
 #pragma once
 
+#if POLHODE_WIDTH == 8
+#define POLHODE_SWAP_PAIRS 2, 3, 0, 1, 6, 7, 4, 5
+#else
+#define POLHODE_SWAP_PAIRS 2, 3, 0, 1
+#endif
 #define POLHODE_INLINE inline __attribute__((always_inline))
 
 namespace polhode::POLHODE_ISA {
@@ -77,6 +82,17 @@ POLHODE_INLINE Row multiply(const Row& a, const Row& b) {
   Row r;
   for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
   return r;
+}
+POLHODE_INLINE double row_sum(const Row& a) {
+  Pack s = a.part[0];
+  for (int i = 1; i < kParts; ++i) s += a.part[i];
+#if POLHODE_WIDTH == 8
+  s += __builtin_shufflevector(s, s, 4, 5, 6, 7, 0, 1, 2, 3);
+#endif
+#if POLHODE_WIDTH >= 4
+  s += __builtin_shufflevector(s, s, POLHODE_SWAP_PAIRS);
+#endif
+  return s[0] + s[1];
 }
 POLHODE_INLINE Row& operator+=(Row& a, const Row& b) { return a = a + b; }
 POLHODE_INLINE Row& operator-=(Row& a, const Row& b) { return a = a - b; }
