@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -26,15 +27,24 @@ std::string title_of(const std::string& text) {
   constexpr std::string_view kKey = "\ntitle:";
   const std::size_t at = ("\n" + text).find(kKey);
   if (at == std::string::npos) return "";
-  const std::size_t begin = text.find_first_not_of(" \"'", at + kKey.size() - 1);
-  const std::size_t end = text.find_first_of("\"'\n", begin);
-  return begin == std::string::npos ? "" : text.substr(begin, end - begin);
+  const std::size_t begin = text.find_first_not_of(' ', at + kKey.size() - 1);
+  if (begin == std::string::npos) return "";
+  const bool quoted = text[begin] == '"' || text[begin] == '\'';
+  const std::size_t end = quoted ? text.find(text[begin], begin + 1) : text.find('\n', begin);
+  return text.substr(begin + quoted, end - begin - quoted);
+}
+
+/// A generator goes before a folder of its name, which holds one of its sizes.
+bool is_generated(const std::string& name) {
+  const auto& generators = model_generators();
+  return std::any_of(generators.begin(), generators.end(),
+                     [&](const ModelGenerator& g) { return g.name == name; });
 }
 
 std::string listing() {
   std::vector<std::vector<std::string>> examples, generators;
   for (const ExampleText& example : example_texts())
-    examples.push_back({example.name, title_of(example.text)});
+    if (!is_generated(example.name)) examples.push_back({example.name, title_of(example.text)});
   for (const ModelGenerator& generator : model_generators()) {
     std::string values;
     for (const GeneratorParameter& p : generator.parameters)
