@@ -1,0 +1,416 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the pictures of the examples and of the README from runs. Needs numpy, matplotlib and h5py.
+
+    POLHODE=build/release/apps/polhode/polhode python3 tools/render_example.py [NAME ...] [hero]
+"""
+import pathlib
+import sys
+import tempfile
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "examples"))
+import support  # noqa: E402
+
+INK, BLUE, RED, GOLD, GREEN, PALE = "#22303c", "#2f6db3", "#c8452f", "#d99a1c", "#3d8a55", "#b9c4cd"
+plt.rcParams.update({"font.size": 9, "axes.edgecolor": PALE, "axes.labelcolor": INK, "text.color": INK,
+                     "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False,
+                     "axes.grid": True, "grid.color": "#e9eef1", "lines.linewidth": 1.2, "axes.titlesize": 10})
+
+
+class Motion:
+    """Bodies and probes of a run."""
+
+    def __init__(self, name, *settings):
+        self.run = support.Run(ROOT / "examples" / name / "model.yaml", *settings)
+        with h5py.File(self.run.folder / "results.h5") as file:
+            self.t = file["time"][:]
+            names = [n.decode() for n in file["packed/bodies/names"][:]]
+            count = len(self.t)
+            place, turn = file["packed/bodies/position"][:count], file["packed/bodies/orientation"][:count]
+        self.place = {n: place[:, i] for i, n in enumerate(names)}
+        self.turn = {n: rotation(turn[:, i]) for i, n in enumerate(names)}
+
+    def points(self, body, outline, frame):
+        """Points of a body (from its centre of mass, body axes) in the world, at one frame."""
+        return self.place[body][frame] + np.asarray(outline, float) @ self.turn[body][frame].T
+
+    def path(self, body, point):
+        return self.place[body] + np.einsum("kij,j->ki", self.turn[body], point)
+
+    def probe(self, name):
+        return {key: np.array(column) for key, column in self.run.probe(name).items()}
+
+
+def rotation(q):
+    """Matrices of quaternions (w, x, y, z)."""
+    w, x, y, z = q.T
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]).transpose(2, 0, 1)
+
+
+def box(x, y, z, centre=(0, 0, 0)):
+    """The edges of a box as one line."""
+    corners = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
+    order = [0, 1, 2, 3, 0, 4, 5, 1, 5, 6, 2, 6, 7, 3, 7, 4]
+    return corners[order] * np.array([x, y, z]) / 2 + np.array(centre)
+
+
+def circle(radius, axis=2, at=0.0, count=49):
+    """A circle about an axis of the body."""
+    a = np.linspace(0, 2 * np.pi, count)
+    out = np.zeros((count, 3))
+    out[:, axis], out[:, (axis + 1) % 3], out[:, (axis + 2) % 3] = at, radius * np.cos(a), radius * np.sin(a)
+    return out
+
+
+def tube(radius, length, axis, centre=0.0):
+    """Two circles and the lines between them."""
+    a, b = circle(radius, axis, centre - length / 2), circle(radius, axis, centre + length / 2)
+    lines = [a, b]
+    lines += [np.array([a[i], b[i]]) for i in range(0, 48, 12)]
+    return lines
+
+
+def sheet(view=None, wide=1.25, flat=False, size=(9.6, 4.1)):
+    """A figure with the scene at the left and a plot at the right."""
+    figure = plt.figure(figsize=size)
+    grid = figure.add_gridspec(1, 2, width_ratios=[wide, 1], left=0.075 if flat else 0.0, right=0.98, bottom=0.13, top=0.92, wspace=0.16)
+    scene = figure.add_subplot(grid[0], projection=None if flat else "3d")
+    if flat:
+        scene.set_aspect("equal")
+    else:
+        scene.view_init(*(view or (22, -58)))
+        scene.set_axis_off()
+        scene.set_position([0.0, 0.0, wide / (1 + wide), 1.0])
+        scene.set_proj_type("ortho")
+    return figure, scene, figure.add_subplot(grid[1])
+
+
+def fit(scene, low, high, zoom=1.25):
+    """Equal scales within the box from low to high."""
+    low, high = np.array(low, float), np.array(high, float)
+    scene.set_xlim(low[0], high[0]), scene.set_ylim(low[1], high[1]), scene.set_zlim(low[2], high[2])
+    scene.set_box_aspect(high - low, zoom=zoom)
+
+
+def draw(scene, points, colour=INK, alpha=1.0, width=1.0, **more):
+    points = np.asarray(points)
+    columns = points.T if hasattr(scene, "get_zlim") else points.T[:2]
+    scene.plot(*columns, color=colour, alpha=alpha, linewidth=width, solid_capstyle="round", clip_on=False, **more)
+
+
+def frames(motion, begin, end, count):
+    return [int(np.argmin(abs(motion.t - t))) for t in np.linspace(begin, end, count)]
+
+
+def fades(items):
+    """The items with opacities that grow to the last."""
+    return zip(items, np.linspace(0.15, 1.0, len(items)) ** 1.3)
+
+
+def label(plot, title, x="t [s]", y=""):
+    plot.set_title(title, loc="left"), plot.set_xlabel(x), plot.set_ylabel(y)
+
+
+def tumbling_body():
+    m = Motion("tumbling_body")
+    figure, scene, plot = sheet((24, -72), wide=1.6)
+    c = 0.05 / 2 * 5 / 13
+    parts = tube(0.005, 0.08, 1) + tube(0.005, 0.05, 0, 0.025)
+    picks = frames(m, 1.1, 3.6, 9)
+    for n, k in enumerate(picks):
+        shift = np.array([n * 0.072, 0, 0])
+        for part in parts:
+            draw(scene, m.points("handle", part - [c, 0, 0], k) + shift, BLUE if n % 2 else INK, 1, 0.9)
+        end = m.points("handle", [[0.05 - c, 0, 0]], k) + shift
+        draw(scene, end, RED, marker="o", ms=4)
+    fit(scene, (-0.04, -0.05, -0.05), (0.62, 0.05, 0.05), 2.05)
+    scene.set_title("the handle every 0.31 s, side by side", loc="center", y=0.84)
+    omega = np.array(support.angular_velocity(m.run, "origin", ("x_tip", "y_tip", "z_tip")))
+    body = np.einsum("kji,kj->ki", m.turn["handle"], omega)
+    for i, (name, colour) in enumerate((("about the shaft", RED), ("about the bar", PALE), ("about the normal", BLUE))):
+        plot.plot(m.t, body[:, i], color=colour, label=name)
+    plot.legend(frameon=False, fontsize=7.5, loc="lower center", ncol=3, columnspacing=0.8, handlelength=1.2)
+    plot.set_ylim(-16, 14)
+    label(plot, "angular velocity in body axes [rad/s]")
+    return figure
+
+
+def heavy_top():
+    m = Motion("heavy_top", "output.every=2 ms")
+    figure, scene, plot = sheet((18, -52))
+    path = m.path("top", (0, 0, 0))
+    scene.scatter(*path.T, c=m.t, cmap="viridis", s=1.6)
+    for k, alpha in fades(frames(m, 0.0, 0.2, 4)):
+        draw(scene, np.array([[0, 0, 0], path[k]]), INK, alpha, 1.6)
+        for part in tube(0.25, 0.02, 1):
+            draw(scene, m.points("top", part, k), RED, alpha, 0.9)
+    scene.scatter([0], [0], [0], color=INK, s=18)
+    fit(scene, (-1, -1, -1), (1, 1, 0.25), 1.45)
+    plot.plot(m.t, path[:, 2], color=BLUE)
+    label(plot, "height of the centre of mass [m]")
+    return figure
+
+
+def double_pendulum():
+    m = Motion("double_pendulum", "output.every=5 ms")
+    figure, scene, plot = sheet(flat=True, wide=0.95)
+    tip, elbow = m.path("lower", (0.5, 0, 0)), m.path("upper", (0.5, 0, 0))
+    scene.scatter(tip[:, 0], tip[:, 2], c=m.t, cmap="plasma", s=1.5)
+    for k, alpha in fades(frames(m, 0, 0.9, 8)):
+        scene.plot([0, elbow[k, 0], tip[k, 0]], [0, elbow[k, 2], tip[k, 2]], "-o", color=INK, alpha=alpha, ms=3, lw=1.5)
+    label(scene, "path of the tip, first swing of the bars", "x [m]", "z [m]")
+    plot.plot(m.t, np.degrees(m.probe("shoulder")["rz"]), color=BLUE, label="shoulder")
+    plot.plot(m.t, np.degrees(m.probe("elbow")["rz"]), color=RED, label="elbow")
+    plot.legend(frameon=False)
+    label(plot, "angles of the hinges [deg]")
+    return figure
+
+
+def spatial_slider_crank():
+    m = Motion("spatial_slider_crank", "output.every=2 ms")
+    figure, scene, plot = sheet((24, -50))
+    A, k_all = np.array([0, 0.1, 0.12]), frames(m, 0, 0.5, 7)
+    B, C = m.path("crank", (0, 0, 0.04)), m.place["slider"]
+    draw(scene, B[m.t < 0.6], PALE, 1, 1.5)
+    draw(scene, [[0.14, 0, 0], [0.32, 0, 0]], PALE, 1, 4)
+    for k, alpha in fades(k_all):
+        draw(scene, [A, B[k]], RED, alpha, 3)
+        draw(scene, [B[k], C[k]], INK, alpha, 1.8)
+        draw(scene, m.points("slider", box(0.03, 0.02, 0.02), k), BLUE, alpha, 1)
+        scene.scatter(*np.array([B[k], C[k]]).T, color=INK, s=8, alpha=alpha)
+    fit(scene, (-0.02, -0.03, -0.02), (0.32, 0.2, 0.21), 1.4)
+    plot.plot(m.t, m.probe("slider")["x"] if len(m.t) == len(m.probe("slider")["x"]) else C[:, 0], color=BLUE)
+    label(plot, "place of the slider [m]")
+    return figure
+
+
+def n_four_bar():
+    m = Motion("n_four_bar")
+    figure, scene, plot = sheet(flat=True, wide=1.5)
+    picks = frames(m, 0, 0.86, 9)
+    for k, alpha in fades(picks):
+        tops = []
+        for i in range(3):
+            ends = m.points(f"upright_{i}", [[0, -0.5, 0], [0, 0.5, 0]], k)
+            draw(scene, ends, BLUE, alpha, 2)
+            tops.append(ends[1])
+        draw(scene, tops, RED, alpha, 2, marker="o", ms=3)
+    scene.plot([0, 1, 2], [0, 0, 0], "o", color=INK, ms=6)
+    label(scene, "from upright through the line where all bars coincide", "x [m]", "y [m]")
+    B0 = m.probe("B0")
+    plot.plot(B0["t"], B0["x"], color=BLUE, label="x")
+    plot.plot(B0["t"], B0["y"], color=RED, label="y")
+    plot.set_xlim(0, 6)
+    plot.legend(frameon=False, loc="lower right", ncol=2)
+    plot.set_ylim(-1.35, 1.1)
+    label(plot, "place of B0, the first upright's top [m]")
+    return figure
+
+
+PLATES = {  # outlines from the plates' own points; centres of mass are taken off below
+    "K1": ((0.00092, 0), [(0, 0), (0.007, 0)], RED), "K2": ((-0.0115, 0), [(0, 0), (-0.028, 0)], GOLD),
+    "K3": ((0.01043, -0.01874), [(0, 0), (0, -0.035), (0.02, -0.018), (0, 0)], BLUE),
+    "K4": ((0, -0.00579), [(0, 0), (0, -0.02)], GREEN), "K5": ((0.02308, 0.00916), [(0, 0), (0.02308, 0.00916), (0.04, 0), (0, 0)], INK),
+    "K6": ((0.00579, 0), [(0, 0), (0.02, 0)], GREEN), "K7": ((-0.00449, -0.01228), [(0, 0), (-0.00449, -0.01228), (0, -0.04), (0, 0)], INK)}
+
+
+def andrews_squeezer():
+    m = Motion("andrews_squeezer", "output.every=0.05 ms")
+    figure, scene, plot = sheet(flat=True, wide=1.05)
+    for k, alpha in fades(frames(m, 0, 0.0118, 6)):
+        for name, (com, outline, colour) in PLATES.items():
+            points = np.array([(x - com[0], y - com[1], 0) for x, y in outline])
+            draw(scene, 1e3 * m.points(name, points, k), colour, alpha, 1.6, marker=".", ms=4)
+    E = 1e3 * m.path("K3", (0 - 0.01043, -0.035 + 0.01874, 0))
+    draw(scene, E, PALE, 1, 0.8)
+    scene.plot([0, -69.34, -36.35, 14], [0, -2.27, 32.73, 72], "^", color=INK, ms=6)
+    D = 1e3 * m.path("K3", (0.02 - 0.01043, -0.018 + 0.01874, 0))
+    draw(scene, [(14, 72, 0), D[-1]], PALE, 1, 1, linestyle=":")
+    label(scene, "six instants of the first 12 ms", "x [mm]", "y [mm]")
+    for name, start, colour in (("gamma", 0.45527981916307037, BLUE), ("phi", 0.22266839016588588, GREEN),
+                                ("delta", 0.48736497954384256, INK)):
+        p = m.probe(name)
+        plot.plot(1e3 * p["t"], p["rz"] + start, color=colour, label=name)
+    plot.legend(frameon=False, ncol=3, loc="lower left", fontsize=8)
+    plot.set_ylim(-1.05, 0.75)
+    label(plot, "angles [rad]", "t [ms]")
+    return figure
+
+
+def bricard():
+    m = Motion("bricard")
+    figure, scene, plot = sheet((28, -62))
+    ends = [[(-0.5, 0, 0), (0.5, 0, 0)], [(0, 0.5, 0), (0, -0.5, 0)], [(0, 0, -0.5), (0, 0, 0.5)],
+            [(0.5, 0, 0), (-0.5, 0, 0)], [(0, -0.5, 0), (0, 0.5, 0)]]
+    swap = [0, 2, 1]  # y is up
+    for k, alpha in fades(frames(m, 0, 1.25, 5)):
+        for i, (pair, colour) in enumerate(zip(ends, (BLUE, RED, GOLD, GREEN, INK))):
+            draw(scene, m.points(f"rod_{i + 1}", pair, k)[:, swap] * [1, -1, 1], colour, alpha, 2.6)
+    path = m.path("rod_2", (0, -0.5, 0))[:, swap] * [1, -1, 1]
+    draw(scene, path, PALE, 1, 2, zorder=0)
+    fit(scene, (-1, -1, -1.0), (1, 0.6, 0.1), 1.3)
+    P3 = m.probe("P3")
+    for axis, colour in zip("xyz", (BLUE, GOLD, RED)):
+        plot.plot(P3["t"], P3[axis], color=colour, label=axis)
+    plot.legend(frameon=False, ncol=3, loc="upper right", fontsize=8)
+    plot.set_ylim(-1.1, 1.35)
+    label(plot, "place of P3 [m]")
+    return figure
+
+
+def flyball_governor():
+    m = Motion("flyball_governor", "output.every=5 ms")
+    figure, scene, plot = sheet((14, -60))
+    c = (0.3 * 0.5 + 5) / 5.3
+    for name in "ab":
+        draw(scene, m.path(f"rod_{name}", (1 - c, 0, 0))[m.t <= 1.0], PALE, 0.9, 1.0)
+    for k, alpha in fades(frames(m, 0, 0.5, 4)):
+        draw(scene, [[0, 0, 0], [0, 0, 1]], INK, alpha, 2)
+        draw(scene, m.points("slider", box(0.1, 0.1, 0.1), k), RED, alpha, 1)
+        for name, h in (("a", 0.05), ("b", -0.05)):
+            draw(scene, m.points(f"rod_{name}", [(-c, 0, 0), (1 - c, 0, 0)], k), BLUE, alpha, 1.8)
+            scene.scatter(*m.points(f"rod_{name}", [(1 - c, 0, 0)], k).T, color=BLUE, s=60, alpha=alpha)
+            middle, hook = m.points(f"rod_{name}", [(0.5 - c, 0, 0)], k), m.points("slider", [(h, 0, 0)], k)
+            draw(scene, np.vstack([middle, hook]), GOLD, alpha, 1, linestyle="--")
+    fit(scene, (-1, -1, 0), (1, 1, 1.1), 1.6)
+    plot.plot(m.t, m.place["slider"][:, 2], color=RED)
+    label(plot, "height of the slider [m]")
+    return figure
+
+
+def gyroscope():
+    m = Motion("gyroscope")
+    figure, scene, plot = sheet((24, -35), wide=1.0)
+    k = int(np.argmin(abs(m.t - 1.0)))
+    draw(scene, [[0, 0, -0.12], [0, 0, -0.083]], PALE, 1, 5)
+    for body, lines, colour in (("outer", tube(0.0825, 0.008, 0), INK), ("inner", tube(0.0675, 0.008, 2), BLUE),
+                                ("rotor", tube(0.04, 0.01, 0), RED)):
+        for line in lines[:2] if body != "rotor" else lines:
+            draw(scene, m.points(body, line, k), colour, 1, 1.8)
+    draw(scene, m.points("inner", [(-0.0675, 0, 0), (0.0675, 0, 0)], k), RED, 1, 1.2)
+    for y in (-1, 1):
+        draw(scene, m.points("inner", [(0, y * 0.0675, 0), (0, y * 0.0825, 0)], k), INK, 1, 3)
+    for angle in np.linspace(0, np.pi, 7)[:-1]:
+        r = 0.04 * np.array([0, np.cos(angle), np.sin(angle)])
+        draw(scene, m.points("rotor", [-r, r], k), RED, 0.6, 0.8)
+    scene.scatter(*m.place["weight"][k], color=GOLD, s=90)
+    draw(scene, m.place["weight"], GOLD, 0.9, 1.0)
+    fit(scene, (-0.085, -0.085, -0.12), (0.085, 0.085, 0.09), 1.35)
+    phi, theta = m.probe("stand")["rz"], m.probe("gimbal")["rz"]
+    part = m.t <= 0.5
+    plot.plot(np.degrees(phi[part]), np.degrees(theta[part]), color=BLUE)
+    plot.invert_yaxis()
+    label(plot, "the axle's end nods while it goes round (0.5 s)", "turn of the outer ring [deg]",
+          "tilt of the inner ring [deg]")
+    return figure
+
+
+def door_on_two_hinges():
+    m = Motion("door_on_two_hinges")
+    figure, scene, plot = sheet((26, -40), wide=0.9)
+    draw(scene, [(0, 0, 0), (0, 0, 2.08), (0.93, 0, 2.08), (0.93, 0, 0)], PALE, 1, 4)
+    for k, alpha in fades(frames(m, 0, 1.0, 6)):
+        draw(scene, m.points("door", box(0.9, 0.04, 2), k), BLUE, alpha, 1)
+    draw(scene, m.path("door", (0.45, 0, 0))[m.t < 6], RED, 1, 1.2)
+    for z in (0.25, 1.75):
+        draw(scene, [(0, 0, z - 0.06), (0, 0, z + 0.06)], INK, 1, 6)
+    fit(scene, (-0.1, -0.1, 0), (1.0, 1.0, 2.1), 1.3)
+    lower, upper = m.probe("lower"), m.probe("upper")
+    plot.plot(lower["t"], lower["fz"] + upper["fz"], color=INK, label="vertical, both")
+    plot.plot(lower["t"], np.hypot(lower["fx"], lower["fy"]), color=BLUE, label="horizontal, lower hinge")
+    plot.plot(lower["t"], np.hypot(upper["fx"], upper["fy"]), color=RED, label="horizontal, upper hinge")
+    plot.legend(frameon=False, fontsize=8, loc="center right")
+    label(plot, "forces of the hinges [N]")
+    return figure
+
+
+def hero():
+    """Polhodes: paths of the angular velocity on the ellipsoid of constant momentum. Free bodies with principal moments
+    1, 2, 3 kg m^2 and one amount of angular momentum, let go with different energies."""
+    J, h = np.array([1.0, 2.0, 3.0]), 1.0
+    figure = plt.figure(figsize=(7.6, 4.9))
+    scene = figure.add_axes([0, -0.06, 1, 1.1], projection="3d", computed_zorder=False)
+    scene.set_axis_off()
+    scene.set_proj_type("ortho")
+    e, a = np.radians(34), np.radians(40)
+    scene.view_init(34, 40)
+    eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 241), np.linspace(0, np.pi, 121))
+    ball = np.array([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)])
+    normals = ball * J[:, None, None]
+    light = eye + np.array([0.1, 0.5, 0.7])
+    bright = np.einsum("iab,i->ab", normals / np.linalg.norm(normals, axis=0), light / np.linalg.norm(light))
+    tint = np.clip(0.70 + 0.29 * bright, 0, 1)[..., None] * np.array([0.99, 0.985, 0.965])
+    surface = scene.plot_surface(*(0.99 * ball / J[:, None, None]), facecolors=tint, shade=False, linewidth=0, antialiased=False,
+                       zorder=0, rcount=241, ccount=241)
+    surface.set_clip_on(False)
+    colours = plt.get_cmap("Spectral")
+    starts = []
+    for part in np.linspace(0.1, 0.97, 10):  # of the way from an axis to the separatrix
+        a, b = part * np.radians([30.0, 60.0])  # of the momenta from z and from x, in the plane of the two
+        starts += [(s * np.cos(b), 0, np.sin(b)) for s in (1, -1)] + [(np.sin(a), 0, s * np.cos(a)) for s in (1, -1)]
+    starts += [(s * 1e-4, y, r * 1e-4) for s in (1, -1) for r in (1, -1) for y in (1, -1)]
+    with tempfile.TemporaryDirectory() as folder:
+        for n, start in enumerate(starts):
+            pi = h * np.array(start) / np.linalg.norm(start)  # momentum in body axes
+            omega = pi / J
+            model = pathlib.Path(folder) / f"body_{n}.yaml"
+            model.write_text(f"""format: 1
+bodies:
+  body: {{mass: 1, inertia: [1, 2, 3], angular_velocity: [{omega[0]}, {omega[1]}, {omega[2]}]}}
+analysis: {{duration: 80 s, step: 0.1 s, order: 6}}
+output: {{every: 0.1 s}}
+""")
+            run = support.Run(model)
+            with h5py.File(run.folder / "results.h5") as file:
+                count = len(file["time"])
+                R = rotation(file["packed/bodies/orientation"][:count, 0])
+                path = np.einsum("kji,kj->ki", R, file["packed/bodies/angular_velocity"][:count, 0])
+            energy = 0.5 * (pi**2 / J).sum() / h**2  # from 1/6 to 1/2, 1/4 on the separatrix
+            shade = 0.5 * (energy - 1 / 6) / (1 / 12) if energy < 0.25 else 0.5 + 0.5 * (energy - 0.25) / 0.25
+            separatrix = abs(energy - 0.25) < 1e-6
+            normal = path * J**2  # of the ellipsoid, outwards
+            hidden = (normal @ eye) < -1e-3
+            path = np.where(hidden[:, None], np.nan, path)
+            draw(scene, path, INK if separatrix else colours(0.04 + 0.92 * shade), 1, 1.8 if separatrix else 1.4, zorder=3)
+    for i, length in enumerate(1.0 / J):
+        axis = np.zeros(3)
+        axis[i] = 1
+        draw(scene, [axis * length, axis * (length + 0.16)], INK, 1, 1.2, zorder=4)
+        scene.text(*(axis * (length + (0.25, 0.30, 0.27)[i])), ("least", "middle", "greatest")[i] + " moment", fontsize=8, ha="center",
+                   color=INK, zorder=5)
+    fit(scene, (-1, -0.5, -0.34), (1, 0.5, 0.34), 1.5)
+    return figure
+
+
+def save(figure, path, dpi=110, trim="tight"):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=dpi, metadata={"Software": None}, bbox_inches=trim, pad_inches=0.08)
+    plt.close(figure)
+    print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1000:.0f} KB")
+
+
+EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, n_four_bar, andrews_squeezer, bricard,
+            flyball_governor, gyroscope, door_on_two_hinges)
+
+
+def main():
+    wanted = sys.argv[1:] or [f.__name__ for f in EXAMPLES] + ["hero"]
+    for example in EXAMPLES:
+        if example.__name__ in wanted:
+            save(example(), ROOT / "examples" / example.__name__ / "picture.png")
+    if "hero" in wanted:
+        save(hero(), ROOT / "docs/images/hero.png", 105, None)
+
+
+main()
