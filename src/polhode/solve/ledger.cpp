@@ -16,11 +16,11 @@ std::vector<int> without_rows(const System& system) {
   return list;
 }
 
-std::vector<int> on_one_body(const System& system) {
+std::vector<int> on_one_body(const System& system, const NewtonEngine& engine) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
-    if ((ref.a == kGround) != (ref.b == kGround)) list.push_back(i);
+    if ((ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i)) list.push_back(i);
   }
   return list;
 }
@@ -29,13 +29,15 @@ Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
 
 }  // namespace
 
-LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels)
+LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
+                           const NewtonEngine& engine)
     : system_(&system),
       kernels_(&kernels),
+      engine_(&engine),
       mass_(mass_blocks(system)),
       working_(without_rows(system)),
-      outside_(on_one_body(system)),
-      outside_sweep_(system, on_one_body(system)) {
+      outside_(on_one_body(system, engine)),
+      outside_sweep_(system, on_one_body(system, engine)) {
   for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
   for (const auto& list : {working_, outside_})
     for (int i : list)
@@ -103,8 +105,8 @@ void LedgerKeeper::before_commit(State& state, const Trial& trial) {
     l.dissipated.add(w.dissipated);
     l.put_in.add(w.put_in);
   }
-  if (outside_.empty()) return;
   Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
+  engine_->add_ground_wrench(impulse.data(), turning.data());
   StepContext values_only = trial.context;
   values_only.tangents = false;
   outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(),

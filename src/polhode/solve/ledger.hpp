@@ -20,7 +20,7 @@ struct Balance {
 /// far what the bodies hold is from that.
 class LedgerKeeper {
  public:
-  LedgerKeeper(const System& system, const LaneKernels& kernels);
+  LedgerKeeper(const System& system, const LaneKernels& kernels, const NewtonEngine& engine);
 
   /// Starts the sums at a state.
   void begin(State& state);
@@ -40,10 +40,11 @@ class LedgerKeeper {
 
   const System* system_;
   const LaneKernels* kernels_;
+  const NewtonEngine* engine_;
   std::vector<MassBlock> mass_;
   double total_mass_ = 0.0;
   std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, put in.
-  std::vector<int> outside_;  ///< Interactions with exactly one moving body.
+  std::vector<int> outside_;  ///< Interactions with one moving body that the engine does not sum.
   InteractionSweep outside_sweep_;
   std::vector<int> touched_;  ///< Bodies of those.
   std::vector<BodyStep> steps_;

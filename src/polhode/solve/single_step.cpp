@@ -49,7 +49,7 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
     : system_(&system),
       engine_(std::move(engine)),
       kernels_(&kernels),
-      ledger_(system, kernels),
+      ledger_(system, kernels, *engine_),
       mass_(mass_blocks(system)) {
   trial_.context.ga = ga;
   trial_.context.conserving = conserving;

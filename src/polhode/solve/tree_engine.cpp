@@ -10,10 +10,6 @@ namespace polhode {
 
 namespace {
 
-/// ε of loop rows. Tree joints have none, so redundant loops need a little more than the sparse
-/// engine's rows (speed measurements in docs/theory/elimination_along_the_tree.md).
-constexpr double kProximalOfLoops = 1e-11;
-
 std::vector<int> not_in_tree(const System& system) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
@@ -101,6 +97,7 @@ void TreeEngine::lay_out() {
   body_.assign(tree.slots + 1, EliminatedBody{});
   body_.back().X[7] = 1.0;  // the ground's increment
   extra_rows_.assign(plan_.extra_count, ExtraRows{});
+  couples_.resize(plan_.couple_count);
   edge_rows_.assign(plan_.edge_count, EdgeRows{});
   pair_.assign(plan_.pair_rows, LaneData{});
   kept_.assign(plan_.kept_rows, LaneData{});
@@ -261,101 +258,6 @@ void TreeEngine::evaluate_extras(const State& state, const Trial& trial) {
              [&](int interaction, const PairStep&, const PairTerms& terms) {
                add_extra(plan_.extras[extra_index_[interaction]], terms, trial);
              });
-}
-
-void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial) {
-  const double s = view_.scale;
-  const auto add_own = [&](int slot, const Vec6& wrench, const Mat6& D) {
-    if (slot < 0) return;
-    RowData* A = extra_rows_[plan_.extra_of_slot[slot]].A;
-    const int first = x.rotations_only ? 3 : 0;  // where D has anything
-    for (int i = first; i < 6; ++i)
-      for (int j = first; j < 6; ++j) A[i][j] -= s * D(i, j);
-    for (int i = 0; i < 6; ++i) A[i][7] -= s * wrench[i];
-  };
-  if (x.coupling == Coupling::couple) {  // see below: the couple takes the rest
-    add_own(x.slot_a, terms.wrench_a, terms.D_aa + terms.D_ba);
-    add_own(x.slot_b, terms.wrench_b, terms.D_bb + terms.D_ab);
-  } else {
-    add_own(x.slot_a, terms.wrench_a, terms.D_aa);
-    add_own(x.slot_b, terms.wrench_b, terms.D_bb);
-  }
-  if (x.edge >= 0) {
-    EdgeRows& e = edge_rows_[x.edge];
-    const Mat6& K_bp = x.edge_child_is_b ? terms.D_ba : terms.D_ab;
-    const Mat6& K_pb = x.edge_child_is_b ? terms.D_ab : terms.D_ba;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) {
-        e.K_bp[i][j] -= s * K_bp(i, j);
-        e.K_pb[i][j] -= s * K_pb(i, j);
-      }
-  }
-  if (x.loop < 0) return;
-
-  // Unknowns: multipliers (scaled), then what a's rows owe to b's motion, then the reverse.
-  const TreeLoop& loop = plan_.loops[x.loop];
-  const int first = system_->interactions()[x.interaction].first_row;
-  double* S = view_.S + loop.S;
-  double* nu = view_.nu + loop.nu;
-  const int width = 8 * loop.panels;
-  for (int k = 0; k < width; ++k) nu[k] = 0.0;
-  for (int k = 0; k < x.rows; ++k) {
-    const bool exact = terms.compliance[k] == 0.0;
-    const double lambda = trial.lambda[first + k];
-    S[width * k + k] = exact ? kProximalOfLoops : terms.compliance[k] / s;
-    nu[k] = terms.g[k] + (exact ? kProximalOfLoops * s * (lambda - trial.lambda_centre[first + k])
-                                : terms.compliance[k] * lambda);
-  }
-  for (int k = x.rows; k < loop.unknowns; ++k) S[width * k + k] = -1.0;
-  const auto write_multipliers = [&](int pair, const auto& B, const auto& G) {
-    double* C = view_.pair_rows + 8 * pair;
-    double* Rt = C + 6 * width;
-    for (int i = 0; i < 6; ++i) {
-      for (int k = 0; k < width; ++k) C[width * i + k] = Rt[width * i + k] = 0.0;
-      for (int k = 0; k < x.rows; ++k) {
-        C[width * i + k] = -B(i, k);
-        Rt[width * i + k] = G(k, i);
-      }
-    }
-  };
-  if (x.pair_a >= 0) write_multipliers(x.pair_a, terms.B_a, terms.G_a);
-  if (x.pair_b >= 0) write_multipliers(x.pair_b, terms.B_b, terms.G_b);
-  if (x.coupling == Coupling::none) return;
-  double *C_a = view_.pair_rows + 8 * x.pair_a, *C_b = view_.pair_rows + 8 * x.pair_b;
-  double *R_a = C_a + 6 * width, *R_b = C_b + 6 * width;
-  if (x.coupling == Coupling::couple) {
-    // ζ = −s (D_ba Δθ_a − D_ab Δθ_b) acts on b, −ζ on a.
-    for (int k = 0; k < 3; ++k) {
-      const int z = x.rows + k;
-      C_a[width * (3 + k) + z] = -1.0;
-      C_b[width * (3 + k) + z] = 1.0;
-      for (int i = 3; i < 6; ++i) {
-        R_a[width * i + z] = -s * terms.D_ba(3 + k, i);
-        R_b[width * i + z] = s * terms.D_ab(3 + k, i);
-      }
-    }
-    return;
-  }
-  // −s D_ab Δx_b acts on a, −s D_ba Δx_a on b.
-  for (int k = 0; k < 6; ++k) {
-    const int on_a = x.rows + k, on_b = x.rows + 6 + k;
-    C_a[width * k + on_a] = 1.0;
-    C_b[width * k + on_b] = 1.0;
-    for (int i = 0; i < 6; ++i) {
-      R_b[width * i + on_a] = -s * terms.D_ab(k, i);
-      R_a[width * i + on_b] = -s * terms.D_ba(k, i);
-    }
-  }
-}
-
-void TreeEngine::move_multipliers(Trial& trial, double damping) {
-  const double unscale = damping / view_.scale;
-  for (const TreeExtra& x : plan_.extras) {
-    if (x.rows == 0) continue;
-    const int first = system_->interactions()[x.interaction].first_row;
-    const double* y = view_.y + plan_.loops[x.loop].nu;
-    for (int k = 0; k < x.rows; ++k) trial.lambda[first + k] += unscale * y[k];
-  }
 }
 
 Iteration TreeEngine::iterate(const State& state, Trial& trial, bool /*refactor*/, double damping) {

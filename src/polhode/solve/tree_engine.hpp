@@ -22,6 +22,12 @@ class TreeEngine final : public NewtonEngine {
   void begin_step(const State& state, Trial& trial) override;
   Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
   [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
+  void add_ground_wrench(double* force, double* moment) const override {
+    kernels_->ground(&view_, system_->tree().body_of_slot.data(), force, moment);
+  }
+  [[nodiscard]] bool knows_ground(int interaction) const override {
+    return system_->tree().in_tree[interaction] != 0;
+  }
   void end_step(const State& state, Trial& trial) override;
 
   [[nodiscard]] const char* instruction_set() const { return kernels_->name; }
@@ -41,6 +47,9 @@ class TreeEngine final : public NewtonEngine {
   void take_steps(const State& state, const Trial& trial, bool first);
   void evaluate_extras(const State& state, const Trial& trial);
   void add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
+  void write_loop(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
+  void write_couple(const TreeExtra& x, const PairTerms& terms, const double* softness);
+  void write_coupling(const TreeExtra& x, const PairTerms& terms);
   void move_multipliers(Trial& trial, double damping);
   template <class Move>
   void for_each_tree_joint(Move&& move);
@@ -48,9 +57,14 @@ class TreeEngine final : public NewtonEngine {
   const System* system_;
   const LaneKernels* kernels_;
   TreeLoopPlan plan_;
-  InteractionSweep sweep_;        ///< Over what the tree does not hold.
-  std::vector<BodyStep> steps_;   ///< By body, the ground last; only where needed.
-  std::vector<int> touched_;      ///< Bodies of extras.
+  InteractionSweep sweep_;       ///< Over what the tree does not hold.
+  std::vector<BodyStep> steps_;  ///< By body, the ground last; only where needed.
+  std::vector<int> touched_;     ///< Bodies of extras.
+  /// How the multipliers of direction rows follow from a loop joint's couple.
+  struct Couple {
+    Mat3 dual, by_a, by_b;
+  };
+  std::vector<Couple> couples_;
   bool rates_ = false;            ///< Some extra may want velocities at t_{n+1}.
   std::vector<int> extra_index_;  ///< By interaction: index into plan_.extras.
   TreeView view_;

@@ -58,7 +58,13 @@ class Planner {
         x.edge_child_is_b = b_is_child;
       } else {
         x.coupling = coupling;
-        unknowns += coupling == Coupling::couple ? 3 : 12;
+        if (coupling == Coupling::couple) {
+          x.translation_rows = x.rows > 3 ? 3 : 0;
+          x.couple = plan_.couple_count++;
+          unknowns = x.translation_rows + 3;
+        } else {
+          unknowns += 12;
+        }
       }
     }
     if (unknowns > 0) {

@@ -19,9 +19,11 @@ struct TreeExtra {
   bool edge_child_is_b = true;
   int loop = -1;                 ///< Index of its loop, if it needs one.
   int pair_a = -1, pair_b = -1;  ///< Where its loop's columns and rows stand.
-  /// How its distant bodies are coupled; the loop has further unknowns for that: the couple (3),
-  /// or what each body's rows owe to the other's motion (12).
+  /// How its distant bodies are coupled; the loop has further unknowns for that: the couple (3, for
+  /// all direction rows), or what each body's rows owe to the other's motion (12).
   Coupling coupling = Coupling::none;
+  int translation_rows = 0;     ///< Of a joint coupled by a couple: rows before the direction rows.
+  int couple = -1;              ///< Its index among those.
   bool rotations_only = false;  ///< Its tangents are of moments by rotations.
 };
 
@@ -32,7 +34,7 @@ struct TreeLoopPlan {
   std::vector<TreeExtra> extras;
   std::vector<int> extra_of_slot;  ///< Index of a slot's extra rows, −1 none.
   std::vector<int> edge_of_slot;   ///< Index of the edge to the parent, −1 none.
-  int extra_count = 0, edge_count = 0;
+  int extra_count = 0, edge_count = 0, couple_count = 0;
 
   std::vector<TreeLoop> loops;
   std::vector<LaterLoop> later;

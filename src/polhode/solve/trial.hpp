@@ -65,6 +65,10 @@ class NewtonEngine {
   [[nodiscard]] virtual ConstraintCheck check(const State& state, Trial& trial) = 0;
   /// Body with the largest increment of the last iteration, for reports.
   [[nodiscard]] virtual int worst_body() const = 0;
+  /// Adds force [N] and moment about the origin [N m] of ground joints that the engine sums itself,
+  /// at the converged trial; `knows_ground(interaction)` says which.
+  virtual void add_ground_wrench(double* /*force*/, double* /*moment*/) const {}
+  [[nodiscard]] virtual bool knows_ground(int /*interaction*/) const { return false; }
   /// Called after convergence: makes trial.lambda complete.
   virtual void end_step(const State& state, Trial& trial) = 0;
 };

@@ -3,7 +3,7 @@
 // Derivation: docs/theory/elimination_along_the_tree.md.
 #pragma once
 
-#include <polhode/solve/lanes/joint_kernels.hpp>
+#include <polhode/solve/lanes/joint_sums.hpp>
 #include <polhode/solve/lanes/loops.hpp>
 
 namespace polhode::POLHODE_ISA {
@@ -474,6 +474,24 @@ inline void check(const TreeView* view, const int* body_of_slot, double* largest
         with_shape(run.shape, [&]<class S>() {
           check_block<S>(v, body_of_slot, b, largest_residual, worst_slot, work_defect, work_scale);
         });
+    }
+}
+
+/// Blocks with a joint to the ground, summed.
+inline void ground(const TreeView* view, const int* body_of_slot, double* force, double* moment) {
+  const TreeView& v = *view;
+  for (int c = 0; c < v.chunks; ++c)
+    for (int r = v.chunk[c].first_run; r < v.chunk[c].last_run; ++r) {
+      const TreeRun& run = v.run[r];
+      if (run.shape == 0) continue;
+      for (int b = run.first_block; b < run.first_block + run.blocks; ++b) {
+        bool any = false;
+        for (int i = 0; i < kLanes; ++i)
+          any = any || (body_of_slot[b * kLanes + i] >= 0 && v.parent[b * kLanes + i] < 0);
+        if (!any) continue;
+        with_shape(run.shape,
+                   [&]<class S>() { ground_block<S>(v, body_of_slot, b, force, moment); });
+      }
     }
 }
 

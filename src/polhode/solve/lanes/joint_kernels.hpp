@@ -496,36 +496,4 @@ inline void update_root_block(const TreeView& v, int block, const double (*X)[8]
   }
 }
 
-/// Largest |g|, Σ|λ g| and Σ|λ|(ℓ + |x|) of a block's joints.
-template <class S>
-void check_block(const TreeView& v, const int* body_of_slot, int block, double* largest,
-                 int* worst_slot, double* defect, double* scale) {
-  const double* data = v.joint_data + v.joint[block];
-  const double length = 1.0 / v.inverse_length;
-  for (int at = 0; at < kLanes; at += kWidth) {
-    const JointGeometry<S> q = joint_geometry<S>(v, block, at);
-    const P3 r = load3(v.trial[block].r, at);
-    const Pack reach = length + abs(r[0]) + abs(r[1]) + abs(r[2]);
-    Pack most{}, work{}, size{};
-    for (int i = 0; i < S::T + S::ND; ++i) {
-      const Pack lambda = abs(load(data + 8 * (S::layout.lambda() + i) + at));
-      most = max_keeping_nan(most, abs(q.g[i]));
-      work += lambda * abs(q.g[i]);
-      if (i < S::T)
-        size += lambda * reach;
-      else
-        size += lambda;
-    }
-    for (int i = 0; i < kWidth; ++i) {
-      if (body_of_slot[block * kLanes + at + i] < 0) continue;
-      if (!(most[i] <= *largest)) {
-        *largest = most[i];
-        *worst_slot = block * kLanes + at + i;
-      }
-      *defect += work[i];
-      *scale += size[i];
-    }
-  }
-}
-
 }  // namespace polhode::POLHODE_ISA

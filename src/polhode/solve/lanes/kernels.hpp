@@ -6,7 +6,7 @@
 namespace polhode::POLHODE_ISA {
 
 constexpr LaneKernels make_kernels(const char* name) {
-  return {name, predict, commit, sums, up, down, check};
+  return {name, predict, commit, sums, up, down, ground, check};
 }
 
 }  // namespace polhode::POLHODE_ISA

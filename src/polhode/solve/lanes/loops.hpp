@@ -99,6 +99,9 @@ inline void solve_rows(const TreeView& v, const TreeLoop& loop, double* x, int p
       case 5:
         solve_panel<5>(S, pivots, column, width);
         continue;
+      case 6:
+        solve_panel<6>(S, pivots, column, width);
+        continue;
       case 8:
         solve_panel<8>(S, pivots, column, width);
         continue;

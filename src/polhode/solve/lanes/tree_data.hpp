@@ -190,6 +190,8 @@ struct LaneKernels {
   bool (*up)(const TreeView* view, int* failed_slot);
   /// Towards the leaves: increments, multipliers, new configuration.
   SweepResult (*down)(const TreeView* view);
+  /// Force and moment about the origin of the tree joints to the ground; added to.
+  void (*ground)(const TreeView* view, const int* body_of_slot, double* force, double* moment);
   /// Constraints of the tree joints at the trial.
   void (*check)(const TreeView* view, const int* body_of_slot, double* largest, int* worst_slot,
                 double* work_defect, double* work_scale);
