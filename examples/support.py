@@ -23,7 +23,7 @@ def program():
     built = [ROOT / "build" / name / "apps/polhode/polhode" for name in ("release", "quickstart", "dev")]
     found = shutil.which("polhode") or next((str(path) for path in built if path.exists()), None)
     if not found:
-        sys.exit("polhode is not on the PATH. Build it (scripts/quickstart.sh), or name it: POLHODE=... python3 check.py")
+        sys.exit("polhode is not on the PATH. Build it (scripts/quickstart.sh) or name it: POLHODE=... python3 check.py")
     return found
 
 

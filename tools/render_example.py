@@ -59,7 +59,8 @@ def rotation(q):
 
 def box(x, y, z, centre=(0, 0, 0)):
     """The edges of a box as one line."""
-    corners = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
+    corners = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1],
+                        [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
     order = [0, 1, 2, 3, 0, 4, 5, 1, 5, 6, 2, 6, 7, 3, 7, 4]
     return corners[order] * np.array([x, y, z]) / 2 + np.array(centre)
 
@@ -83,7 +84,8 @@ def tube(radius, length, axis, centre=0.0):
 def sheet(view=None, wide=1.25, flat=False, size=(9.6, 4.1)):
     """A figure with the scene at the left and a plot at the right."""
     figure = plt.figure(figsize=size)
-    grid = figure.add_gridspec(1, 2, width_ratios=[wide, 1], left=0.075 if flat else 0.0, right=0.98, bottom=0.13, top=0.92, wspace=0.16)
+    grid = figure.add_gridspec(1, 2, width_ratios=[wide, 1], left=0.075 if flat else 0.0,
+                               right=0.98, bottom=0.13, top=0.92, wspace=0.16)
     scene = figure.add_subplot(grid[0], projection=None if flat else "3d")
     if flat:
         scene.set_aspect("equal")
@@ -220,8 +222,10 @@ def n_four_bar():
 PLATES = {  # outlines from the plates' own points; centres of mass are taken off below
     "K1": ((0.00092, 0), [(0, 0), (0.007, 0)], RED), "K2": ((-0.0115, 0), [(0, 0), (-0.028, 0)], GOLD),
     "K3": ((0.01043, -0.01874), [(0, 0), (0, -0.035), (0.02, -0.018), (0, 0)], BLUE),
-    "K4": ((0, -0.00579), [(0, 0), (0, -0.02)], GREEN), "K5": ((0.02308, 0.00916), [(0, 0), (0.02308, 0.00916), (0.04, 0), (0, 0)], INK),
-    "K6": ((0.00579, 0), [(0, 0), (0.02, 0)], GREEN), "K7": ((-0.00449, -0.01228), [(0, 0), (-0.00449, -0.01228), (0, -0.04), (0, 0)], INK)}
+    "K4": ((0, -0.00579), [(0, 0), (0, -0.02)], GREEN),
+    "K5": ((0.02308, 0.00916), [(0, 0), (0.02308, 0.00916), (0.04, 0), (0, 0)], INK),
+    "K6": ((0.00579, 0), [(0, 0), (0.02, 0)], GREEN),
+    "K7": ((-0.00449, -0.01228), [(0, 0), (-0.00449, -0.01228), (0, -0.04), (0, 0)], INK)}
 
 
 def andrews_squeezer():
@@ -351,8 +355,8 @@ def hero():
     light = eye + np.array([0.1, 0.5, 0.7])
     bright = np.einsum("iab,i->ab", normals / np.linalg.norm(normals, axis=0), light / np.linalg.norm(light))
     tint = np.clip(0.70 + 0.29 * bright, 0, 1)[..., None] * np.array([0.99, 0.985, 0.965])
-    surface = scene.plot_surface(*(0.99 * ball / J[:, None, None]), facecolors=tint, shade=False, linewidth=0, antialiased=False,
-                       zorder=0, rcount=241, ccount=241)
+    surface = scene.plot_surface(*(0.99 * ball / J[:, None, None]), facecolors=tint, shade=False, linewidth=0,
+                                 antialiased=False, zorder=0, rcount=241, ccount=241)
     surface.set_clip_on(False)
     colours = plt.get_cmap("Spectral")
     starts = []
@@ -382,13 +386,14 @@ output: {{every: 0.1 s}}
             normal = path * J**2  # of the ellipsoid, outwards
             hidden = (normal @ eye) < -1e-3
             path = np.where(hidden[:, None], np.nan, path)
-            draw(scene, path, INK if separatrix else colours(0.04 + 0.92 * shade), 1, 1.8 if separatrix else 1.4, zorder=3)
+            colour, width = (INK, 1.8) if separatrix else (colours(0.04 + 0.92 * shade), 1.4)
+            draw(scene, path, colour, 1, width, zorder=3)
     for i, length in enumerate(1.0 / J):
         axis = np.zeros(3)
         axis[i] = 1
         draw(scene, [axis * length, axis * (length + 0.16)], INK, 1, 1.2, zorder=4)
-        scene.text(*(axis * (length + (0.25, 0.30, 0.27)[i])), ("least", "middle", "greatest")[i] + " moment", fontsize=8, ha="center",
-                   color=INK, zorder=5)
+        name = ("least", "middle", "greatest")[i] + " moment"
+        scene.text(*(axis * (length + (0.25, 0.30, 0.27)[i])), name, fontsize=8, ha="center", color=INK, zorder=5)
     fit(scene, (-1, -0.5, -0.34), (1, 0.5, 0.34), 1.5)
     return figure
 

@@ -25,8 +25,8 @@ def compare(report, cells, model, *settings):
     run, coarse = (Run(model, f"analysis.step={ms} ms", "output.every=20 ms", "analysis.order=6", *settings)
                    for ms in (10, 20))
     B0 = run.points("B0")
-    # Rounding: at the top the kinetic energy is 1/44 of the largest, so a change of the energy changes the speed there 22
-    # times as much; over 10 s that is a delay, at a speed of at most 6.7 m/s.
+    # Rounding: at the top the kinetic energy is 1/44 of the largest, so a change of the energy changes the speed there
+    # 22 times as much; over 10 s that is a delay, at a speed of at most 6.7 m/s.
     rounding = 1e-10 + 22 * 10 * 6.7 * run.figures["energy_drift"]
     tolerance = step_error(coarse.points("B0"), B0, 6, rounding)
     report.below(f"N = {cells}: B0, largest distance from the pendulum in 10 s [m]",
