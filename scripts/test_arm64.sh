@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(libc6-dev libstdc++6 libeigen3-dev libfmt-dev libyaml-cpp-dev libhdf5-dev libmuparser-dev
+packages=(libc6-dev libstdc++6 libeigen3-dev libfmt-dev libyaml-cpp-dev libhdf5-dev
   libsuitesparse-dev libssl-dev nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev)
 sysroot=$PWD/build/arm64-sysroot
 
