@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <polhode/base/format.hpp>
+#include <polhode/solve/lanes/denormals.hpp>
 #include <polhode/solve/single_step.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
@@ -77,6 +78,7 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
 
 NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
                               Predictor predictor) {
+  [[maybe_unused]] const DenormalsAreZero tiny_is_zero;
   const Clock::time_point t0 = Clock::now();
   trial_.context.t_n = state.t;
   trial_.context.dt = dt;
