@@ -20,8 +20,9 @@ double seconds(Clock::time_point from, Clock::time_point to) {
 
 /// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
 constexpr double kNoMirrorBelow = 0.8;
-/// Turns are counted before two bodies can have turned by half a turn against each other [rad].
-constexpr double kCountTurnsAfter = 1.2;
+/// Turns are counted before two bodies can have turned by half a turn against each other in one
+/// more step like the last [rad].
+constexpr double kCountTurnsBefore = 2.5;
 
 /// Weights that extrapolate the remembered mean velocities to the middle of the next step.
 PredictWeights extrapolation(const State& state, double middle, int degree) {
@@ -147,9 +148,8 @@ void SingleStep::commit_histories(State& state, double rotation) {
   };
   for (int i : eager_) commit(i);
   if (lazy_.empty()) return;
-  // Two bodies may turn against each other; what they turned before this step was below the limit.
-  state.turned += 2.0 * rotation;
-  if (state.turned <= kCountTurnsAfter) return;
+  state.turned += 2.0 * rotation;  // two bodies may turn against each other
+  if (state.turned + 2.0 * rotation <= kCountTurnsBefore) return;
   for (int i : lazy_) commit(i);
   state.turned = 0.0;
 }
