@@ -31,8 +31,8 @@ struct Ledger {
   std::array<ExactSum, 3> impulse, angular_impulse;         ///< Of loads and ground [N s, N m s].
   double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;  ///< Largest magnitudes reached.
   double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;  ///< Largest absolute drifts.
-  double constraint_max = 0.0, velocity_constraint_max = 0.0;  ///< Largest residuals, scaled.
-  std::int64_t steps = 0, rejected = 0, iterations = 0, factorisations = 0;
+  double constraint_max = 0.0;                              ///< Largest residual [m or -].
+  std::int64_t steps = 0, rejected = 0, iterations = 0;
 };
 
 /// Everything that changes during a run. A value: copy it, save it, compare it bit for bit.

@@ -117,11 +117,9 @@ void ledger(Archive& archive, AnyLedger& l) {
   archive(l.p_drift);
   archive(l.l_drift);
   archive(l.constraint_max);
-  archive(l.velocity_constraint_max);
   archive(l.steps);
   archive(l.rejected);
   archive(l.iterations);
-  archive(l.factorisations);
 }
 
 /// The whole state in a fixed order; one function serves both directions.

@@ -111,7 +111,7 @@ CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
                        "Name another folder for the results with -o");
     text += kept_rows(old, text.size(), *keep, last_time_);
   }
-  write_file_atomically(path_, text);
+  write_file_atomically(path_, text, false);
   file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_ < 0) throw FileError::from_errno(path_, "cannot be written");
 }

@@ -30,8 +30,8 @@ const FieldTable& analysis_fields() {
            .range = kPositive},
           {.name = "tolerance",
            .kind = kNumber,
-           .meaning = "Error of one step with automatic steps, relative to the model's size; alone "
-                      "it chooses the order too.",
+           .meaning = "Error of automatic steps, relative to the model's size: of the whole run at "
+                      "order 2, of one step above; alone it chooses the order too.",
            .range = {1e-14, 0.1}},
           {.name = "rho_inf",
            .kind = kNumber,
@@ -41,7 +41,8 @@ const FieldTable& analysis_fields() {
            .range = {0.0, 1.0}},
           {.name = "order",
            .kind = kChoice,
-           .meaning = "Order of accuracy. 4, 6 and 8 are for conservative models at rho_inf = 1.",
+           .meaning =
+               "Order of accuracy. 4, 6 and 8 are for models without dampers at rho_inf = 1.",
            .standard = "2, or chosen from the tolerance",
            .choices = {"2", "4", "6", "8"}},
           {.name = "momentum_rate",
@@ -90,7 +91,7 @@ const FieldTable& analysis_fields() {
           {.name = "assembly_tolerance",
            .kind = kNumber,
            .meaning = "Largest move [m or rad] that the assembly of the start may make.",
-           .standard = "1e-3 of the model's size",
+           .standard = "1e-4 of the model's size; 0.5 with at_body",
            .range = kPositive},
           {.name = "min_step",
            .kind = kNumber,

@@ -38,7 +38,7 @@ std::string read_file(const std::string& path) {
   return std::move(text).str();
 }
 
-void write_file_atomically(const std::string& path, std::string_view bytes) {
+void write_file_atomically(const std::string& path, std::string_view bytes, bool durable) {
   const std::string temporary = path + ".tmp";
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) throw FileError::from_errno(temporary, "cannot be written");
@@ -54,10 +54,11 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
     if (count < 0) throw fail("cannot be written");
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
-  if (::fsync(file) != 0) throw fail("cannot be written to the disk");
+  if (durable && ::fsync(file) != 0) throw fail("cannot be written to the disk");
   if (::close(file) != 0) throw FileError::from_errno(temporary, "cannot be closed");
   if (std::rename(temporary.c_str(), path.c_str()) != 0)
     throw FileError::from_errno(path, "cannot be replaced");
+  if (!durable) return;
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int directory = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (directory >= 0) {

@@ -19,8 +19,11 @@ class FileError : public std::runtime_error {
 [[nodiscard]] std::string read_file(const std::string& path);
 
 /// Writes a file so that at no moment, not even after a crash, a half-written one stands under
-/// its name: temporary file, fsync, rename. @throws FileError
-void write_file_atomically(const std::string& path, std::string_view bytes);
+/// its name: temporary file, fsync, rename.
+/// @param durable  Wait until the disk has it (fsync), so that it also survives a power cut; a
+///                 killed program leaves whole files either way.
+/// @throws FileError
+void write_file_atomically(const std::string& path, std::string_view bytes, bool durable = true);
 
 /// Makes a folder and those above it. @throws FileError
 void make_folder(const std::string& path);

@@ -200,7 +200,7 @@ void ParaviewWriter::write_list() {
     text += format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_[i], file(i));
   text += "</Collection>\n</VTKFile>\n";
   const double begin = now();
-  write_file_atomically(format("{}/{}.pvd", folder_, name_), text);
+  write_file_atomically(format("{}/{}.pvd", folder_, name_), text, false);
   // Long lists are written less often, so that all lists together stay a small part of the run.
   next_listing_ = now() + std::max(kListEvery, 20.0 * (now() - begin));
 }

@@ -168,6 +168,11 @@ class UnitParser {
            !text_.substr(at_).starts_with("\xC2\xB7") && !is_superscript())
       ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
+    if (what_.empty() && (word.starts_with('+') || word.starts_with('-'))) {
+      what_ = "a unit ends an expression, but " + quote(word.substr(0, 1)) + " follows";
+      mend_ = "Give the number with its unit a name in 'variables', and use that.";
+      return false;
+    }
     const std::optional<Unit> unit = named_unit(word);
     if (!unit) {
       if (what_.empty()) {

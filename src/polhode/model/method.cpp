@@ -29,8 +29,7 @@ JacobianPolicy jacobian_policy(const std::string& word) {
 
 /// Order of accuracy, with what speaks against it.
 int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
-  const bool composable =
-      a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
+  const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
   if (!a.order) {
     if (!a.tolerance || a.step) return 2;
     const int order = composable ? 6 : 2;

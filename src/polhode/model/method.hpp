@@ -21,8 +21,8 @@ struct Method {
   std::string narration;  ///< What was chosen and why, a sentence each.
 };
 
-/// @throws InputError if what is asked for does not go together: a higher order with ρ∞ < 1, with
-///         dampers or loads in time; automatic steps of order 4; the tree with a rate of momentum
+/// @throws InputError if what is asked for does not go together: a higher order with ρ∞ < 1 or with
+///         dampers; automatic steps of order 4; the tree with a rate of momentum
 ///         or a Jacobian policy it does not have; an unknown solver.
 [[nodiscard]] Method choose_method(const System& system, const AnalysisSpec& analysis);
 

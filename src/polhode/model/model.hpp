@@ -23,7 +23,7 @@ struct Place {
 
 /// A drawable and weighable shape of a body, in body axes.
 struct ShapeSpec {
-  std::string type;              ///< box, sphere, cylinder, capsule, cone, ellipsoid, tube, mesh, plane.
+  std::string type;  ///< box, sphere, cylinder, capsule, cone, ellipsoid, tube, mesh, plane.
   std::vector<double> sizes;     ///< As in the file, full lengths [m].
   std::string file;              ///< Mesh file, resolved against the model file's folder.
   double scale = 1.0;            ///< Of a mesh file: metres per unit.
@@ -39,53 +39,58 @@ struct BodySpec {
   Place place;
   bool fixed = false;
   bool point_mass = false;
-  double mass = 0.0;                 ///< [kg], resolved (from shapes if not given).
-  Mat3 inertia = Mat3::Zero();       ///< About the centre of mass, body axes [kg m^2], resolved.
-  Vec3 position = Vec3::Zero();      ///< Centre of mass, world [m], resolved.
+  double mass = 0.0;             ///< [kg], resolved (from shapes if not given).
+  Mat3 inertia = Mat3::Zero();   ///< About the centre of mass, body axes [kg m^2], resolved.
+  Vec3 position = Vec3::Zero();  ///< Centre of mass, world [m], resolved.
   Quat orientation = Quat::Identity();
-  Vec3 com = Vec3::Zero();           ///< Centre of mass in the body coordinates the user writes [m].
-  Vec3 velocity = Vec3::Zero();      ///< Of the centre of mass, world [m/s].
+  Vec3 com = Vec3::Zero();       ///< Centre of mass in the body coordinates the user writes [m].
+  Vec3 velocity = Vec3::Zero();  ///< Of the centre of mass, world [m/s].
   Vec3 angular_velocity = Vec3::Zero();  ///< World [rad/s].
-  std::vector<ShapeSpec> shapes;     ///< In the user's body coordinates (subtract com for Z).
+  std::vector<ShapeSpec> shapes;         ///< In the user's body coordinates (subtract com for Z).
 };
 
-/// One joint as described. Frames are body-fixed, measured from each centre of mass (ground: the world).
+/// One joint as described. Frames are body-fixed, measured from each centre of mass (ground: the
+/// world).
 struct JointSpec {
   std::string name, type;
   Place place;
-  int a = kGround, b = kGround;       ///< Indices into Model::bodies.
-  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();            ///< Joint point from the centre of mass, body axes [m].
-  Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();    ///< Joint axes as columns, body components; z is the joint's axis.
-  std::vector<std::string> free;      ///< Generic joint: subset of x, y, z, rx, ry, rz.
+  int a = kGround, b = kGround;  ///< Indices into Model::bodies.
+  Vec3 Z_a = Vec3::Zero(),
+       Z_b = Vec3::Zero();  ///< Joint point from the centre of mass, body axes [m].
+  Mat3 R_a = Mat3::Identity(),
+       R_b = Mat3::Identity();  ///< Joint axes as columns, body components; z is the joint's axis.
+  std::vector<std::string> free;             ///< Generic joint: subset of x, y, z, rx, ry, rz.
   std::map<std::string, double> parameters;  ///< Further values of the kind, e.g. distance.
-  bool assembled_start = false;       ///< Given with at_body: the start must be assembled.
+  bool assembled_start = false;              ///< Given with at_body: the start must be assembled.
 };
 
 /// One load as described; which fields matter depends on the type (see loads/registry).
 struct LoadSpec {
-  std::string name, type;             ///< force, moment, spring_damper, torsional_spring, gravity ...
+  std::string name, type;  ///< force, moment, spring_damper, torsional_spring, gravity ...
   Place place;
-  int a = kGround, b = kGround;       ///< Bodies; single-body loads act on b.
-  std::string joint;                  ///< Of a torsional spring.
-  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
-  bool body_fixed = false;            ///< Components turn with the body (follower).
-  std::optional<TimeVector> vector;   ///< Force [N] or moment [N m].
-  std::map<std::string, double> parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
+  int a = kGround, b = kGround;  ///< Bodies; single-body loads act on b.
+  std::string joint;             ///< Of a torsional spring.
+  Vec3 Z_a = Vec3::Zero(),
+       Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
+  bool body_fixed = false;  ///< Components turn with the body (follower).
+  std::optional<TimeVector> vector;  ///< Force [N] or moment [N m].
+  std::map<std::string, double>
+      parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
 };
 
 /// A channel recorded at its own rate.
 struct ProbeSpec {
   std::string name;
   Place place;
-  std::string kind;                   ///< body or joint or load.
-  std::string target;                 ///< Name of the body, joint or load.
-  Vec3 point = Vec3::Zero();          ///< Of a body probe: from the centre of mass, body axes [m].
-  std::optional<double> every;        ///< [s]; else output.every.
-  std::string axes = "world";         ///< Of reactions: world or joint.
+  std::string kind;             ///< body or joint or load.
+  std::string target;           ///< Name of the body, joint or load.
+  Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes [m].
+  std::optional<double> every;  ///< [s]; else output.every.
+  std::string axes = "world";   ///< Of reactions: world or joint.
 };
 
 struct OutputSpec {
-  std::optional<double> every;        ///< [s]; left out: every step.
+  std::optional<double> every;  ///< [s]; left out: every step.
   std::vector<ProbeSpec> probes;
   bool paraview = false, csv = true, hdf5 = true;
 };
@@ -93,39 +98,40 @@ struct OutputSpec {
 /// What to compute and how.
 struct AnalysisSpec {
   std::string type = "dynamics";
-  double duration = 1.0;              ///< [s]
-  std::optional<double> step;         ///< [s]; absent: automatic.
-  std::optional<double> tolerance;    ///< Error per step for automatic steps [-].
+  double duration = 1.0;            ///< [s]
+  std::optional<double> step;       ///< [s]; absent: automatic.
+  std::optional<double> tolerance;  ///< Error per step for automatic steps [-].
   double rho_inf = 1.0;
-  std::optional<int> order;           ///< 2, 4, 6, 8; absent: 2, or chosen from tolerance.
-  std::string momentum_rate = "momentum";   ///< momentum | kinematic | kinematic_corrected.
-  std::string solver = "automatic";   ///< automatic | tree | block_lu | klu | sparse_lu.
-  std::string jacobian = "automatic"; ///< every_iteration | every_step | automatic | never.
-  std::string isa = "automatic";      ///< automatic | baseline | avx2 | avx512.
-  bool conserving = true;             ///< Potentials in discrete-gradient form.
-  double newton_tolerance = 0.0;      ///< 0: default of the order [-].
+  std::optional<int> order;                ///< 2, 4, 6, 8; absent: 2, or chosen from tolerance.
+  std::string momentum_rate = "momentum";  ///< momentum | kinematic | kinematic_corrected.
+  std::string solver = "automatic";        ///< automatic | tree | block_lu | klu | sparse_lu.
+  std::string jacobian = "automatic";      ///< every_iteration | every_step | automatic | never.
+  std::string isa = "automatic";           ///< automatic | baseline | avx2 | avx512.
+  bool conserving = true;                  ///< Potentials in discrete-gradient form.
+  double newton_tolerance = 0.0;           ///< 0: default of the order [-].
   int max_iterations = 12;
   bool line_search = true;
-  double max_step_rotation = 2.0;     ///< Largest |Theta| of a step [-].
-  double assembly_tolerance = 0.0;    ///< Largest move the assembly may make [m or rad]; 0: default.
+  double max_step_rotation = 2.0;   ///< Largest |Theta| of a step [-].
+  double assembly_tolerance = 0.0;  ///< Largest move the assembly may make [m or rad]; 0: default.
   std::optional<double> min_step, max_step;  ///< [s]
-  bool smooth_multipliers = true;     ///< Smooth-multiplier start (rigid.md 7.3).
-  double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.
+  bool smooth_multipliers = true;            ///< Smooth-multiplier start (rigid.md 7.3).
+  double checkpoint_every = 0.0;             ///< Wall-clock seconds; 0: only at the end.
   Place place;
 };
 
 /// What the user described: plain data, SI units, names and places kept.
 struct Model {
   std::string title;
-  std::string source_file;            ///< "" when built in code.
-  Vec3 gravity = Vec3::Zero();        ///< [m/s^2]
+  std::string source_file;      ///< "" when built in code.
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   std::vector<BodySpec> bodies;
   std::vector<JointSpec> joints;
   std::vector<LoadSpec> loads;
   AnalysisSpec analysis;
   OutputSpec output;
 
-  [[nodiscard]] int body_index(const std::string& name) const;   ///< kGround for "ground"; throws InputError if unknown.
+  [[nodiscard]] int body_index(
+      const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
 };
 

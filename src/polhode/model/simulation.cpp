@@ -47,6 +47,7 @@ struct Simulation::Impl {
   // What stands at t_n is solved for once per state.
   std::unique_ptr<InstantSolver> instant_solver;
   InstantSolution instant;
+  State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
 
   explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
@@ -100,11 +101,11 @@ struct Simulation::Impl {
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
     if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
-    State copy = state;
-    const VelocityReport v = instant_solver->project_velocities(copy);
+    projected = state;
+    const VelocityReport v = instant_solver->project_velocities(projected);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
-    instant = instant_solver->accelerations(copy);
+    instant = instant_solver->accelerations(projected);
     instant_step = state.ledger.steps;
     return instant;
   }
@@ -210,7 +211,10 @@ RunSummary Simulation::summary() const {
 
 BodyMotion Simulation::body(int body) const {
   const int index = impl_->map.body[body];
-  if (index != kGround) return impl_->system.motion(impl_->state, index);
+  if (index != kGround) {
+    impl_->at_instant();
+    return impl_->system.motion(impl_->projected, index);
+  }
   const BodySpec& fixed = impl_->model.bodies[body];
   BodyMotion m;
   m.r = fixed.position;
@@ -234,7 +238,8 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   const int interaction = impl_->map.joint[joint];
   const InteractionRef& ref = system.interactions()[interaction];
   const InstantSolution& now = impl_->at_instant();
-  const BodyStep a = system.instant(impl_->state, ref.a), b = system.instant(impl_->state, ref.b);
+  const BodyStep a = system.instant(impl_->projected, ref.a);
+  const BodyStep b = system.instant(impl_->projected, ref.b);
   StepContext context;
   context.t_n = impl_->state.t;
   const PairStep step{a, b, context, now.lambda.data() + ref.first_row,

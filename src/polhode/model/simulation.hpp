@@ -73,7 +73,8 @@ class Simulation {
   [[nodiscard]] RunSummary summary() const;
 
   // What stands at the present state; bodies and joints by index in the Model. Motions of model
-  // bodies are of their centre of mass; fixed bodies stand still.
+  // bodies are of their centre of mass; fixed bodies stand still. Velocities are projected onto the
+  // constraints: those of the state carry a part normal to them, of order Δt².
   [[nodiscard]] BodyMotion body(int body) const;
   /// Position, velocity and acceleration of a point of a body, Z from the centre of mass, body
   /// axes.
@@ -83,7 +84,7 @@ class Simulation {
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
   [[nodiscard]] Balance balance() const;
-  /// SHA-256 over the whole state, bodies in the model's order.
+  /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
 
  private:

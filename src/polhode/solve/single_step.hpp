@@ -26,7 +26,7 @@ class SingleStep {
   /// One step of length dt. On failure the state is as it was.
   NewtonReport take(State& state, double dt, const NewtonOptions& options, Predictor predictor);
   /// Largest difference of the last accepted trial from its prediction, with the phase error of
-  /// the Cayley transform: an estimate of the step's error at order 2 [-] (12 times it).
+  /// the Cayley transform: an estimate of the step's error at order 2 [-].
   [[nodiscard]] double error_estimate() const { return error_; }
 
   LedgerKeeper& ledger() { return ledger_; }
