@@ -146,12 +146,20 @@ TEST(ResultsFile, IsWholeAfterItsWriterWasKilled) {
   const ResultsLayout l = layout(20);
   for (const int milliseconds : {60, 137, 211, 305}) {
     const std::string path = scratch / "killed.h5";
+    int first_frame[2];  // The writer says when one stands.
+    ASSERT_EQ(pipe(first_frame), 0);
     const pid_t writer = fork();
     if (writer == 0) {
       alarm(10);  // Ends by itself should the test be killed.
       ResultsFile file(path, l, {});
-      for (int k = 0;; ++k) file.append(frame(l, k));
+      for (int k = 0;; ++k) {
+        file.append(frame(l, k));
+        if (k == 0 && ::write(first_frame[1], "1", 1) != 1) _exit(1);
+      }
     }
+    char byte = 0;
+    ASSERT_EQ(::read(first_frame[0], &byte, 1), 1);
+    for (const int end : first_frame) close(end);
     usleep(static_cast<useconds_t>(1000 * milliseconds));
     kill(writer, SIGKILL);
     waitpid(writer, nullptr, 0);

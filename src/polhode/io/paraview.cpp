@@ -183,6 +183,9 @@ std::string ParaviewWriter::file(std::size_t frame) const {
 void ParaviewWriter::append(double t, const std::vector<BodyMotion>& motions) {
   const std::string path = folder_ + "/" + file(times_.size());
   const std::string bytes = vtp(pictures_, motions);
+  // A new file: many file systems wait for the disk when an old one is written over.
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
