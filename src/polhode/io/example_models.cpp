@@ -78,7 +78,7 @@ std::string n_four_bar(const Values& values) {
     // The bar is named first: a positive angle turns the upright.
     m.joint("revolute", bars[i], uprights[i + 1], Vec3(i + 1, 1, 0), "z");
   }
-  return m.end("duration: 10 s, step: 10 ms", "100 ms");
+  return m.end("duration: 10 s, step: 10 ms", "500 ms");
 }
 
 constexpr double kRod = 0.1;  ///< Length of the rods of chains and trees [m].
