@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mechanisms with more rows than they need, and positions where they need more than they have.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <polhode/model/simulation.hpp>
+#include <polhode/solve/rank_report.hpp>
+#include <support/published_cases.hpp>
+
+namespace polhode::test {
+namespace {
+
+struct Overconstrained {
+  std::string name;
+  Model model;
+  int rows, redundant, mobility;
+  double step;
+};
+
+std::vector<Overconstrained> overconstrained() {
+  // Mobility is counted by hand: one of each, and the redundant rows follow from 6 n − rows.
+  return {
+      {"Bricard", bricard(), 30, 1, 1, 0.01},
+      {"Bennett", bennett(), 20, 3, 1, 0.01},
+      {"NFourBar3", n_four_bar(3, 0.3), 50, 9, 1, 0.01},
+      {"DoorOnTwoHinges", door(), 10, 5, 1, 0.01},
+  };
+}
+
+class Redundancy : public testing::TestWithParam<Overconstrained> {};
+
+TEST_P(Redundancy, IsReportedWithTheJointsThatShareIt) {
+  const Overconstrained& c = GetParam();
+  const Simulation s(c.model);
+  const RankReport r = rank_report(s.system(), s.state());
+  EXPECT_EQ(r.rows, c.rows);
+  EXPECT_EQ(r.redundant, c.redundant);
+  EXPECT_EQ(r.mobility, c.mobility);
+  EXPECT_GE(r.names.size(), 2U);
+}
+
+TEST_P(Redundancy, DoesNotDisturbTheMotion) {
+  Model model = GetParam().model;
+  model.analysis.step = GetParam().step;
+  model.analysis.duration = 10.0;
+  Simulation s(std::move(model));
+  const RunSummary r = s.run();
+  ASSERT_EQ(r.end, RunEnd::finished) << r.message;
+  EXPECT_EQ(r.rejected_steps, 0);
+  // Lengths are a metre: the joints hold to some round-offs of that.
+  EXPECT_LE(r.constraint_residual_max, 1e-13);
+  EXPECT_LE(r.energy_drift, 1e-10);
+  EXPECT_LE(r.angular_momentum_drift, 1e-10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Redundancy, testing::ValuesIn(overconstrained()),
+                         [](const auto& p) { return p.param.name; });
+
+/// Largest departure of the verticals from parallel: the branch that the four-bars must keep.
+double branch_deviation(const Simulation& s, int N) {
+  double most = 0.0;
+  const Vec3 first = s.body(0).q * Vec3::UnitX();
+  for (int i = 1; i <= N; ++i) most = std::max(most, (s.body(i).q * Vec3::UnitX() - first).norm());
+  return most;
+}
+
+// The flat position has N + 1 motions to first order, and leaves in one of them only. Energy
+// carries the mechanism through; whatever fraction of a step it falls on must not matter.
+struct Grid {
+  int N;
+  double step, phi;
+};
+class FlatFourBar : public testing::TestWithParam<Grid> {};
+
+TEST_P(FlatFourBar, IsPassed) {
+  const auto [N, step, phi] = GetParam();
+  Model model = n_four_bar(N, phi);
+  model.analysis.step = step;
+  model.analysis.duration = 4.0;
+  Simulation s(std::move(model));
+  const RunSummary r = s.run();
+  ASSERT_EQ(r.end, RunEnd::finished) << r.message;
+  EXPECT_LE(r.energy_drift, 1e-10);
+  EXPECT_LE(r.constraint_residual_max, 1e-12);
+  EXPECT_LE(branch_deviation(s, N), 1e-6) << "the mechanism left its branch";
+}
+
+std::vector<Grid> grids() {
+  std::vector<Grid> all;
+  for (const int N : {1, 3})
+    for (const double step : {0.0025, 0.01, 0.01 * std::numbers::sqrt2, 0.02})
+      for (const double phi : {0.0, 0.1, 0.777}) all.push_back({N, step, phi});
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(OnAnyGrid, FlatFourBar, testing::ValuesIn(grids()));
+
+class FlatStart : public testing::TestWithParam<int> {};
+
+TEST_P(FlatStart, RunsInTheDirectionOfItsVelocities) {
+  const int N = GetParam();
+  Model model = n_four_bar(N, 0.5 * std::numbers::pi);
+  model.analysis.step = 0.01;
+  model.analysis.duration = 4.0;
+  Simulation s(std::move(model));
+  const RankReport rank = rank_report(s.system(), s.state());
+  EXPECT_EQ(rank.mobility, N + 1);
+  const RunSummary r = s.run();
+  ASSERT_EQ(r.end, RunEnd::finished) << r.message;
+  EXPECT_LE(r.energy_drift, 1e-9);
+  EXPECT_LE(branch_deviation(s, N), 1e-6);
+}
+INSTANTIATE_TEST_SUITE_P(Of, FlatStart, testing::Values(1, 2, 3));
+
+}  // namespace
+}  // namespace polhode::test

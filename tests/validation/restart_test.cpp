@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same run twice, and in two parts, ends in the same bits.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <polhode/io/checkpoint.hpp>
+#include <support/published_cases.hpp>
+#include <support/scratch.hpp>
+
+namespace polhode::test {
+namespace {
+
+struct RestartCase {
+  std::string name;
+  Model model;
+};
+
+Model with(Model model, double duration, std::optional<double> step,
+           std::optional<double> tolerance, std::optional<int> order = {}) {
+  model.analysis.duration = duration;
+  model.analysis.step = step;
+  model.analysis.tolerance = tolerance;
+  model.analysis.order = order;
+  return model;
+}
+
+std::vector<RestartCase> cases() {
+  return {
+      {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
+      {"FourBarOrder6", with(n_four_bar(2), 2.0, 0.1, {}, 6)},
+      {"FourBarAutomatic", with(n_four_bar(1), 2.0, {}, 1e-6)},
+      {"SliderCrankFixedSteps", with(spatial_slider_crank(), 1.0, 0.005, {})},
+      {"SprungChainDampedAutomatic", with(sprung_chain(1.0), 1.0, {}, 1e-4)},
+      {"SqueezerAutomatic", with(andrews_squeezer(), 0.01, {}, 1e-6)},
+      {"BricardFixedSteps", with(bricard(), 2.0, 0.01, {})},
+      {"FreeTopHalvedSteps", with(free_symmetric_top({3.0, 0.0, 12.0}), 2.0, 0.25, {})},
+  };
+}
+
+class Restart : public testing::TestWithParam<RestartCase> {};
+
+TEST_P(Restart, TwoRunsAgreeToTheBit) {
+  Simulation first(GetParam().model), second(GetParam().model);
+  ASSERT_EQ(first.run().end, RunEnd::finished);
+  ASSERT_EQ(second.run().end, RunEnd::finished);
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST_P(Restart, FromACheckpointEndsInTheSameBits) {
+  const Model& model = GetParam().model;
+  const Scratch folder;
+  const std::string file = folder / "checkpoint.pst";
+  Simulation straight(model);
+  const std::int64_t half = [&] {
+    Simulation trial(model);
+    return trial.run().steps / 2;
+  }();
+  while (straight.time() < model.analysis.duration * (1.0 - 1e-12)) {
+    ASSERT_TRUE(straight.step(model.analysis.duration).accepted);
+    if (straight.summary().steps == half)
+      write_checkpoint(file, model, straight.system(), straight.state());
+  }
+  Simulation continued(model, read_checkpoint(file, model, straight.system()));
+  EXPECT_EQ(continued.summary().steps, half);
+  while (continued.time() < model.analysis.duration * (1.0 - 1e-12))
+    ASSERT_TRUE(continued.step(model.analysis.duration).accepted);
+  EXPECT_EQ(continued.state_hash(), straight.state_hash());
+  EXPECT_EQ(continued.summary().energy_drift, straight.summary().energy_drift);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(cases()),
+                         [](const auto& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace polhode::test
