@@ -56,7 +56,9 @@ TangentReport tangents_of(const Simulation& simulation) {
 
 int check(const Options& options) {
   const Simulation simulation(load_model(options.model));
-  const RankReport rank = rank_report(simulation.system(), simulation.state());
+  RankReport rank = rank_report(simulation.system(), simulation.state());
+  for (const BodySpec& body : simulation.model().bodies)
+    if (body.point_mass && !body.fixed) rank.mobility -= 3;  // turns of a point are no motions
   const std::vector<std::string> notes = warnings(simulation, rank);
   std::optional<TangentReport> tangents;
   if (options.tangents) tangents = tangents_of(simulation);
