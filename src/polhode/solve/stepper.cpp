@@ -13,7 +13,11 @@ namespace {
 
 /// Two times closer than this part of a step are the same.
 constexpr double kSameTime = 1e-9;
-constexpr double kSafety = 0.9, kLeastFactor = 0.3, kMostFactor = 1.6;
+constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
+/// What the companions' errors say of the error at order 6 and at order 8, measured.
+constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
+/// Round-off of an error estimate: nothing below can be asked of a step.
+constexpr double kLeastError = 1e-15;
 /// Steps in a row with few iterations after which a halved step grows again.
 constexpr int kEasySteps = 3, kFewIterations = 4;
 
@@ -23,7 +27,8 @@ struct Stepper::Impl {
   const System& system;
   SingleStep single;
   StepControl control;
-  std::vector<double> stages, check4;  ///< Of the order, and of the order-4 companion.
+  std::vector<double> stages;          ///< Of the order.
+  std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
   State before, companion;             ///< Copies to return to and to compare with.
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
@@ -31,7 +36,10 @@ struct Stepper::Impl {
       : system(s), single(s, std::move(engine), ga, kernels, c.conserving), control(c) {
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
-    check4 = composition_stages(4, false);
+    // Companions have their stages doubled too: an odd number of single steps would end with the
+    // constraint-normal velocity turned round, and the difference would tell of that alone.
+    check2 = doubled ? std::vector<double>{0.5, 0.5} : std::vector<double>{1.0};
+    check4 = composition_stages(4, doubled);
   }
 
   [[nodiscard]] bool automatic() const { return !control.step; }
@@ -92,13 +100,17 @@ struct Stepper::Impl {
     if (std::abs(t - grid) < kSameTime * H) state.t = grid;
   }
 
-  /// Largest difference of positions and orientations between two states [-].
-  [[nodiscard]] double difference(const State& x, const State& y) const {
+  /// Largest difference of positions, orientations, and velocities times the step H, between two
+  /// states [-]. A step that is too long may end at the right place with velocities that take the
+  /// rest of the run elsewhere.
+  [[nodiscard]] double difference(const State& x, const State& y, double H) const {
     double most = 0.0;
+    const double per_length = 1.0 / system.length_scale();
     for (int b = 0; b < system.body_count(); ++b) {
       const BodyMotion m = system.motion(x, b), n = system.motion(y, b);
-      most = std::max({most, (m.r - n.r).norm() / system.length_scale(),
-                       2.0 * (m.q.conjugate() * n.q).vec().norm()});
+      most = std::max({most, per_length * (m.r - n.r).norm(),
+                       2.0 * (m.q.conjugate() * n.q).vec().norm(),
+                       per_length * H * (m.v - n.v).norm(), H * (m.W - n.W).norm()});
     }
     return most;
   }
@@ -108,20 +120,20 @@ struct Stepper::Impl {
   std::optional<double> composed_error(const State& from, const State& reached, double H) {
     companion = from;
     single.ledger().forget();
-    NewtonReport r = run_stages(companion, {1.0}, H, true);
+    NewtonReport r = run_stages(companion, check2, H, true);
     single.ledger().forget();
     count_trial(companion, from);
     if (!r.converged) return std::nullopt;
-    const double e2 = difference(companion, reached);
+    const double e2 = difference(companion, reached, H);
     companion = from;
     r = run_stages(companion, check4, H, true);
     single.ledger().forget();
     count_trial(companion, from);
     if (!r.converged) return std::nullopt;
-    const double e4 = difference(companion, reached);
+    const double e4 = difference(companion, reached, H);
     if (e2 == 0.0) return 0.0;
     const double ratio = e4 / e2;
-    return control.order == 6 ? 0.02 * e4 * ratio : 0.01 * e4 * ratio * ratio;
+    return control.order == 6 ? kErrorOfSix * e4 * ratio : kErrorOfEight * e4 * ratio * ratio;
   }
 
   std::int64_t companion_iterations = 0;
@@ -155,8 +167,9 @@ struct Stepper::Impl {
   /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
   /// it per step.
   [[nodiscard]] double allowed_error(double dt) const {
-    return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
-                              : control.tolerance;
+    return control.order == 2
+               ? std::max(kLeastError, control.tolerance * std::abs(dt) / control.horizon)
+               : control.tolerance;
   }
 
   StepReport advance(State& state, double t_limit);
@@ -197,7 +210,8 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       if (known) {
         const double allowed = allowed_error(H);
         const double power = composed ? 1.0 / (control.order + 1.0) : 0.5;
-        factor = error > 0.0 ? std::clamp(kSafety * std::pow(allowed / error, power), kLeastFactor,
+        const double safety = composed ? kSafetyComposed : kSafety;
+        factor = error > 0.0 ? std::clamp(safety * std::pow(allowed / error, power), kLeastFactor,
                                           kMostFactor)
                              : kMostFactor;
         fine = error <= allowed;
