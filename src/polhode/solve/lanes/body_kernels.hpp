@@ -20,9 +20,7 @@ POLHODE_INLINE PM cayley_times(const P3& t, const PM& M) {
   return R;
 }
 
-/// Λ of a quaternion, orthogonal to rounding whatever its length: Λ = I + 2/(q·q) (w v̂ + v̂²).
-/// (With the plain 2 the rounding of unit lengths, which has a bias of 1e-16, turns into a drift
-/// of momentum that grows with the number of steps.)
+/// Λ of a quaternion, orthogonal to rounding whatever its length: I + 2/(q·q) (w v̂ + v̂²).
 POLHODE_INLINE PM rotation(Pack w, const P3& v) {
   const Pack s = 2.0 / (w * w + dot(v, v));
   const Pack x2 = s * v[0], y2 = s * v[1], z2 = s * v[2];

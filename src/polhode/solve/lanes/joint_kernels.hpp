@@ -408,8 +408,8 @@ POLHODE_INLINE void move_bodies(const TreeView& v, int block, int at, P3 dr, P3 
   }
   const P3 u = load3(t.u, at) + dr, old = load3(t.theta, at);
   // θ of cay[Δθ] cay[θ]. @eq{eq:ga-Newton-iterations}
-  const Pack shrink = 1.0 / (1.0 - 0.25 * dot(old, dtheta));
-  const P3 theta = shrink * (old + dtheta + 0.5 * cross(dtheta, old));
+  const Pack part = 0.25 * dot(old, dtheta);
+  const P3 theta = old + (1.0 / (1.0 - part)) * (dtheta + 0.5 * cross(dtheta, old) + part * old);
   most.rotation = max_keeping_nan(most.rotation, dot(theta, theta));
   store3(t.u, at, u);
   store3(t.theta, at, theta);
