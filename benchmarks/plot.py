@@ -32,7 +32,9 @@ def draw(results, case):
     title, compared = report.CASES[case]
     figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
     for order in report.ORDERS:
-        runs = sorted(results.of("work_precision", case=case, order=order), key=lambda r: r["cpu_s"])
+        runs = results.of("work_precision", case=case, order=order)
+        if order != "automatic":  # A step that had to be halved is no point of the curve.
+            runs = [r for r in runs if not r["rejected_steps"]]
         if runs:
             label = "automatic steps" if order == "automatic" else f"order {order}"
             axes.loglog([r["cpu_s"] for r in runs], [r["error"] for r in runs], label=label, markersize=4,

@@ -207,9 +207,9 @@ void measure(const Case& c, double most_seconds, double refinement) {
     for (int k = 1; row.add(std::to_string(order), fixed_steps(order, c.duration / steps)); ++k)
       steps = std::max(steps + 1.0, std::round(coarsest * std::pow(refinement, k)));
   }
-  for (double tolerance = 1e-3; tolerance > 0.5e-10; tolerance *= 0.1) {
+  for (int digits = 3; digits <= 10; ++digits) {
     AnalysisSpec a;
-    a.tolerance = tolerance;
+    a.tolerance = std::pow(10.0, -digits);
     if (!row.add("automatic", a)) break;
   }
 }
