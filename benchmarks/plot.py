@@ -51,7 +51,7 @@ def draw(results, case):
     axes.legend(fontsize=8)
     path = IMAGES / f"work_precision_{case}.png"
     IMAGES.mkdir(exist_ok=True)
-    figure.savefig(path, dpi=130)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
     return path
 

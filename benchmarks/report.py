@@ -34,10 +34,17 @@ class Results:
         return [line for line in self.lines if line["benchmark"] == benchmark
                 and all(line.get(key) == value for key, value in fields.items())]
 
-    def least_cpu(self, case, error, **fields):
-        """The cheapest run at least that accurate, or None."""
-        good = [r for r in self.of("work_precision", case=case, **fields) if r["error"] <= error]
-        return min(good, key=lambda r: r["cpu_s"], default=None)
+    def good_runs(self, case, order, error):
+        """Runs at least that accurate, of which every finer one is so too: a coarse run may be right by luck."""
+        runs = self.of("work_precision", case=case, order=order)
+        fineness = lambda run: run.get("step", run.get("tolerance"))
+        worse = [fineness(run) for run in runs if run["error"] > error]
+        return [run for run in runs if not worse or fineness(run) < min(worse)]
+
+    def least_cpu(self, case, error, order=None):
+        """The cheapest of the good runs of an order, or of all of them; None if there is none."""
+        good = [run for o in ([order] if order else ORDERS) for run in self.good_runs(case, o, error)]
+        return min(good, key=lambda run: run["cpu_s"], default=None)
 
     def widest(self):
         """The widest instruction set that was measured: the one that is taken by itself."""
