@@ -180,9 +180,9 @@ std::vector<std::string> kind_names() {
 INSTANTIATE_TEST_SUITE_P(Kinds, TreeOfEveryJoint,
                          testing::Combine(testing::ValuesIn(kind_names()),
                                           testing::Values(1.0, 0.5)),
-                         [](const auto& info) {
-                           return std::get<0>(info.param) +
-                                  (std::get<1>(info.param) == 1.0 ? "" : "_damped");
+                         [](const auto& c) {
+                           return std::get<0>(c.param) +
+                                  (std::get<1>(c.param) == 1.0 ? "" : "_damped");
                          });
 
 TEST(TreeEngine, HoldsSpringsBetweenNeighboursDistantBodiesAndTheGround) {

@@ -31,15 +31,15 @@ struct Carried {
 ///
 /// Capital letters are body components, small ones world components.
 struct BodyStep {
-  Vec3 r_n = Vec3::Zero(), r_n1 = Vec3::Zero();            ///< Centre of mass [m].
+  Vec3 r_n = Vec3::Zero(), r_n1 = Vec3::Zero();  ///< Centre of mass [m].
   Mat3 Lambda_n = Mat3::Identity(), Lambda_n1 = Mat3::Identity();
-  Vec3 u = Vec3::Zero();                                   ///< r_{n+1} − r_n, kept apart [m].
-  Vec3 theta = Vec3::Zero();                               ///< Cayley vector of the step, world [-].
-  Vec3 v_n = Vec3::Zero(), v_n1 = Vec3::Zero();            ///< [m/s]
-  Vec3 W_n = Vec3::Zero(), W_n1 = Vec3::Zero();            ///< Material angular velocity [rad/s].
-  double alpha_f = 0.5;                                    ///< Weight of t_{n+1} [-].
-  double rate = 0.0;                                       ///< γ/(βΔt): D v_{n+1}/D r [1/s].
-  bool moves = true;                                       ///< False for the ground.
+  Vec3 u = Vec3::Zero();                         ///< r_{n+1} − r_n, kept apart [m].
+  Vec3 theta = Vec3::Zero();                     ///< Cayley vector of the step, world [-].
+  Vec3 v_n = Vec3::Zero(), v_n1 = Vec3::Zero();  ///< [m/s]
+  Vec3 W_n = Vec3::Zero(), W_n1 = Vec3::Zero();  ///< Material angular velocity [rad/s].
+  double alpha_f = 0.5;                          ///< Weight of t_{n+1} [-].
+  double rate = 0.0;                             ///< γ/(βΔt): D v_{n+1}/D r [1/s].
+  bool moves = true;                             ///< False for the ground.
 
   /// The vector Z fixed in the body. z_{n+αf} is the average of z_n and z_{n+1}, shorter
   /// than Z: Λ_{n+αf} is no rotation. @eq{ga-z-interpolation}
