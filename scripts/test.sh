@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Everything that is tested, in the order of what fails fastest. This is what CI runs.
 #
-#   scripts/test.sh            all of it
-#   scripts/test.sh --quick    release build and unit tests only
+#   scripts/test.sh              all of it but the sanitizers
+#   scripts/test.sh --sanitize   the unit tests under address and undefined-behaviour sanitizers too
+#   scripts/test.sh --quick      release build and unit tests only
 #
 # Ends with a line "N passed, N failed" and exits 1 if something failed.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
 quick=no
+sanitize=no
 [ "${1:-}" = --quick ] && quick=yes
+[ "${1:-}" = --sanitize ] && sanitize=yes
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 jobs=$(nproc)
 passed=0
@@ -93,7 +96,9 @@ check "release build" configure_and_build release -DPOLHODE_BUILD_BENCHMARKS=$be
 
 # Address and undefined-behaviour sanitizers, on what is fast enough under them; the corpus of the
 # fuzzer (tests/fuzz/run.sh) is read by the unit tests, so it is replayed here.
-targets="polhode_cli polhode_unit_tests" check "sanitizer build" configure_and_build dev &&
-  tests "unit tests under sanitizers" build/dev -L unit
+if [ "$sanitize" = yes ]; then
+  targets="polhode_cli polhode_unit_tests" check "sanitizer build" configure_and_build dev &&
+    tests "unit tests under sanitizers" build/dev -L unit
+fi
 
 finish
