@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <polhode/io/example_models.hpp>
+#include <support/paths.hpp>
 #include <support/program.hpp>
 
-#ifdef POLHODE_CLI
 namespace polhode {
 namespace {
 
@@ -41,6 +41,10 @@ class CommandLine : public testing::Test {
  protected:
   CommandLine() { write("model.yaml", kPendulum); }
 
+  void SetUp() override {
+    if (test::cli_program().empty()) GTEST_SKIP() << "the command line is not built";
+  }
+
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
@@ -51,7 +55,7 @@ class CommandLine : public testing::Test {
     return std::filesystem::exists(folder_ / name);
   }
   test::Program start(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), POLHODE_CLI);
+    arguments.insert(arguments.begin(), test::cli_program());
     return {arguments, folder_ / ""};
   }
   test::ProgramResult run(const std::vector<std::string>& arguments) const {
@@ -307,4 +311,3 @@ TEST_F(CommandLine, StartsWithin50Milliseconds) {
 
 }  // namespace
 }  // namespace polhode
-#endif

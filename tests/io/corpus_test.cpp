@@ -9,13 +9,14 @@
 #include <sstream>
 
 #include <polhode/io/read_model.hpp>
+#include <support/paths.hpp>
 
 namespace polhode {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kCorpus = fs::path(POLHODE_SOURCE_DIR) / "tests" / "corpus";
+const fs::path kCorpus = fs::path(test::source_dir()) / "tests" / "corpus";
 
 std::string content(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);

@@ -8,13 +8,14 @@
 
 #include <polhode/io/field_table.hpp>
 #include <polhode/io/schema.hpp>
+#include <support/paths.hpp>
 
 namespace polhode {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = POLHODE_SOURCE_DIR;
+const fs::path kRoot = test::source_dir();
 
 TEST(Schema, NamesEveryFieldWithItsMeaning) {
   const std::string schema = json_schema();

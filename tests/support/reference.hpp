@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <polhode/model/simulation.hpp>
+#include <support/paths.hpp>
 
 namespace polhode::test {
 
@@ -22,7 +23,7 @@ struct Reference {
 
   /// Reads tests/validation/data/<name>.csv; lines that begin with # say where it comes from.
   static Reference read(const std::string& name) {
-    std::ifstream file(std::string(POLHODE_TEST_DATA_DIR) + "/" + name + ".csv");
+    std::ifstream file(test_data_dir() + "/" + name + ".csv");
     if (!file) throw std::runtime_error("no reference data '" + name + "'");
     Reference r;
     std::string line;

@@ -79,6 +79,7 @@ BodyStep body_step(const System& system, const State& state, const Trial& trial,
   s.r_n = get(n.r, lane);
   s.Lambda_n = get(trial.blocks[slot / kLanes].Lambda_n, lane);
   s.v_n = get(n.v, lane);
+  s.a_n = get(n.a, lane);
   s.W_n = get(n.W, lane);
   s.alpha_f = ga.alpha_f;
   s.rate = ga.c / trial.context.dt;

@@ -9,10 +9,11 @@ namespace polhode {
 /// The step everybody is taking: method, times and form of the potentials.
 struct StepContext {
   GeneralizedAlpha ga;
-  double t_n = 0.0;        ///< Start of the step [s].
-  double dt = 0.0;         ///< Length of the step [s]; negative in stages of orders 4 to 8.
-  bool conserving = true;  ///< Potentials in discrete-gradient form.
-  bool tangents = true;    ///< Tangents and G are wanted; else only wrenches and values.
+  double t_n = 0.0;          ///< Start of the step [s].
+  double dt = 0.0;           ///< Length of the step [s]; negative in stages of orders 4 to 8.
+  bool conserving = true;    ///< Potentials in discrete-gradient form.
+  double load_factor = 1.0;  ///< Part of all loads and of gravity that acts: statics. [-]
+  bool tangents = true;      ///< Tangents and G are wanted; else only wrenches and values.
 
   [[nodiscard]] double t_alpha() const { return t_n + ga.alpha_f * dt; }  ///< t_{n+αf} [s].
   [[nodiscard]] double t_n1() const { return t_n + dt; }                  ///< [s]
@@ -37,9 +38,10 @@ struct BodyStep {
   Vec3 theta = Vec3::Zero();                     ///< Cayley vector of the step, world [-].
   Vec3 v_n = Vec3::Zero(), v_n1 = Vec3::Zero();  ///< [m/s]
   Vec3 W_n = Vec3::Zero(), W_n1 = Vec3::Zero();  ///< Material angular velocity [rad/s].
-  double alpha_f = 0.5;                          ///< Weight of t_{n+1} [-].
-  double rate = 0.0;                             ///< γ/(βΔt): D v_{n+1}/D r [1/s].
-  bool moves = true;                             ///< False for the ground.
+  Vec3 a_n = Vec3::Zero();  ///< Newmark acceleration of t_n + δΔt [m/s²]; used for ρ∞ < 1 only.
+  double alpha_f = 0.5;     ///< Weight of t_{n+1} [-].
+  double rate = 0.0;        ///< γ/(βΔt): D v_{n+1}/D r [1/s].
+  bool moves = true;        ///< False for the ground.
 
   /// The vector Z fixed in the body. z_{n+αf} is the average of z_n and z_{n+1}, shorter
   /// than Z: Λ_{n+αf} is no rotation. @eq{ga-z-interpolation}
@@ -60,6 +62,12 @@ struct BodyStep {
 
   /// Velocity of the centre of mass at t_{n+αf} [m/s]; D v_α[Δr] = α_f·rate·I.
   [[nodiscard]] Vec3 velocity_alpha() const { return (1.0 - alpha_f) * v_n + alpha_f * v_n1; }
+
+  /// Acceleration of the centre of mass at t_{n+αm} [m/s²]; its derivative by Δr is
+  /// αm/(βΔt²) I. @eq{eq:ga-momenta-Newmark}
+  [[nodiscard]] Vec3 acceleration_m(const StepContext& context) const {
+    return context.ga.kappa / context.dt * (v_n1 - v_n) + (1.0 - context.ga.kappa) * a_n;
+  }
 
   /// Angular velocity at t_{n+αf}, world [rad/s]: Λ_α W_α, which is θ/Δt exactly at ρ∞ = 1.
   [[nodiscard]] Vec3 omega_alpha() const {

@@ -89,6 +89,7 @@ BodyStep newmark_step(const BodyMotion& at_n, const Vec3& u, const Vec3& theta,
   s.Lambda_n = at_n.Lambda();
   s.Lambda_n1 = cay(theta) * s.Lambda_n;
   s.v_n = at_n.v;
+  s.a_n = at_n.a;
   s.v_n1 = newmark_translation(u, {at_n.v, at_n.a}, context.ga, context.dt).v;
   s.W_n = at_n.W;
   s.W_n1 =
