@@ -30,4 +30,12 @@ int Model::joint_index(const std::string& name) const {
   return index_of(joints, name, "joint", "joints", {});
 }
 
+int Model::material_index(const std::string& name) const {
+  return index_of(materials, name, "material", "materials", {});
+}
+
+int Model::solid_index(const std::string& name) const {
+  return index_of(solids, name, "solid", "solids", {});
+}
+
 }  // namespace polhode

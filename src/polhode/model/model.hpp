@@ -11,15 +11,11 @@
 
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
+#include <polhode/model/material_spec.hpp>
+#include <polhode/model/place.hpp>
+#include <polhode/model/solid_spec.hpp>
 
 namespace polhode {
-
-/// Where a thing stands in the user's file; line 0 means it was built in code.
-struct Place {
-  std::string file;
-  int line = 0;    ///< 1-based.
-  int column = 0;  ///< 1-based.
-};
 
 /// A drawable and weighable shape of a body, in body axes.
 struct ShapeSpec {
@@ -73,7 +69,12 @@ struct LoadSpec {
   Vec3 Z_a = Vec3::Zero(),
        Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
   bool body_fixed = false;  ///< Components turn with the body (follower).
-  std::optional<TimeVector> vector;  ///< Force [N] or moment [N m].
+  std::optional<TimeVector>
+      vector;                ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
+  TimeFunctionPtr value;     ///< Pressure [Pa].
+  int solid = -1;            ///< Of a load on a solid: index into Model::solids.
+  SelectionSpecs selection;  ///< Its nodes or faces; empty: all.
+  bool follower = false;     ///< A pressure that turns with the surface and grows with its area.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
 };
@@ -82,9 +83,13 @@ struct LoadSpec {
 struct ProbeSpec {
   std::string name;
   Place place;
-  std::string kind;             ///< body or joint or load.
-  std::string target;           ///< Name of the body, joint or load.
-  Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes [m].
+  std::string kind;             ///< body, joint, load or solid.
+  std::string target;           ///< Name of the body, joint, load or solid.
+  Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
+                                ///< solid probe: in the mesh's own coordinates [m].
+  std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
+  std::string reaction_of;      ///< Of a solid probe: the bonded body or prescribed nodes whose
+                                ///< reaction is recorded.
   std::optional<double> every;  ///< [s]; else output.every.
   std::string axes = "world";   ///< Of reactions: world or joint.
 };
@@ -127,12 +132,17 @@ struct Model {
   std::vector<BodySpec> bodies;
   std::vector<JointSpec> joints;
   std::vector<LoadSpec> loads;
+  std::vector<MaterialSpec> materials;
+  std::vector<SolidSpec> solids;
   AnalysisSpec analysis;
   OutputSpec output;
 
   [[nodiscard]] int body_index(
       const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
+  [[nodiscard]] int material_index(
+      const std::string& name) const;                            ///< Throws InputError if unknown.
+  [[nodiscard]] int solid_index(const std::string& name) const;  ///< Throws InputError if unknown.
 };
 
 }  // namespace polhode

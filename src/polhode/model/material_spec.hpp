@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <polhode/base/types.hpp>
+#include <polhode/model/place.hpp>
+
+namespace polhode {
+
+/// Kelvin-Voigt viscosity: either a relaxation time, which multiplies the elastic moduli of the
+/// undeformed material, or viscous moduli of their own. All zero: none.
+struct ViscositySpec {
+  double relaxation_time = 0.0;  ///< [s]
+  double lame = 0.0;             ///< λ_v of λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
+  double shear = 0.0;            ///< μ_v [Pa s].
+
+  [[nodiscard]] bool any() const { return relaxation_time > 0.0 || lame > 0.0 || shear > 0.0; }
+};
+
+/// Fibres in a material: they resist stretch only.
+struct FibreSpec {
+  std::string law;                           ///< A fibre law of the registry, e.g. exponential.
+  std::map<std::string, double> parameters;  ///< By the registry's names, SI.
+  Vec3 direction = Vec3::UnitX();            ///< Unit vector in the mesh's own axes [-].
+};
+
+/// A material of deformable solids as described.
+struct MaterialSpec {
+  std::string name, type;  ///< type: a kind of the registry of materials.
+  Place place;
+  std::map<std::string, double> parameters;  ///< By the registry's names, SI. Absent = default.
+  double density = 0.0;                      ///< In the undeformed shape [kg/m^3].
+  ViscositySpec viscosity;
+  std::optional<FibreSpec> fibre;
+};
+
+}  // namespace polhode
