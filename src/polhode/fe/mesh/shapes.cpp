@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -105,6 +107,18 @@ Vec3 middle_of(const CellShape& shape, const std::vector<int>& corners) {
   return sum / static_cast<double>(corners.size());
 }
 
+double determinant(const Mat& slopes, const Vec3* X) {
+  Mat3 J = Mat3::Zero();
+  for (Eigen::Index a = 0; a < slopes.rows(); ++a) J += X[a] * slopes.row(a);
+  return J.determinant();
+}
+
+std::vector<int> first_numbers(int n) {
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 std::string face_type(std::size_t corners, std::size_t nodes) {
   return (corners == 3 ? "tri" : "quad") + std::to_string(nodes);
 }
@@ -121,7 +135,8 @@ CellShape shape(std::string name, int vtk, const Family& family, int order, Powe
               .edges = family.edges,
               .faces = {},
               .powers = std::move(monomials),
-              .coefficients = {}};
+              .coefficients = {},
+              .slopes = {}};
   if (order == 2)
     for (CellEdge& edge : s.edges) {
       edge.middle = s.size();
@@ -142,17 +157,15 @@ CellShape shape(std::string name, int vtk, const Family& family, int order, Powe
     face.type = face_type(corners.size(), face.nodes.size());
     s.faces.push_back(std::move(face));
   }
-  if (full) {
-    std::vector<int> all(s.corners);
-    for (int i = 0; i < s.corners; ++i) all[i] = i;
-    s.nodes.push_back(middle_of(s, all));
-  }
+  if (full) s.nodes.push_back(middle_of(s, first_numbers(s.corners)));
   // N_a(ξ_b) = δ_ab: the coefficients are the inverse of the monomials at the nodes. Their entries
   // are sums of 1, 1/2, 1/4, 1/8, which the rounding to 1/64 makes exact.
   Mat values(s.size(), s.size());
   for (int b = 0; b < s.size(); ++b)
     for (int m = 0; m < s.size(); ++m) values(b, m) = monomial(s.powers[m], s.nodes[b]);
   s.coefficients = values.inverse().unaryExpr([](double c) { return std::round(64.0 * c) / 64.0; });
+  for (const Vec3& xi : s.nodes) s.slopes.push_back(shape_gradients(s, xi));
+  s.slopes.push_back(shape_gradients(s, middle_of(s, first_numbers(s.corners))));
   return s;
 }
 
@@ -214,17 +227,15 @@ Mat shape_gradients(const CellShape& shape, const Vec3& xi) {
 }
 
 double jacobian(const CellShape& shape, const Vec3* X, const Vec3& xi) {
-  const Mat gradients = shape_gradients(shape, xi);
-  Mat3 J = Mat3::Zero();
-  for (int a = 0; a < shape.size(); ++a) J += X[a] * gradients.row(a);
-  return J.determinant();
+  return determinant(shape_gradients(shape, xi), X);
 }
 
 double least_jacobian(const CellShape& shape, const Vec3* X) {
-  Vec3 middle = Vec3::Zero();
-  for (int i = 0; i < shape.corners; ++i) middle += shape.nodes[i] / shape.corners;
-  double least = jacobian(shape, X, middle);
-  for (const Vec3& xi : shape.nodes) least = std::min(least, jacobian(shape, X, xi));
+  double least = std::numeric_limits<double>::infinity();
+  for (const Mat& slopes : shape.slopes) {
+    const double J = determinant(slopes, X);
+    if (!(J >= least)) least = J;  // one that is no number is the least of all
+  }
   return least;
 }
 

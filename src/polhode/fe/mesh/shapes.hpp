@@ -42,6 +42,7 @@ struct CellShape {
   std::vector<CellFace> faces;             ///< Of solids; outward. Empty for others.
   std::vector<std::array<int, 3>> powers;  ///< Monomials that span the shape functions.
   Mat coefficients;                        ///< Column a: coefficients of N_a over the monomials.
+  std::vector<Mat> slopes;  ///< shape_gradients() at each node, and at last in the middle.
 
   [[nodiscard]] int size() const { return static_cast<int>(nodes.size()); }
 };
