@@ -17,7 +17,12 @@ REGISTRIES = {
     "src/polhode/joints/registry.cpp": "docs/reference/joints.md",
     "src/polhode/loads/registry.cpp": "docs/reference/loads.md",
 }
+# Kinds that say their name in their own files, kKind = "name" -> page.
+KIND_FILES = {
+    "src/polhode/fe/materials": "docs/reference/materials.md",
+}
 KIND = re.compile(r'^ {6}\{"(\w+)",', re.M)
+OWN_KIND = re.compile(r'\bkKind = "(\w+)"')
 TOP = ("src", "apps", "tests", "docs", "tools", "scripts", "cmake", "benchmarks", "examples", "changes", "python",
        "viewer")
 PATH = re.compile(r"`((?:%s)/[^`\s]*)`" % "|".join(TOP))
@@ -51,14 +56,14 @@ def exists(path):
 
 
 def check_kinds(problems):
-    for registry, page in REGISTRIES.items():
-        source = ROOT / registry
-        if not source.exists():
-            continue
-        registered = set(KIND.findall(source.read_text()))
+    found = {r: (set(KIND.findall((ROOT / r).read_text())), page) for r, page in REGISTRIES.items() if (ROOT / r).exists()}
+    for folder, page in KIND_FILES.items():
+        texts = [path.read_text() for path in (ROOT / folder).glob("*.hpp")]
+        found[folder] = ({kind for text in texts for kind in OWN_KIND.findall(text)}, page)
+    for registry, (registered, page) in found.items():
         text = (ROOT / page).read_text() if (ROOT / page).exists() else ""
         rows = re.findall(r"^\|\s*`?(\w+)`?\s*\|", text, re.M)
-        documented = set(rows) - {"name", "kind", "type", "shape", "joint", "load"}
+        documented = set(rows) - {"name", "kind", "type", "shape", "joint", "load", "material", "fibre", "element"}
         problems += [f"{registry}: '{kind}' has no row in {page}. Add one." for kind in sorted(registered - documented)]
         problems += [f"{page}: '{kind}' is not in {registry}." for kind in sorted(documented - registered)]
 
