@@ -130,18 +130,18 @@ std::unique_ptr<const Material> make_material(std::string_view where,
 
 namespace {
 
-constexpr int kMostLanes = 8;
-
-/// A scalar in every lane.
-struct alignas(64) Lanes {
-  double value[kMostLanes];
-};
-
+/// n scalars in every lane.
 template <int n>
-void spread(const Eigen::Matrix<double, n, 1>& v, int width, double* out) {
-  for (int i = 0; i < n; ++i)
-    for (int l = 0; l < width; ++l) out[i * width + l] = v[i];
-}
+struct alignas(64) Lanes {
+  static constexpr int kMost = 8;
+  double value[n * kMost];
+
+  Lanes() = default;
+  Lanes(const Eigen::Matrix<double, n, 1>& v, int width) {
+    for (int i = 0; i < n; ++i)
+      for (int l = 0; l < width; ++l) value[i * width + l] = v[i];
+  }
+};
 
 }  // namespace
 
@@ -149,34 +149,33 @@ MaterialPoint discrete_stress(const Material& material, const Vec6& E_0, const V
                               const Vec3& A, bool whole) {
   const MaterialKernels& kernels = material_kernels("baseline");
   const int w = kernels.width;
-  Lanes E0[6], E1[6], a[3], S[6], D[36];
-  spread<6>(E_0, w, E0->value);
-  spread<6>(E_1, w, E1->value);
-  spread<3>(A, w, a->value);
-  kernels.laws[material.law_index()].stress(material.law(), whole, E0->value, E1->value, S->value,
-                                            D->value);
+  const Lanes<6> E0(E_0, w), E1(E_1, w);
+  const Lanes<3> a(A, w);
+  Lanes<6> S;
+  Lanes<36> D;
+  kernels.laws[material.law_index()].stress(material.law(), whole, E0.value, E1.value, S.value,
+                                            D.value);
   if (material.has_fibres())
     kernels.fibres[material.fibre_index()].add_stress(
-        material.fibre(), material.uncoupled(), a->value, E0->value, E1->value, S->value, D->value);
+        material.fibre(), material.uncoupled(), a.value, E0.value, E1.value, S.value, D.value);
   MaterialPoint point;
   for (int i = 0; i < 6; ++i) {
-    point.S[i] = S->value[i * w];
-    for (int j = 0; j < 6; ++j) point.D(i, j) = D->value[(6 * i + j) * w];
+    point.S[i] = S.value[i * w];
+    for (int j = 0; j < 6; ++j) point.D(i, j) = D.value[(6 * i + j) * w];
   }
   return point;
 }
 
 double strain_energy(const Material& material, const Vec6& E, const Vec3& A, bool whole) {
   const MaterialKernels& kernels = material_kernels("baseline");
-  const int w = kernels.width;
-  Lanes e[6], a[3], W[1];
-  spread<6>(E, w, e->value);
-  spread<3>(A, w, a->value);
-  kernels.laws[material.law_index()].energy(material.law(), whole, e->value, W->value);
+  const Lanes<6> e(E, kernels.width);
+  const Lanes<3> a(A, kernels.width);
+  Lanes<1> W;
+  kernels.laws[material.law_index()].energy(material.law(), whole, e.value, W.value);
   if (material.has_fibres())
     kernels.fibres[material.fibre_index()].add_energy(material.fibre(), material.uncoupled(),
-                                                      a->value, e->value, W->value);
-  return W->value[0];
+                                                      a.value, e.value, W.value);
+  return W.value[0];
 }
 
 }  // namespace polhode
