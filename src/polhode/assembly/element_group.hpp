@@ -66,6 +66,8 @@ class ElementGroup {
   [[nodiscard]] virtual bool has_tangent() const { return true; }
   [[nodiscard]] virtual bool conservative() const { return true; }  ///< Stores all it takes.
   [[nodiscard]] virtual bool dissipates() const { return false; }
+  /// Acts from outside: its forces need not cancel, and the ledger counts their impulse.
+  [[nodiscard]] virtual bool external() const { return false; }
   [[nodiscard]] virtual std::size_t history_size() const { return 0; }  ///< Of the whole group.
   [[nodiscard]] virtual std::size_t scratch_size() const { return 0; }
 

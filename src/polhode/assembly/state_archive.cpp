@@ -132,6 +132,10 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
   }
   archive(state.lambda);
   archive(state.history);
+  archive(state.node_x);
+  archive(state.node_v);
+  archive(state.node_a);
+  archive(state.element_history);
   archive(state.past_count);
   archive(state.past_next);
   for (int k = 0; k < kPast; ++k) archive(state.past_time[k]);

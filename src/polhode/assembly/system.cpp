@@ -54,6 +54,11 @@ void System::finish() {
       if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], basis->Z_a.norm());
       if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], basis->Z_b.norm());
     }
+  nodes_.finish(n);
+  conservative_ = conservative_ && nodes_.conservative();
+  dissipates_ = dissipates_ || nodes_.dissipates();
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (const int b = nodes_[i].body; b >= 0) reach[b] = std::max(reach[b], nodes_[i].Z.norm());
   double mass = 0.0, length = 0.0;
   for (int b = 0; b < n; ++b) {
     mass += bodies_[b].mass;
@@ -61,6 +66,14 @@ void System::finish() {
   }
   mean_mass_ = n > 0 ? mass / n : 1.0;
   length_ = n > 0 && length > 0.0 ? length / n : 1.0;
+  if (n == 0 && !nodes_.empty()) {  // of the solids alone
+    Vec3 low = nodes_[0].position, high = low;
+    for (int i = 0; i < nodes_.count(); ++i) {
+      low = low.cwiseMin(nodes_[i].position);
+      high = high.cwiseMax(nodes_[i].position);
+    }
+    if (high != low) length_ = (high - low).norm();
+  }
 
   initial_.blocks.resize(tree_.slots / kLanes);
   if (!initial_.blocks.empty())
@@ -71,6 +84,15 @@ void System::finish() {
                         tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
   initial_.lambda.assign(rows_, 0.0);
   initial_.history.assign(histories, 0.0);
+  for (int i = 0; i < nodes_.count(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      initial_.node_x.push_back(nodes_[i].position[c]);
+      initial_.node_v.push_back(nodes_[i].velocity[c]);
+    }
+  initial_.node_a.assign(initial_.node_x.size(), 0.0);
+  initial_.element_history.assign(nodes_.history_size(), 0.0);
+  for (int g = 0; g < nodes_.group_count(); ++g)
+    nodes_.group(g).initialize(initial_.element_history.data() + nodes_.first_history(g));
 }
 
 BodyStep System::instant(const State& state, int body) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/assembly/interaction.hpp>
+#include <polhode/assembly/nodes.hpp>
 #include <polhode/assembly/spanning_tree.hpp>
 #include <polhode/assembly/state.hpp>
 
@@ -36,6 +37,15 @@ class System {
   /// The group of this item type, made on first use.
   template <class Item>
   Group<Item>& group();
+  /// A node of a deformable solid; returns its number. Bodies may follow later.
+  int add_node(const NodeData& node) { return nodes_.add(node); }
+  /// Gives a component of a node's displacement from the start [m].
+  void prescribe(int node, int component, TimeFunctionPtr displacement) {
+    nodes_.prescribe(node, component, std::move(displacement));
+  }
+  int add_elements(std::unique_ptr<ElementGroup> elements) {
+    return nodes_.add_elements(std::move(elements));
+  }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   /// Numbers everything. @throws InputError if an interaction names a body that does not exist.
   void finish();
@@ -43,6 +53,7 @@ class System {
   [[nodiscard]] const Vec3& gravity() const { return gravity_; }  ///< [m/s²]
   [[nodiscard]] const std::vector<BodyData>& bodies() const { return bodies_; }
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies_.size()); }
+  [[nodiscard]] const Nodes& nodes() const { return nodes_; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const InteractionGroup& group(int i) const { return *groups_[i]; }
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
@@ -73,6 +84,7 @@ class System {
   std::vector<BodyMotion> start_;
   std::vector<std::unique_ptr<InteractionGroup>> groups_;
   std::vector<InteractionRef> refs_;
+  Nodes nodes_;
   SpanningTree tree_;
   State initial_;
   Vec3 gravity_ = Vec3::Zero();

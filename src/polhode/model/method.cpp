@@ -2,6 +2,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/model/method.hpp>
+#include <polhode/solve/coupled_engine.hpp>
 #include <polhode/solve/sparse_engine.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
@@ -70,6 +71,16 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     throw InputError("analysis.solver",
                      "'tree' has the momentum form of the rate and factors in every iteration only",
                      "Use solver: block_lu with this momentum_rate or jacobian");
+  if (!system.nodes().empty()) {
+    if (a.solver == "tree")
+      throw InputError("analysis.solver", "'tree' has no deformable solids",
+                       "Use solver: automatic, block_lu, klu or sparse_lu");
+    const NodeFactor factor = policy == JacobianPolicy::every_iteration
+                                  ? NodeFactor::every_iteration
+                                  : NodeFactor::automatic;
+    return std::make_unique<CoupledEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
+                                           rate, factor);
+  }
   if (a.solver != "automatic" && a.solver != "tree")
     return std::make_unique<SparseEngine>(system, a.solver, rate);
   if (!tree_fits) {

@@ -37,8 +37,10 @@ LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
       mass_(mass_blocks(system)),
       working_(without_rows(system)),
       outside_(on_one_body(system, engine)),
-      outside_sweep_(system, on_one_body(system, engine)) {
+      outside_sweep_(system, on_one_body(system, engine)),
+      nodes_(system) {
   for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
+  for (int i = 0; i < system.nodes().count(); ++i) total_mass_ += system.nodes().node_mass(i);
   for (const auto& list : {working_, outside_})
     for (int i : list)
       for (int body : {system.interactions()[i].a, system.interactions()[i].b})
@@ -53,11 +55,12 @@ BodySums LedgerKeeper::sums(const State& state) const {
   const double g[3] = {system_->gravity()[0], system_->gravity()[1], system_->gravity()[2]};
   kernels_->sums(state.blocks.data(), mass_.data(), system_->tree().body_of_slot.data(),
                  static_cast<int>(state.blocks.size()), g, &s);
+  nodes_.add_sums(state, s);
   return s;
 }
 
 double LedgerKeeper::stored(const State& state) const {
-  double potential = 0.0;
+  double potential = nodes_.stored(state);
   StepContext still;
   still.t_n = state.t;
   for (int i : working_) {
@@ -86,7 +89,7 @@ void LedgerKeeper::begin(State& state) {
   sums_are_of_state_ = true;
 }
 
-void LedgerKeeper::before_commit(State& state, const Trial& trial) {
+void LedgerKeeper::before_commit(State& state, Trial& trial) {
   if (!sums_are_of_state_) at_n_ = sums(state);
   Ledger& l = state.ledger;
   const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
@@ -106,6 +109,7 @@ void LedgerKeeper::before_commit(State& state, const Trial& trial) {
     l.put_in.add(w.put_in);
   }
   Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
+  potential_ += nodes_.close(l, state, trial, impulse, turning);
   engine_->add_ground_wrench(impulse.data(), turning.data());
   StepContext values_only = trial.context;
   values_only.tangents = false;

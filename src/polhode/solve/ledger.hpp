@@ -5,6 +5,7 @@
 
 #include <polhode/solve/lanes/dispatch.hpp>
 #include <polhode/solve/newton_system.hpp>
+#include <polhode/solve/node_ledger.hpp>
 #include <polhode/solve/trial.hpp>
 
 namespace polhode {
@@ -26,7 +27,7 @@ class LedgerKeeper {
   void begin(State& state);
   /// Adds what an accepted step did. Call with the trial converged, before and after the state
   /// moves to t_{n+1}.
-  void before_commit(State& state, const Trial& trial);
+  void before_commit(State& state, Trial& trial);
   void after_commit(State& state, const Trial& trial);
   /// The next call is about another state than the last one.
   void forget() { sums_are_of_state_ = false; }
@@ -46,6 +47,7 @@ class LedgerKeeper {
   std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, put in.
   std::vector<int> outside_;  ///< Interactions with one moving body that the engine does not sum.
   InteractionSweep outside_sweep_;
+  NodeLedger nodes_;
   std::vector<int> touched_;  ///< Bodies of those.
   std::vector<BodyStep> steps_;
   BodySums at_n_, at_n1_;  ///< Of the state before and after the step.

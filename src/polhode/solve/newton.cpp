@@ -13,6 +13,8 @@ namespace {
 constexpr double kNoPolishBelow = 1e-10;
 /// An increment above this is no Newton iteration any more.
 constexpr double kDiverged = 1e3;
+/// With a factorisation kept from earlier steps: what later increments would add up to.
+constexpr double kLeftByKeptFactor = 1e-10;
 /// Increments above this are watched by the line search.
 constexpr double kLarge = 0.05;
 /// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.
@@ -42,6 +44,10 @@ class LineSearch {
     }
     std::copy(iterate_.blocks.begin(), iterate_.blocks.end(), trial_.blocks.begin());
     trial_.lambda = iterate_.lambda;
+    trial_.node_x = iterate_.node_x;
+    trial_.node_u = iterate_.node_u;
+    trial_.node_v = iterate_.node_v;
+    trial_.element_scratch = iterate_.element_scratch;
     engine_.begin_step(state_, trial_);
     damping_ *= 0.5;
     return true;
@@ -73,7 +79,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   const auto fail = [&](std::string reason) {
     report.reason = std::move(reason);
     const int worst = engine.worst_body();
-    if (worst >= 0) report.worst = format("body '{}'", system.bodies()[worst].name);
+    report.worst = engine.worst_other();
+    if (report.worst.empty() && worst >= 0)
+      report.worst = format("body '{}'", system.bodies()[worst].name);
   };
   for (int it = 0; it < options.max_iterations; ++it) {
     const double last = report.increments.empty() ? 0.0 : report.increments.back();
@@ -85,7 +93,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const Iteration done = engine.iterate(state, trial, refactor, search.damping());
     ++report.iterations;
     if (!done.solved) {
-      fail("the linear system is singular, or a value is not finite");
+      fail(done.reason.empty() ? "the linear system is singular, or a value is not finite"
+                               : done.reason);
       if (done.worst_body >= 0)
         report.worst = format("body '{}'", system.bodies()[done.worst_body].name);
       return report;
@@ -101,8 +110,12 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const bool polished = close;
     if (e < options.tolerance) close = true;
     if (!close) continue;
+    if (engine.keeps_factor()) {  // converges linearly: what is left is a geometric series
+      const double rate = last > 0.0 ? std::min(e / last, 0.9) : 0.1;
+      if (e * rate / (1.0 - rate) > kLeftByKeptFactor && it + 1 < options.max_iterations) continue;
+    }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
-    if (!polished && e > kNoPolishBelow) continue;
+    if (!polished && e > kNoPolishBelow && !engine.keeps_factor()) continue;
     if (done.rotation > options.max_rotation) {
       fail(format("turns by |Θ| = {:.3g} in one step, more than max_step_rotation = {:.3g}",
                   done.rotation, options.max_rotation));

@@ -75,8 +75,10 @@ void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> st
   system_->group(batch.group).evaluate(items_, pair_steps_, std::span(terms_).first(items_.size()));
 }
 
-NewtonSystem::NewtonSystem(const System& system, MomentumRate form)
+NewtonSystem::NewtonSystem(const System& system, MomentumRate form,
+                           const std::vector<KktPair>& more)
     : system_(&system), form_(form), map_(kkt_map(system)), sweep_(system) {
+  map_.topology.pairs.insert(map_.topology.pairs.end(), more.begin(), more.end());
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.resize(n + 1);
   values_.diagonal.resize(n);
@@ -100,7 +102,7 @@ void NewtonSystem::assemble(const State& state, const Trial& trial, bool tangent
     const MomentumRates m = momentum_rates(body.mass, body.inertia, system_->motion(state, b),
                                            steps_[b], trial.context, form_);
     Vec6& R = body_residual_[b];
-    const Vec3 weight = body.mass * system_->gravity();
+    const Vec3 weight = trial.context.load_factor * body.mass * system_->gravity();
     R.head<3>() = m.p_dot - weight;
     R.tail<3>() = m.h_dot;
     body_scale_[b].head<3>() = m.p_dot.cwiseAbs() + weight.cwiseAbs();

@@ -70,7 +70,8 @@ class InteractionSweep {
 /// @eq{eq:ga-residual-vector} @eq{eq:ga-Newton-scheme}
 class NewtonSystem {
  public:
-  NewtonSystem(const System& system, MomentumRate form);
+  /// @param more  Pairs of bodies that something else couples: their blocks come last in values().
+  NewtonSystem(const System& system, MomentumRate form, const std::vector<KktPair>& more = {});
 
   /// Fills right_hand_side() and the residuals; with `tangent` the values as well.
   void assemble(const State& state, const Trial& trial, bool tangent);
@@ -79,6 +80,7 @@ class NewtonSystem {
 
   [[nodiscard]] const KktTopology& topology() const { return map_.topology; }
   [[nodiscard]] const KktValues& values() const { return values_; }
+  [[nodiscard]] KktValues& values() { return values_; }  ///< To add to after assemble().
   /// Bodies (6 each, scaled by −s), then rows (negative).
   [[nodiscard]] const Vec& right_hand_side() const { return rhs_; }
 

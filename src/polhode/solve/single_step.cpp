@@ -5,6 +5,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/solve/lanes/denormals.hpp>
+#include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/single_step.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
@@ -74,7 +75,10 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
   kernels_->predict(state.blocks.data(), mass_.data(), trial_.blocks.data(),
                     static_cast<int>(state.blocks.size()), c.dt, &weights);
   std::copy(state.lambda.begin(), state.lambda.end(), trial_.lambda.begin());
-  if (predictor.remember) predicted_ = trial_.blocks;
+  predict_nodes(*system_, state, trial_);
+  if (!predictor.remember) return;
+  predicted_ = trial_.blocks;
+  predicted_nodes_ = trial_.node_u;
 }
 
 NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
@@ -112,6 +116,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   method.c_A = ga.c_A;
   kernels_->commit(state.blocks.data(), mass_.data(), trial_.blocks.data(),
                    static_cast<int>(state.blocks.size()), &method, state.past_next);
+  commit_nodes(*system_, state, trial_);
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
@@ -170,6 +175,8 @@ void SingleStep::estimate_error() {
     }
     most = std::max({most, per_length * moved, turned + angle * angle * angle});
   }
+  for (std::size_t k = 0; k < predicted_nodes_.size(); ++k)
+    most = std::max(most, per_length * std::abs(trial_.node_u[k] - predicted_nodes_[k]));
   error_ = most / 12.0;
 }
 

@@ -46,6 +46,7 @@ class SingleStep {
   LedgerKeeper ledger_;
   Trial trial_;
   std::vector<TrialBlock> predicted_;
+  std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
   std::vector<int> eager_, lazy_;  ///< Interactions with a history of either sort.
   double error_ = 0.0;

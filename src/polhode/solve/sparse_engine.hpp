@@ -8,6 +8,11 @@
 
 namespace polhode {
 
+/// Moves bodies and multipliers by the solution x of a NewtonSystem, damped; `worst` is the body
+/// with the largest increment. @eq{eq:ga-Newton-iterations}
+void apply_increments(const System& system, const State& state, Trial& trial, const Vec& x,
+                      double damping, Iteration& done, int& worst);
+
 /// Newton iterations by one sparse matrix of all bodies and all multipliers, with any of the
 /// linear solvers: the reference of the elimination along the tree, and its fallback.
 class SparseEngine final : public NewtonEngine {
@@ -27,8 +32,6 @@ class SparseEngine final : public NewtonEngine {
   [[nodiscard]] const LinearSolver& solver() const { return *solver_; }
 
  private:
-  void move(const State& state, Trial& trial, double damping, Iteration& done);
-
   NewtonSystem newton_;
   std::unique_ptr<LinearSolver> solver_;
   Vec x_;

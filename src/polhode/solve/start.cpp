@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
+#include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/start.hpp>
 
 namespace polhode {
@@ -164,9 +165,11 @@ StartReport start(const System& system, State& state, const GeneralizedAlpha& ga
   report.velocity_residual = velocities.residual_before;
   report.velocity_change = velocities.largest_change;
   initialize_histories(system, state);
+  bond_nodes(system, state);
   if (options.multipliers || ga.rho_inf < 1.0)
     report.consistent = start_accelerations(system, solver, state, ga, dt);
   if (options.smooth_multipliers) start_smooth_multipliers(system, solver, state, ga, dt);
+  bond_nodes(system, state);
   return report;
 }
 

@@ -11,9 +11,12 @@ namespace polhode {
 /// The step being solved.
 struct Trial {
   StepContext context;
-  std::vector<TrialBlock> blocks;     ///< By slot; the last block is the ground.
-  std::vector<double> lambda;         ///< By row, current iterate.
-  std::vector<double> lambda_centre;  ///< By row: proximal centre; zero until converged.
+  std::vector<TrialBlock> blocks;  ///< By slot; the last block is the ground.
+  std::vector<double> lambda;      ///< By row, current iterate.
+  // Nodes of deformable solids at t_{n+1}, three numbers each.
+  std::vector<double> node_x, node_u, node_v;  ///< Position [m], x_{n+1} − x_n [m], velocity [m/s].
+  std::vector<double> element_scratch;         ///< Of groups of elements: internal unknowns, ...
+  std::vector<double> lambda_centre;           ///< By row: proximal centre; zero until converged.
 
   /// s = βΔt²/m_ref: momentum rows are multiplied by it, λ̂ = s λ.
   [[nodiscard]] double scale(const System& system) const {
@@ -42,6 +45,7 @@ struct Iteration {
   double increment = 0.0;  ///< Largest of |Δr|/ℓ and |Δθ| [-].
   double rotation = 0.0;   ///< Largest |θ| of the step after the update [-].
   int worst_body = -1;     ///< If not solved: whose pivot vanished, if known.
+  std::string reason;      ///< If not solved: what else happened, and where.
 };
 
 /// How well the constraints hold at the current iterate.
@@ -65,6 +69,10 @@ class NewtonEngine {
   [[nodiscard]] virtual ConstraintCheck check(const State& state, Trial& trial) = 0;
   /// Body with the largest increment of the last iteration, for reports.
   [[nodiscard]] virtual int worst_body() const = 0;
+  /// If something that is no body had it: its name, such as "node 7 of solid 'pad'".
+  [[nodiscard]] virtual std::string worst_other() const { return {}; }
+  /// Keeps factorisations over many steps: converges linearly, so the last increment must be small.
+  [[nodiscard]] virtual bool keeps_factor() const { return false; }
   /// Adds force [N] and moment about the origin [N m] of ground joints that the engine sums itself,
   /// at the converged trial; `knows_ground(interaction)` says which.
   virtual void add_ground_wrench(double* /*force*/, double* /*moment*/) const {}

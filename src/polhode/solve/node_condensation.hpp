@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/solve/kkt.hpp>
+#include <polhode/solve/mumps.hpp>
+#include <polhode/solve/node_system.hpp>
+
+namespace polhode {
+
+/// Eliminates the nodes of deformable solids from the Newton system, so that bodies and joints
+/// meet a solid as a 6×6 block for each pair of bodies it is bonded to.
+///
+/// A bonded node moves with its body, D x_{n+1} = P (Δr, Δθ) with P = [I, −ẑ_{n+1}]; its forces
+/// reach the body by P̄ᵀ, P̄ = [I, −ẑ_{n+αf}]. With f for the free unknowns and b for bodies
+///
+///   A_fb = K_f· P,   A_bf = P̄ᵀ K_·f,   A_bb = P̄ᵀ K P + Σ [0 0; 0 α_f F̂ ẑ_{n+1}]
+///   S = A_bb − A_bf A_ff⁻¹ A_fb
+///
+/// A factorisation serves later iterations and steps, turned with the body the solid is bonded to:
+/// K and M turn with the solid. Derivation: docs/theory/solids_and_bodies.md.
+class NodeCondensation {
+ public:
+  explicit NodeCondensation(const System& system);
+
+  /// The pairs of bodies that pieces couple, for the topology of the bodies' linear system.
+  [[nodiscard]] const std::vector<KktPair>& pairs() const { return pairs_; }
+  /// @returns false if the nodes' matrix is singular.
+  [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial);
+  [[nodiscard]] bool factored() const { return factored_; }
+  /// Rotation of each piece since the factorisation.
+  [[nodiscard]] const std::vector<Mat3>& turns(const Trial& trial);
+  /// After factor() or turns(): the bodies' share. Adds P̄ᵀF − A_bf A_ff⁻¹ F_f to the residuals by
+  /// body, and S to the diagonal and to the pairs' blocks, all times `scale`.
+  void condense(const std::vector<double>& F, const Trial& trial, double scale,
+                std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
+                std::span<KktValues::Pair> pairs);
+  /// Increments of all nodes (3 each) from those of the bodies (6 each).
+  void expand(const double* bodies, const Trial& trial, std::vector<double>& du) const;
+
+  [[nodiscard]] const Mumps& factorisation() const { return mumps_; }
+
+ private:
+  struct Bond {
+    int node, body;
+    Vec3 z_n1, z_alpha;
+  };
+  /// A free node beside bonded ones of a body: 3×6 and 6×3 at the factorisation.
+  struct Coupling {
+    int node, body, place;  ///< place: of the body in its piece.
+    Eigen::Matrix<double, 3, 6> fb;
+    Eigen::Matrix<double, 6, 3> bf;
+  };
+  void place_bonds(const Trial& trial);
+  void gather_couplings(const NodeSystem& nodes, double alpha_f);
+  [[nodiscard]] int place_in(int piece, int body) const;
+
+  const System* system_;
+  Mumps mumps_;
+  bool factored_ = false;
+  std::vector<int> source_;  ///< Of each entry of A_ff in the nodes' tangent.
+  std::vector<double> values_;
+  std::vector<Bond> bonds_;
+  std::vector<std::vector<Coupling>> couplings_;  ///< By piece.
+  std::vector<KktPair> pairs_;
+  std::vector<std::vector<int>> pair_of_;  ///< By piece: pair of places (i, j), i < j, row by row.
+  std::vector<Eigen::MatrixXd> A_bb_, S_;  ///< By piece.
+  std::vector<double> W_;  ///< A_ff⁻¹ A_fb: unknowns by 6 columns a body's place.
+  int columns_ = 0;
+  std::vector<Mat3> turn_, Lambda_factored_;  ///< By piece.
+  std::vector<double> y_;                     ///< A_ff⁻¹ F_f in the frame of the factorisation.
+};
+
+}  // namespace polhode

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solve/node_motion.hpp>
+
+namespace polhode {
+
+namespace {
+
+Eigen::Map<Vec3> at(std::vector<double>& field, int node) {
+  return Eigen::Map<Vec3>(field.data() + 3 * node);
+}
+Eigen::Map<const Vec3> at(const std::vector<double>& field, int node) {
+  return Eigen::Map<const Vec3>(field.data() + 3 * node);
+}
+
+Vec3 lane(const Lane3& x, int l) { return {x[0][l], x[1][l], x[2][l]}; }
+Mat3 lane(const double (&x)[9][kLanes], int l) {
+  Mat3 M;
+  for (int i = 0; i < 9; ++i) M(i / 3, i % 3) = x[i][l];
+  return M;
+}
+
+}  // namespace
+
+void predict_nodes(const System& system, const State& state, Trial& trial) {
+  const Nodes& nodes = system.nodes();
+  if (nodes.empty()) return;
+  const StepContext& c = trial.context;
+  trial.node_u.resize(state.node_x.size());
+  trial.node_x.resize(state.node_x.size());
+  trial.node_v.resize(state.node_x.size());
+  trial.element_scratch.resize(nodes.scratch_size());
+  for (std::size_t k = 0; k < state.node_x.size(); ++k) {
+    trial.node_u[k] = c.dt * state.node_v[k];
+    trial.node_x[k] = state.node_x[k] + trial.node_u[k];
+  }
+  for (const PrescribedComponent& p : nodes.prescribed()) {
+    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+    trial.node_x[k] = nodes[p.node].position[p.component] + (*p.displacement)(c.t_n1());
+    trial.node_u[k] = trial.node_x[k] - state.node_x[k];
+  }
+  follow_bodies(system, state, trial);
+  update_node_velocities(system, state, trial);
+  for (int g = 0; g < nodes.group_count(); ++g)
+    nodes.group(g).begin_step(state.element_history.data() + nodes.first_history(g),
+                              trial.element_scratch.data() + nodes.first_scratch(g));
+}
+
+/// @eq{eq:rbm-position}
+void follow_bodies(const System& system, const State& state, Trial& trial) {
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i) {
+    const NodeData& node = nodes[i];
+    if (node.body == kFreeNode) continue;
+    if (node.body == kGround) {
+      at(trial.node_x, i) = at(state.node_x, i);
+      at(trial.node_u, i).setZero();
+      continue;
+    }
+    const int slot = system.slot(node.body), l = slot % kLanes;
+    const TrialBlock& t = trial.blocks[slot / kLanes];
+    const Vec3 z_n = lane(t.Lambda_n, l) * node.Z, z_n1 = lane(t.Lambda, l) * node.Z;
+    // Λ_{n+1} = cay[θ] Λ_n: the increment by the averaged arm, without cancellation.
+    at(trial.node_u, i) = lane(t.u, l) + lane(t.theta, l).cross(0.5 * (z_n + z_n1));
+    at(trial.node_x, i) = lane(t.r, l) + z_n1;
+  }
+}
+
+void update_node_velocities(const System&, const State& state, Trial& trial) {
+  const GeneralizedAlpha& ga = trial.context.ga;
+  const double dt = trial.context.dt, rate = ga.c / dt;
+  for (std::size_t k = 0; k < trial.node_v.size(); ++k)
+    trial.node_v[k] = rate * trial.node_u[k] + (1.0 - ga.c) * state.node_v[k];
+  if (ga.c_A == 0.0) return;
+  for (std::size_t k = 0; k < trial.node_v.size(); ++k)
+    trial.node_v[k] += dt * ga.c_A * state.node_a[k];
+}
+
+NodeStep node_step(const State& state, const Trial& trial) {
+  const StepContext& c = trial.context;
+  return {.x_n = state.node_x.data(),
+          .x_n1 = trial.node_x.data(),
+          .u = trial.node_u.data(),
+          .v_n = state.node_v.data(),
+          .v_n1 = trial.node_v.data(),
+          .context = c,
+          .alpha_f = c.ga.alpha_f,
+          .rate = c.ga.c / c.dt};
+}
+
+NodeStep node_instant(const State& state, const StepContext& context) {
+  static thread_local std::vector<double> none;
+  if (none.size() < state.node_x.size()) none.assign(state.node_x.size(), 0.0);
+  return {.x_n = state.node_x.data(),
+          .x_n1 = state.node_x.data(),
+          .u = none.data(),
+          .v_n = state.node_v.data(),
+          .v_n1 = state.node_v.data(),
+          .context = context,
+          .alpha_f = 1.0,
+          .rate = 0.0};
+}
+
+void node_accelerations(const State& state, const Trial& trial, std::vector<double>& a) {
+  const GeneralizedAlpha& ga = trial.context.ga;
+  const double per_dt = ga.kappa / trial.context.dt;
+  a.resize(trial.node_v.size());
+  for (std::size_t k = 0; k < a.size(); ++k)
+    a[k] = per_dt * (trial.node_v[k] - state.node_v[k]) + (1.0 - ga.kappa) * state.node_a[k];
+}
+
+void commit_nodes(const System& system, State& state, const Trial& trial) {
+  const Nodes& nodes = system.nodes();
+  if (nodes.empty()) return;
+  const NodeStep step = node_step(state, trial);
+  for (int g = 0; g < nodes.group_count(); ++g)
+    nodes.group(g).commit(step, state.element_history.data() + nodes.first_history(g),
+                          trial.element_scratch.data() + nodes.first_scratch(g));
+  const GeneralizedAlpha& ga = trial.context.ga;
+  const double dt = trial.context.dt;
+  for (std::size_t k = 0; k < state.node_x.size(); ++k) {
+    state.node_a[k] = (trial.node_u[k] / dt - state.node_v[k]) / (ga.beta * dt) +
+                      (1.0 - 0.5 / ga.beta) * state.node_a[k];
+    state.node_v[k] = trial.node_v[k];
+    state.node_x[k] = trial.node_x[k];
+  }
+}
+
+/// @eq{eq:rbm-position} @eq{eq:rbm-rigid-point-velocity}
+void bond_nodes(const System& system, State& state) {
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i) {
+    if (nodes[i].body == kFreeNode) continue;
+    if (nodes[i].body == kGround) {
+      at(state.node_v, i).setZero();
+      continue;
+    }
+    const BodyMotion m = system.motion(state, nodes[i].body);
+    const Vec3 z = m.q * nodes[i].Z;
+    at(state.node_x, i) = m.r + z;
+    at(state.node_v, i) = m.v + m.omega().cross(z);
+  }
+}
+
+}  // namespace polhode

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/solve/trial.hpp>
+
+namespace polhode {
+
+/// Motion of the nodes of deformable solids over a step: Newmark like that of the bodies' centres,
+/// component by component. @eq{eq:td-Newmark-COM}
+
+/// Fills the trial's nodes: free ones go on with their velocities, prescribed components go where
+/// they must, bonded ones follow their bodies, which have been predicted before.
+void predict_nodes(const System& system, const State& state, Trial& trial);
+/// Bonded nodes after their bodies have moved: x = r + Λ Z. Velocities of all nodes if `rates`.
+void follow_bodies(const System& system, const State& state, Trial& trial);
+/// Velocities at t_{n+1} from the increments, all nodes.
+void update_node_velocities(const System& system, const State& state, Trial& trial);
+/// The trial's nodes as elements see them.
+[[nodiscard]] NodeStep node_step(const State& state, const Trial& trial);
+/// The nodes of a state at its instant, velocities included.
+[[nodiscard]] NodeStep node_instant(const State& state, const StepContext& context);
+/// Rate of the nodes' momentum at t_{n+αm} per mass: accelerations, three a node.
+/// @eq{eq:ga-momenta-Newmark}
+void node_accelerations(const State& state, const Trial& trial, std::vector<double>& a);
+/// Moves the state's nodes and the elements' histories to t_{n+1}. Bodies have been committed.
+void commit_nodes(const System& system, State& state, const Trial& trial);
+/// Puts bonded nodes of a state where their bodies are, with the velocities of these.
+void bond_nodes(const System& system, State& state);
+
+}  // namespace polhode
