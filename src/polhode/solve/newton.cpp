@@ -13,8 +13,9 @@ namespace {
 constexpr double kNoPolishBelow = 1e-10;
 /// An increment above this is no Newton iteration any more.
 constexpr double kDiverged = 1e3;
-/// With a factorisation kept from earlier steps: what later increments would add up to.
-constexpr double kLeftByKeptFactor = 1e-10;
+/// With a factorisation kept from earlier steps: what later increments would add up to, as part of
+/// the tolerance.
+constexpr double kLeftByKeptFactor = 1e-5;
 /// Increments above this are watched by the line search.
 constexpr double kLarge = 0.05;
 /// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.
@@ -112,7 +113,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (!close) continue;
     if (engine.keeps_factor()) {  // converges linearly: what is left is a geometric series
       const double rate = last > 0.0 ? std::min(e / last, 0.9) : 0.1;
-      if (e * rate / (1.0 - rate) > kLeftByKeptFactor && it + 1 < options.max_iterations) continue;
+      if (e * rate / (1.0 - rate) > kLeftByKeptFactor * options.tolerance &&
+          it + 1 < options.max_iterations)
+        continue;
     }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
     if (!polished && e > kNoPolishBelow && !engine.keeps_factor()) continue;
