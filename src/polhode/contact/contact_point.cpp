@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/bristle.hpp>
+#include <polhode/contact/contact_point.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Directions closer than this are taken as parallel by fading potentials: sin² of the angle.
+constexpr double kFadeSquare = 1e-3;
+/// Displacements and turns below these have no direction: corrections along them are round-off.
+constexpr double kNoTurn = 1e-6, kNoMove = 1e-6;
+/// The common point is moved by at most this part of L per unit turn.
+constexpr double kLargestShift = 0.1;
+
+/// m of a Fade: x(2 − x) of x = sin²/1e-3 < 1. y is the cosine.
+template <class T>
+T fading(Fade fade, const T& y) {
+  const T x = (1.0 - y * y) * (1.0 / kFadeSquare);
+  const bool near = value(x) < 1.0;
+  const T m = near ? x * (2.0 - x) : T(1.0);
+  if (fade == Fade::parallel) return m;
+  return near && value(y) < 0.0 ? 1.0 - m : T(0.0);
+}
+
+/// (m(y_1) − m(y_0))/(y_1 − y_0), without the difference where both fade.
+template <class T>
+T fading_quotient(Fade fade, double y_0, const T& y_1) {
+  const double x_0 = (1.0 - y_0 * y_0) / kFadeSquare;
+  const T x_1 = (1.0 - y_1 * y_1) * (1.0 / kFadeSquare);
+  const bool in_0 = x_0 < 1.0, in_1 = value(x_1) < 1.0;
+  if (!in_0 && !in_1) return T(0.0);
+  const double sign = fade == Fade::parallel ? 1.0 : -1.0;
+  if (fade == Fade::flat && (in_0 ? y_0 : value(y_1)) > 0.0) return T(0.0);
+  if (in_0 && in_1) return sign * (-1.0 / kFadeSquare) * ((y_0 + y_1) * (2.0 - x_0 - x_1));
+  const T change = y_1 - y_0;
+  if (std::abs(value(change)) < 1e-14) return T(0.0);
+  return (fading(fade, y_1) - fading(fade, y_0)) / change;
+}
+
+/// The bristle of t_n in the tangent plane of the step: turned with the normal by the smallest
+/// rotation, and about it with the bodies.
+template <class T>
+V3<T> transported(const Vec3& bristle, const Vec3& before, const V3<T>& n, const T& spin) {
+  if (before.isZero()) return constant<T>(Vec3::Zero());
+  const V3<double> s = v3(bristle), from = v3(before);
+  const T cosine = dot(from, n);
+  V3<T> turned = constant<T>(bristle);
+  if (value(cosine) > -0.5) {
+    const V3<T> axis = cross(from, n), once = cross(axis, s);
+    turned = s + once + (1.0 / (1.0 + cosine)) * cross(axis, once);
+  }
+  turned = turned - dot(n, turned) * n;
+  const T square = 0.25 * spin * spin, scale = 1.0 / (1.0 + square);
+  return scale * ((1.0 - square) * turned + spin * cross(n, turned));
+}
+
+template <class T>
+struct Wrenches {
+  V3<T> force, moment_a, moment_b;
+};
+
+template <class T>
+V3<T> average(const V3<double>& at_n, const V3<T>& at_n1, double weight) {
+  return (1.0 - weight) * at_n + weight * at_n1;
+}
+
+/// One evaluation of a contact point with numbers of sort T.
+template <class T>
+class Evaluation {
+ public:
+  Evaluation(const PointData& data, const BodyStep& a, const BodyStep& b,
+             const StepContext& context)
+      : data_(data),
+        a_(a),
+        b_(b),
+        context_(context),
+        n_a_(a.r_n, a.Lambda_n, 0),
+        n_b_(b.r_n, b.Lambda_n, 6),
+        e_a_(a.r_n1, a.Lambda_n1, 0),
+        e_b_(b.r_n1, b.Lambda_n1, 6),
+        move_a_(a, 0),
+        move_b_(b, 6) {}
+
+  Wrenches<T> run(PointReport* report) {
+    const Gap<double> g_0 = gap(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
+    const Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
+    kinematics(g_0, g_1);
+    forces(g_0, g_1);
+    closed_forms(g_1);
+    alpha_corrections(g_0, g_1);
+
+    Wrenches<T> w;
+    w.force = lambda_ * N_;
+    V3<T> arm = point_N_;
+    w.moment_a = cross(arm - r_a_, w.force) + couple_;
+    w.moment_b = -cross(arm - r_b_, w.force) - couple_;
+    if (report) start_report(*report, g_0, g_1);
+    if (data_.friction.acts() && data_.friction_share > 0.0 && data_.pair.weight > 0.0)
+      add_friction(w, report);
+    if (report) report->force = value(w.force);
+    return w;
+  }
+
+ private:
+  /// Common point, normal and exact relative displacement of the material points there.
+  /// @eq{contact-direction}
+  void kinematics(const Gap<double>& g_0, const Gap<T>& g_1) {
+    change_ = g_1.distance - g_0.distance;
+    c_ = 0.5 * (g_0.point + g_1.point);
+    n_ = unit(g_0.normal + g_1.normal);
+    r_a_ = average(v3(a_.r_n), e_a_.position(), 0.5);
+    r_b_ = average(v3(b_.r_n), e_b_.position(), 0.5);
+    u_ = move_a_.u + cross(move_a_.theta, c_ - r_a_) - move_b_.u - cross(move_b_.theta, c_ - r_b_);
+    const V3<T> turn = move_a_.theta - move_b_.theta;
+    const V3<T> w = cross(n_, turn);
+    const T square = dot(w, w), miss = change_ - dot(n_, u_);
+    const double angle = std::sqrt(value(square));
+    V3<T> u = u_;
+    point_N_ = c_;
+    if (angle > kNoTurn && std::abs(value(miss)) < kLargestShift * data_.length * angle) {
+      const V3<T> shift = (miss / square) * w;
+      point_N_ = c_ + shift;
+      u = u_ + cross(turn, shift);
+    }
+    N_ = n_;
+    const T length = dot(u, u);
+    const double least = kNoMove * data_.length;
+    if (value(length) > least * least) N_ = n_ + ((change_ - dot(n_, u)) / length) * u;
+  }
+
+  /// Normal force and, if the potential fades, the couple on the fading directions.
+  void forces(const Gap<double>& g_0, const Gap<T>& g_1) {
+    const NormalLaw& law = data_.normal;
+    lambda_ = law.quotient(g_0.distance, g_1.distance);
+    if (data_.rate_damping > 0.0) {
+      const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;
+      lambda_ = value(factor) > 0.0 ? factor * lambda_ : T(0.0);
+    }
+    if (data_.history.plastic && data_.pair.weight > 0.0)
+      lambda_ = (1.0 - kPlasticShare) * lambda_ + kPlasticShare * law.force(g_1.distance);
+    couple_ = constant<T>(Vec3::Zero());
+    if (data_.pair.fade != Fade::none) fade(g_0, g_1);
+    lambda_ = data_.pair.weight * lambda_;
+    couple_ = data_.pair.weight * couple_;
+  }
+
+  /// D(m b) = m̄ Δb + b̄ Δm, with Δm = q Δy and Δy = (θ_a − θ_b)·(ē_a × ē_b). @eq{contact-fading}
+  void fade(const Gap<double>& g_0, const Gap<T>& g_1) {
+    const FadeDirections<double> f_0 = fade_directions(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
+    const FadeDirections<T> f_1 = fade_directions(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
+    const double y_0 = dot(f_0.a, f_0.b);
+    const T y_1 = dot(f_1.a, f_1.b);
+    const T energy =
+        0.5 * (data_.normal.energy(g_0.distance) + data_.normal.energy_of(g_1.distance));
+    lambda_ = 0.5 * (fading(data_.pair.fade, y_0) + fading(data_.pair.fade, y_1)) * lambda_;
+    const T q = fading_quotient(data_.pair.fade, y_0, y_1);
+    couple_ = (-(energy * q)) * cross(average(f_0.a, f_1.a, 0.5), average(f_0.b, f_1.b, 0.5));
+  }
+
+  /// A point against a plane or a ball: N and arms for which N·u = Δg needs no correction.
+  /// @eq{contact-point-plane} @eq{contact-sphere-sphere}
+  void closed_forms(const Gap<T>&) {
+    if (data_.pair.kind != GapKind::point_solid) return;
+    const Shape &A = *data_.a, &B = *data_.b;
+    if (B.solid != Solid::half_space && B.solid != Solid::ball) return;
+    const Vec3& Z = A.corners[data_.pair.i];
+    const V3<double> p_0 = n_a_.point(Z);
+    const V3<T> p_1 = e_a_.point(Z);
+    point_N_ = average(p_0, p_1, 0.5);
+    if (B.solid == Solid::half_space) {
+      const Vec3 normal = B.axes.col(2);
+      N_ = average(n_b_.vector(normal), e_b_.vector(normal), 0.5);
+    } else {
+      const V3<double> w_0 = p_0 - n_b_.point(B.centre);
+      const V3<T> w_1 = p_1 - e_b_.point(B.centre);
+      N_ = (T(1.0) / (norm(w_0) + norm(w_1))) * (w_0 + w_1);
+    }
+  }
+
+  /// ρ∞ < 1: force, normal and arms of t_{n+αf}.
+  void alpha_corrections(const Gap<double>& g_0, const Gap<T>& g_1) {
+    const double e = context_.ga.alpha_f - 0.5;
+    if (e == 0.0) return;
+    N_ = N_ + e * (g_1.normal - g_0.normal);
+    const V3<T> moved = e * (g_1.point - g_0.point);
+    point_N_ = point_N_ + moved;
+    c_ = c_ + moved;
+    lambda_ = lambda_ + (e * data_.pair.weight) *
+                            (data_.normal.force(g_1.distance) - data_.normal.force(g_0.distance));
+    r_a_ = average(v3(a_.r_n), e_a_.position(), context_.ga.alpha_f);
+    r_b_ = average(v3(b_.r_n), e_b_.position(), context_.ga.alpha_f);
+  }
+
+  void add_friction(Wrenches<T>& w, PointReport* report) {
+    const FrictionLaw& f = data_.friction;
+    const T normal_force = value(lambda_) > 0.0 ? data_.friction_share * lambda_ : T(0.0);
+    const Vec3 n = value(n_);
+    const T spin = 0.5 * dot(n_, move_a_.theta + move_b_.theta);
+    double dissipated = 0.0, stored = 0.0;
+    if (f.mu > 0.0) {
+      const double mu = !data_.history.slips && f.mu_static > 0.0 ? f.mu_static : f.mu;
+      const Cone<T> cone = friction_cone((mu / f.stiffness) * normal_force, f);
+      const V3<T> u_T = u_ - dot(n_, u_) * n_;
+      const V3<T> s_0 = start(data_.history.bristle, spin, cone);
+      const V3<T> middle = s_0 + (0.5 + f.damping / (f.stiffness * context_.dt)) * u_T;
+      const V3<T> F = -f.stiffness * cone.nearest(middle);
+      w.force = w.force + F;
+      w.moment_a = w.moment_a + cross(c_ - r_a_, F);
+      w.moment_b = w.moment_b - cross(c_ - r_b_, F);
+      if (report) {
+        report->friction_force = value(F);
+        report->after.bristle = value(cone.nearest(s_0 + u_T));
+        report->after.slips = cone.outside(value(s_0 + u_T));
+        bristle_work(f.stiffness, value(F), value(u_T), data_.history.bristle,
+                     report->after.bristle, stored, dissipated);
+      }
+    }
+    if (f.rolling > 0.0 || f.torsion > 0.0) {
+      const V3<T> turn = move_a_.theta - move_b_.theta;
+      const T about = dot(n_, turn);
+      const double k = f.turning_stiffness;
+      const double part = 0.5 + f.turning_damping / (k * context_.dt);
+      V3<T> M = constant<T>(Vec3::Zero());
+      if (f.rolling > 0.0) {
+        const Cone<T> cone{(f.rolling / k) * normal_force, 1.0, {}, {}};
+        const V3<T> phi = turn - about * n_;
+        const V3<T> s_0 = start(data_.history.rolling, spin, cone);
+        M = M - k * cone.nearest(s_0 + part * phi);
+        if (report) {
+          report->after.rolling = value(cone.nearest(s_0 + phi));
+          bristle_work(k, value(M), value(phi), data_.history.rolling, report->after.rolling,
+                       stored, dissipated);
+        }
+      }
+      if (f.torsion > 0.0) {
+        const Cone<T> cone{(f.torsion / k) * normal_force, 1.0, {}, {}};
+        const V3<T> s_0 = cone.nearest(data_.history.torsion * n_);
+        const V3<T> drill = -k * cone.nearest(s_0 + (part * about) * n_);
+        M = M + drill;
+        if (report) {
+          const Vec3 after = value(cone.nearest(s_0 + about * n_));
+          report->after.torsion = after.dot(n);
+          bristle_work(k, value(drill), value(about * n_), data_.history.torsion * n, after, stored,
+                       dissipated);
+        }
+      }
+      w.moment_a = w.moment_a + M;
+      w.moment_b = w.moment_b - M;
+    }
+    if (!report) return;
+    report->work.stored += stored;
+    report->work.dissipated += dissipated;
+    report->after.normal = n;
+  }
+
+  static void bristle_work(double k, const Vec3& F, const Vec3& u, const Vec3& before,
+                           const Vec3& after, double& stored, double& dissipated) {
+    stored += 0.5 * k * after.squaredNorm();
+    dissipated += -F.dot(u) - 0.5 * k * (after.squaredNorm() - before.squaredNorm());
+  }
+
+  /// The bristle at the start of the step, brought into the tangent plane and into the cone.
+  V3<T> start(const Vec3& bristle, const T& spin, const Cone<T>& cone) const {
+    return cone.nearest(transported(bristle, data_.history.normal, n_, spin));
+  }
+
+  Cone<T> friction_cone(const T& radius, const FrictionLaw& f) const {
+    Cone<T> cone{radius, 1.0, {}, {}};
+    if (f.mu_across <= 0.0 || f.mu_across == f.mu) return cone;
+    const V3<T> d = average(n_a_.vector(f.direction), e_a_.vector(f.direction), 0.5);
+    const V3<T> across = d - dot(n_, d) * n_;
+    if (value(dot(across, across)) < 1e-12) return cone;  // the direction is the normal
+    cone.ratio = f.mu_across / f.mu;
+    cone.e = unit(across);
+    cone.f = cross(n_, cone.e);
+    return cone;
+  }
+
+  void start_report(PointReport& r, const Gap<double>& g_0, const Gap<T>& g_1) const {
+    r.gap_n = g_0.distance;
+    r.gap_n1 = value(g_1.distance);
+    r.normal_force = value(lambda_);
+    r.normal = value(n_);
+    r.point = value(c_);
+    r.after = data_.history;
+    r.after.bristle.setZero();
+    r.after.rolling.setZero();
+    r.after.torsion = 0.0;
+    r.after.normal.setZero();
+    r.after.slips = false;
+    const Placement<double> end_a(a_.r_n1, a_.Lambda_n1, 0), end_b(b_.r_n1, b_.Lambda_n1, 6);
+    const double m_0 = weight_at(n_a_, n_b_), m_1 = weight_at(end_a, end_b);
+    r.work = {};
+    r.work.stored = m_1 * data_.normal.energy(r.gap_n1);
+    // What the normal force took beyond the change of the potential.
+    const double elastic = 0.5 * (m_0 + m_1) * data_.normal.quotient(r.gap_n, r.gap_n1);
+    r.work.dissipated = (r.normal_force - elastic) * (r.gap_n - r.gap_n1);
+  }
+  double weight_at(const Placement<double>& at_a, const Placement<double>& at_b) const {
+    if (data_.pair.fade == Fade::none) return data_.pair.weight;
+    const FadeDirections<double> f = fade_directions(data_.pair, *data_.a, *data_.b, at_a, at_b);
+    return data_.pair.weight * fading(data_.pair.fade, dot(f.a, f.b));
+  }
+
+  const PointData& data_;
+  const BodyStep &a_, &b_;
+  const StepContext& context_;
+  Placement<double> n_a_, n_b_;  ///< At t_n.
+  Placement<T> e_a_, e_b_;       ///< At t_{n+1}.
+  Motion<T> move_a_, move_b_;
+  T change_{}, lambda_{};
+  V3<T> c_, n_, u_, N_, point_N_, r_a_, r_b_, couple_;
+};
+
+void put(const V3<Dual>& x, int row, Mat6& by_a, Mat6& by_b) {
+  const Dual* rows[3] = {&x.x, &x.y, &x.z};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 6; ++j) {
+      by_a(row + i, j) += rows[i]->d[j];
+      by_b(row + i, j) += rows[i]->d[6 + j];
+    }
+}
+
+template <class T>
+void add_values(const Wrenches<T>& w, PairTerms& terms) {
+  const Vec3 F = value(w.force);
+  terms.wrench_a.head<3>() += F;
+  terms.wrench_a.tail<3>() += value(w.moment_a);
+  terms.wrench_b.head<3>() -= F;
+  terms.wrench_b.tail<3>() += value(w.moment_b);
+}
+
+double gap_at(const PointData& d, const Vec3& r_a, const Mat3& L_a, const Vec3& r_b,
+              const Mat3& L_b) {
+  return gap(d.pair, *d.a, *d.b, Placement<double>(r_a, L_a, 0), Placement<double>(r_b, L_b, 6))
+      .distance;
+}
+
+}  // namespace
+
+void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
+                 const StepContext& context, PairTerms& terms, PointReport* report) {
+  if (!context.tangents) {
+    add_values(Evaluation<double>(data, a, b, context).run(report), terms);
+    return;
+  }
+  const Wrenches<Dual> w = Evaluation<Dual>(data, a, b, context).run(report);
+  add_values(w, terms);
+  put(w.force, 0, terms.D_aa, terms.D_ab);
+  put(w.moment_a, 3, terms.D_aa, terms.D_ab);
+  put(-w.force, 0, terms.D_ba, terms.D_bb);
+  put(w.moment_b, 3, terms.D_ba, terms.D_bb);
+}
+
+double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b) {
+  return gap_at(data, a.r_n, a.Lambda_n, b.r_n, b.Lambda_n);
+}
+
+double gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {
+  return gap_at(data, a.r_n1, a.Lambda_n1, b.r_n1, b.Lambda_n1);
+}
+
+double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {
+  StepContext still;
+  still.tangents = false;
+  PointReport report;
+  PairTerms unused;
+  unused.set_zero();
+  PointData at_end = data;
+  at_end.history.plastic = false;
+  at_end.friction = {};
+  add_contact(at_end, a, b, still, unused, &report);
+  return report.work.stored;
+}
+
+}  // namespace polhode::contact

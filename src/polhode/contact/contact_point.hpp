@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/assembly/interaction.hpp>
+#include <polhode/contact/gap.hpp>
+#include <polhode/contact/normal_law.hpp>
+
+namespace polhode::contact {
+
+/// Friction of a contact point: a bristle that sticks, and slides when its force would exceed the
+/// cone; likewise for rolling and drilling (torsion).
+struct FrictionLaw {
+  double mu = 0.0;                 ///< Coefficient [-]; along `direction` if anisotropic.
+  double mu_static = 0.0;          ///< While it stuck at t_n; 0: as mu [-].
+  double mu_across = 0.0;          ///< Across `direction`; 0: isotropic [-].
+  Vec3 direction = Vec3::UnitX();  ///< Of mu, body-a components.
+  double rolling = 0.0;            ///< Moment over normal force [m].
+  double torsion = 0.0;            ///< About the normal, moment over normal force [m].
+  double stiffness = 1.0;          ///< Of the bristle, k_T [N/m].
+  double damping = 0.0;            ///< c_T [N s/m], inside the cone only.
+  double turning_stiffness = 1.0;  ///< k_R [N m/rad].
+  double turning_damping = 0.0;    ///< c_R [N m s/rad].
+
+  [[nodiscard]] bool acts() const { return mu > 0.0 || rolling > 0.0 || torsion > 0.0; }
+};
+
+/// What a contact point remembers from step to step.
+struct PointHistory {
+  Vec3 bristle = Vec3::Zero();  ///< World, in the tangent plane [m].
+  Vec3 normal = Vec3::Zero();   ///< Of the step that left the bristles; zero: none yet.
+  Vec3 rolling = Vec3::Zero();  ///< World, in the tangent plane [rad].
+  double torsion = 0.0;         ///< [rad]
+  double approach = 0.0;        ///< w_pre: normal velocity when it closed [m/s], negative.
+  double stiffness = 0.0;       ///< k of the normal law, kept while closed.
+  bool closed = false;          ///< The gap was within reach at t_n.
+  bool plastic = false;         ///< No rebound: part of the force is that of the end of the step.
+  bool fresh = true;            ///< Has not turned since it closed.
+  bool slips = false;
+};
+
+/// A contact point in a step: features, laws, history.
+struct PointData {
+  FeaturePair pair;
+  const Shape* a = nullptr;
+  const Shape* b = nullptr;
+  NormalLaw normal;
+  FrictionLaw friction;
+  double rate_damping = 0.0;    ///< c of λ·max(0, 1 − c Δg/Δt) [s/m].
+  double friction_share = 1.0;  ///< Part of the normal force that carries friction [-].
+  double length = 1.0;          ///< L of the pair [m].
+  PointHistory history;
+};
+
+/// What happened at a contact point over a step.
+struct PointReport {
+  double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
+  double normal_force = 0.0;         ///< λ, weights included [N].
+  Vec3 force = Vec3::Zero();         ///< On a, at t_{n+αf} [N].
+  Vec3 normal = Vec3::Zero();        ///< From b to a, middle of the step.
+  Vec3 point = Vec3::Zero();         ///< World [m].
+  Vec3 friction_force = Vec3::Zero();
+  Work work;           ///< stored at t_{n+1}, dissipated over the step.
+  PointHistory after;  ///< Bristles at t_{n+1}; flags as they were.
+};
+
+/// Share of the force that plastic points take from the end of the step. @eq{contact-plastic}
+inline constexpr double kPlasticShare = 0.5;
+
+/// Adds the wrenches of a contact point on bodies a and b, and with StepContext::tangents the
+/// tangents, to terms.
+///
+/// Over the step the point does exactly the work −(b(g_{n+1}) − b(g_n)) at ρ∞ = 1; forces on a and
+/// b are opposite and act at one common point. @eq{contact-direction} @eq{contact-wrench}
+void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
+                 const StepContext& context, PairTerms& terms, PointReport* report = nullptr);
+
+/// Gap at the start and at the end of the step, without derivatives.
+[[nodiscard]] double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b);
+[[nodiscard]] double gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b);
+
+/// Potential of the point at t_{n+1}, fading included [J].
+[[nodiscard]] double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b);
+
+}  // namespace polhode::contact

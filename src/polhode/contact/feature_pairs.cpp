@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/nearest.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Corners and faces of `b` as seen by shape `a`; both in body coordinates of b.
+class Finder {
+ public:
+  Finder(const Shape& a, const Shape& b, const Placement<double>& at_a,
+         const Placement<double>& at_b, double distance, bool swapped,
+         std::vector<OrderedPair>& found)
+      : a_(a),
+        b_(b),
+        at_a_(at_a),
+        at_b_(at_b),
+        distance_(distance),
+        swapped_(swapped),
+        found_(found) {}
+
+  void points() {
+    if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
+    // A ball has one corner and no other feature: the other shape's corners would repeat it.
+    if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
+    for (int i : a_.points) {
+      const Vec3 x = in_b(a_.corners[i]);
+      if (b_.solid == Solid::surface) {
+        point_over_surface(i, x);
+        continue;
+      }
+      if (a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex())) {
+        rim_point(i, x);
+        continue;
+      }
+      add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+    }
+  }
+
+  void edges() {
+    for (int i = 0; i < static_cast<int>(a_.edges.size()); ++i) {
+      if (!a_.edges[i].convex) continue;
+      const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
+      if (out_of_ball(p + 0.5 * u, 0.5 * u.norm())) continue;
+      for (int j = 0; j < static_cast<int>(b_.edges.size()); ++j) {
+        if (!b_.edges[j].convex) continue;
+        const Vec3 &q = b_.corners[b_.edges[j].i], v = b_.corners[b_.edges[j].j] - q;
+        const SegmentsRegion r = nearest_on_segments(p, u, q, v);
+        if ((p + r.s * u - q - r.t * v).norm() < reach())
+          push({GapKind::edge_edge, i, j, 1.0, Fade::parallel});
+      }
+    }
+  }
+
+  /// Side a is round.
+  void round() {
+    if (!a_.round()) return;
+    const bool rims = a_.solid != Solid::ellipsoid;
+    const int extremes = a_.solid == Solid::cylinder ? 2 : 1;
+    const Fade fade = rims ? Fade::parallel : Fade::none;
+    if (b_.solid == Solid::half_space) {
+      for (int i = 0; i < extremes; ++i) push({GapKind::extreme_solid, i, 0, 1.0, fade});
+      return;
+    }
+    if (b_.round()) {
+      if (!swapped_) push({GapKind::round_round, 0, 0, 1.0, Fade::none});
+      return;
+    }
+    const Vec3 middle = in_b(a_.bound_centre);
+    if (out_of_ball(middle, a_.bound_radius)) return;
+    for (int j = 0; j < static_cast<int>(b_.planes.size()); ++j) {
+      if (b_.solid == Solid::polyhedron && !first_of_its_plane(j)) continue;
+      if (std::abs(b_.planes[j].normal.dot(middle) - b_.planes[j].offset) >
+          a_.bound_radius + b_.rounding + distance_)
+        continue;
+      for (int i = 0; i < extremes; ++i) add({GapKind::extreme_solid, i, j, 1.0, fade});
+    }
+    const Fade along = a_.solid == Solid::cylinder ? Fade::parallel : Fade::none;
+    for (int j = 0; j < static_cast<int>(b_.edges.size()); ++j)
+      if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, along});
+  }
+
+ private:
+  [[nodiscard]] int cone_apex() const { return static_cast<int>(a_.corners.size()) - 1; }
+  [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
+  [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
+  [[nodiscard]] bool out_of_ball(const Vec3& x, double radius) const {
+    return b_.bounded() &&
+           (x - b_.bound_centre).norm() > b_.bound_radius + a_.rounding + distance_ + radius;
+  }
+  void push(const FeaturePair& pair) { found_.push_back({pair, swapped_}); }
+  /// Adds the pair if it is near.
+  void add(const FeaturePair& pair) {
+    if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
+  }
+
+  /// A fixed point of a rim acts where the rim lies flat: on a plane, or on faces turned to it.
+  void rim_point(int i, const Vec3& x) {
+    if (b_.solid == Solid::half_space) {
+      add({GapKind::point_solid, i, 0, 1.0, Fade::flat});
+    } else if (b_.solid == Solid::polyhedron) {
+      if (out_of_ball(x, 0.0)) return;
+      for (int j = 0; j < static_cast<int>(b_.planes.size()); ++j)
+        if (first_of_its_plane(j)) add({GapKind::point_solid, i, j, 1.0, Fade::flat});
+    } else {
+      add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+    }
+  }
+
+  /// Triangles, less the edges that two of them share, plus the corners those had in common.
+  void point_over_surface(int i, const Vec3& x) {
+    if (out_of_ball(x, 0.0)) return;
+    const double r = reach();
+    for (int t = 0; t < static_cast<int>(b_.triangles.size()); ++t) {
+      const auto& c = b_.triangles[t];
+      if (std::abs(b_.planes[t].normal.dot(x) - b_.planes[t].offset) > r) continue;
+      const TriangleRegion n =
+          nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]);
+      if ((x - n.nearest).norm() < r) push({GapKind::point_triangle, i, t, 1.0, Fade::none});
+    }
+    for (int e = 0; e < static_cast<int>(b_.edges.size()); ++e) {
+      if (b_.edges[e].open) continue;
+      const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
+      const double along = std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
+      if ((x - p - along * v).norm() < r) push({GapKind::point_edge, i, e, -1.0, Fade::none});
+    }
+    for (int k = 0; k < static_cast<int>(b_.corners.size()); ++k)
+      if (!b_.border_corner[k] && (x - b_.corners[k]).norm() < r)
+        push({GapKind::point_corner, i, k, 1.0, Fade::none});
+  }
+
+  [[nodiscard]] bool first_of_its_plane(int j) const {
+    for (int k = 0; k < j; ++k)
+      if (b_.planes[k].normal.dot(b_.planes[j].normal) > 1.0 - 1e-12) return false;
+    return true;
+  }
+
+  const Shape &a_, &b_;
+  const Placement<double>&at_a_, &at_b_;
+  double distance_;
+  bool swapped_;
+  std::vector<OrderedPair>& found_;
+};
+
+}  // namespace
+
+void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
+                        const Placement<double>& at_second, double distance,
+                        std::vector<OrderedPair>& found) {
+  if (!first.bounded() && !second.bounded()) return;
+  const auto start = static_cast<std::ptrdiff_t>(found.size());
+  Finder forth(first, second, at_first, at_second, distance, false, found);
+  Finder back(second, first, at_second, at_first, distance, true, found);
+  forth.points();
+  back.points();
+  forth.edges();
+  forth.round();
+  back.round();
+  std::sort(found.begin() + start, found.end(),
+            [](const OrderedPair& x, const OrderedPair& y) { return x.key() < y.key(); });
+}
+
+}  // namespace polhode::contact

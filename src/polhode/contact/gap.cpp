@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/nearest.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// A point against a triangle of b, whose part nearest to it is known.
+template <class T>
+Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
+                     const TriangleRegion& r, const Placement<T>& at_b) {
+  const auto& c = b.triangles[triangle];
+  Gap<T> g;
+  const V3<T> first = at_b.point(b.corners[c[r.k]]);
+  switch (r.kind) {
+    case TriangleRegion::face: {
+      const Vec3& normal = b.planes[triangle].normal;
+      g = over_plane(x, first, at_b.vector(normal), rho_a, b.rounding);
+      return g;
+    }
+    case TriangleRegion::edge: {
+      const Vec3 along = b.corners[c[(r.k + 1) % 3]] - b.corners[c[r.k]];
+      g = between_points(x, on_line(x, first, at_b.vector(along)), rho_a, b.rounding);
+      g.feature = 1 + b.triangle_edges[triangle][r.k];
+      return g;
+    }
+    case TriangleRegion::corner:
+      g = between_points(x, first, rho_a, b.rounding);
+      g.feature = -1 - c[r.k];
+      return g;
+  }
+  return g;
+}
+
+template <class T>
+Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
+                    const Placement<T>& at_b) {
+  const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
+  const Vec3 v = q - p, X = at_b.to_body(value(x));
+  const double t = (X - p).dot(v) / v.squaredNorm();
+  const V3<T> y = t <= 0.0   ? at_b.point(p)
+                  : t >= 1.0 ? at_b.point(q)
+                             : on_line(x, at_b.point(p), at_b.vector(v));
+  Gap<T> g = between_points(x, y, rho_a, b.rounding);
+  g.feature = t <= 0.0 ? -1 - b.edges[edge].i : t >= 1.0 ? -1 - b.edges[edge].j : 1 + edge;
+  return g;
+}
+
+/// In the half plane through the axis of a cylinder or cone: h along the axis, q from it.
+template <class T>
+struct Meridian {
+  T h, q;
+  V3<T> axis, outward;  ///< Unit.
+
+  Meridian(const V3<T>& x, const Shape& b, const Placement<T>& at_b) {
+    axis = at_b.vector(b.axes.col(2));
+    const V3<T> w = x - at_b.point(b.centre);
+    h = dot(axis, w);
+    const V3<T> across = w - h * axis;
+    if (value(dot(across, across)) > 0.0) {
+      q = norm(across);
+      outward = (T(1.0) / q) * across;
+    } else {
+      q = T(0.0);
+      outward = at_b.vector(b.axes.col(0));
+    }
+  }
+  [[nodiscard]] V3<T> point(const Placement<T>& at_b, const Shape& b, double h_0,
+                            double q_0) const {
+    return at_b.point(b.centre) + h_0 * axis + q_0 * outward;
+  }
+};
+
+template <class T>
+Gap<T> over_cylinder(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const Meridian<T> m(x, b, at_b);
+  const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
+  const double side = h < 0.0 ? -1.0 : 1.0;
+  const bool beside = q > R, beyond = std::abs(h) > H;
+  if (beside && beyond) return between_points(x, m.point(at_b, b, side * H, R), rho_a, b.rounding);
+  if (beside || (!beyond && R - q < H - std::abs(h)))
+    return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
+  return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
+}
+
+template <class T>
+Gap<T> over_cone(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const Meridian<T> m(x, b, at_b);
+  const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
+  const double slant = std::hypot(R, 2.0 * H), n_q = 2.0 * H / slant, n_h = R / slant;
+  const double along = ((q - R) * -R + (h + H) * 2.0 * H) / slant;  // from the rim to the apex
+  const double above = (q - R) * n_q + (h + H) * n_h;               // over the flank
+  const double below = -H - h;                                      // under the base
+  const auto flank = [&] {
+    return over_plane(x, m.point(at_b, b, -H, R), n_q * m.outward + n_h * m.axis, rho_a,
+                      b.rounding);
+  };
+  const auto base = [&] {
+    return over_plane(x, m.point(at_b, b, -H, 0.0), -m.axis, rho_a, b.rounding);
+  };
+  if (above <= 0.0 && below <= 0.0) return above > below ? flank() : base();
+  if (above > 0.0 && along >= 0.0) {
+    if (along < slant) return flank();
+    return between_points(x, at_b.point(b.centre + H * b.axes.col(2)), rho_a, b.rounding);
+  }
+  if (q <= R) return base();
+  return between_points(x, m.point(at_b, b, -H, R), rho_a, b.rounding);
+}
+
+/// A Newton step in T from the root found in numbers gives the root its derivatives.
+template <class T>
+Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const V3<T> w = x - at_b.point(b.centre);
+  V3<T> axis[3];
+  T y[3];
+  Vec3 Y;
+  for (int i = 0; i < 3; ++i) {
+    axis[i] = at_b.vector(b.axes.col(i));
+    y[i] = dot(axis[i], w);
+    Y[i] = value(y[i]);
+  }
+  const double root = nearest_on_ellipsoid(b.half, Y);
+  T f(-1.0);
+  double slope = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double d = b.half[i] * b.half[i] + root;
+    const T part = (b.half[i] / d) * y[i];
+    f = f + part * part;
+    slope -= 2.0 * value(part) * value(part) / d;
+  }
+  const T t = root - (1.0 / slope) * f;
+  V3<T> normal = constant<T>(Vec3::Zero()), nearest = at_b.point(b.centre);
+  for (int i = 0; i < 3; ++i) {
+    const double square = b.half[i] * b.half[i];
+    const T share = y[i] / (t + square);
+    normal = normal + share * axis[i];
+    nearest = nearest + (square * share) * axis[i];
+  }
+  return over_plane(x, nearest, unit(normal), rho_a, b.rounding);
+}
+
+template <class T>
+Gap<T> edges(const Shape& a, const Shape& b, int i, int j, const Placement<T>& at_a,
+             const Placement<T>& at_b) {
+  const Shape::Edge &e = a.edges[i], &f = b.edges[j];
+  const V3<T> p = at_a.point(a.corners[e.i]), u = at_a.vector(a.corners[e.j] - a.corners[e.i]);
+  const V3<T> q = at_b.point(b.corners[f.i]), v = at_b.vector(b.corners[f.j] - b.corners[f.i]);
+  const SegmentsRegion r = nearest_on_segments(value(p), value(u), value(q), value(v));
+  V3<T> x = p + r.s * u, y = q + r.t * v;
+  if (r.s_free && r.t_free) {
+    const V3<T> w = p - q;
+    const T uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
+    const T determinant = uu * vv - uv * uv;
+    if (value(determinant) > 1e-10 * value(uu) * value(vv)) {
+      const T s = (uv * vw - uw * vv) / determinant;
+      x = p + s * u;
+      y = q + ((uv * s + vw) / vv) * v;
+    } else {
+      y = on_line(x, q, v);
+    }
+  } else if (r.s_free) {
+    x = on_line(y, p, u);
+  } else if (r.t_free) {
+    y = on_line(x, q, v);
+  }
+  return between_points(x, y, a.rounding, b.rounding);
+}
+
+}  // namespace
+
+template <class T>
+Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  switch (b.solid) {
+    case Solid::ball:
+      return between_points(x, at_b.point(b.centre), rho_a, b.rounding);
+    case Solid::segment:
+      return over_segment(x, rho_a, b, 0, at_b);
+    case Solid::polyhedron: {
+      const PolyhedronRegion r = nearest_on_polyhedron(b, at_b.to_body(value(x)));
+      return over_triangle(x, rho_a, b, r.triangle, r.region, at_b);
+    }
+    case Solid::cylinder:
+      return over_cylinder(x, rho_a, b, at_b);
+    case Solid::cone:
+      return over_cone(x, rho_a, b, at_b);
+    case Solid::ellipsoid:
+      return over_ellipsoid(x, rho_a, b, at_b);
+    case Solid::half_space:
+    case Solid::surface:
+      break;
+  }
+  return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);
+}
+
+template <class T>
+Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placement<T>& at_a,
+           const Placement<T>& at_b) {
+  const auto x = [&] { return at_a.point(a.corners[pair.i]); };
+  switch (pair.kind) {
+    case GapKind::point_solid:
+      return point_over_solid(x(), a.rounding, b, at_b);
+    case GapKind::point_triangle: {
+      const V3<T> p = x();
+      const auto& c = b.triangles[pair.j];
+      const TriangleRegion r = nearest_on_triangle(at_b.to_body(value(p)), b.corners[c[0]],
+                                                   b.corners[c[1]], b.corners[c[2]]);
+      return over_triangle(p, a.rounding, b, pair.j, r, at_b);
+    }
+    case GapKind::point_edge:
+      return over_segment(x(), a.rounding, b, pair.j, at_b);
+    case GapKind::point_corner: {
+      Gap<T> g = between_points(x(), at_b.point(b.corners[pair.j]), a.rounding, b.rounding);
+      g.feature = -1 - pair.j;
+      return g;
+    }
+    case GapKind::edge_edge:
+      return edges(a, b, pair.i, pair.j, at_a, at_b);
+    case GapKind::extreme_solid: {
+      const Vec3 normal =
+          b.solid == Solid::half_space ? Vec3(b.axes.col(2)) : b.planes[pair.j].normal;
+      const V3<T> p = extreme_point(a, pair.i, at_b.vector(normal), at_a);
+      if (b.solid != Solid::surface) return point_over_solid(p, a.rounding, b, at_b);
+      const auto& c = b.triangles[pair.j];
+      const TriangleRegion r = nearest_on_triangle(at_b.to_body(value(p)), b.corners[c[0]],
+                                                   b.corners[c[1]], b.corners[c[2]]);
+      return over_triangle(p, a.rounding, b, pair.j, r, at_b);
+    }
+    case GapKind::round_edge:
+      return round_over_edge(a, b, pair.j, at_a, at_b);
+    case GapKind::round_round:
+      return round_over_round(a, b, at_a, at_b);
+  }
+  return {};
+}
+
+template <class T>
+FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const Shape& b,
+                                  const Placement<T>& at_a, const Placement<T>& at_b) {
+  const auto edge = [](const Shape& s, int k) {
+    return Vec3((s.corners[s.edges[k].j] - s.corners[s.edges[k].i]).normalized());
+  };
+  if (pair.kind == GapKind::edge_edge)
+    return {at_a.vector(edge(a, pair.i)), at_b.vector(edge(b, pair.j))};
+  if (pair.kind == GapKind::round_edge)
+    return {at_a.vector(a.axes.col(2)), at_b.vector(edge(b, pair.j))};
+  const Vec3 normal = b.solid == Solid::half_space ? Vec3(b.axes.col(2)) : b.planes[pair.j].normal;
+  // A rim looks along the axis to its own side.
+  const bool low =
+      pair.kind == GapKind::point_solid && (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;
+  return {at_a.vector(low ? Vec3(-a.axes.col(2)) : Vec3(a.axes.col(2))), at_b.vector(normal)};
+}
+
+template Gap<double> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<double>&,
+                         const Placement<double>&);
+template Gap<Dual> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<Dual>&,
+                       const Placement<Dual>&);
+template FadeDirections<double> fade_directions(const FeaturePair&, const Shape&, const Shape&,
+                                                const Placement<double>&, const Placement<double>&);
+template FadeDirections<Dual> fade_directions(const FeaturePair&, const Shape&, const Shape&,
+                                              const Placement<Dual>&, const Placement<Dual>&);
+template Gap<double> point_over_solid(const V3<double>&, double, const Shape&,
+                                      const Placement<double>&);
+template Gap<Dual> point_over_solid(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
+
+}  // namespace polhode::contact

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas of distances between parts of features, for gap.cpp and round_gap.cpp only.
+#pragma once
+
+#include <polhode/contact/gap.hpp>
+
+namespace polhode::contact {
+
+/// From the nearest points x of core a and y of core b.
+template <class T>
+[[nodiscard]] Gap<T> between_points(const V3<T>& x, const V3<T>& y, double rho_a, double rho_b) {
+  const V3<T> w = x - y;
+  const T length = norm(w);
+  Gap<T> g;
+  g.normal = (T(1.0) / length) * w;
+  g.distance = length - (rho_a + rho_b);
+  g.point = 0.5 * (x + y + (rho_b - rho_a) * g.normal);
+  return g;
+}
+
+/// From a point x of core a and a plane of core b through y with outward unit normal n: signed.
+template <class T>
+[[nodiscard]] Gap<T> over_plane(const V3<T>& x, const V3<T>& y, const V3<T>& n, double rho_a,
+                                double rho_b) {
+  const T height = dot(n, x - y);
+  Gap<T> g;
+  g.normal = n;
+  g.distance = height - (rho_a + rho_b);
+  g.point = x - (0.5 * (height + (rho_a - rho_b))) * n;
+  return g;
+}
+
+/// Nearest point of the line through q along v.
+template <class T>
+[[nodiscard]] V3<T> on_line(const V3<T>& x, const V3<T>& q, const V3<T>& v) {
+  return q + (dot(x - q, v) / dot(v, v)) * v;
+}
+
+/// Point x of a core against the whole convex solid of b.
+template <class T>
+[[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b,
+                                      const Placement<T>& at_b);
+
+/// Kinds of gap with a round solid on side a.
+template <class T>
+[[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
+                                  const Placement<T>& at_a);
+template <class T>
+[[nodiscard]] Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge,
+                                     const Placement<T>& at_a, const Placement<T>& at_b);
+template <class T>
+[[nodiscard]] Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
+                                      const Placement<T>& at_b);
+
+}  // namespace polhode::contact

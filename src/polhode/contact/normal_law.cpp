@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include <polhode/contact/normal_law.hpp>
+
+namespace polhode::contact {
+
+double NormalLaw::floor() const {
+  return potential == NormalPotential::barrier ? -tolerance
+                                               : -std::numeric_limits<double>::infinity();
+}
+
+double NormalLaw::energy(double gap) const {
+  if (gap >= reach()) return 0.0;
+  switch (potential) {
+    case NormalPotential::barrier: {
+      const double band = 2.0 * tolerance, s = (gap + tolerance) / band;
+      if (s <= 0.0) return std::numeric_limits<double>::infinity();
+      const double rest = 1.0 - s;  // 1/s − 3 + 3s − s² = (1 − s)³/s
+      return stiffness * band * band / 3.0 * rest * rest * rest / s;
+    }
+    case NormalPotential::linear:
+      return 0.5 * stiffness * gap * gap;
+    case NormalPotential::hertz:
+      return 0.4 * stiffness * gap * gap * std::sqrt(-gap);
+  }
+  return 0.0;
+}
+
+NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {
+  if (gap >= reach()) return {0.0, 0.0};
+  switch (potential) {
+    case NormalPotential::barrier: {
+      const double band = 2.0 * tolerance, s = (gap + tolerance) / band;
+      // 1/s² − 3 + 2s = (1 − s)²(1 + 2s)/s²
+      const double part = (1.0 - s) / s;
+      return {stiffness * band / 3.0 * part * part * (1.0 + 2.0 * s),
+              -stiffness / 3.0 * (2.0 / (s * s * s) - 2.0)};
+    }
+    case NormalPotential::linear:
+      return {-stiffness * gap, -stiffness};
+    case NormalPotential::hertz: {
+      const double root = std::sqrt(-gap);
+      return {-stiffness * gap * root, -1.5 * stiffness * root};
+    }
+  }
+  return {0.0, 0.0};
+}
+
+NormalLaw::WithSlope NormalLaw::quotient_and_slope(double gap_0, double gap_1) const {
+  const bool in_0 = gap_0 < reach(), in_1 = gap_1 < reach();
+  if (!in_0 && !in_1) return {0.0, 0.0};
+  if (in_0 != in_1) {
+    const double change = gap_1 - gap_0;
+    const double lambda = -(energy(gap_1) - energy(gap_0)) / change;
+    return {lambda, (force_and_slope(gap_1).value - lambda) / change};
+  }
+  switch (potential) {
+    case NormalPotential::barrier: {
+      const double band = 2.0 * tolerance;
+      const double s_0 = (gap_0 + tolerance) / band, s_1 = (gap_1 + tolerance) / band;
+      return {stiffness * band / 3.0 * (1.0 / (s_0 * s_1) - 3.0 + s_0 + s_1),
+              -stiffness / 3.0 * (1.0 / (s_0 * s_1 * s_1) - 1.0)};
+    }
+    case NormalPotential::linear:
+      return {-0.5 * stiffness * (gap_0 + gap_1), -0.5 * stiffness};
+    case NormalPotential::hertz: {
+      const double y_0 = std::sqrt(-gap_0), y_1 = std::sqrt(-gap_1), sum = y_0 + y_1;
+      const double p = y_0 * y_0, q = y_1 * y_1;
+      const double top = q * q + q * y_1 * y_0 + q * p + y_1 * y_0 * p + p * p;
+      const double slope_top = 4.0 * q * y_1 + 3.0 * q * y_0 + 2.0 * y_1 * p + y_0 * p;
+      const double by_y = 0.4 * stiffness * (slope_top - top / sum) / sum;
+      return {0.4 * stiffness * top / sum, -by_y / (2.0 * y_1)};
+    }
+  }
+  return {0.0, 0.0};
+}
+
+}  // namespace polhode::contact

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/contact/dual.hpp>
+#include <polhode/time/body_step.hpp>
+
+namespace polhode::contact {
+
+/// Where a body stands at an instant: carries body coordinates (from its centre of mass) to the
+/// world. With T = Dual the results know their derivatives by the body's increments.
+template <class T>
+class Placement {
+ public:
+  /// @param first  Index of the body's Δr_x among the directions of Dual: 0 for a, 6 for b.
+  Placement(const Vec3& r, const Mat3& Lambda, int first)
+      : r_(r), Lambda_(&Lambda), first_(first) {}
+
+  /// Λ Z: the vector Z fixed in the body.
+  [[nodiscard]] V3<T> vector(const Vec3& Z) const {
+    const Vec3 z = *Lambda_ * Z;
+    V3<T> result = constant<T>(z);
+    turn(result, z);
+    return result;
+  }
+  /// r + Λ Z: the point Z fixed in the body.
+  [[nodiscard]] V3<T> point(const Vec3& Z) const {
+    const Vec3 z = *Lambda_ * Z;
+    V3<T> result = constant<T>(r_ + z);
+    turn(result, z);
+    move(result);
+    return result;
+  }
+  [[nodiscard]] V3<T> position() const {
+    V3<T> result = constant<T>(r_);
+    move(result);
+    return result;
+  }
+  /// Body coordinates of a world point: to find out which feature is near.
+  [[nodiscard]] Vec3 to_body(const Vec3& x) const { return Lambda_->transpose() * (x - r_); }
+
+ private:
+  void turn(V3<T>& result, const Vec3& z) const {
+    if constexpr (std::is_same_v<T, Dual>) {
+      const int k = first_ + 3;  // e_j × z
+      result.y.d[k] = -z.z(), result.z.d[k] = z.y();
+      result.x.d[k + 1] = z.z(), result.z.d[k + 1] = -z.x();
+      result.x.d[k + 2] = -z.y(), result.y.d[k + 2] = z.x();
+    }
+  }
+  void move(V3<T>& result) const {
+    if constexpr (std::is_same_v<T, Dual>) {
+      result.x.d[first_] = result.y.d[first_ + 1] = result.z.d[first_ + 2] = 1.0;
+    }
+  }
+
+  Vec3 r_;
+  const Mat3* Lambda_;
+  int first_;
+};
+
+/// Displacement u and Cayley vector θ of a body's step, with their derivatives.
+template <class T>
+struct Motion {
+  V3<T> u, theta;
+
+  Motion(const BodyStep& step, int first) : u(constant<T>(step.u)), theta(constant<T>(step.theta)) {
+    if constexpr (std::is_same_v<T, Dual>) {
+      u.x.d[first] = u.y.d[first + 1] = u.z.d[first + 2] = 1.0;
+      const Mat3 D = cayley_tangent(step.theta).transpose();  // for a left increment
+      for (int j = 0; j < 3; ++j) {
+        theta.x.d[first + 3 + j] = D(0, j);
+        theta.y.d[first + 3 + j] = D(1, j);
+        theta.z.d[first + 3 + j] = D(2, j);
+      }
+    }
+  }
+};
+
+}  // namespace polhode::contact

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <polhode/contact/feature_pairs.hpp>
+
+#include "support/random_steps.hpp"
+
+namespace polhode::test {
+
+struct NamedShape {
+  std::string name;
+  contact::Shape shape;
+};
+
+/// A ring of 12 × 8 quadrilaterals, split in triangles: closed and not convex.
+inline TriangleSurface torus(double R, double r) {
+  TriangleSurface s;
+  const int n = 12, m = 8;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double u = 2.0 * std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / m;
+      s.points.push_back({(R + r * std::cos(v)) * std::cos(u), (R + r * std::cos(v)) * std::sin(u),
+                          r * std::sin(v)});
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const int a = i * m + j, b = ((i + 1) % n) * m + j, c = ((i + 1) % n) * m + (j + 1) % m,
+                d = i * m + (j + 1) % m;
+      s.triangles.push_back({a, b, c});
+      s.triangles.push_back({a, c, d});
+    }
+  return s;
+}
+
+/// Corners of a body with 20 random points on an ellipsoid.
+inline std::vector<Vec3> stone(unsigned seed) {
+  Random random(seed);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 20; ++i)
+    points.push_back(random.direction().cwiseProduct(Vec3(0.5, 0.4, 0.3)));
+  return points;
+}
+
+/// One of every kind, about a metre in size, not centred in its body.
+inline std::vector<NamedShape> every_shape() {
+  using namespace contact;
+  const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
+  std::vector<double> heights;
+  for (int i = 0; i < 36; ++i) heights.push_back(0.1 * std::sin(1.3 * i) * std::cos(0.7 * i));
+  return {{"sphere", sphere("sphere", 0.8, place)},
+          {"capsule", capsule("capsule", 0.4, 0.8, place)},
+          {"box", box("box", {0.8, 0.7, 0.5}, place)},
+          {"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
+          {"cone", cone("cone", 0.8, 0.9, place)},
+          {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)},
+          {"hull", hull("hull", stone(5), place)},
+          {"mesh", mesh("mesh", torus(0.35, 0.15), place)},
+          {"height_field", height_field("height_field", 6, 0.3, heights, place)},
+          {"plane", plane(place)}};
+}
+
+}  // namespace polhode::test
