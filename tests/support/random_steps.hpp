@@ -61,7 +61,7 @@ struct PairMotion {
   Vec3 u_a, theta_a, u_b, theta_b;
   bool a_moves = true, b_moves = true;
   std::array<double, kMaxRows> lambda{};
-  std::array<double, 2> history{};
+  std::array<double, 24> history{};
 
   PairMotion(Random& random, const StepContext& with) : context(with) {
     a_n = random.motion();

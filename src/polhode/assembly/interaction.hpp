@@ -88,6 +88,12 @@ struct InteractionItem {
   [[nodiscard]] bool conservative() const { return true; }
   /// Takes energy for good: does not go with steps that run backwards in time.
   [[nodiscard]] bool dissipates() const { return false; }
+  /// m_ab of a mass matrix that couples the centres of mass of a and b [kg]: besides what the
+  /// bodies hold, there is the kinetic energy −½ m_ab |v_a − v_b|², and evaluate() exerts its
+  /// forces (assembly/mass_coupling.hpp).
+  [[nodiscard]] double coupled_mass() const { return 0.0; }
+  /// How far it reaches from its bodies [m]: for scales of length.
+  [[nodiscard]] double reach() const { return 0.0; }
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
@@ -95,6 +101,14 @@ struct InteractionItem {
   void commit(const PairStep&, double* /*history*/) const {}      ///< History at t_{n+1}.
   /// Mirror images: does the accepted configuration still have the assembled orientation?
   [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
+  /// acceptable() is asked after every step, not only where rows may have met a mirror image.
+  [[nodiscard]] bool always_asked() const { return false; }
+  /// What is wrong where acceptable() says no.
+  [[nodiscard]] const char* refusal() const { return "reached the mirror image of a joint"; }
+  /// Mixed-point iterations of statics: writes to the history the stress that the linear model at
+  /// this iterate expects after the increments (Δr, Δθ) of a and b.
+  void extrapolate(const PairStep&, const Vec6& /*of_a*/, const Vec6& /*of_b*/,
+                   double* /*history*/) const {}
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const { return std::nullopt; }
   [[nodiscard]] Coupling coupling() const { return Coupling::all; }
   /// An equivalent constraint exists with a and b exchanged; reverse() makes it so.
@@ -120,6 +134,8 @@ class InteractionGroup {
   [[nodiscard]] virtual Coupling coupling(int i) const = 0;
   [[nodiscard]] virtual bool reversible(int i) const = 0;
   virtual void reverse(int i) = 0;  ///< Before the system is finished.
+  [[nodiscard]] virtual double coupled_mass(int i) const = 0;
+  [[nodiscard]] virtual double reach(int i) const = 0;
 
   /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
   virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
@@ -129,6 +145,10 @@ class InteractionGroup {
   virtual void initialize(int i, const PairStep& step, double* history) const = 0;
   virtual void commit(int i, const PairStep& step, double* history) const = 0;
   [[nodiscard]] virtual bool acceptable(int i, const PairStep& step) const = 0;
+  [[nodiscard]] virtual bool always_asked(int i) const = 0;
+  [[nodiscard]] virtual const char* refusal(int i) const = 0;
+  virtual void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
+                           double* history) const = 0;
 };
 
 /// The group of an item type. Item derives from InteractionItem and has
@@ -151,6 +171,8 @@ class Group final : public InteractionGroup {
   Coupling coupling(int i) const override { return at(i).coupling(); }
   bool reversible(int i) const override { return at(i).reversible(); }
   void reverse(int i) override { items[static_cast<std::size_t>(i)].reverse(); }
+  double coupled_mass(int i) const override { return at(i).coupled_mass(); }
+  double reach(int i) const override { return at(i).reach(); }
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {
     for (std::size_t k = 0; k < list.size(); ++k) {
@@ -169,6 +191,12 @@ class Group final : public InteractionGroup {
     at(i).commit(step, history);
   }
   bool acceptable(int i, const PairStep& step) const override { return at(i).acceptable(step); }
+  bool always_asked(int i) const override { return at(i).always_asked(); }
+  const char* refusal(int i) const override { return at(i).refusal(); }
+  void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
+                   double* history) const override {
+    at(i).extrapolate(step, of_a, of_b, history);
+  }
 
  private:
   [[nodiscard]] const Item& at(int i) const { return items[static_cast<std::size_t>(i)]; }

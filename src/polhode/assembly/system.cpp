@@ -49,11 +49,15 @@ void System::finish() {
   std::vector<double> reach(n);
   for (int b = 0; b < n; ++b)
     reach[b] = std::sqrt(0.5 * bodies_[b].inertia.trace() / bodies_[b].mass);
-  for (const InteractionRef& ref : refs_)
+  for (const InteractionRef& ref : refs_) {
+    const double length = groups_[ref.group]->reach(ref.item);
+    if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], length);
+    if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], length);
     if (const auto basis = groups_[ref.group]->motion_basis(ref.item)) {
       if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], basis->Z_a.norm());
       if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], basis->Z_b.norm());
     }
+  }
   nodes_.finish(n);
   conservative_ = conservative_ && nodes_.conservative();
   dissipates_ = dissipates_ || nodes_.dissipates();

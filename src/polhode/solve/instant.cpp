@@ -30,6 +30,11 @@ struct InstantSolver::Impl {
   KktMap map;
   std::vector<BodyStep> steps;
   std::vector<double> no_lambda;
+  struct CoupledMass {
+    int a, b, pair;
+    double mass;
+  };
+  std::vector<CoupledMass> coupled;
   StepContext context;
   std::unique_ptr<LinearSolver> solver;  // with `values`, from the first use on
   KktValues values;
@@ -39,6 +44,11 @@ struct InstantSolver::Impl {
       : system(s), solver_name(std::move(name)), sweep(s), map(kkt_map(s)) {
     steps.resize(static_cast<std::size_t>(system.body_count()) + 1);
     no_lambda.assign(system.rows(), 0.0);
+    for (std::size_t i = 0; i < system.interactions().size(); ++i) {
+      const InteractionRef& ref = system.interactions()[i];
+      const double mass = system.group(ref.group).coupled_mass(ref.item);
+      if (mass != 0.0) coupled.push_back({ref.a, ref.b, map.pair[i], mass});
+    }
     context.ga = GeneralizedAlpha::from_spectral_radius(0.0);  // α_f = 1: the instant itself
     context.conserving = false;
   }
@@ -63,6 +73,12 @@ struct InstantSolver::Impl {
       v.K_ab.setZero();
       v.K_ba.setZero();
     }
+    for (const CoupledMass& m : coupled) {
+      if (m.pair < 0) continue;
+      KktValues::Pair& v = values.pairs[m.pair];
+      v.K_ab.topLeftCorner<3, 3>().diagonal().array() += m.mass / system.mean_mass();
+      v.K_ba = v.K_ab;
+    }
     rhs = Vec::Zero(6 * map.topology.bodies + map.topology.rows);
     x = correction = rhs;
   }
@@ -77,6 +93,10 @@ struct InstantSolver::Impl {
       M.topLeftCorner<3, 3>().diagonal().setConstant(per_mass * body.mass);
       M.bottomRightCorner<3, 3>() = per_mass * Lambda * body.inertia * Lambda.transpose();
     }
+    for (const CoupledMass& m : coupled)
+      for (int body : {m.a, m.b})
+        if (body != kGround)
+          values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= per_mass * m.mass;
   }
   void put_rows(int interaction, const PairTerms& terms, double epsilon) {
     const int pair = map.pair[interaction];
@@ -123,6 +143,10 @@ struct InstantSolver::Impl {
     for (std::size_t p = 0; p < map.topology.pairs.size(); ++p) {
       const KktPair& pair = map.topology.pairs[p];
       const KktValues::Pair& v = values.pairs[p];
+      if (pair.a != kGround && pair.b != kGround) {
+        out.segment<6>(6 * pair.a) += v.K_ab * all.segment<6>(6 * pair.b);
+        out.segment<6>(6 * pair.b) += v.K_ba * all.segment<6>(6 * pair.a);
+      }
       for (int k = 0; k < pair.rows; ++k) {
         const double y = all[first + pair.first_row + k];
         if (pair.a != kGround) out.segment<6>(6 * pair.a) -= y * v.B_a.col(k);
@@ -428,8 +452,9 @@ void InstantSolver::keep_admissible(const State& state, std::vector<Vec6>& field
       },
       true);
   s.rhs.setZero();
-  for (int b = 0; b < s.system.body_count(); ++b)
-    s.rhs.segment<6>(6 * b) = s.values.diagonal[b] * field[b];
+  s.x.setZero();
+  for (int b = 0; b < s.system.body_count(); ++b) s.x.segment<6>(6 * b) = field[b];
+  s.bodies_times(s.x, s.rhs.head(6 * s.system.body_count()));
   if (!s.solve().solved) return;
   for (int b = 0; b < s.system.body_count(); ++b) field[b] = s.x.segment<6>(6 * b);
 }

@@ -47,6 +47,11 @@ LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
         if (body != kGround) touched_.push_back(body);
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  for (const InteractionRef& ref : system.interactions()) {
+    const double mass = system.group(ref.group).coupled_mass(ref.item);
+    const auto slot = [&](int body) { return body == kGround ? -1 : system.slot(body); };
+    if (mass != 0.0) coupled_.push_back({slot(ref.a), slot(ref.b), mass});
+  }
   if (!touched_.empty()) steps_.resize(system.body_count() + 1);
 }
 
@@ -56,6 +61,18 @@ BodySums LedgerKeeper::sums(const State& state) const {
   kernels_->sums(state.blocks.data(), mass_.data(), system_->tree().body_of_slot.data(),
                  static_cast<int>(state.blocks.size()), g, &s);
   nodes_.add_sums(state, s);
+  const auto of = [&](const Lane3 BodyBlock::*member, int slot) -> Vec3 {
+    if (slot < 0) return Vec3::Zero();
+    const Lane3& x = state.blocks[static_cast<std::size_t>(slot / kLanes)].*member;
+    return {x[0][slot % kLanes], x[1][slot % kLanes], x[2][slot % kLanes]};
+  };
+  for (const auto& [a, b, mass] : coupled_) {
+    const Vec3 v = of(&BodyBlock::v, b) - of(&BodyBlock::v, a);
+    s.kinetic -= 0.5 * mass * v.squaredNorm();
+    if (a < 0 || b < 0) continue;  // the ground's side is outside: its impulse is counted
+    const Vec3 l = mass * (of(&BodyBlock::r, b) - of(&BodyBlock::r, a)).cross(v);
+    for (int i = 0; i < 3; ++i) s.l[i] -= l[i];
+  }
   return s;
 }
 

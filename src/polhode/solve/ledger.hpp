@@ -49,6 +49,11 @@ class LedgerKeeper {
   InteractionSweep outside_sweep_;
   NodeLedger nodes_;
   std::vector<int> touched_;  ///< Bodies of those.
+  struct CoupledMass {
+    int slot_a, slot_b;  ///< −1: the ground.
+    double mass;
+  };
+  std::vector<CoupledMass> coupled_;  ///< Kinetic energy that interactions hold.
   std::vector<BodyStep> steps_;
   BodySums at_n_, at_n1_;  ///< Of the state before and after the step.
   bool sums_are_of_state_ = false;

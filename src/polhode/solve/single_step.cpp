@@ -62,6 +62,7 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
+    if (group.always_asked(ref.item)) always_asked_.push_back(i);
     if (group.history_size(ref.item) > 0)
       (group.lazy_history(ref.item) ? lazy_ : eager_).push_back(i);
   }
@@ -97,9 +98,8 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   seconds_[1] += seconds(t1, t2);
   state.ledger.iterations += report.iterations;
   if (!report.converged) return report;
-  if (report.rotation > kNoMirrorBelow && mirrored(state, report.worst)) {
+  if (refused(state, report)) {
     report.converged = false;
-    report.reason = "reached the mirror image of a joint";
     return report;
   }
   if (predictor.remember) estimate_error();
@@ -128,17 +128,23 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   return report;
 }
 
-bool SingleStep::mirrored(const State& state, std::string& name) const {
-  for (const InteractionRef& ref : system_->interactions()) {
-    if (ref.rows == 0) continue;
+bool SingleStep::refused(const State& state, NewtonReport& report) const {
+  const auto refuses = [&](const InteractionRef& ref) {
     const BodyStep a = body_step(*system_, state, trial_, ref.a);
     const BodyStep b = body_step(*system_, state, trial_, ref.b);
     const PairStep step{a, b, trial_.context, trial_.lambda.data() + ref.first_row,
                         state.history.data() + ref.first_history};
-    if (system_->group(ref.group).acceptable(ref.item, step)) continue;
-    name = format("{} '{}'", system_->group(ref.group).kind(), system_->name(ref));
+    const InteractionGroup& group = system_->group(ref.group);
+    if (group.acceptable(ref.item, step)) return false;
+    report.reason = group.refusal(ref.item);
+    report.worst = format("{} '{}'", group.kind(), system_->name(ref));
     return true;
-  }
+  };
+  for (int i : always_asked_)
+    if (refuses(system_->interactions()[i])) return true;
+  if (report.rotation <= kNoMirrorBelow) return false;
+  for (const InteractionRef& ref : system_->interactions())
+    if (ref.rows > 0 && refuses(ref)) return true;
   return false;
 }
 

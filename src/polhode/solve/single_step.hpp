@@ -36,7 +36,8 @@ class SingleStep {
 
  private:
   void predict(const State& state, const Predictor& predictor);
-  [[nodiscard]] bool mirrored(const State& state, std::string& name) const;
+  /// Whether an interaction does not accept the configuration reached; says which and why.
+  [[nodiscard]] bool refused(const State& state, NewtonReport& report) const;
   void commit_histories(State& state, double rotation);
   void estimate_error();
 
@@ -49,6 +50,7 @@ class SingleStep {
   std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
   std::vector<int> eager_, lazy_;  ///< Interactions with a history of either sort.
+  std::vector<int> always_asked_;  ///< Whether they accept what was reached.
   double error_ = 0.0;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.
 };
