@@ -1,6 +1,7 @@
 # The vector kernels are compiled once for each instruction set and chosen at run time. They are
 # optimised in every build type: unoptimised vector code is too slow even for tests.
-set(polhode_lanes ${PROJECT_SOURCE_DIR}/src/polhode/solve/lanes ${PROJECT_SOURCE_DIR}/src/polhode/fe/materials)
+set(polhode_lanes ${PROJECT_SOURCE_DIR}/src/polhode/solve/lanes ${PROJECT_SOURCE_DIR}/src/polhode/fe/materials
+  ${PROJECT_SOURCE_DIR}/src/polhode/fe/elements)
 set(polhode_lane_options -O3 -Wno-psabi -Wno-attributes -Wno-conversion -Wno-ignored-attributes)
 foreach(folder ${polhode_lanes})
   set_source_files_properties(${folder}/kernels_baseline.cpp PROPERTIES

@@ -16,6 +16,7 @@ REGISTRIES = {
     "src/polhode/body/shapes.cpp": "docs/reference/shapes.md",
     "src/polhode/joints/registry.cpp": "docs/reference/joints.md",
     "src/polhode/loads/registry.cpp": "docs/reference/loads.md",
+    "src/polhode/fe/elements/registry.cpp": "docs/reference/elements.md",
 }
 # Kinds that say their name in their own files, kKind = "name" -> page.
 KIND_FILES = {
