@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
-#include <unordered_map>
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
@@ -12,24 +10,6 @@
 
 namespace polhode {
 namespace {
-
-/// Corners of a face, ascending: the same for the two elements that share it.
-using FaceKey = std::array<int, 4>;
-
-struct FaceHash {
-  std::size_t operator()(const FaceKey& key) const {
-    std::size_t hash = 0;
-    for (int node : key) hash = hash * 0x9E3779B97F4A7C15ULL + static_cast<std::size_t>(node + 1);
-    return hash ^ (hash >> 29);
-  }
-};
-
-FaceKey key_of(std::span<const int> corners) {
-  FaceKey key{-1, -1, -1, -1};
-  std::copy_n(corners.begin(), std::min<std::size_t>(corners.size(), 4), key.begin());
-  std::sort(key.begin(), key.end());
-  return key;
-}
 
 /// New numbers of the elements that are kept; −1 for the others.
 std::vector<int> kept_only(const std::vector<int>& set, const std::vector<int>& new_number) {
@@ -146,43 +126,6 @@ std::int64_t Mesh::node_label(int node) const {
 
 std::int64_t Mesh::element_label(int element) const {
   return element_labels.empty() ? element + 1 : element_labels[element];
-}
-
-Surface boundary(const Mesh& mesh) {
-  struct Seen {
-    int element;
-    int face;
-    int times;
-  };
-  std::unordered_map<FaceKey, std::size_t, FaceHash> index;
-  std::vector<Seen> seen;  // in the order in which the faces were met
-  for (int e = 0, b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
-    const ElementBlock& block = mesh.blocks[b];
-    const CellShape& shape = block.shape();
-    for (std::size_t at = 0; at < block.nodes.size(); at += shape.nodes.size(), ++e)
-      for (int f = 0; f < static_cast<int>(shape.faces.size()); ++f) {
-        const CellFace& face = shape.faces[f];
-        const std::size_t corners = face.type.starts_with("tri") ? 3 : 4;
-        std::array<int, 4> nodes{};
-        for (std::size_t i = 0; i < corners; ++i) nodes[i] = block.nodes[at + face.nodes[i]];
-        const auto [entry, fresh] = index.try_emplace(key_of({nodes.data(), corners}), seen.size());
-        if (fresh)
-          seen.push_back({e, f, 1});
-        else
-          ++seen[entry->second].times;
-      }
-  }
-  Surface surface;
-  std::vector<int> nodes;
-  for (const Seen& one : seen) {
-    if (one.times != 1) continue;
-    const CellFace& face = mesh.element_shape(one.element).faces[one.face];
-    const std::span<const int> cell = mesh.element_nodes(one.element);
-    nodes.clear();
-    for (int local : face.nodes) nodes.push_back(cell[local]);
-    surface.add(face.type, nodes, one.element);
-  }
-  return surface;
 }
 
 Mesh part_of(const Mesh& mesh, std::string_view element_set) {
