@@ -51,10 +51,10 @@ Mesh block(const MeshGenerator& self, const MeshParameters& p, std::string_view 
 std::vector<NamedSide> round_sides(double outer, double inner, double length) {
   const double size = outer + length;
   const auto radius = [](const Vec3& X) { return std::hypot(X[0], X[1]); };
-  std::vector<NamedSide> sides{
-      {"outer", [=](const Vec3& X) { return is_at(radius(X), outer, size); }},
-      {"start", [=](const Vec3& X) { return is_at(X[2], -0.5 * length, size); }},
-      {"end", [=](const Vec3& X) { return is_at(X[2], 0.5 * length, size); }}};
+  std::vector<NamedSide> sides;
+  sides.push_back({"outer", [=](const Vec3& X) { return is_at(radius(X), outer, size); }});
+  sides.push_back({"start", [=](const Vec3& X) { return is_at(X[2], -0.5 * length, size); }});
+  sides.push_back({"end", [=](const Vec3& X) { return is_at(X[2], 0.5 * length, size); }});
   if (inner > 0.0)
     sides.push_back({"inner", [=](const Vec3& X) { return is_at(radius(X), inner, size); }});
   return sides;

@@ -74,8 +74,8 @@ const std::set<std::string, std::less<>> kRefused{"INCLUDE", "NGEN",     "NFILL"
                                                   "NMAP",    "ELGEN",    "ELCOPY",  "SYSTEM",
                                                   "IMPORT",  "MANIFEST", "SUBMODEL"};
 /// What brackets the parts of a file without saying anything of the mesh.
-const std::set<std::string, std::less<>> kSilent{
-    "HEADING", "PREPRINT", "END PART", "ASSEMBLY", "END ASSEMBLY", "END INSTANCE"};
+const std::set<std::string, std::less<>> kSilent{"HEADING",  "PREPRINT",     "END PART",
+                                                 "ASSEMBLY", "END ASSEMBLY", "END INSTANCE"};
 
 class AbaqusReader {
  public:
