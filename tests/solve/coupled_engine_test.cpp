@@ -167,7 +167,7 @@ TEST(CoupledEngine, TangentIsTheDerivativeOfTheResidual) {
     trial.context.ga = s.ga;
     trial.context.dt = 0.02;
     start_trial(s.system, s.state, trial);
-    predict_nodes(s.system, s.state, trial);
+    predict_nodes(s.system, s.state, trial, {});
     CoupledEngine engine(s.system, "block_lu", MomentumRate::momentum, NodeFactor::every_iteration);
     engine.begin_step(s.state, trial);
     std::vector<double> increments;
@@ -177,6 +177,25 @@ TEST(CoupledEngine, TangentIsTheDerivativeOfTheResidual) {
     EXPECT_LT(increments[3], std::max(20.0 * increments[2] * increments[2], 1e-12));
     EXPECT_LT(increments[5], 1e-12);
   }
+}
+
+TEST(CoupledEngine, AccelerationsOfAnInstantAreRatesOfTheVelocities) {
+  Scene s({.two_bodies = true, .hinge = true, .viscosity = 0.5, .gravity = Vec3(0, 0, -9.81)});
+  s.run(20);
+  project_velocities(s.system, s.state);
+  bond_nodes(s.system, s.state);
+  const InstantSolution now = instant_solution(s.system, s.state);
+  ASSERT_EQ(now.node_a.size(), s.state.node_x.size());
+  // Two short steps: the mean of the velocities' changes, free of the alternating error of a
+  // first step.
+  const double h = 1e-5;
+  const State before = s.state;
+  s.run(2, h);
+  double scale = 0.0;
+  for (const double a : now.node_a) scale = std::max(scale, std::abs(a));
+  EXPECT_GT(scale, 5.0);
+  for (std::size_t k = 0; k < now.node_a.size(); ++k)
+    EXPECT_NEAR((s.state.node_v[k] - before.node_v[k]) / (2 * h), now.node_a[k], 1e-3 * scale);
 }
 
 TEST(CoupledEngine, IsOfSecondOrder) {

@@ -42,9 +42,10 @@ struct State {
   std::vector<double> lambda;     ///< Multipliers by row, acting at t_{n+αf} of the last step.
   std::vector<double> history;    ///< Of interactions: turns of an angle, ...
   // Nodes of deformable solids, three numbers each, world.
-  std::vector<double> node_x;  ///< [m]
-  std::vector<double> node_v;  ///< Newmark velocities [m/s].
-  std::vector<double> node_a;  ///< Newmark accelerations of t_n + δΔt [m/s²]; for ρ∞ < 1.
+  std::vector<double> node_x;     ///< [m]
+  std::vector<double> node_v;     ///< Newmark velocities [m/s].
+  std::vector<double> node_a;     ///< Newmark accelerations of t_n + δΔt [m/s²]; for ρ∞ < 1.
+  std::vector<double> node_past;  ///< Mean velocities of the last steps, ring [m/s].
   std::vector<double> element_history;  ///< Of groups of elements: enhanced strains, ...
   int past_count = 0;                   ///< Valid entries of the predictor's rings.
   int past_next = 0;                    ///< Ring position to be written next.

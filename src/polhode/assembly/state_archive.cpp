@@ -135,6 +135,7 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
   archive(state.node_x);
   archive(state.node_v);
   archive(state.node_a);
+  archive(state.node_past);
   archive(state.element_history);
   archive(state.past_count);
   archive(state.past_next);

@@ -94,6 +94,7 @@ void System::finish() {
       initial_.node_v.push_back(nodes_[i].velocity[c]);
     }
   initial_.node_a.assign(initial_.node_x.size(), 0.0);
+  initial_.node_past.assign(kPast * initial_.node_x.size(), 0.0);
   initial_.element_history.assign(nodes_.history_size(), 0.0);
   for (int g = 0; g < nodes_.group_count(); ++g)
     nodes_.group(g).initialize(initial_.element_history.data() + nodes_.first_history(g));

@@ -75,8 +75,7 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
     v.K_ba.setZero();
   }
   std::fill(shares_.begin(), shares_.end(), Vec6::Zero());
-  condensation_.condense(nodes_.residual(), trial, trial.scale(system), shares_, values.diagonal,
-                         cliques);
+  condensation_.condense(nodes_.residual(), trial.scale(system), shares_, values.diagonal, cliques);
   x_ = newton_.right_hand_side();
   for (int b = 0; b < system.body_count(); ++b) x_.segment<6>(6 * b) -= shares_[b];
   if (x_.size() > 0) {
@@ -84,7 +83,7 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
     solver_->solve(x_);
     if (!x_.allFinite()) return done;
   }
-  condensation_.expand(x_.data(), trial, du_);
+  condensation_.expand(x_.data(), du_);
   done.solved = true;
   move(state, trial, damping, done);
   move_nodes(state, trial, damping, done);

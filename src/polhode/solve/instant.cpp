@@ -6,6 +6,7 @@
 
 #include <polhode/so3/quaternion.hpp>
 #include <polhode/solve/instant.hpp>
+#include <polhode/solve/node_inertia.hpp>
 
 namespace polhode {
 
@@ -39,6 +40,7 @@ struct InstantSolver::Impl {
   std::unique_ptr<LinearSolver> solver;  // with `values`, from the first use on
   KktValues values;
   Vec rhs, x, correction;
+  std::unique_ptr<NodeInertia> nodes;  ///< Of deformable solids, if there are any.
 
   Impl(const System& s, std::string name)
       : system(s), solver_name(std::move(name)), sweep(s), map(kkt_map(s)) {
@@ -66,6 +68,11 @@ struct InstantSolver::Impl {
   void prepare() {
     if (solver) return;
     solver = make_linear_solver(solver_name);
+    if (!system.nodes().empty()) {
+      nodes = std::make_unique<NodeInertia>(system);
+      const auto& more = nodes->pairs();
+      map.topology.pairs.insert(map.topology.pairs.end(), more.begin(), more.end());
+    }
     solver->analyse(map.topology);
     values.diagonal.assign(map.topology.bodies, Mat6::Zero());
     values.pairs.resize(map.topology.pairs.size());
@@ -97,6 +104,27 @@ struct InstantSolver::Impl {
       for (int body : {m.a, m.b})
         if (body != kGround)
           values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= per_mass * m.mass;
+  }
+  /// Blocks of the pairs of bodies that solids couple: the last ones.
+  [[nodiscard]] std::span<KktValues::Pair> cliques() {
+    return std::span(values.pairs).last(nodes->pairs().size());
+  }
+  void clear_cliques() {
+    if (!nodes) return;
+    for (KktValues::Pair& v : cliques()) {
+      v.K_ab.setZero();
+      v.K_ba.setZero();
+    }
+  }
+  /// Adds masses and forces of the solids to the bodies'.
+  [[nodiscard]] bool add_nodes(const State& state) {
+    if (!nodes) return true;
+    if (!nodes->take(state)) return false;
+    const double per_mass = 1.0 / system.mean_mass();
+    std::vector<Vec6> force(static_cast<std::size_t>(system.body_count()), Vec6::Zero());
+    nodes->put(per_mass, force, values.diagonal, cliques());
+    for (int b = 0; b < system.body_count(); ++b) rhs.segment<6>(6 * b) += force[b];
+    return true;
   }
   void put_rows(int interaction, const PairTerms& terms, double epsilon) {
     const int pair = map.pair[interaction];
@@ -152,6 +180,9 @@ struct InstantSolver::Impl {
         if (pair.a != kGround) out.segment<6>(6 * pair.a) -= y * v.B_a.col(k);
         if (pair.b != kGround) out.segment<6>(6 * pair.b) -= y * v.B_b.col(k);
       }
+      if (pair.rows > 0 || pair.a == kGround || pair.b == kGround) continue;
+      out.segment<6>(6 * pair.a) += v.K_ab * all.segment<6>(6 * pair.b);
+      out.segment<6>(6 * pair.b) += v.K_ba * all.segment<6>(6 * pair.a);
     }
   }
 
@@ -427,7 +458,12 @@ InstantSolution InstantSolver::accelerations(const State& state) {
     if (ref.b != kGround) s.rhs.segment<6>(6 * ref.b) += per_mass * wrench_b;
     s.put_rows(i, terms, kInstantProximal);
   });
+  if (!s.add_nodes(state)) {
+    solution.solved = false;
+    return solution;
+  }
   const Impl::Outcome outcome = s.solve();
+  s.clear_cliques();
   solution.solved = outcome.solved;
   solution.consistent = outcome.consistent;
   solution.residual = outcome.residual;
@@ -435,6 +471,7 @@ InstantSolution InstantSolver::accelerations(const State& state) {
     solution.r_ddot.emplace_back(s.x.segment<3>(6 * b));
     solution.alpha.emplace_back(s.x.segment<3>(6 * b + 3));
   }
+  if (s.nodes) solution.node_a = s.nodes->accelerations(s.x.data());
   for (int row = 0; row < system.rows(); ++row)
     solution.lambda[row] += system.mean_mass() * s.x[6 * bodies + row];
   return solution;

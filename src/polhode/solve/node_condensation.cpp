@@ -103,7 +103,8 @@ void NodeCondensation::place_bonds(const Trial& trial) {
 }
 
 /// @eq{ga-z-interpolation} @eq{ga-z-tangent}
-void NodeCondensation::gather_couplings(const NodeSystem& assembled, double alpha_f) {
+void NodeCondensation::gather_couplings(const std::vector<double>& K,
+                                        const std::vector<double>& F_all, double arm_weight) {
   const Nodes& nodes = system_->nodes();
   std::vector<const Bond*> bond_of(nodes.count(), nullptr);
   for (const Bond& bond : bonds_) bond_of[bond.node] = &bond;
@@ -118,7 +119,7 @@ void NodeCondensation::gather_couplings(const NodeSystem& assembled, double alph
     const auto first = c.begin() + nodes.row_start()[row],
                last = c.begin() + nodes.row_start()[row + 1];
     const auto b = std::lower_bound(first, last, column) - c.begin();
-    return Mat3(Block(assembled.tangent().data() + 9 * b));
+    return Mat3(Block(K.data() + 9 * b));
   };
   // A bonded node's neighbours: of one piece if one of them is free; bodies alone else.
   const auto piece_of_pair = [&](int a, int b) {
@@ -135,7 +136,7 @@ void NodeCondensation::gather_couplings(const NodeSystem& assembled, double alph
     const auto P = carried(bond.z_n1), P_bar = carried(bond.z_alpha);
     for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b) {
       const int j = nodes.column()[b];
-      const Mat3 K_ij = Block(assembled.tangent().data() + 9 * b);
+      const Mat3 K_ij = Block(K.data() + 9 * b);
       if (const Bond* other = bond_of[j]) {
         const int p = piece_of_pair(bond.body, other->body);
         if (p < 0) continue;
@@ -156,20 +157,23 @@ void NodeCondensation::gather_couplings(const NodeSystem& assembled, double alph
     // The arm turns as well.
     const int p = piece_of_pair(bond.body, bond.body);
     if (p < 0) continue;
-    const Vec3 F = Eigen::Map<const Vec3>(assembled.residual().data() + 3 * i);
+    const Vec3 F = Eigen::Map<const Vec3>(F_all.data() + 3 * i);
     const int at = 6 * place_in(p, bond.body) + 3;
-    A_bb_[p].block<3, 3>(at, at) += alpha_f * hat(F) * hat(bond.z_n1);
+    A_bb_[p].block<3, 3>(at, at) += arm_weight * hat(F) * hat(bond.z_n1);
   }
 }
 
-bool NodeCondensation::factor(const NodeSystem& assembled, const Trial& trial) {
+bool NodeCondensation::factor(const std::vector<double>& K, const std::vector<double>& F,
+                              const Trial& trial, const FactorOptions& options) {
   const Nodes& nodes = system_->nodes();
   factored_ = false;
   place_bonds(trial);
-  gather_couplings(assembled, trial.context.ga.alpha_f);
-  for (std::size_t k = 0; k < source_.size(); ++k) values_[k] = assembled.tangent()[source_[k]];
+  gather_couplings(K, F, options.arms_turn ? trial.context.ga.alpha_f : 0.0);
   const int n = nodes.unknowns();
-  if (n > 0 && !mumps_.factor(values_.data())) return false;
+  if (!options.same_matrix && n > 0) {
+    for (std::size_t k = 0; k < source_.size(); ++k) values_[k] = K[source_[k]];
+    if (!mumps_.factor(values_.data())) return false;
+  }
 
   std::fill(W_.begin(), W_.end(), 0.0);
   for (const auto& list : couplings_)
@@ -208,7 +212,7 @@ const std::vector<Mat3>& NodeCondensation::turns(const Trial& trial) {
   return turn_;
 }
 
-void NodeCondensation::condense(const std::vector<double>& F, const Trial&, double scale,
+void NodeCondensation::condense(const std::vector<double>& F, double scale,
                                 std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
                                 std::span<KktValues::Pair> pairs) {
   const Nodes& nodes = system_->nodes();
@@ -250,7 +254,7 @@ void NodeCondensation::condense(const std::vector<double>& F, const Trial&, doub
   }
 }
 
-void NodeCondensation::expand(const double* x, const Trial&, std::vector<double>& du) const {
+void NodeCondensation::expand(const double* x, std::vector<double>& du) const {
   const Nodes& nodes = system_->nodes();
   du.assign(3 * static_cast<std::size_t>(nodes.count()), 0.0);
   const auto of_body = [&](int body) { return Eigen::Map<const Vec6>(x + 6 * body); };

@@ -26,18 +26,27 @@ class NodeCondensation {
 
   /// The pairs of bodies that pieces couple, for the topology of the bodies' linear system.
   [[nodiscard]] const std::vector<KktPair>& pairs() const { return pairs_; }
+  struct FactorOptions {
+    bool arms_turn = true;     ///< The tangent of arms is wanted: not for masses.
+    bool same_matrix = false;  ///< Of the free unknowns: factored before, only bodies have moved.
+  };
+  /// @param K  3×3 blocks of the graph of nodes, row by row.
+  /// @param F  Residual, three a node.
   /// @returns false if the nodes' matrix is singular.
-  [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial);
+  [[nodiscard]] bool factor(const std::vector<double>& K, const std::vector<double>& F,
+                            const Trial& trial, const FactorOptions& options);
+  [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial) {
+    return factor(nodes.tangent(), nodes.residual(), trial, {});
+  }
   [[nodiscard]] bool factored() const { return factored_; }
   /// Rotation of each piece since the factorisation.
   [[nodiscard]] const std::vector<Mat3>& turns(const Trial& trial);
   /// After factor() or turns(): the bodies' share. Adds P̄ᵀF − A_bf A_ff⁻¹ F_f to the residuals by
   /// body, and S to the diagonal and to the pairs' blocks, all times `scale`.
-  void condense(const std::vector<double>& F, const Trial& trial, double scale,
-                std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
-                std::span<KktValues::Pair> pairs);
+  void condense(const std::vector<double>& F, double scale, std::vector<Vec6>& residual,
+                std::vector<Mat6>& diagonal, std::span<KktValues::Pair> pairs);
   /// Increments of all nodes (3 each) from those of the bodies (6 each).
-  void expand(const double* bodies, const Trial& trial, std::vector<double>& du) const;
+  void expand(const double* bodies, std::vector<double>& du) const;
 
   [[nodiscard]] const Mumps& factorisation() const { return mumps_; }
 
@@ -53,7 +62,8 @@ class NodeCondensation {
     Eigen::Matrix<double, 6, 3> bf;
   };
   void place_bonds(const Trial& trial);
-  void gather_couplings(const NodeSystem& nodes, double alpha_f);
+  void gather_couplings(const std::vector<double>& K, const std::vector<double>& F,
+                        double arm_weight);
   [[nodiscard]] int place_in(int piece, int body) const;
 
   const System* system_;

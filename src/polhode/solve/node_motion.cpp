@@ -21,7 +21,8 @@ Mat3 lane(const double (&x)[9][kLanes], int l) {
 
 }  // namespace
 
-void predict_nodes(const System& system, const State& state, Trial& trial) {
+void predict_nodes(const System& system, const State& state, Trial& trial,
+                   const PredictWeights& weights) {
   const Nodes& nodes = system.nodes();
   if (nodes.empty()) return;
   const StepContext& c = trial.context;
@@ -30,7 +31,13 @@ void predict_nodes(const System& system, const State& state, Trial& trial) {
   trial.node_v.resize(state.node_x.size());
   trial.element_scratch.resize(nodes.scratch_size());
   for (std::size_t k = 0; k < state.node_x.size(); ++k) {
-    trial.node_u[k] = c.dt * state.node_v[k];
+    double v = state.node_v[k];
+    if (weights.count > 0) {
+      v = 0.0;
+      for (int p = 0; p < kPast; ++p)
+        v += weights.weight[p] * state.node_past[p * state.node_x.size() + k];
+    }
+    trial.node_u[k] = c.dt * v;
     trial.node_x[k] = state.node_x[k] + trial.node_u[k];
   }
   for (const PrescribedComponent& p : nodes.prescribed()) {
@@ -117,7 +124,9 @@ void commit_nodes(const System& system, State& state, const Trial& trial) {
                           trial.element_scratch.data() + nodes.first_scratch(g));
   const GeneralizedAlpha& ga = trial.context.ga;
   const double dt = trial.context.dt;
+  double* past = state.node_past.data() + state.past_next * state.node_x.size();
   for (std::size_t k = 0; k < state.node_x.size(); ++k) {
+    past[k] = trial.node_u[k] / dt;
     state.node_a[k] = (trial.node_u[k] / dt - state.node_v[k]) / (ga.beta * dt) +
                       (1.0 - 0.5 / ga.beta) * state.node_a[k];
     state.node_v[k] = trial.node_v[k];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <polhode/solve/lanes/tree_data.hpp>
 #include <polhode/solve/trial.hpp>
 
 namespace polhode {
@@ -8,9 +9,11 @@ namespace polhode {
 /// Motion of the nodes of deformable solids over a step: Newmark like that of the bodies' centres,
 /// component by component. @eq{eq:td-Newmark-COM}
 
-/// Fills the trial's nodes: free ones go on with their velocities, prescribed components go where
-/// they must, bonded ones follow their bodies, which have been predicted before.
-void predict_nodes(const System& system, const State& state, Trial& trial);
+/// Fills the trial's nodes: free ones go on as extrapolated from the mean velocities of past steps
+/// (with their velocities, if weights.count is 0), prescribed components go where they must, bonded
+/// ones follow their bodies, which have been predicted before.
+void predict_nodes(const System& system, const State& state, Trial& trial,
+                   const PredictWeights& weights);
 /// Bonded nodes after their bodies have moved: x = r + Λ Z. Velocities of all nodes if `rates`.
 void follow_bodies(const System& system, const State& state, Trial& trial);
 /// Velocities at t_{n+1} from the increments, all nodes.

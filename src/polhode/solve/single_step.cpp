@@ -21,6 +21,8 @@ double seconds(Clock::time_point from, Clock::time_point to) {
 
 /// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
 constexpr double kNoMirrorBelow = 0.8;
+/// Degree of the extrapolation of nodes' velocities.
+constexpr int kNodeDegree = 2;
 /// Turns are counted before two bodies can have turned by half a turn against each other in one
 /// more step like the last [rad].
 constexpr double kCountTurnsBefore = 2.5;
@@ -73,10 +75,15 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
   const PredictWeights weights = predictor.degree < 0
                                      ? PredictWeights{}
                                      : extrapolation(state, c.t_n + 0.5 * c.dt, predictor.degree);
+  // Solids carry undamped vibrations that no polynomial of high degree follows.
+  const PredictWeights node_weights =
+      predictor.degree < 0
+          ? PredictWeights{}
+          : extrapolation(state, c.t_n + 0.5 * c.dt, std::min(predictor.degree, kNodeDegree));
   kernels_->predict(state.blocks.data(), mass_.data(), trial_.blocks.data(),
                     static_cast<int>(state.blocks.size()), c.dt, &weights);
   std::copy(state.lambda.begin(), state.lambda.end(), trial_.lambda.begin());
-  predict_nodes(*system_, state, trial_);
+  predict_nodes(*system_, state, trial_, node_weights);
   if (!predictor.remember) return;
   predicted_ = trial_.blocks;
   predicted_nodes_ = trial_.node_u;

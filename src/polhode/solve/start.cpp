@@ -13,11 +13,12 @@ struct Rates {
   bool consistent = true;
   std::vector<double> lambda;
   std::vector<Vec3> a, A, h_dot;  ///< Accelerations; A in body components.
+  std::vector<double> node_a;     ///< Of nodes, three each.
 };
 
 Rates rates(const System& system, InstantSolver& solver, const State& state) {
   const InstantSolution s = solver.accelerations(state);
-  Rates rates{s.solved && s.consistent, s.lambda, s.r_ddot, {}, {}};
+  Rates rates{s.solved && s.consistent, s.lambda, s.r_ddot, {}, {}, s.node_a};
   for (int b = 0; b < system.body_count(); ++b) {
     const BodyMotion m = system.motion(state, b);
     const Mat3 Lambda = m.Lambda();
@@ -43,6 +44,11 @@ State taylor(const System& system, const State& state, const Rates& now, double 
     m.W += tau * now.A[b];
     later.set_motion(system.slot(b), m);
   }
+  for (std::size_t k = 0; k < now.node_a.size(); ++k) {
+    later.node_x[k] += tau * (state.node_v[k] + 0.5 * tau * now.node_a[k]);
+    later.node_v[k] += tau * now.node_a[k];
+  }
+  bond_nodes(system, later);
   return later;
 }
 
@@ -71,6 +77,7 @@ bool start_accelerations(const System& system, InstantSolver& solver, State& sta
                          const GeneralizedAlpha& ga, double dt) {
   const Rates now = rates(system, solver, state);
   state.lambda = now.lambda;
+  if (!state.node_a.empty() && now.node_a.size() == state.node_a.size()) state.node_a = now.node_a;
   Rates change;
   if (ga.delta != 0.0) change = jerks(system, solver, state, now, dt);
   for (int b = 0; b < system.body_count(); ++b) {

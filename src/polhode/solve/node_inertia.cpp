@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solve/node_inertia.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Over this time a prescribed motion is differenced for its acceleration [s].
+constexpr double kDifference = 1e-4;
+
+}  // namespace
+
+NodeInertia::NodeInertia(const System& system) : system_(&system), condensation_(system) {
+  const Nodes& nodes = system.nodes();
+  mass_.assign(9 * nodes.column().size(), 0.0);
+  for (std::size_t b = 0; b < nodes.column().size(); ++b)
+    for (int c = 0; c < 3; ++c) mass_[9 * b + 4 * c] = nodes.mass()[b];
+  trial_.context.ga = GeneralizedAlpha::from_spectral_radius(0.0);  // α_f = 1: the instant itself
+  trial_.context.conserving = false;
+  trial_.element_scratch.resize(nodes.scratch_size());
+}
+
+bool NodeInertia::take(const State& state) {
+  const Nodes& nodes = system_->nodes();
+  trial_.context.t_n = state.t;
+  trial_.context.dt = 0.0;
+  start_trial(*system_, state, trial_);
+  residual_.assign(state.node_x.size(), 0.0);
+  const NodeStep instant = node_instant(state, trial_.context);
+  for (int g = 0; g < nodes.group_count(); ++g) {
+    const double* history = state.element_history.data() + nodes.first_history(g);
+    double* scratch = trial_.element_scratch.data() + nodes.first_scratch(g);
+    nodes.group(g).begin_step(history, scratch);
+    nodes.group(g).evaluate(instant, history, scratch, Mat3::Identity(),
+                            {residual_.data(), nullptr, nullptr});
+  }
+  gamma_.assign(state.node_x.size(), 0.0);
+  for (int i = 0; i < nodes.count(); ++i) {
+    if (nodes[i].body < 0) continue;
+    const BodyMotion m = system_->motion(state, nodes[i].body);
+    const Vec3 omega = m.omega();
+    Eigen::Map<Vec3>(gamma_.data() + 3 * i) = omega.cross(omega.cross(m.q * nodes[i].Z));
+  }
+  for (const PrescribedComponent& p : nodes.prescribed()) {
+    const TimeFunction& d = *p.displacement;
+    const double t = state.t, h = kDifference;
+    gamma_[3 * p.node + p.component] = (d(t + h) - 2.0 * d(t) + d(t - h)) / (h * h);
+  }
+  for (int i = 0; i < nodes.count(); ++i) {
+    Vec3 M_gamma = Vec3::Zero();
+    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
+      M_gamma += nodes.mass()[b] * Eigen::Map<const Vec3>(gamma_.data() + 3 * nodes.column()[b]);
+    Eigen::Map<Vec3> R(residual_.data() + 3 * i);
+    R = M_gamma - R - nodes.node_mass(i) * system_->gravity();
+  }
+  return condensation_.factor(mass_, residual_, trial_,
+                              {.arms_turn = false, .same_matrix = condensation_.factored()});
+}
+
+void NodeInertia::put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
+                      std::span<KktValues::Pair> pairs) {
+  std::vector<Vec6> share(force.size(), Vec6::Zero());
+  condensation_.condense(residual_, scale, share, diagonal, pairs);
+  for (std::size_t b = 0; b < force.size(); ++b) force[b] -= share[b];
+}
+
+const std::vector<double>& NodeInertia::accelerations(const double* bodies) {
+  condensation_.expand(bodies, a_);
+  for (std::size_t k = 0; k < a_.size(); ++k) a_[k] += gamma_[k];
+  return a_;
+}
+
+}  // namespace polhode
