@@ -148,7 +148,7 @@ TEST(CoupledEngine, AKeptFactorisationConvergesToTheSameStep) {
               .hinge = true,
               .gravity = Vec3(0, 0, -9.81),
               .factor = NodeFactor::reuse,
-              .tolerance = 1e-8});
+              .tolerance = 1e-9});
   newton.run(200, 0.005);
   kept.run(200, 0.005);
   for (std::size_t k = 0; k < newton.state.node_x.size(); ++k)

@@ -11,7 +11,10 @@ namespace polhode {
 namespace {
 
 /// Newton tolerances; the higher orders resolve smaller errors.
-constexpr double kTolerance = 1e-5, kToleranceHighOrder = 1e-7;
+/// solids, of which a step may leave no more than round-off in many vibrations, too.
+constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
+/// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
+constexpr int kIterationsSolids = 30;
 /// Error of automatic steps if the user gives none.
 constexpr double kDefaultError = 1e-6;
 /// Below this many loops open at one body the tree is ahead whatever the rest.
@@ -111,10 +114,12 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.min_step = a.min_step.value_or(0.0);
   c.max_step = a.max_step.value_or(0.0);
   c.conserving = a.conserving;
-  c.newton.tolerance = a.newton_tolerance > 0.0 ? a.newton_tolerance
-                       : c.order > 4            ? kToleranceHighOrder
-                                                : kTolerance;
-  c.newton.max_iterations = a.max_iterations;
+  c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
+                       : c.order > 4             ? kToleranceHighOrder
+                       : !system.nodes().empty() ? kToleranceSolids
+                                                 : kTolerance;
+  c.newton.max_iterations =
+      system.nodes().empty() ? a.max_iterations : std::max(a.max_iterations, kIterationsSolids);
   c.newton.jacobian = policy;
   c.newton.line_search = a.line_search;
   c.newton.max_rotation = a.max_step_rotation;

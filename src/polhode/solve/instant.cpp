@@ -180,9 +180,6 @@ struct InstantSolver::Impl {
         if (pair.a != kGround) out.segment<6>(6 * pair.a) -= y * v.B_a.col(k);
         if (pair.b != kGround) out.segment<6>(6 * pair.b) -= y * v.B_b.col(k);
       }
-      if (pair.rows > 0 || pair.a == kGround || pair.b == kGround) continue;
-      out.segment<6>(6 * pair.a) += v.K_ab * all.segment<6>(6 * pair.b);
-      out.segment<6>(6 * pair.b) += v.K_ba * all.segment<6>(6 * pair.a);
     }
   }
 

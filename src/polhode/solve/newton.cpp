@@ -15,7 +15,7 @@ constexpr double kNoPolishBelow = 1e-10;
 constexpr double kDiverged = 1e3;
 /// With a factorisation kept from earlier steps: what later increments would add up to, as part of
 /// the tolerance.
-constexpr double kLeftByKeptFactor = 1e-5;
+constexpr double kLeftByKeptFactor = 1e-4;
 /// Increments above this are watched by the line search.
 constexpr double kLarge = 0.05;
 /// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.

@@ -26,13 +26,16 @@ bool NodeInertia::take(const State& state) {
   trial_.context.dt = 0.0;
   start_trial(*system_, state, trial_);
   residual_.assign(state.node_x.size(), 0.0);
+  tangent_.resize(mass_.size());
   const NodeStep instant = node_instant(state, trial_.context);
   for (int g = 0; g < nodes.group_count(); ++g) {
     const double* history = state.element_history.data() + nodes.first_history(g);
     double* scratch = trial_.element_scratch.data() + nodes.first_scratch(g);
     nodes.group(g).begin_step(history, scratch);
+    // With tangents, so that elements condense their internal unknowns where they stand.
     nodes.group(g).evaluate(instant, history, scratch, Mat3::Identity(),
-                            {residual_.data(), nullptr, nullptr});
+                            {residual_.data(), nodes.slots(g).empty() ? nullptr : tangent_.data(),
+                             nodes.slots(g).data()});
   }
   gamma_.assign(state.node_x.size(), 0.0);
   for (int i = 0; i < nodes.count(); ++i) {

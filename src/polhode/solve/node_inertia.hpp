@@ -29,6 +29,7 @@ class NodeInertia {
   NodeCondensation condensation_;
   Trial trial_;
   std::vector<double> mass_;      ///< M by 3×3 blocks of the graph.
+  std::vector<double> tangent_;   ///< Not used itself.
   std::vector<double> residual_;  ///< M γ − f − M g.
   std::vector<double> gamma_;  ///< ω × (ω × z) of bonded nodes, accelerations of prescribed ones.
   std::vector<double> a_;

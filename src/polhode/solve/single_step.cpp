@@ -22,7 +22,7 @@ double seconds(Clock::time_point from, Clock::time_point to) {
 /// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
 constexpr double kNoMirrorBelow = 0.8;
 /// Degree of the extrapolation of nodes' velocities.
-constexpr int kNodeDegree = 2;
+constexpr int kNodeDegree = 0;
 /// Turns are counted before two bodies can have turned by half a turn against each other in one
 /// more step like the last [rad].
 constexpr double kCountTurnsBefore = 2.5;
