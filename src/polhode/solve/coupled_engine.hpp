@@ -33,6 +33,9 @@ class CoupledEngine final : public NewtonEngine {
   void end_step(const State& state, Trial& trial) override;
 
   [[nodiscard]] int factorisations() const { return factorisations_; }
+  [[nodiscard]] double factor_entries() const {
+    return condensation_.factorisation().factor_entries();
+  }
   [[nodiscard]] const NewtonSystem& bodies() const { return newton_; }
   [[nodiscard]] const NodeSystem& nodes() const { return nodes_; }
 
