@@ -37,6 +37,15 @@ struct LoadDescription {
   return v;
 }
 
+/// The vector over a step: at t_{n+αf}; in statics constant components times the load factor, while
+/// functions of time take the load factor for the time.
+[[nodiscard]] inline Vec3 evaluate(const TimeVector& f, const StepContext& step) {
+  Vec3 v = evaluate(f, step.t_alpha());
+  for (std::size_t i = 0; i < 3; ++i)
+    if (f[i] && f[i]->is_constant()) v[static_cast<int>(i)] *= step.load_factor;
+  return v;
+}
+
 [[nodiscard]] inline bool is_constant(const TimeVector& f) {
   for (const TimeFunctionPtr& component : f)
     if (component && !component->is_constant()) return false;

@@ -9,7 +9,7 @@ Moment::Moment(const LoadDescription& load) : moment_(load.vector), body_fixed_(
 }
 
 void Moment::evaluate(const PairStep& step, PairTerms& t) const {
-  const Vec3 M = polhode::evaluate(moment_, step.context.t_alpha());
+  const Vec3 M = polhode::evaluate(moment_, step.context);
   if (body_fixed_) {
     const Carried m = step.b.vector(M);
     t.wrench_b.tail<3>() = m.at_alpha;
@@ -21,7 +21,7 @@ void Moment::evaluate(const PairStep& step, PairTerms& t) const {
 }
 
 Work Moment::work(const PairStep& step) const {
-  const Vec3 M = polhode::evaluate(moment_, step.context.t_alpha());
+  const Vec3 M = polhode::evaluate(moment_, step.context);
   return {.put_in = (body_fixed_ ? step.b.vector(M).at_alpha : M).dot(step.b.theta)};
 }
 

@@ -15,7 +15,7 @@ PointForce::PointForce(const LoadDescription& load)
 void PointForce::evaluate(const PairStep& step, PairTerms& t) const {
   const double af = step.b.alpha_f;
   const Carried z = step.b.vector(Z_);
-  const Vec3 F = polhode::evaluate(force_, step.context.t_alpha());
+  const Vec3 F = polhode::evaluate(force_, step.context);
   Vec3 f = F;
   if (body_fixed_) {
     const Carried carried = step.b.vector(F);
@@ -30,7 +30,7 @@ void PointForce::evaluate(const PairStep& step, PairTerms& t) const {
 }
 
 Work PointForce::work(const PairStep& step) const {
-  const Vec3 F = polhode::evaluate(force_, step.context.t_alpha());
+  const Vec3 F = polhode::evaluate(force_, step.context);
   if (potential_) return {.stored = -F.dot(step.b.point(Z_).at_n1)};
   const Vec3 f = body_fixed_ ? step.b.vector(F).at_alpha : F;
   return {.put_in = f.dot(step.b.u + step.b.theta.cross(step.b.vector(Z_).at_alpha))};

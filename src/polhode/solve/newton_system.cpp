@@ -99,6 +99,13 @@ void NewtonSystem::assemble(const State& state, const Trial& trial, bool tangent
   const double s = trial.scale(*system_);
   for (int b = 0; b < system_->body_count(); ++b) {
     const BodyData& body = system_->bodies()[b];
+    if (static_) {
+      const Vec3 weight = trial.context.load_factor * body.mass * system_->gravity();
+      body_residual_[b] << -weight, Vec3::Zero();
+      body_scale_[b] << weight.cwiseAbs(), Vec3::Zero();
+      if (tangent) values_.diagonal[b].setZero();
+      continue;
+    }
     const MomentumRates m = momentum_rates(body.mass, body.inertia, system_->motion(state, b),
                                            steps_[b], trial.context, form_);
     Vec6& R = body_residual_[b];

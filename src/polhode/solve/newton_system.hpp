@@ -73,6 +73,8 @@ class NewtonSystem {
   /// @param more  Pairs of bodies that something else couples: their blocks come last in values().
   NewtonSystem(const System& system, MomentumRate form, const std::vector<KktPair>& more = {});
 
+  /// Statics: bodies have no rates of momentum.
+  void set_static(bool yes) { static_ = yes; }
   /// Fills right_hand_side() and the residuals; with `tangent` the values as well.
   void assemble(const State& state, const Trial& trial, bool tangent);
   /// Constraint values at the iterate only.
@@ -99,6 +101,7 @@ class NewtonSystem {
 
   const System* system_;
   MomentumRate form_;
+  bool static_ = false;
   KktMap map_;
   InteractionSweep sweep_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.

@@ -18,8 +18,11 @@ struct Trial {
   std::vector<double> element_scratch;         ///< Of groups of elements: internal unknowns, ...
   std::vector<double> lambda_centre;           ///< By row: proximal centre; zero until converged.
 
+  double compliance_scale = 0.0;  ///< Of statics, where it is the scale s; else 0 [m/N].
+
   /// s = βΔt²/m_ref: momentum rows are multiplied by it, λ̂ = s λ.
   [[nodiscard]] double scale(const System& system) const {
+    if (compliance_scale > 0.0) return compliance_scale;
     return context.ga.beta * context.dt * context.dt / system.mean_mass();
   }
 };

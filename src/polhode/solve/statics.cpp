@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/base/format.hpp>
+#include <polhode/so3/quaternion.hpp>
+#include <polhode/solve/node_motion.hpp>
+#include <polhode/solve/start.hpp>
+#include <polhode/solve/statics.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Up to so many iterations the next increment of the load doubles; from so many on it halves.
+constexpr int kEasy = 6, kHard = 12;
+/// After a failure the increment is this part, down to the least.
+constexpr double kCut = 0.25, kLeastIncrement = 1e-4;
+/// Load factors closer than this are the same.
+constexpr double kSame = 1e-12;
+
+void stop_moving(const System& system, State& state) {
+  for (int b = 0; b < system.body_count(); ++b) {
+    BodyMotion m = system.motion(state, b);
+    m.v = m.W = m.a = m.A = m.h_dot = Vec3::Zero();
+    state.set_motion(system.slot(b), m);
+  }
+  std::fill(state.node_v.begin(), state.node_v.end(), 0.0);
+  std::fill(state.node_a.begin(), state.node_a.end(), 0.0);
+}
+
+}  // namespace
+
+struct LoadStepper::Impl {
+  const System* system;
+  StaticOptions options;
+  StaticNewton newton;
+  StaticReport report;
+  State before;  ///< The equilibrium before the last one.
+  double factor_before = 0.0;
+  double increment = 1.0;
+  int equilibria = 0, unstable = -1;
+
+  Impl(const System& s, const StaticOptions& o) : system(&s), options(o), newton(s, o) {}
+
+  /// The state on the secant through the last two equilibria.
+  [[nodiscard]] State secant(const State& state, double factor) const {
+    const double more = (factor - state.t) / (state.t - factor_before);
+    State next = state;
+    for (int b = 0; b < system->body_count(); ++b) {
+      const BodyMotion m0 = system->motion(before, b);
+      BodyMotion m = system->motion(state, b);
+      m.r += more * (m.r - m0.r);
+      m.q = quaternion_from_rotation_vector(more * rotation_vector(m.q * m0.q.conjugate())) * m.q;
+      m.q.normalize();
+      next.set_motion(system->slot(b), m);
+    }
+    for (std::size_t k = 0; k < state.node_x.size(); ++k)
+      next.node_x[k] += more * (state.node_x[k] - before.node_x[k]);
+    for (std::size_t k = 0; k < state.lambda.size(); ++k)
+      next.lambda[k] += more * (state.lambda[k] - before.lambda[k]);
+    return next;
+  }
+
+  void take(StaticStep step) {
+    report.iterations += step.iterations;
+    if (step.converged) {
+      report.residual = step.residual;
+      report.force = step.force;
+      report.unstable = step.unstable;
+      report.free_motions = step.free_motions;
+    }
+    report.steps.push_back(std::move(step));
+  }
+
+  bool advance(State& state, double limit) {
+    const double from = state.t;
+    for (;;) {
+      double factor = std::min(from + increment, limit);
+      if (limit - factor < kSame) factor = limit;
+      StaticStep step;
+      const bool predict = equilibria > 1 && from - factor_before > kSame;
+      State old = state;
+      if (predict) {
+        const State start = secant(state, factor);
+        step = newton.solve(state, factor, &start);
+        if (!step.converged) take(step);
+      }
+      if (!predict || !step.converged) step = newton.solve(state, factor);
+      take(step);
+      if (step.converged) {
+        if (equilibria > 0 && unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
+          report.limit_points.push_back(factor);
+        unstable = step.unstable;
+        before = std::move(old);
+        factor_before = from;
+        ++equilibria;
+        report.load_factor = factor;
+        report.converged = factor >= 1.0;
+        if (options.load_steps == 0) {
+          if (step.iterations <= kEasy) increment *= 2.0;
+          if (step.iterations >= kHard) increment *= 0.5;
+        }
+        return true;
+      }
+      increment = kCut * (factor - from);
+      if (increment < kLeastIncrement) return explain(step), false;
+    }
+  }
+
+  void explain(const StaticStep& step) {
+    std::string& s = report.message;
+    s = format("No equilibrium was found beyond load factor {:.6g}: {}", report.load_factor,
+               step.reason);
+    if (!step.worst.empty()) s += format("; worst at {}", step.worst);
+    if (step.force > 0.0)
+      s += format(" (unbalanced {:.2g} N of {:.2g} N)", step.residual, step.force);
+    s += ".";
+    if (!step.free_motions.empty()) {
+      s += " Nothing resists that ";
+      for (std::size_t i = 0; i < step.free_motions.size(); ++i)
+        s += (i > 0 ? "; " : "") + step.free_motions[i];
+      s += ": hold it by a joint or a spring.";
+    } else if (equilibria > 0) {
+      s += " It may be a limit point, where the model buckles: look at the last equilibrium, or "
+           "follow the motion with type: dynamics.";
+    } else {
+      s += " Try load_steps, or check that the model is held.";
+    }
+  }
+};
+
+LoadStepper::LoadStepper(const System& system, const StaticOptions& options)
+    : impl_(std::make_unique<Impl>(system, options)) {}
+LoadStepper::~LoadStepper() = default;
+
+void LoadStepper::begin(State& state) {
+  Impl& s = *impl_;
+  stop_moving(*s.system, state);
+  bond_nodes(*s.system, state);
+  stop_moving(*s.system, state);
+  initialize_histories(*s.system, state);
+  std::fill(state.lambda.begin(), state.lambda.end(), 0.0);
+  state.t = 0.0;
+  s.report = StaticReport{};
+  s.increment = s.options.load_steps > 0 ? 1.0 / s.options.load_steps : 1.0;
+  s.equilibria = 0;
+  s.unstable = -1;
+}
+
+bool LoadStepper::advance(State& state, double limit) { return impl_->advance(state, limit); }
+const StaticReport& LoadStepper::report() const { return impl_->report; }
+StaticNewton& LoadStepper::newton() { return impl_->newton; }
+
+StaticReport solve_statics(const System& system, State& state, const StaticOptions& options,
+                           const std::function<void(const State&)>& observe) {
+  LoadStepper stepper(system, options);
+  stepper.begin(state);
+  while (state.t < 1.0 && stepper.advance(state))
+    if (observe) observe(state);
+  return stepper.report();
+}
+
+}  // namespace polhode
