@@ -3,35 +3,14 @@
 
 #include <cmath>
 
-#include <polhode/joints/registry.hpp>
-#include <polhode/loads/registry.hpp>
-#include <polhode/so3/quaternion.hpp>
 #include <polhode/solve/statics.hpp>
+#include <solve/static_models.hpp>
 #include <support/bar_elements.hpp>
 
 namespace polhode {
 namespace {
 
-TimeVector constant(const Vec3& v) {
-  return {constant_function(v[0]), constant_function(v[1]), constant_function(v[2])};
-}
-
-int add_body(System& system, const std::string& name, double mass, const Vec3& r) {
-  BodyMotion start;
-  start.r = r;
-  return system.add_body({name, mass, mass * Mat3::Identity()}, start);
-}
-
-void add_joint(System& system, const std::string& type, const std::string& name, int a, int b,
-               const Vec3& Z_a, const Vec3& Z_b, const Mat3& R = Mat3::Identity()) {
-  const JointRecipe recipe =
-      joint_kind(type).recipe({.Z_a = Z_a, .Z_b = Z_b, .R_a = R, .R_b = R}, {});
-  system.group<Joint>().items.emplace_back(name, type, Participants{a, b}, recipe);
-}
-
-void add_load(System& system, const std::string& type, const LoadDescription& load) {
-  load_kind(type).add(system, load);
-}
+using test::add_body, test::add_joint, test::add_load, test::constant;
 
 TEST(Statics, AWeightStretchesASpringByItsForceOverItsStiffness) {
   System system;

@@ -19,8 +19,8 @@ struct LoadDescription {
   Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();  ///< Points from the centres of mass [m].
   bool body_fixed = false;                      ///< Components turn with the body.
   TimeVector vector{};                          ///< Force [N] or moment [N m]; empty is zero.
-  std::map<std::string, double> values;         ///< Parameters by name, SI.
-  std::optional<FreeAngle> angle;               ///< Of the joint that the load acts in.
+  std::map<std::string, double> values{};       ///< Parameters by name, SI.
+  std::optional<FreeAngle> angle{};             ///< Of the joint that the load acts in.
   double start_length = 0.0;                    ///< Distance of the points at the start [m].
 
   [[nodiscard]] double value(const std::string& key, double otherwise) const {

@@ -119,6 +119,11 @@ void SaddleMatrix::set(const KktValues& bodies, const std::vector<double>& block
   for_each(&bodies, &blocks, forces, s, [&](int, int, double x) { values_[next++] = x; });
 }
 
+void SaddleMatrix::combine(const SaddleMatrix& A, double factor, const SaddleMatrix& B) {
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    values_[k] = A.values_[k] + factor * B.values_[k];
+}
+
 /// @eq{statics-hessian}
 void SaddleMatrix::make_hessian(const std::vector<Vec6>& moments) {
   for (int b = 0; b < topology_.bodies; ++b) {

@@ -36,6 +36,10 @@ class SaddleMatrix {
 
   /// Takes the arms of the bonded nodes from the trial.
   void place(const Trial& trial);
+  /// The same as another matrix of this system.
+  void place_like(const SaddleMatrix& other) { carrier_ = other.carrier_, arm_ = other.arm_; }
+  /// A + factor·B, of the same system and topology.
+  void combine(const SaddleMatrix& A, double factor, const SaddleMatrix& B);
   /// @param bodies  Values and rows of bodies and joints, scaled by s already.
   /// @param blocks  3×3 blocks of the graph of nodes, row by row.
   /// @param forces  Residual of the nodes [N], whose arms turn; null: none.

@@ -31,16 +31,6 @@ constexpr int kHalvings = 8;
 constexpr double kClose = 1e-5;
 constexpr int kMostFreeMotions = 6;
 
-template <class Context>
-void set_mixed_point(Context& c, bool yes) {
-  if constexpr (requires { c.mixed_point; }) c.mixed_point = yes;
-}
-template <class AnyGroup>
-void extrapolate(const AnyGroup& g, int i, const PairStep& s, const Vec6& a, const Vec6& b,
-                 double* h) {
-  if constexpr (requires { g.extrapolate(i, s, a, b, h); }) g.extrapolate(i, s, a, b, h);
-}
-
 GeneralizedAlpha static_weights() {
   GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
   ga.alpha_m = ga.kappa = ga.c = ga.c_A = ga.delta = 0.0;
@@ -82,6 +72,7 @@ void StaticNewton::enter(double load_factor) {
 
 void StaticNewton::start_scratch(const State& state) {
   const Nodes& nodes = system_->nodes();
+  std::fill(trial_.element_scratch.begin(), trial_.element_scratch.end(), 0.0);
   trial_.node_u.assign(state.node_x.size(), 0.0);
   trial_.node_v.assign(state.node_x.size(), 0.0);
   for (int g = 0; g < nodes.group_count(); ++g)
@@ -94,7 +85,7 @@ ElementReport StaticNewton::assemble() {
   start_trial(*system_, work_, trial_);
   trial_.lambda_centre = trial_.lambda;
   trial_.node_x = work_.node_x;
-  set_mixed_point(trial_.context, mixed_);
+  trial_.context.mixed_point = mixed_;
   ElementReport report;
   if (!system_->nodes().empty()) {
     follow_bodies(*system_, work_, trial_);
@@ -270,7 +261,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
     const BodyStep b = body_step(*system_, work_, trial_, ref.b);
     double* history = work_.history.data() + ref.first_history;
     const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row, history};
-    extrapolate(system_->group(ref.group), ref.item, pair, of(ref.a), of(ref.b), history);
+    system_->group(ref.group).extrapolate(ref.item, pair, of(ref.a), of(ref.b), history);
   }
   for (int b = 0; b < system_->body_count(); ++b) {
     const Vec3 r = x_.segment<3>(6 * b), theta = x_.segment<3>(6 * b + 3);
@@ -375,6 +366,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     step.increments.push_back(e);
     if (!(e < kDiverged)) return fail("diverges");
   }
+  if (const std::string refusal = refused(step); !refusal.empty()) return fail(refusal);
   step.converged = true;
   count_unstable(step);
   commit(state, load_factor);
@@ -389,6 +381,20 @@ void StaticNewton::count_unstable(StaticStep& step) {
   }
   if (!solver_.factor(matrix_, true)) return;
   step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
+}
+
+/// Configurations that interactions do not accept: mirror images, beams bent too far.
+std::string StaticNewton::refused(StaticStep& step) const {
+  for (const InteractionRef& ref : system_->interactions()) {
+    const InteractionGroup& group = system_->group(ref.group);
+    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row,
+                        work_.history.data() + ref.first_history};
+    if (group.acceptable(ref.item, pair)) continue;
+    step.worst = format("{} '{}'", group.kind(), system_->name(ref));
+    return group.refusal(ref.item);
+  }
+  return {};
 }
 
 void StaticNewton::commit(State& state, double load_factor) {

@@ -65,6 +65,7 @@ class StaticNewton {
   void aim(std::vector<double>& du) const;
   double apply(double part, StaticStep& step);
   void commit(State& state, double load_factor);
+  [[nodiscard]] std::string refused(StaticStep& step) const;
   void count_unstable(StaticStep& step);
   [[nodiscard]] std::string node_text(int node) const;
 
