@@ -54,7 +54,7 @@ TEST(Modes, AChainOfMassesAndSpringsHasItsClosedFormFrequencies) {
 }
 
 /// A compound pendulum about its equilibrium, where the hinge's multipliers make the stiffness:
-/// ω² = m g a / (J + m a²).
+/// ω² = m g a / (J + m a²). @tests{modes-saddle}
 TEST(Modes, APendulumSwingsAtItsSmallOscillationFrequency) {
   const double m = 1.3, g = 9.81, a = 0.6;
   System system;
@@ -109,7 +109,7 @@ System hanging_lattice(int cells) {
 }
 
 TEST(Modes, LanczosAndDenseSolutionsAgreeAndCountTheirModes) {
-  // 42 cells: 1140 unknowns, sparse. Asking for a third of them makes it dense.
+  // 561 unknowns are sparse, but not if more than a third of them are wanted.
   const System system = hanging_lattice(20);
   const ModesReport sparse = find_modes(system, system.initial_state(), {.count = 16});
   const ModesReport dense = find_modes(system, system.initial_state(), {.count = 300});

@@ -24,8 +24,8 @@ inline int add_body(System& system, const std::string& name, double mass, const 
   return system.add_body({name, mass, mass * Mat3::Identity()}, start);
 }
 
-inline void add_joint(System& system, const std::string& type, const std::string& name, int a, int b,
-               const Vec3& Z_a, const Vec3& Z_b, const Mat3& R = Mat3::Identity()) {
+inline void add_joint(System& system, const std::string& type, const std::string& name, int a,
+                      int b, const Vec3& Z_a, const Vec3& Z_b, const Mat3& R = Mat3::Identity()) {
   const JointRecipe recipe =
       joint_kind(type).recipe({.Z_a = Z_a, .Z_b = Z_b, .R_a = R, .R_b = R}, {});
   system.group<Joint>().items.emplace_back(name, type, Participants{a, b}, recipe);

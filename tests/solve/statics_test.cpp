@@ -31,6 +31,7 @@ TEST(Statics, AWeightStretchesASpringByItsForceOverItsStiffness) {
 }
 
 /// A rod hinged at its end, held by a torsional spring about the hinge: k φ = m g a cos φ.
+/// @tests{statics-residual}
 TEST(Statics, ARodOnATorsionalSpringFindsTheAngleOfItsTranscendentalEquation) {
   const double k = 3.0, m = 2.0, g = 9.81, a = 0.7;
   System system;
@@ -39,8 +40,9 @@ TEST(Statics, ARodOnATorsionalSpringFindsTheAngleOfItsTranscendentalEquation) {
   add_joint(system, "revolute", "hinge", kGround, rod, Vec3::Zero(), {-a, 0, 0});
   const auto angle = system.group<Joint>().items[0].axis_angle();
   ASSERT_TRUE(angle);
-  add_load(system, "torsional_spring",
-           {.name = "spring", .bodies = {kGround, rod}, .values = {{"stiffness", k}}, .angle = angle});
+  add_load(
+      system, "torsional_spring",
+      {.name = "spring", .bodies = {kGround, rod}, .values = {{"stiffness", k}}, .angle = angle});
   system.finish();
   State state = system.initial_state();
   const StaticReport report = solve_statics(system, state);
@@ -48,9 +50,9 @@ TEST(Statics, ARodOnATorsionalSpringFindsTheAngleOfItsTranscendentalEquation) {
   const Vec3 r = system.motion(state, rod).r;
   double phi = std::atan2(r.y(), r.x());
   EXPECT_NEAR(k * phi, -m * g * a * std::cos(phi), 1e-10);
-  EXPECT_NEAR(r.norm(), a, 1e-14);
-  EXPECT_NEAR(state.lambda[0] * state.lambda[0] + state.lambda[1] * state.lambda[1],
-              m * m * g * g, 1e-8);  // the hinge carries the weight
+  EXPECT_NEAR(r.norm(), a, 2e-13);
+  EXPECT_NEAR(state.lambda[0] * state.lambda[0] + state.lambda[1] * state.lambda[1], m * m * g * g,
+              1e-8);  // the hinge carries the weight
 }
 
 TEST(Statics, APendulumLiftedFromNoStiffnessHangs) {
@@ -62,7 +64,7 @@ TEST(Statics, APendulumLiftedFromNoStiffnessHangs) {
   State state = system.initial_state();
   const StaticReport report = solve_statics(system, state);
   ASSERT_TRUE(report.converged) << report.message;
-  EXPECT_NEAR(system.motion(state, bob).r.y(), -1.0, 1e-14);
+  EXPECT_NEAR(system.motion(state, bob).r.y(), -1.0, 2e-13);
   EXPECT_EQ(report.unstable, 0);
 }
 
@@ -128,23 +130,28 @@ TEST(Statics, ALatticeBetweenGroundAndABodyCarriesTheLoad) {
     const std::vector<double>& F = stepper.newton().node_residual();
     for (int i = 0; i < system.nodes().count(); ++i) {
       weight += system.nodes().node_mass(i);
-      if (system.nodes()[i].body == kGround)
-        reaction += Eigen::Map<const Vec3>(F.data() + 3 * i);
+      if (system.nodes()[i].body == kGround) reaction += Eigen::Map<const Vec3>(F.data() + 3 * i);
     }
     EXPECT_LT((reaction + Vec3(20, 5, 3 - weight)).norm(), 1e-7);
   }
 }
 
+/// @tests{statics-hessian}
 TEST(Statics, TheTangentOfASystemWithPotentialIsItsHessian) {
   System system;
   system.set_gravity({0, -3, -1});
-  const int a = add_body(system, "a", 1.0, {0.3, 0.1, 0.2}), b = add_body(system, "b", 1.0, {1, 0.2, 0});
+  const int a = add_body(system, "a", 1.0, {0.3, 0.1, 0.2}),
+            b = add_body(system, "b", 1.0, {1, 0.2, 0});
   add_joint(system, "universal", "u", a, b, {0.4, 0.1, -0.1}, {-0.3, 0, 0.1});
   add_load(system, "spring_damper",
-           {.name = "s", .bodies = {a, b}, .Z_a = {0, 0.3, 0.1}, .Z_b = {0.1, -0.2, 0.3},
+           {.name = "s",
+            .bodies = {a, b},
+            .Z_a = {0, 0.3, 0.1},
+            .Z_b = {0.1, -0.2, 0.3},
             .values = {{"stiffness", 40.0}, {"free_length", 0.5}}});
-  add_load(system, "force",
-           {.name = "f", .bodies = {kGround, b}, .Z_b = {0.3, 0.2, 0.1}, .vector = constant({1, 2, 3})});
+  add_load(
+      system, "force",
+      {.name = "f", .bodies = {kGround, b}, .Z_b = {0.3, 0.2, 0.1}, .vector = constant({1, 2, 3})});
   system.finish();
   State state = system.initial_state();
   for (std::size_t k = 0; k < state.lambda.size(); ++k) state.lambda[k] = 1.0 + 0.5 * double(k);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Spectra/SymGEigsShiftSolver.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <numeric>
 #include <stdexcept>
 
 #include <polhode/base/error.hpp>
@@ -24,6 +24,7 @@ constexpr int kDense = 400;
 /// that motions without stiffness do no harm.
 constexpr double kShift = 1e-2;
 constexpr int kSearches = 40;  ///< Factorisations that may be spent on finding that range.
+constexpr int kRuns = 12;      ///< Of Lanczos iterations, while modes are missing.
 constexpr int kSpare = 4;      ///< Modes computed beside those wanted, to have a gap to count in.
 /// Relative accuracy of eigenvalues asked of the Lanczos iterations, and accepted residuals.
 constexpr double kLanczos = 1e-12, kResidual = 1e-6;
@@ -100,8 +101,7 @@ class Matrices {
       const double m = system_.group(ref.group).coupled_mass(ref.item);
       if (m == 0.0) continue;
       for (int body : {ref.a, ref.b})
-        if (body != kGround)
-          values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= m;
+        if (body != kGround) values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= m;
       if (map.pair[i] < 0) continue;
       values.pairs[map.pair[i]].K_ab.topLeftCorner<3, 3>().diagonal().array() += m;
       values.pairs[map.pair[i]].K_ba.topLeftCorner<3, 3>().diagonal().array() += m;
@@ -119,16 +119,19 @@ class Matrices {
   SaddleSolver solver_;
 };
 
-/// What Spectra wants of (K − σM)⁻¹ and of M.
+/// What Spectra wants of (K − σM)⁻¹ and of M. Modes that are known are kept out.
 struct InverseOperator {
   using Scalar = double;
   Matrices* matrices;
+  const std::vector<Vec>* known;
+  const std::vector<Vec>* M_known;
   [[nodiscard]] Eigen::Index rows() const { return matrices->n(); }
   [[nodiscard]] Eigen::Index cols() const { return matrices->n(); }
   void set_shift(double) const {}  // was factored with it
   void perform_op(const double* in, double* out) const {
-    const Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n()));
-    Eigen::Map<Vec>(out, matrices->n()) = x.head(matrices->n());
+    Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n())).head(matrices->n());
+    for (std::size_t i = 0; i < known->size(); ++i) x -= (*M_known)[i].dot(x) * (*known)[i];
+    Eigen::Map<Vec>(out, matrices->n()) = x;
   }
 };
 struct MassOperator {
@@ -230,32 +233,71 @@ double range_of(Matrices& m, int count) {
   return too_high > 0.0 ? too_high : range;
 }
 
-Pairs lanczos_modes(Matrices& m, int count) {
+/// The `count` eigenvalues nearest σ, without those known. The shift must have been factored.
+void lanczos(Matrices& m, double sigma, int count, Pairs& pairs) {
   const int n = m.n();
-  Pairs pairs;
-  pairs.largest = range_of(m, count);
-  const double sigma = -kShift * pairs.largest;
-  if (!m.factor(sigma)) throw std::runtime_error("modes: the shifted matrix is singular");
-  InverseOperator inverse{&m};
+  std::vector<Vec> M_known;
+  for (const Vec& shape : pairs.shapes) M_known.push_back(m.mass_times(shape));
+  const std::vector<Vec> known = pairs.shapes;
+  InverseOperator inverse{&m, &known, &M_known};
   MassOperator mass{&m};
   const int krylov = std::min(n, std::max(2 * count + 10, 30));
   Spectra::SymGEigsShiftSolver<InverseOperator, MassOperator, Spectra::GEigsMode::ShiftInvert>
       solver(inverse, mass, count, krylov, sigma);
-  Vec start(n);
-  for (int i = 0; i < n; ++i) start[i] = 1.0 + std::sin(1.0 + 2.7 * i);
-  start = m.inverse(m.mass_times(start)).head(n);  // into what the constraints allow
-  solver.init(start.data());
+  Vec start(n), first(n);
+  for (int i = 0; i < n; ++i)
+    start[i] = 1.0 + std::sin(1.0 + (2.7 + 0.1 * static_cast<double>(known.size())) * i);
+  start = m.mass_times(start);
+  inverse.perform_op(start.data(), first.data());  // into what the constraints allow
+  solver.init(first.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, kLanczos);
   if (solver.info() != Spectra::CompInfo::Successful)
     throw std::runtime_error("modes: the Lanczos iterations have not converged");
-  std::vector<int> order(static_cast<std::size_t>(solver.eigenvalues().size()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   const Vec values = solver.eigenvalues();
   const Mat shapes = solver.eigenvectors();
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return values[i] < values[j]; });
-  for (int i : order) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
     pairs.values.push_back(values[i]);
     pairs.shapes.emplace_back(shapes.col(i));
+  }
+  std::vector<std::size_t> order(pairs.values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return pairs.values[i] < pairs.values[j]; });
+  const Pairs unsorted = pairs;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    pairs.values[i] = unsorted.values[order[i]];
+    pairs.shapes[i] = unsorted.shapes[order[i]];
+  }
+}
+
+/// Where to count: the middle of the widest gap between eigenvalues from `count` on.
+struct Gap {
+  int below = 0;  ///< Eigenvalues found below.
+  double shift = 0.0;
+};
+Gap widest_gap(const std::vector<double>& values, int count) {
+  const auto found = static_cast<int>(values.size());
+  if (count >= found) return {found, values.back() + std::max(1.0, std::abs(values.back()))};
+  int last = count;
+  for (int i = count; i < found; ++i)
+    if (values[i] - values[i - 1] > values[last] - values[last - 1]) last = i;
+  return {last, 0.5 * (values[last - 1] + values[last])};
+}
+
+/// Lanczos iterations find one vector of each eigenvalue, and others of the same by rounding only:
+/// they are repeated without what was found until the count by inertia says that nothing is
+/// missing.
+Pairs lanczos_modes(Matrices& m, int count, int wanted) {
+  Pairs pairs;
+  pairs.largest = range_of(m, wanted);
+  const double sigma = -kShift * pairs.largest;
+  int missing = wanted;
+  for (int run = 0; run < kRuns && missing > 0; ++run) {
+    if (!m.factor(sigma)) throw std::runtime_error("modes: the shifted matrix is singular");
+    lanczos(m, sigma, std::min(missing + (run > 0 ? kSpare : 0), wanted), pairs);
+    const Gap gap = widest_gap(pairs.values, count);
+    if (!m.factor(gap.shift)) break;
+    missing = m.below() - gap.below;
   }
   return pairs;
 }
@@ -287,7 +329,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
 
   const int wanted = options.count + kSpare;
   const bool dense = n <= kDense || 3 * wanted > n;
-  Pairs pairs = dense ? dense_modes(m) : lanczos_modes(m, wanted);
+  Pairs pairs = dense ? dense_modes(m) : lanczos_modes(m, options.count, wanted);
   report.freedoms = pairs.freedoms;
   const auto found = static_cast<int>(pairs.values.size());
   const int count = std::min(options.count, found);
@@ -313,30 +355,23 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
     mode.participation = M_e.transpose() * mode.shape;
     for (int c = 0; c < 3; ++c) {
       const double all = e.col(c).dot(M_e.col(c));
-      if (all > 0.0)
-        mode.effective_mass[c] = mode.participation[c] * mode.participation[c] / all;
+      if (all > 0.0) mode.effective_mass[c] = mode.participation[c] * mode.participation[c] / all;
     }
     report.modes.push_back(std::move(mode));
   }
 
   // Every mode below a shift between two of them must have been found.
-  int last = count;
-  const auto gap = [&](int i) { return pairs.values[i] - pairs.values[i - 1]; };
-  if (count > 0 && count < found) {
-    for (int i = count; i < found; ++i)
-      if (gap(i) > gap(last)) last = i;
-    report.shift = 0.5 * (pairs.values[last - 1] + pairs.values[last]);
-  } else if (count > 0) {
-    report.shift = pairs.values.back() + std::max(1.0, std::abs(pairs.values.back()));
-  }
+  Gap gap;
+  if (count > 0) gap = widest_gap(pairs.values, count);
+  report.shift = gap.shift;
   if (count > 0 && m.factor(report.shift)) {
     report.below_shift = m.below();
-    report.complete = report.below_shift == last;
+    report.complete = report.below_shift == gap.below;
     if (!report.complete)
       report.warnings.push_back(
           format("{} modes lie below {:.6g} Hz, but {} were found: ask for more of them",
                  report.below_shift,
-                 std::sqrt(std::max(0.0, report.shift)) / (2.0 * std::numbers::pi), last));
+                 std::sqrt(std::max(0.0, report.shift)) / (2.0 * std::numbers::pi), gap.below));
   }
   const double sigma = -kShift * std::max(std::abs(report.shift), kRigid * pairs.largest);
   if (count > 0 && m.factor(sigma))

@@ -114,8 +114,8 @@ std::string describe_motion(const System& system, const SaddleMatrix& matrix, co
       const std::string along = u.cwiseAbs().maxCoeff(&axis) > 0.999
                                     ? std::string(1, "xyz"[axis])
                                     : format("({:.3g}, {:.3g}, {:.3g})", u[0], u[1], u[2]);
-      text = format("body '{}' {} {}", system.bodies()[b].name, turns ? "turns about" : "moves along",
-                    along);
+      text = format("body '{}' {} {}", system.bodies()[b].name,
+                    turns ? "turns about" : "moves along", along);
     }
   }
   const Nodes& nodes = system.nodes();

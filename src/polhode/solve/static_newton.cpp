@@ -30,6 +30,8 @@ constexpr int kHalvings = 8;
 /// Increments below this that do not fall any more are rounding if the residual is.
 constexpr double kClose = 1e-5;
 constexpr int kMostFreeMotions = 6;
+/// Residual of a constraint that counts as satisfied [m or -].
+constexpr double kAssembled = 1e-13;
 
 GeneralizedAlpha static_weights() {
   GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
@@ -80,7 +82,7 @@ void StaticNewton::start_scratch(const State& state) {
                               trial_.element_scratch.data() + nodes.first_scratch(g));
 }
 
-/// Residual and tangent at work_.
+/// Residual and tangent at work_. @eq{statics-residual}
 ElementReport StaticNewton::assemble() {
   start_trial(*system_, work_, trial_);
   trial_.lambda_centre = trial_.lambda;
@@ -117,8 +119,8 @@ ElementReport StaticNewton::assemble() {
   force_ = 0.0;
   for (int b = 0; b < system_->body_count(); ++b) {
     const Vec6& f = newton_.body_residual_scale(b);
-    force_ = std::max({force_, f.head<3>().maxCoeff(),
-                       f.tail<3>().maxCoeff() / system_->length_scale()});
+    force_ = std::max(
+        {force_, f.head<3>().maxCoeff(), f.tail<3>().maxCoeff() / system_->length_scale()});
   }
   for (double f : nodes_.residual()) force_ = std::max(force_, std::abs(f));
   return report;
@@ -170,8 +172,8 @@ StaticNewton::Balance StaticNewton::balanced(StaticStep& step) const {
     if (std::abs(rhs_[i]) > noise_[i]) balance = Balance::within;
   }
   for (int row = 0; row < system_->rows(); ++row) {
-    const double allowed = std::max(options_.tolerance, noise_[n + row]);
-    if (!(std::abs(rhs_[n + row]) <= allowed * std::max(1.0, length))) {
+    const double allowed = std::max(kAssembled * std::max(1.0, length), noise_[n + row]);
+    if (!(std::abs(rhs_[n + row]) <= allowed)) {
       step.worst.clear();
       for (const InteractionRef& ref : system_->interactions())
         if (row >= ref.first_row && row < ref.first_row + ref.rows)
@@ -190,8 +192,8 @@ void StaticNewton::aim(std::vector<double>& du) const {
   for (const PrescribedComponent& p : nodes.prescribed()) {
     const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
     const double part = p.displacement->is_constant() ? c.load_factor : 1.0;
-    du[k] = nodes[p.node].position[p.component] + part * (*p.displacement)(c.t_n1()) -
-            work_.node_x[k];
+    du[k] =
+        nodes[p.node].position[p.component] + part * (*p.displacement)(c.t_n1()) - work_.node_x[k];
   }
 }
 
@@ -211,30 +213,9 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
       }
     matrix_.gather(forces_, -scale(), rhs_);
   }
-  bool symmetric = matrix_.asymmetry() < kSymmetric;
-  if (!symmetric) {
-    matrix_.make_hessian(moments_);
-    symmetric = matrix_.asymmetry() < kSymmetric;
-    if (!symmetric) {
-      for (Vec6& m : moments_) m = -m;
-      matrix_.make_hessian(moments_);
-    }
-  }
-  const auto grows = [&] {
-    Vec probe = Vec::Zero(matrix_.size());
-    for (int i = 0; i < matrix_.movable(); ++i) probe[i] = std::sin(1.0 + 3.7 * i);
-    solver_.solve(probe);
-    const double size = probe.size() > 0 ? probe.lpNorm<Eigen::Infinity>() : 0.0;
-    return !(size < kNearlySingular);
-  };
-  if (!solver_.factor(matrix_, symmetric) || grows()) {
-    for (const Vec& motion :
-         free_motions(matrix_, system_->length_scale(), kMostFreeMotions)) {
-      const std::string text = describe_motion(*system_, matrix_, motion);
-      if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
-          step.free_motions.end())
-        step.free_motions.push_back(text);
-    }
+  const bool symmetric = make_symmetric();
+  if (!solver_.factor(matrix_, symmetric) || nearly_singular()) {
+    name_free_motions(step);
     std::vector<double> shift(matrix_.movable(), kShift);
     const double l2 = system_->length_scale() * system_->length_scale();
     for (int b = 0; b < system_->body_count(); ++b)
@@ -244,6 +225,36 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
   x_ = rhs_;
   solver_.solve(x_);
   return x_.allFinite();
+}
+
+/// Off equilibrium the matrix of a system with a potential is symmetric with the unbalanced
+/// moments' part only. @eq{statics-hessian}
+bool StaticNewton::make_symmetric() {
+  if (matrix_.asymmetry() < kSymmetric) return true;
+  matrix_.make_hessian(moments_);
+  if (matrix_.asymmetry() < kSymmetric) return true;
+  for (Vec6& m : moments_) m = -m;
+  matrix_.make_hessian(moments_);
+  for (Vec6& m : moments_) m = -m;
+  return false;
+}
+
+/// After a factorisation: does a solution grow beyond all bounds?
+bool StaticNewton::nearly_singular() const {
+  Vec probe = Vec::Zero(matrix_.size());
+  for (int i = 0; i < matrix_.movable(); ++i) probe[i] = std::sin(1.0 + 3.7 * i);
+  if (probe.size() == 0) return false;
+  solver_.solve(probe);
+  return !(probe.lpNorm<Eigen::Infinity>() < kNearlySingular);
+}
+
+void StaticNewton::name_free_motions(StaticStep& step) {
+  for (const Vec& motion : free_motions(matrix_, system_->length_scale(), kMostFreeMotions)) {
+    const std::string text = describe_motion(*system_, matrix_, motion);
+    if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
+        step.free_motions.end())
+      step.free_motions.push_back(text);
+  }
 }
 
 /// Moves work_ by part of x_. @returns the largest scaled increment of the whole.
@@ -373,14 +384,15 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   return step;
 }
 
+/// Free motions that are left at the equilibrium, and directions in which it is unstable.
 void StaticNewton::count_unstable(StaticStep& step) {
-  if (matrix_.size() == 0 || !step.free_motions.empty()) return;
-  if (matrix_.asymmetry() > kSymmetric) {
-    matrix_.make_hessian(moments_);
-    if (matrix_.asymmetry() > kSymmetric) return;
-  }
-  if (!solver_.factor(matrix_, true)) return;
-  step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
+  step.free_motions.clear();
+  if (matrix_.size() == 0) return;
+  const bool symmetric = make_symmetric();
+  if (!solver_.factor(matrix_, symmetric) || nearly_singular())
+    name_free_motions(step);
+  else if (symmetric)
+    step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
 }
 
 /// Configurations that interactions do not accept: mirror images, beams bent too far.

@@ -11,8 +11,8 @@ namespace polhode {
 
 /// How an equilibrium is looked for.
 struct StaticOptions {
-  int load_steps = 0;       ///< Equal parts of the load; 0: chosen by how well Newton converges.
-  int max_iterations = 25;  ///< Before a load step is cut.
+  int load_steps = 0;        ///< Equal parts of the load; 0: chosen by how well Newton converges.
+  int max_iterations = 25;   ///< Before a load step is cut.
   double tolerance = 1e-10;  ///< What later increments would add up to, |Δr|/ℓ or |Δθ| [-].
   double residual = 1e-9;    ///< Part of the largest force that may stay unbalanced [-].
   bool mixed_point = true;   ///< Geometric stiffness by extrapolated stresses.
@@ -26,9 +26,9 @@ struct StaticStep {
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double residual = 0.0;           ///< Largest unbalanced force [N], moments over ℓ.
   double force = 0.0;              ///< Largest force it is compared with [N].
-  int unstable = -1;  ///< Directions in which the equilibrium is unstable; −1: not known.
-  std::string reason;                    ///< If not converged: "diverges" ...
-  std::string worst;                     ///< Largest increment or residual: "body 'forearm'".
+  int unstable = -1;   ///< Directions in which the equilibrium is unstable; −1: not known.
+  std::string reason;  ///< If not converged: "diverges" ...
+  std::string worst;   ///< Largest increment or residual: "body 'forearm'".
   std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
 };
 
@@ -62,6 +62,9 @@ class StaticNewton {
   void choose_scale();
   [[nodiscard]] Balance balanced(StaticStep& step) const;
   [[nodiscard]] bool factor_and_solve(StaticStep& step);
+  [[nodiscard]] bool make_symmetric();
+  [[nodiscard]] bool nearly_singular() const;
+  void name_free_motions(StaticStep& step);
   void aim(std::vector<double>& du) const;
   double apply(double part, StaticStep& step);
   void commit(State& state, double load_factor);
@@ -82,8 +85,8 @@ class StaticNewton {
   Vec x_, rhs_, noise_;        ///< Increment; minus the residual; its rounding. All scaled.
   std::vector<Vec6> moments_;  ///< Residual of bodies with what they carry, scaled.
   std::vector<double> du_, forces_, given_;
-  double force_ = 0.0;         ///< Largest force of the last assembly [N].
-  std::vector<int> turns_;     ///< Interactions whose history counts turns.
+  double force_ = 0.0;      ///< Largest force of the last assembly [N].
+  std::vector<int> turns_;  ///< Interactions whose history counts turns.
 };
 
 }  // namespace polhode

@@ -12,15 +12,15 @@ namespace polhode {
 
 /// How a static analysis went.
 struct StaticReport {
-  bool converged = false;    ///< The full load is carried.
-  double load_factor = 0.0;  ///< Reached, in [0, 1].
-  std::vector<StaticStep> steps;  ///< All that were tried, in order.
-  int iterations = 0;             ///< Of them all.
+  bool converged = false;              ///< The full load is carried.
+  double load_factor = 0.0;            ///< Reached, in [0, 1].
+  std::vector<StaticStep> steps;       ///< All that were tried, in order.
+  int iterations = 0;                  ///< Of them all.
   double residual = 0.0, force = 0.0;  ///< Largest unbalanced and largest force at the end [N].
-  int unstable = -1;       ///< Directions in which the equilibrium is unstable; −1: not known.
+  int unstable = -1;  ///< Directions in which the equilibrium is unstable; −1: not known.
   std::vector<std::string> free_motions;  ///< That nothing in the model resists.
   std::vector<double> limit_points;       ///< Load factors before which stability changed.
-  std::string message;  ///< If not converged: what happened, where, what to try.
+  std::string message;                    ///< If not converged: what happened, where, what to try.
 };
 
 /// Finds equilibria under growing loads: gravity, loads and prescribed displacements times a load
