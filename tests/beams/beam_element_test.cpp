@@ -79,6 +79,7 @@ TEST(BeamElement, DoesNotGiveBackExactlyInPlainForm) {
       1e-3);
 }
 
+// @tests{beam-strain-rate}
 TEST(BeamElement, DissipatesWhatItsViscosityTakes) {
   for (unsigned seed = 1; seed <= 8; ++seed)
     for (const double rho_inf : {1.0, 0.5}) {
@@ -97,6 +98,7 @@ TEST(BeamElement, DissipatesWhatItsViscosityTakes) {
     }
 }
 
+// @tests{beam-wrench}
 TEST(BeamElement, KeepsLinearAndAngularMomentumOfItsPair) {
   for (const bool conserving : {true, false})
     for (const double rho_inf : {1.0, 0.25}) {
@@ -184,6 +186,7 @@ TEST(BeamElement, TakesItsLengthFromTheArcBetweenItsEnds) {
 
 // Small end loads on a clamped straight element: with the residual bending flexibility the tip
 // moves as that of the Timoshenko cantilever, whatever its length.
+// @tests{beam-residual-flexibility}
 TEST(BeamElement, BendsAsTheExactCantileverUnderEndLoads) {
   const double EI_y = 3.0, EI_z = 5.0, GA = 40.0, L = 2.5;
   BeamElementSpec spec;

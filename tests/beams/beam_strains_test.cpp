@@ -41,7 +41,7 @@ TEST(BeamEta, HasItsDerivatives) {
   }
 }
 
-// A helix: what constant strains draw. D' = D hat(K), p' = D Γ.
+// A helix: what constant strains draw. D' = D hat(K), p' = D Γ. @tests{beam-strains}
 TEST(BeamStrains, AreThoseOfAnElementWithConstantStrains) {
   Random random(3);
   for (int sample = 0; sample < 8; ++sample) {
@@ -59,6 +59,7 @@ TEST(BeamStrains, AreThoseOfAnElementWithConstantStrains) {
   }
 }
 
+// @tests{beam-invariants}
 TEST(BeamStrains, SeeNoMotionOfTheWhole) {
   Random random(4);
   for (int sample = 0; sample < 8; ++sample) {

@@ -129,6 +129,7 @@ Vec9 relative_motion(const Vec6& of_1, const Vec6& of_2, const Vec3& z_1, const 
 
 }  // namespace
 
+/// @eq{beam-residual-flexibility}
 Mat6 with_residual_flexibility(const Mat6& C, double L) {
   Mat6 S = C.inverse();
   const Eigen::Matrix2d bending = S.bottomRightCorner<2, 2>() * (L * L / 12.0);
@@ -206,7 +207,7 @@ Vec6 BeamElement::strain_rate_now(const PairStep& step) const {
           relative_motion(of_1, of_2, ends.z_1.at_n1, ends.z_2.at_n1));
 }
 
-/// Newmark in the strains: second order for every ρ∞, and Δe/Δt at ρ∞ = 1.
+/// Newmark in the strains: second order for every ρ∞, and Δe/Δt at ρ∞ = 1. @eq{beam-strain-rate}
 Vec6 BeamElement::strain_rate(const PairStep& step, const Vec6& De) const {
   const StepContext& c = step.context;
   if (c.dt == 0.0) return strain_rate_now(step);
@@ -289,6 +290,7 @@ double BeamElement::stiffening(const StepContext& c) const {
   return c.ga.alpha_f * (1.0 + rate);
 }
 
+/// @eq{beam-wrench}
 void BeamElement::evaluate(const PairStep& step, PairTerms& t) const {
   const StepContext& c = step.context;
   const double af = c.ga.alpha_f;

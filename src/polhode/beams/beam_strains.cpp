@@ -139,6 +139,7 @@ Vec6 beam_strain_values(const Vec15& iota, double L) {
   return e / L;
 }
 
+/// @eq{beam-strains}
 BeamStrains beam_strains(const Vec15& iota, double L) {
   const Logarithm log(iota);
   const Vec3& phi = log.phi;

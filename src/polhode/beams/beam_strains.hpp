@@ -18,7 +18,7 @@ struct BeamFrames {
 
 /// The scalar products ι = (a, b, R) that strains are functions of: a = D_1ᵀΔp, b = D_2ᵀΔp and
 /// R = D_1ᵀD_2, column by column. They are quadratic in positions and frames, and no rotation of
-/// the whole changes them.
+/// the whole changes them. @eq{beam-invariants}
 [[nodiscard]] Vec15 beam_invariants(const BeamFrames& frames);
 
 /// Strains e = (Γ, K) of an element whose strains are constant along its length L:
