@@ -5,8 +5,10 @@
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/beams/beam_element.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/beam_mesh.hpp>
 #include <polhode/model/build_system.hpp>
 
 namespace polhode {
@@ -23,6 +25,8 @@ class Builder {
     for (const BodySpec& body : model_.bodies) add_body(body, reach);
     for (const JointSpec& joint : model_.joints) add_joint(joint);
     for (const LoadSpec& load : model_.loads) add_load(load);
+    for (const BeamSpec& beam : model_.beams) add_beam(beam);
+    for (const CableLineSpec& cable : model_.cables) add_cable(cable);
     system_.finish();
     if (map) fill(*map);
     return std::move(system_);
@@ -165,6 +169,54 @@ class Builder {
     kind.add(system_, d);
   }
 
+  void add_beam(const BeamSpec& beam) {
+    auto& items = system_.group<BeamElement>().items;
+    for (int k = 0; k < static_cast<int>(beam.mesh.size()); ++k) {
+      const BeamSpec::Element& element = beam.mesh[static_cast<std::size_t>(k)];
+      const int a = beam.first_node + k, b = a + 1;
+      const Quat q_a = spec(a)->orientation.conjugate(), q_b = spec(b)->orientation.conjugate();
+      BeamElementSpec e;
+      e.name = format("{}.{}", beam.name, k);
+      e.bodies = {system_body(a), system_body(b)};
+      e.end_1.Q = (q_a * element.frame_1).toRotationMatrix();
+      e.end_2.Q = (q_b * element.frame_2).toRotationMatrix();
+      e.stiffness = beam.section.section.stiffness;
+      e.residual_bending_flexibility = beam.residual_bending_flexibility;
+      e.relaxation_time = beam.section.relaxation_time;
+      set_reference(e, instant(a), instant(b));
+      e.coupled_mass =
+          coupled_part(e.length * beam.section.section.mass_per_length, beam.consistent_mass);
+      items.emplace_back(e);
+    }
+  }
+
+  void add_cable(const CableLineSpec& cable) {
+    const std::string where = format("cables.{}", cable.name);
+    auto& items = system_.group<Cable>().items;
+    const auto pieces = static_cast<double>(cable.pieces.size());
+    for (const CableLineSpec::Piece& piece : cable.pieces) {
+      check_movable(where, piece.a.body, piece.b.body);
+      for (const AttachmentSpec& at : {piece.a, piece.b})
+        if (is_point_mass(at.body) && !at.Z.isZero(0.0)) refuse_turning(where, at.body);
+      items.emplace_back(CableSpec{.name = cable.name,
+                                   .bodies = {system_body(piece.a.body), system_body(piece.b.body)},
+                                   .Z_a = point(piece.a.body, piece.a.Z),
+                                   .Z_b = point(piece.b.body, piece.b.Z),
+                                   .stiffness = cable.stiffness,
+                                   .free_length = piece.free_length,
+                                   .damping = cable.damping * pieces,
+                                   .tension_only = cable.tension_only,
+                                   .strain = cable.strain,
+                                   .coupled_mass = coupled_part(piece.mass, 0.5)});
+    }
+  }
+
+  [[nodiscard]] BodyStep instant(int body) const {
+    const BodySpec& b = *spec(body);
+    return BodyStep::at_instant(b.position, b.orientation.normalized().toRotationMatrix(),
+                                Vec3::Zero(), Vec3::Zero());
+  }
+
   /// Items keep the user's order within their group; loads are found by kind and count.
   void fill(SystemMap& map) {
     std::map<std::string, std::vector<int>> interactions;
@@ -174,6 +226,21 @@ class Builder {
     std::map<std::string, std::size_t> next;
     for (const LoadSpec& load : model_.loads)
       map_.load.push_back(interactions.at(load.type).at(next[load.type]++));
+    const auto take = [&](const std::string& kind, auto& things, auto&& size,
+                          std::vector<std::vector<int>>& of) {
+      std::size_t first = 0;
+      for (const auto& thing : things) {
+        const auto at = interactions[kind].begin() + static_cast<std::ptrdiff_t>(first);
+        of.emplace_back(at, at + static_cast<std::ptrdiff_t>(size(thing)));
+        first += size(thing);
+      }
+    };
+    take(
+        BeamElement::kKind, model_.beams, [](const BeamSpec& b) { return b.mesh.size(); },
+        map_.beam);
+    take(
+        Cable::kKind, model_.cables, [](const CableLineSpec& c) { return c.pieces.size(); },
+        map_.cable);
     map = map_;
   }
 

@@ -14,6 +14,8 @@ struct SystemMap {
   std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
   std::vector<int> load;   ///< By Model::loads: likewise.
+  std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
+  std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
 };
 
 /// Compiles a model: numbers its bodies, joints and loads and chooses the tree.

@@ -11,6 +11,7 @@
 
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
+#include <polhode/model/beam_spec.hpp>
 #include <polhode/model/material_spec.hpp>
 #include <polhode/model/place.hpp>
 #include <polhode/model/solid_spec.hpp>
@@ -134,6 +135,8 @@ struct Model {
   std::vector<LoadSpec> loads;
   std::vector<MaterialSpec> materials;
   std::vector<SolidSpec> solids;
+  std::vector<BeamSpec> beams;        ///< Meshed: their nodes are among the bodies.
+  std::vector<CableLineSpec> cables;  ///< Divided into pieces.
   AnalysisSpec analysis;
   OutputSpec output;
 

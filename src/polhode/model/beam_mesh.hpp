@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// Meshes a beam: adds its nodes to the bodies (`mast.0`, `mast.1`, ...), with half of the mass of
+/// each element beside them and its rotary inertia, and for every bond a fixed joint (`mast.start`,
+/// `mast.end`), and the beam to Model::beams. @returns its index there.
+/// @throws InputError if points coincide, elements are too few or bent too much, or a section has
+///         no mass.
+int add_beam(Model& model, BeamSpec beam);
+
+/// Divides a cable into its pieces, and adds it to Model::cables. A cable with mass gets nodes,
+/// point masses `stay.0`, `stay.1`, ..., those at the points hung up by spherical joints
+/// (`stay.0`, ...). @returns its index there.
+/// @throws InputError if points coincide or values are out of range.
+int add_cable(Model& model, CableLineSpec cable);
+
+/// Part of m_ab of the translational mass of an element that is coupled: 1/6 of the mass if it is
+/// consistent, nothing if lumped. @param part  Consistent part [-].
+[[nodiscard]] inline double coupled_part(double mass, double part) { return part * mass / 6.0; }
+
+}  // namespace polhode

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/base/types.hpp>
+#include <polhode/beams/cable.hpp>
+#include <polhode/beams/section.hpp>
+#include <polhode/model/place.hpp>
+
+namespace polhode {
+
+/// A cross-section as described, its material counted in.
+struct SectionSpec {
+  std::string name;
+  Place place;
+  BeamSection section;
+  double relaxation_time = 0.0;      ///< Kelvin-Voigt viscosity [s].
+  double height = 0.0, width = 0.0;  ///< Extent along y and z, for pictures [m]; 0: not known.
+};
+
+/// An end of a beam that is fixed in a body.
+struct BeamBondSpec {
+  int body = kGround;  ///< Index into Model::bodies, or kGround.
+  bool at_end = false;
+};
+
+/// One beam as described. add_beam() turns it into nodes, which are bodies, and elements.
+struct BeamSpec {
+  std::string name;
+  Place place;
+  /// Polyline, free of stress, world at the start [m]; corners are rigid. Or, if arc, a circle's
+  /// start, a point on it and its end.
+  std::vector<Vec3> points;
+  bool arc = false;
+  int elements = 1;  ///< Altogether, shared out to the pieces by length.
+  SectionSpec section;
+  std::optional<Vec3> up;  ///< Where the section's y points, about, world at the start.
+  bool residual_bending_flexibility = true;  ///< See BeamElementSpec.
+  double consistent_mass = 0.5;  ///< Part of the mass that is consistent, the rest lumped [-].
+  Vec3 velocity = Vec3::Zero();  ///< Of the first point at the start, world [m/s].
+  Vec3 angular_velocity = Vec3::Zero();  ///< Of the whole, as a rigid body [rad/s].
+  std::vector<BeamBondSpec> bonds;
+
+  /// A straight or circular element between nodes k and k + 1.
+  struct Element {
+    double length = 0.0;                                          ///< [m]
+    Quat frame_1 = Quat::Identity(), frame_2 = Quat::Identity();  ///< World at the start.
+  };
+  int first_node = -1;        ///< Index into Model::bodies; the others follow.
+  std::vector<Element> mesh;  ///< Filled in by add_beam().
+
+  [[nodiscard]] int node_count() const { return static_cast<int>(mesh.size()) + 1; }
+};
+
+/// Where a cable passes or ends.
+struct AttachmentSpec {
+  int body = kGround;     ///< Index into Model::bodies, or kGround.
+  Vec3 Z = Vec3::Zero();  ///< From the centre of mass, body axes; ground: world [m].
+};
+
+/// One cable, rope, rod or truss member as described: straight pieces from point to point. Each
+/// piece has its own elongation; nothing slides through the points between.
+struct CableLineSpec {
+  std::string name;
+  Place place;
+  std::vector<AttachmentSpec> through;
+  double stiffness = 0.0;             ///< EA [N].
+  std::optional<double> free_length;  ///< Of the whole [m]; left out: the length at the start.
+  double damping = 0.0;               ///< Of the whole, force per rate of elongation [N s/m].
+  bool tension_only = true;
+  BarStrain strain = BarStrain::engineering;
+  double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then pieces go from point to point.
+  int elements = 1;              ///< With mass: pieces from one point to the next.
+
+  /// Filled in by add_cable(): the pieces.
+  struct Piece {
+    AttachmentSpec a, b;
+    double free_length = 0.0;  ///< [m]
+    double mass = 0.0;         ///< [kg]
+  };
+  std::vector<Piece> pieces;
+};
+
+}  // namespace polhode
