@@ -43,7 +43,7 @@ void write_file_atomically(const std::string& path, std::string_view bytes, bool
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) throw FileError::from_errno(temporary, "cannot be written");
   const auto fail = [&](const char* what) {
-    const FileError error = FileError::from_errno(temporary, what);
+    FileError error = FileError::from_errno(temporary, what);
     ::close(file);
     ::unlink(temporary.c_str());
     return error;

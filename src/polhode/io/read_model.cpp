@@ -76,8 +76,6 @@ void read_variables(ReadContext& context, const SourceNode& node) {
 
 namespace {
 
-constexpr int kFormat = 1;
-
 /// A map from names to things; an empty value stands for no things.
 const SourceNode* named_things(ReadContext& context, const Section& section,
                                const std::string& name) {
