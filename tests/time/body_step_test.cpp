@@ -62,30 +62,6 @@ TEST_P(BodyStepAt, TurnsACarriedVectorByThetaTimesItsMean) {
   EXPECT_LT((z.at_n1 - z.at_n - step_.theta.cross(0.5 * (z.at_n + z.at_n1))).norm(), 1e-15);
 }
 
-// @tests{ga-moment-arm} @tests{ga-wrench-r-tangent} @tests{ga-moment-tangent}
-TEST_P(BodyStepAt, GivesAForceAtAPointTheWrenchTangentOfTheTheory) {
-  // Any force that depends on where its point is will do: f = f_0 + B·x_{n+αf}.
-  const Vec3 f_0(1.0, -2.0, 0.5);
-  Mat3 B;
-  B << -3.0, 0.4, 0.1, 0.2, -2.0, 0.6, -0.5, 0.3, -1.0;
-  const auto force = [&](const BodyStep& s) -> Vec3 { return f_0 + B * s.point(kZ).at_alpha; };
-  const auto wrench = [&](const Vec& d) -> Vec {
-    const BodyStep s = sample_.displaced(d);
-    Vec6 w;
-    w << force(s), s.vector(kZ).at_alpha.cross(force(s));
-    return w;
-  };
-  const Vec3 f = force(step_);
-  const Vec3 z_alpha = step_.vector(kZ).at_alpha;
-  const Vec3 z_n1 = step_.vector(kZ).at_n1;
-  const Mat3 D_f_r = af_ * B;
-  const Mat3 D_f_theta = -af_ * B * hat(z_n1);
-  Mat6 D;
-  D << D_f_r, D_f_theta,  //
-      hat(z_alpha) * D_f_r, hat(z_alpha) * D_f_theta + af_ * hat_hat(f, z_n1);
-  test::expect_derivative(D, wrench, "wrench");
-}
-
 TEST_P(BodyStepAt, HasTheTangentOfItsAngularVelocity) {
   test::expect_derivative(
       tangent(Mat3::Zero(), step_.omega_alpha_tangent()),

@@ -76,38 +76,6 @@ TEST_P(MomentumStep, InterpolatesRatesThatObeyNewmarksRule) {
   EXPECT_LT((at.h_dot - (1.0 - ga_.alpha_m) * n.h_dot - ga_.alpha_m * h_dot_n1).norm(), 1e-12);
 }
 
-// @tests{ga-K-momentum-chain} @tests{ga-h-tangent} @tests{ga-K-momentum} @tests{ga-K-kinematic}
-TEST_P(MomentumStep, HasTheKOfTheTheory) {
-  const double beta = ga_.beta;
-  const double gamma = ga_.gamma;
-  Mat3 K;
-  if (form_ == MomentumRate::momentum) {
-    const Mat3 D_h = gamma / (beta * dt_) * J_ * T_ - hat(h_);
-    test::expect_derivative(
-        D_h,
-        [&](const Vec& d) -> Vec {
-          Vec whole = Vec::Zero(6);
-          whole.tail(3) = d;
-          const BodyStep s = sample_.displaced(whole);
-          return s.Lambda_n1 * (kJ_r * s.W_n1);
-        },
-        "D_h");
-    EXPECT_LT((rates(step_).K_theta - ga_.alpha_m / (gamma * dt_) * D_h).norm(), 1e-10);
-    K = 1.0 / dt_ * (1.0 / (beta * dt_) * J_ * T_ - 1.0 / gamma * hat(h_));
-  } else if (form_ == MomentumRate::kinematic) {
-    const Vec3 A = newmark_rotation(step_.Lambda_n.transpose() * step_.theta,
-                                    {sample_.at_n.W, sample_.at_n.A}, ga_, dt_)
-                       .A;
-    const Vec3 h_dot = angular_momentum_rate(J_, omega_, step_.Lambda_n1 * A);
-    K = 1.0 / (beta * dt_) *
-            ((gamma * hat(omega_) + 1.0 / dt_ * Mat3::Identity()) * J_ - gamma * hat(h_)) * T_ -
-        hat(h_dot);
-  } else {
-    return;  // its tangent is checked by differences above
-  }
-  EXPECT_LT((rates(step_).K_theta - ga_.alpha_m * K).norm() / K.norm(), 1e-13);
-}
-
 // @tests{ga-h-dot}
 TEST_P(MomentumStep, HasAKinematicRateAtTheEndInEitherFrame) {
   if (form_ == MomentumRate::momentum) return;

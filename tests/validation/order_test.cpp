@@ -92,6 +92,67 @@ INSTANTIATE_TEST_SUITE_P(SpectralRadius, SecondOrder, testing::Values(0.0, 0.5, 
                            return "0p" + std::to_string(static_cast<int>(10 * p.param));
                          });
 
+/// The same in steps of changing length: H, H/2, H/4, H/2, H, ...
+Simulation run_in_changing_steps(Model model, double t_end, int n) {
+  const double mean[] = {1.0, 0.5, 0.25, 0.5};
+  model.analysis.step = t_end / n;
+  model.analysis.duration = t_end;
+  Simulation simulation(std::move(model));
+  for (int i = 0; simulation.time() < t_end * (1.0 - 1e-9); ++i) {
+    const double limit = simulation.time() + mean[i % 4] * t_end / n;
+    if (!simulation.step(std::min(t_end, limit)).accepted) throw std::runtime_error("refused");
+  }
+  return simulation;
+}
+
+class SecondOrderInChangingSteps : public testing::TestWithParam<double> {};
+
+double largest_error(const Simulation& s, const Simulation& exact) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < s.model().bodies.size(); ++i) {
+    const auto b = static_cast<int>(i);
+    most = std::max({most, (s.body(b).r - exact.body(b).r).norm(),
+                     angle_between(s.body(b).q, exact.body(b).q),
+                     (s.body(b).v - exact.body(b).v).norm()});
+  }
+  return most;
+}
+
+// @tests{stored-rates}
+TEST_P(SecondOrderInChangingSteps, OnABodyThatTumblesOnASpring) {
+  const double t_end = 2.0;
+  ModelBuilder m;
+  const int top = m.body("top", Vec3::Zero(), 1.0, {1.0, 2.0, 3.0});
+  m.at(top).angular_velocity = {1.0, -2.0, 0.7};
+  m.spring("spring", kGround, {0.3, 0.2, 1.0}, top, {0.3, 0.1, 0.2},
+           {{"stiffness", 30.0}, {"free_length", 0.2}});
+  const Simulation exact = run_to(m.model, t_end, 400, 6);
+  m.model.analysis.rho_inf = GetParam();
+  const auto error = [&](int n) {
+    return largest_error(run_in_changing_steps(m.model, t_end, n), exact);
+  };
+  expect_order(error, {72, 144, 288}, 2.0, 0.1, "positions and velocities");
+}
+
+// @tests{stored-rates-mean}
+TEST_P(SecondOrderInChangingSteps, OnAChainOfRevoluteJoints) {
+  const double t_end = 0.5;
+  Model model = chain("revolute", 3, true);
+  const Simulation exact = run_to(model, t_end, 400, 6);
+  model.analysis.rho_inf = GetParam();
+  const auto error = [&](int n) {
+    return largest_error(run_in_changing_steps(model, t_end, n), exact);
+  };
+  // The error of the joints' accelerations dies out as the steps get shorter, so the order is
+  // reached from above.
+  EXPECT_GE(std::log2(error(72) / error(288)), 2.0 * 1.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(SpectralRadius, SecondOrderInChangingSteps,
+                         testing::Values(0.0, 0.3, 0.5, 0.8, 1.0), [](const auto& p) {
+                           return "0p" + std::to_string(static_cast<int>(10 * p.param));
+                         });
+
 // Higher orders: where the error of the compositions is the leading term and still above the
 // round-off of the reference.
 struct Composed {

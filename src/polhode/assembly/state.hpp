@@ -35,17 +35,27 @@ struct Ledger {
   std::int64_t steps = 0, rejected = 0, iterations = 0;
 };
 
+/// For ρ∞ < 1, where the stored accelerations depend on the length of the step: what they were
+/// after the last step, and how fast they change. World components but for A.
+struct alignas(64) RatesBlock {
+  Lane3 a, A, h_dot;                 ///< As in BodyBlock, at t_n + δΔt of the last step.
+  Lane3 a_rate, A_rate, h_dot_rate;  ///< Their change over the last step, by its length.
+};
+
 /// Everything that changes during a run. A value: copy it, save it, compare it bit for bit.
 struct State {
   double t = 0.0;                 ///< [s]
   std::vector<BodyBlock> blocks;  ///< By slot, see LaneOrder.
+  std::vector<RatesBlock> rates;  ///< Likewise, for ρ∞ < 1; else empty.
+  double rates_dt = 0.0;          ///< Step for which the accelerations in `rates` hold [s].
   std::vector<double> lambda;     ///< Multipliers by row, acting at t_{n+αf} of the last step.
   std::vector<double> history;    ///< Of interactions: turns of an angle, ...
   // Nodes of deformable solids, three numbers each, world.
-  std::vector<double> node_x;     ///< [m]
-  std::vector<double> node_v;     ///< Newmark velocities [m/s].
-  std::vector<double> node_a;     ///< Newmark accelerations of t_n + δΔt [m/s²]; for ρ∞ < 1.
-  std::vector<double> node_past;  ///< Mean velocities of the last steps, ring [m/s].
+  std::vector<double> node_x;      ///< [m]
+  std::vector<double> node_v;      ///< Newmark velocities [m/s].
+  std::vector<double> node_a;      ///< Newmark accelerations of t_n + δΔt [m/s²]; for ρ∞ < 1.
+  std::vector<double> node_past;   ///< Mean velocities of the last steps, ring [m/s].
+  std::vector<double> node_rates;  ///< Of node_a like `rates`: numbers kept, then their changes.
   std::vector<double> element_history;  ///< Of groups of elements: enhanced strains, ...
   int past_count = 0;                   ///< Valid entries of the predictor's rings.
   int past_next = 0;                    ///< Ring position to be written next.

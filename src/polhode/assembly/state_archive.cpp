@@ -28,6 +28,13 @@ class Writer {
     (*this)(static_cast<std::int64_t>(values.size()));
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   }
+  /// A list that is there with `count` entries or not at all; blocks are followed by their bodies.
+  template <class T>
+  void optional(const std::vector<T>& list, std::size_t /*count*/) {
+    (*this)(list.empty() ? 0 : 1);
+    if constexpr (std::is_arithmetic_v<T>)
+      if (!list.empty()) (*this)(list);
+  }
   std::string bytes;
 };
 
@@ -51,6 +58,15 @@ class Reader {
     (*this)(count);
     expect(count, static_cast<std::int64_t>(values.size()), "numbers in a list");
     take(values.data(), values.size() * sizeof(double));
+  }
+  template <class T>
+  void optional(std::vector<T>& list, std::size_t count) {
+    int there = 0;
+    (*this)(there);
+    if (there != 0 && there != 1) throw InputError(where_, "is no state", kMend);
+    list.assign(there == 1 ? count : 0, T{});
+    if constexpr (std::is_arithmetic_v<T>)
+      if (!list.empty()) (*this)(list);
   }
   void expect(std::int64_t found, std::int64_t wanted, const char* what) const {
     if (found != wanted)
@@ -94,6 +110,13 @@ void body(Archive& archive, Block& block, int lane) {
   }
 }
 
+template <class Archive, class Block>
+void rates_of_body(Archive& archive, Block& block, int lane) {
+  for (auto* x :
+       {&block.a, &block.A, &block.h_dot, &block.a_rate, &block.A_rate, &block.h_dot_rate})
+    for (int i = 0; i < 3; ++i) archive((*x)[i][lane]);
+}
+
 template <class Archive, class Sum>
 void exact_sum(Archive& archive, Sum& s) {
   archive(s.sum);
@@ -130,6 +153,13 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
     const int slot = system.slot(i);
     body(archive, state.blocks[static_cast<std::size_t>(slot / kLanes)], slot % kLanes);
   }
+  archive.optional(state.rates, state.blocks.size());
+  for (int i = 0; i < system.body_count() && !state.rates.empty(); ++i) {
+    const int slot = system.slot(i);
+    rates_of_body(archive, state.rates[static_cast<std::size_t>(slot / kLanes)], slot % kLanes);
+  }
+  archive(state.rates_dt);
+  archive.optional(state.node_rates, 2 * state.node_a.size());
   archive(state.lambda);
   archive(state.history);
   archive(state.node_x);

@@ -106,4 +106,12 @@ BodyStep System::instant(const State& state, int body) const {
   return BodyStep::at_instant(m.r, m.Lambda(), m.v, m.W);
 }
 
+PairView System::instant(const State& state, const InteractionRef& ref,
+                         const double* lambda) const {
+  StepContext still;
+  still.t_n = state.t;
+  return {instant(state, ref.a), instant(state, ref.b), still,
+          lambda ? lambda + ref.first_row : nullptr, state.history.data() + ref.first_history};
+}
+
 }  // namespace polhode

@@ -28,6 +28,16 @@ struct InteractionRef {
   int first_history = 0;  ///< Into State::history.
 };
 
+/// One interaction's view of a step, together with the bodies' steps that it looks at.
+struct PairView {
+  BodyStep a, b;
+  StepContext context;
+  const double* lambda;   ///< The interaction's own.
+  const double* history;  ///< Likewise.
+
+  [[nodiscard]] PairStep step() const { return {a, b, context, lambda, history}; }
+};
+
 /// The compiled model: numbered unknowns, grouped interactions, spanning tree. Immutable once
 /// finish() was called.
 class System {
@@ -78,6 +88,9 @@ class System {
   }
   /// The instant of a body as a degenerate step; the ground for kGround.
   [[nodiscard]] BodyStep instant(const State& state, int body) const;
+  /// The same for an interaction. @param lambda  Multipliers by row, or null if it has none.
+  [[nodiscard]] PairView instant(const State& state, const InteractionRef& ref,
+                                 const double* lambda) const;
 
  private:
   std::vector<BodyData> bodies_;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include <polhode/solve/kkt_matrix.hpp>
-#include <polhode/solve/klu_solver.hpp>
+#include <polhode/solve/sparse_solvers.hpp>
 
 namespace polhode {
 
@@ -16,76 +16,80 @@ constexpr double kLeastPivotGrowth = 1e-3;
 /// fill and costs digits, which the polish iteration would miss.
 constexpr double kPivotTolerance = 0.1;
 
-}  // namespace
-
-struct KluSolver::Impl {
-  KktMatrix matrix;
-  mutable klu_common common{};  // solving writes its status
-  klu_symbolic* symbolic = nullptr;
-  klu_numeric* numeric = nullptr;
-
-  Impl() {
-    klu_defaults(&common);
-    common.tol = kPivotTolerance;
+class KluSolver final : public LinearSolver {
+ public:
+  KluSolver() {
+    klu_defaults(&common_);
+    common_.tol = kPivotTolerance;
   }
-  ~Impl() { clear(); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  ~KluSolver() override { clear(); }
+  KluSolver(const KluSolver&) = delete;
+  KluSolver& operator=(const KluSolver&) = delete;
 
+  [[nodiscard]] std::string name() const override { return "klu"; }
+  void analyse(const KktTopology& topology) override;
+  [[nodiscard]] bool factor(const KktValues& values) override;
+  void solve(Vec& x) const override;
+  void solve_transposed(Vec& x) const override;
+  [[nodiscard]] double factor_flops() const override {
+    return symbolic_ ? symbolic_->est_flops : 0.0;
+  }
+
+ private:
   void clear() {
-    klu_free_numeric(&numeric, &common);
-    klu_free_symbolic(&symbolic, &common);
+    klu_free_numeric(&numeric_, &common_);
+    klu_free_symbolic(&symbolic_, &common_);
   }
-  int* starts() const { return const_cast<int*>(matrix.column_start().data()); }
-  int* rows() const { return const_cast<int*>(matrix.row_index().data()); }
+  int* starts() const { return const_cast<int*>(matrix_.column_start().data()); }
+  int* rows() const { return const_cast<int*>(matrix_.row_index().data()); }
 
   bool refactor() {
-    if (!numeric) return false;
-    double* const x = matrix.values().data();
-    return klu_refactor(starts(), rows(), x, symbolic, numeric, &common) != 0 &&
-           common.status == KLU_OK &&
-           klu_rgrowth(starts(), rows(), x, symbolic, numeric, &common) != 0 &&
-           common.rgrowth > kLeastPivotGrowth;
+    if (!numeric_) return false;
+    double* const x = matrix_.values().data();
+    return klu_refactor(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
+           common_.status == KLU_OK &&
+           klu_rgrowth(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
+           common_.rgrowth > kLeastPivotGrowth;
   }
+
+  KktMatrix matrix_;
+  mutable klu_common common_{};  // solving writes its status
+  klu_symbolic* symbolic_ = nullptr;
+  klu_numeric* numeric_ = nullptr;
 };
 
-KluSolver::KluSolver() : impl_(std::make_unique<Impl>()) {}
-KluSolver::~KluSolver() = default;
-
 void KluSolver::analyse(const KktTopology& topology) {
-  impl_->clear();
-  impl_->matrix = KktMatrix(topology);
-  if (impl_->matrix.size() == 0) return;
-  impl_->symbolic =
-      klu_analyze(impl_->matrix.size(), impl_->starts(), impl_->rows(), &impl_->common);
-  if (!impl_->symbolic) throw std::logic_error("KLU refuses the pattern of the linear system");
+  clear();
+  matrix_ = KktMatrix(topology);
+  if (matrix_.size() == 0) return;
+  symbolic_ = klu_analyze(matrix_.size(), starts(), rows(), &common_);
+  if (!symbolic_) throw std::logic_error("KLU refuses the pattern of the linear system");
 }
 
 bool KluSolver::factor(const KktValues& values) {
-  if (impl_->matrix.size() == 0) return true;
-  if (!impl_->matrix.set(values)) {
-    klu_free_numeric(&impl_->numeric, &impl_->common);
+  if (matrix_.size() == 0) return true;
+  if (!matrix_.set(values)) {
+    klu_free_numeric(&numeric_, &common_);
     return false;
   }
-  if (impl_->refactor()) return true;
-  klu_free_numeric(&impl_->numeric, &impl_->common);
-  impl_->numeric = klu_factor(impl_->starts(), impl_->rows(), impl_->matrix.values().data(),
-                              impl_->symbolic, &impl_->common);
-  return impl_->numeric != nullptr && impl_->common.status == KLU_OK;
+  if (refactor()) return true;
+  klu_free_numeric(&numeric_, &common_);
+  numeric_ = klu_factor(starts(), rows(), matrix_.values().data(), symbolic_, &common_);
+  return numeric_ != nullptr && common_.status == KLU_OK;
 }
 
 void KluSolver::solve(Vec& x) const {
   if (x.size() == 0) return;
-  klu_solve(impl_->symbolic, impl_->numeric, impl_->matrix.size(), 1, x.data(), &impl_->common);
+  klu_solve(symbolic_, numeric_, matrix_.size(), 1, x.data(), &common_);
 }
 
 void KluSolver::solve_transposed(Vec& x) const {
   if (x.size() == 0) return;
-  klu_tsolve(impl_->symbolic, impl_->numeric, impl_->matrix.size(), 1, x.data(), &impl_->common);
+  klu_tsolve(symbolic_, numeric_, matrix_.size(), 1, x.data(), &common_);
 }
 
-double KluSolver::factor_flops() const {
-  return impl_->symbolic ? impl_->symbolic->est_flops : 0.0;
-}
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_klu_solver() { return std::make_unique<KluSolver>(); }
 
 }  // namespace polhode

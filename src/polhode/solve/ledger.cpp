@@ -78,13 +78,10 @@ BodySums LedgerKeeper::sums(const State& state) const {
 
 double LedgerKeeper::stored(const State& state) const {
   double potential = nodes_.stored(state);
-  StepContext still;
-  still.t_n = state.t;
   for (int i : working_) {
     const InteractionRef& ref = system_->interactions()[i];
-    const BodyStep a = system_->instant(state, ref.a), b = system_->instant(state, ref.b);
-    const PairStep step{a, b, still, nullptr, state.history.data() + ref.first_history};
-    potential += system_->group(ref.group).work(ref.item, step).stored;
+    const PairView view = system_->instant(state, ref, nullptr);
+    potential += system_->group(ref.group).work(ref.item, view.step()).stored;
   }
   return potential;
 }

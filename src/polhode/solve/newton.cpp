@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/base/format.hpp>
 #include <polhode/solve/newton.hpp>
@@ -11,6 +12,20 @@ namespace {
 
 /// An increment below this leaves a quadratic remainder below round-off: no polish is needed.
 constexpr double kNoPolishBelow = 1e-10;
+/// What may be left of the increments to come: the motion of the step is that close to the solution
+/// of its equations, which is what momenta and energy of the bodies hang on [-].
+constexpr double kLeft = 1e-13;
+/// Close increments are round-off when they have not come below this part of the least one in so
+/// many iterations.
+constexpr double kGains = 0.7;
+constexpr int kStalled = 3;
+/// Increments above this part of the tolerance are no round-off [-].
+constexpr double kRoundOffBelow = 1e-2;
+/// Kept factors that contract by less than this are renewed.
+constexpr double kLame = 0.05;
+/// Iterations that a step may take for one that is allowed to come close: beside a singular
+/// position multipliers of redundant rows come by slow, but sure, proximal repeats.
+constexpr int kMoreWhenClose = 3;
 /// An increment above this is no Newton iteration any more.
 constexpr double kDiverged = 1e3;
 /// With a factorisation kept from earlier steps: what later increments would add up to, as part of
@@ -74,8 +89,12 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
 
   LineSearch search(options.line_search, state, trial, engine);
-  bool close = false;  // an increment was below the tolerance
-  int slow = 0;        // iterations in a row that hardly contracted
+  bool close = false;     // an increment was below the tolerance
+  bool polished = false;  // and another iteration followed
+  int slow = 0;           // iterations in a row that hardly contracted
+  int stalled = 0;        // iterations without gain, once close
+  double least = std::numeric_limits<double>::infinity();  // increment since then
+  bool lame = false;  // the factors that were kept contract too little
   double defect_before = 0.0;
   const auto fail = [&](std::string reason) {
     report.reason = std::move(reason);
@@ -84,12 +103,16 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (report.worst.empty() && worst >= 0)
       report.worst = format("body '{}'", system.bodies()[worst].name);
   };
-  for (int it = 0; it < options.max_iterations; ++it) {
+  const bool kept = engine.keeps_factor();
+  const auto most_iterations = [&] {
+    return (polished && !kept ? kMoreWhenClose : 1) * options.max_iterations;
+  };
+  for (int it = 0; it < most_iterations(); ++it) {
     const double last = report.increments.empty() ? 0.0 : report.increments.back();
     search.before(last);
     const bool refactor = options.jacobian == JacobianPolicy::every_iteration ||
                           (options.jacobian == JacobianPolicy::automatic
-                               ? !close
+                               ? !close || lame
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
     const Iteration done = engine.iterate(state, trial, refactor, search.damping());
     ++report.iterations;
@@ -108,17 +131,26 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     slow = last > 0.0 && !close && e > 0.9 * last && e > options.tolerance ? slow + 1 : 0;
     if (slow >= 2) return fail("contracts too slowly"), report;
 
-    const bool polished = close;
-    if (e < options.tolerance) close = true;
+    polished = close;
+    close = e < options.tolerance;  // it was by chance if it does not stay so
     if (!close) continue;
-    if (engine.keeps_factor()) {  // converges linearly: what is left is a geometric series
+    if (kept) {  // converges linearly: what is left is a geometric series
       const double rate = last > 0.0 ? std::min(e / last, 0.9) : 0.1;
       if (e * rate / (1.0 - rate) > kLeftByKeptFactor * options.tolerance &&
           it + 1 < options.max_iterations)
         continue;
     }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
-    if (!polished && e > kNoPolishBelow && !engine.keeps_factor()) continue;
+    if (!polished && e > kNoPolishBelow && !kept) continue;
+    // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers come by
+    // proximal repeats, contract by a constant factor: these go on.
+    const double contraction = last > 0.0 ? e / last : 1.0;
+    lame = polished && contraction > kLame;
+    stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
+    if (stalled == 0) least = e;
+    if (polished && !kept && e * contraction * contraction > kLeft && stalled < kStalled) continue;
+    if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
+      return fail("contracts too slowly"), report;
     if (done.rotation > options.max_rotation) {
       fail(format("turns by |Θ| = {:.3g} in one step, more than max_step_rotation = {:.3g}",
                   done.rotation, options.max_rotation));
@@ -136,7 +168,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       return report;
     }
   }
-  if (close) {  // increments are small: what is left is round-off of the multipliers
+  // Increments are small: what is left is round-off of the multipliers.
+  if (close &&
+      (kept || (polished && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     engine.end_step(state, trial);
     report.converged = true;
     return report;
@@ -149,7 +183,7 @@ std::string NewtonReport::text() const {
   if (converged) return format("Newton converged in {} iterations at t = {:.9g} s", iterations, t);
   std::string s = format("Newton failed at t = {:.9g} s (step {:.3g} s): {}", t, dt, reason);
   if (!worst.empty()) s += format("; largest increment at {}", worst);
-  if (!increments.empty()) s += format(" ({:.2g})", increments.back());
+  if (!worst.empty() && !increments.empty()) s += format(" ({:.2g})", increments.back());
   return s + ".";
 }
 

@@ -7,6 +7,7 @@
 #include <polhode/solve/lanes/denormals.hpp>
 #include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/single_step.hpp>
+#include <polhode/solve/stored_rates.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
 namespace polhode {
@@ -95,6 +96,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   const Clock::time_point t0 = Clock::now();
   trial_.context.t_n = state.t;
   trial_.context.dt = dt;
+  adapt_stored_rates(state, trial_.context.ga, dt);
   predict(state, predictor);
   const Clock::time_point t1 = Clock::now();
   NewtonOptions scaled = options;
@@ -104,9 +106,9 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   seconds_[0] += seconds(t0, t1);
   seconds_[1] += seconds(t1, t2);
   state.ledger.iterations += report.iterations;
-  if (!report.converged) return report;
-  if (refused(state, report)) {
-    report.converged = false;
+  if (report.converged && refused(state, report)) report.converged = false;
+  if (!report.converged) {
+    restore_stored_rates(state);
     return report;
   }
   if (predictor.remember) estimate_error();
@@ -124,6 +126,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   kernels_->commit(state.blocks.data(), mass_.data(), trial_.blocks.data(),
                    static_cast<int>(state.blocks.size()), &method, state.past_next);
   commit_nodes(*system_, state, trial_);
+  renew_stored_rates(state, ga, dt);
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
@@ -137,14 +140,12 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
 
 bool SingleStep::refused(const State& state, NewtonReport& report) const {
   const auto refuses = [&](const InteractionRef& ref) {
-    const BodyStep a = body_step(*system_, state, trial_, ref.a);
-    const BodyStep b = body_step(*system_, state, trial_, ref.b);
-    const PairStep step{a, b, trial_.context, trial_.lambda.data() + ref.first_row,
-                        state.history.data() + ref.first_history};
+    const PairView view = pair_view(*system_, state, trial_, ref);
     const InteractionGroup& group = system_->group(ref.group);
-    if (group.acceptable(ref.item, step)) return false;
-    report.reason = group.refusal(ref.item);
-    report.worst = format("{} '{}'", group.kind(), system_->name(ref));
+    if (group.acceptable(ref.item, view.step())) return false;
+    report.reason =
+        format("{}: {} '{}'", group.refusal(ref.item), group.kind(), system_->name(ref));
+    report.worst.clear();
     return true;
   };
   for (int i : always_asked_)
@@ -158,11 +159,9 @@ bool SingleStep::refused(const State& state, NewtonReport& report) const {
 void SingleStep::commit_histories(State& state, double rotation) {
   const auto commit = [&](int interaction) {
     const InteractionRef& ref = system_->interactions()[interaction];
-    const BodyStep a = body_step(*system_, state, trial_, ref.a);
-    const BodyStep b = body_step(*system_, state, trial_, ref.b);
+    const PairView view = pair_view(*system_, state, trial_, ref);
     double* history = state.history.data() + ref.first_history;
-    const PairStep step{a, b, trial_.context, trial_.lambda.data() + ref.first_row, history};
-    system_->group(ref.group).commit(ref.item, step, history);
+    system_->group(ref.group).commit(ref.item, view.step(), history);
   };
   for (int i : eager_) commit(i);
   if (lazy_.empty()) return;

@@ -3,57 +3,66 @@
 #include <Eigen/SparseLU>
 
 #include <polhode/solve/kkt_matrix.hpp>
-#include <polhode/solve/sparse_lu.hpp>
+#include <polhode/solve/sparse_solvers.hpp>
 
 namespace polhode {
 
-struct SparseLu::Impl {
+namespace {
+
+class SparseLu final : public LinearSolver {
+ public:
+  [[nodiscard]] std::string name() const override { return "sparse_lu"; }
+  void analyse(const KktTopology& topology) override;
+  [[nodiscard]] bool factor(const KktValues& values) override;
+  void solve(Vec& x) const override;
+  void solve_transposed(Vec& x) const override;
+  [[nodiscard]] double factor_flops() const override { return flops_; }
+
+ private:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  KktMatrix matrix;
-  mutable Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;  // its transpose() is not const
-  double flops = 0.0;
+  KktMatrix matrix_;
+  mutable Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;  // its transpose() is not const
+  double flops_ = 0.0;
 
   [[nodiscard]] Eigen::Map<const Matrix> view() const {
-    const int n = matrix.size();
+    const int n = matrix_.size();
     return {n,
             n,
-            static_cast<Eigen::Index>(matrix.values().size()),
-            matrix.column_start().data(),
-            matrix.row_index().data(),
-            matrix.values().data()};
+            static_cast<Eigen::Index>(matrix_.values().size()),
+            matrix_.column_start().data(),
+            matrix_.row_index().data(),
+            matrix_.values().data()};
   }
 };
 
-SparseLu::SparseLu() : impl_(std::make_unique<Impl>()) {}
-SparseLu::~SparseLu() = default;
-
 void SparseLu::analyse(const KktTopology& topology) {
-  impl_->matrix = KktMatrix(topology);
-  if (impl_->matrix.size() > 0) impl_->lu.analyzePattern(impl_->view());
+  matrix_ = KktMatrix(topology);
+  if (matrix_.size() > 0) lu_.analyzePattern(view());
 }
 
 bool SparseLu::factor(const KktValues& values) {
-  if (impl_->matrix.size() == 0) return true;
-  if (!impl_->matrix.set(values)) return false;
-  impl_->lu.factorize(impl_->view());
-  if (impl_->lu.info() != Eigen::Success) return false;
+  if (matrix_.size() == 0) return true;
+  if (!matrix_.set(values)) return false;
+  lu_.factorize(view());
+  if (lu_.info() != Eigen::Success) return false;
   // Each pair (entry of L's column k, entry of U's row k) costs one multiplication and addition;
   // with n columns the mean lengths are a fair estimate.
-  const double n = impl_->matrix.size();
-  impl_->flops =
-      2.0 * static_cast<double>(impl_->lu.nnzL()) / n * static_cast<double>(impl_->lu.nnzU());
+  const double n = matrix_.size();
+  flops_ = 2.0 * static_cast<double>(lu_.nnzL()) / n * static_cast<double>(lu_.nnzU());
   return true;
 }
 
 void SparseLu::solve(Vec& x) const {
-  if (x.size() > 0) x = impl_->lu.solve(x).eval();
+  if (x.size() > 0) x = lu_.solve(x).eval();
 }
 
 void SparseLu::solve_transposed(Vec& x) const {
-  if (x.size() > 0) x = impl_->lu.transpose().solve(x).eval();
+  if (x.size() > 0) x = lu_.transpose().solve(x).eval();
 }
 
-double SparseLu::factor_flops() const { return impl_->flops; }
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_sparse_lu() { return std::make_unique<SparseLu>(); }
 
 }  // namespace polhode

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
 #include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/start.hpp>
+#include <polhode/solve/stored_rates.hpp>
 
 namespace polhode {
 
@@ -52,6 +56,19 @@ State taylor(const System& system, const State& state, const Rates& now, double 
   return later;
 }
 
+/// A time in which little happens: for steps that are not yet known [s].
+double short_time(const System& system, const State& state, const Rates& now) {
+  constexpr double kLittle = 1e-3;  // of a radian, or of the mechanism's size
+  const double per_length = 1.0 / system.length_scale();
+  double fastest = 0.0;
+  for (int b = 0; b < system.body_count(); ++b) {
+    const BodyMotion m = system.motion(state, b);
+    fastest = std::max({fastest, per_length * m.v.norm(), m.W.norm(),
+                        std::sqrt(per_length * now.a[b].norm()), std::sqrt(now.A[b].norm())});
+  }
+  return fastest > 0.0 ? kLittle / fastest : kLittle;
+}
+
 /// Rates of the accelerations by a central difference over t ± Δt.
 Rates jerks(const System& system, InstantSolver& solver, const State& state, const Rates& now,
             double dt) {
@@ -79,7 +96,8 @@ bool start_accelerations(const System& system, InstantSolver& solver, State& sta
   state.lambda = now.lambda;
   if (!state.node_a.empty() && now.node_a.size() == state.node_a.size()) state.node_a = now.node_a;
   Rates change;
-  if (ga.delta != 0.0) change = jerks(system, solver, state, now, dt);
+  if (ga.delta != 0.0)
+    change = jerks(system, solver, state, now, dt > 0.0 ? dt : short_time(system, state, now));
   for (int b = 0; b < system.body_count(); ++b) {
     Vec3 a = now.a[b], A = now.A[b], h_dot = now.h_dot[b];
     if (ga.delta != 0.0) {
@@ -95,6 +113,9 @@ bool start_accelerations(const System& system, InstantSolver& solver, State& sta
       block.h_dot[i][lane] = h_dot[i];
     }
   }
+  begin_stored_rates(state, ga, dt);
+  for (int b = 0; b < system.body_count() && ga.delta != 0.0; ++b)
+    set_stored_rate(state, system.slot(b), change.a[b], change.A[b], change.h_dot[b]);
   return now.consistent;
 }
 
@@ -132,10 +153,9 @@ void initialize_histories(const System& system, State& state) {
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionGroup& group = system.group(ref.group);
     if (group.history_size(ref.item) == 0) continue;
-    const BodyStep a = system.instant(state, ref.a), b = system.instant(state, ref.b);
-    double* const history = state.history.data() + ref.first_history;
-    group.initialize(ref.item, {a, b, context, state.lambda.data() + ref.first_row, history},
-                     history);
+    PairView view = system.instant(state, ref, state.lambda.data());
+    view.context = context;
+    group.initialize(ref.item, view.step(), state.history.data() + ref.first_history);
   }
 }
 

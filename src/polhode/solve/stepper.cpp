@@ -13,6 +13,8 @@ namespace {
 
 /// Two times closer than this part of a step are the same.
 constexpr double kSameTime = 1e-9;
+/// How much longer a step may be if it ends at a wanted time then [-].
+constexpr double kStretch = 1e-3;
 constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
 /// What the companions' errors say of the error at order 6 and at order 8, measured.
 constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
@@ -64,14 +66,22 @@ struct Stepper::Impl {
   /// The step to try from t: not beyond the limit; a halved fixed step returns to its grid.
   [[nodiscard]] double next_length(const State& state, double t_limit) const {
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
-    if (!automatic() && dt < *control.step) {
+    if (!automatic()) {
       const double H = *control.step;
       double to_grid = H - std::fmod(state.t, H);
       if (to_grid < kSameTime * H) to_grid += H;
-      dt = std::min(dt, to_grid);
+      dt = part_of(to_grid, dt);
     }
-    if (state.t + dt > t_limit + kSameTime * dt) dt = t_limit - state.t;
-    return dt;
+    return part_of(t_limit - state.t, dt);
+  }
+
+  /// A length of at most dt, or a thousandth more, equal parts of which make up the way to a time
+  /// that is near: what is left is never a tiny step, in which multipliers, of the size of
+  /// round-off/Δt², would leak energy.
+  static double part_of(double way, double dt) {
+    if (way > 2.0 * dt || std::abs(way - dt) <= kSameTime * dt) return dt;
+    const double parts = std::ceil(way / dt - kStretch);
+    return parts > 1.0 ? way / parts : way;
   }
 
   /// Runs stages from the state; on failure the state is not restored.
@@ -253,10 +263,11 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     ++state.ledger.rejected;
     ++report.rejected;
     wanted *= report.newton.converged ? std::min(factor, 0.9) : 0.5;
-    state.dt_next = wanted;
     state.easy_steps = 0;
     fresh = !report.newton.converged;
-    if (wanted < least_step()) {
+    if (H > least_step()) {
+      wanted = std::max(wanted, least_step());
+    } else {
       report.message = format(
           "{} Steps down to {:.2g} s were tried. Look at what happens there: a body may be "
           "squeezed into a position its joints cannot leave, a load or spring may be far "

@@ -87,6 +87,13 @@ BodyStep body_step(const System& system, const State& state, const Trial& trial,
   return s;
 }
 
+PairView pair_view(const System& system, const State& state, const Trial& trial,
+                   const InteractionRef& ref) {
+  return {body_step(system, state, trial, ref.a), body_step(system, state, trial, ref.b),
+          trial.context, trial.lambda.data() + ref.first_row,
+          state.history.data() + ref.first_history};
+}
+
 /// @eq{eq:ga-rotation-iterations}
 void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const Vec3& theta) {
   const int lane = slot % kLanes;

@@ -36,6 +36,9 @@ void start_trial(const System& system, const State& state, Trial& trial);
 /// Body's step from the state at t_n and the trial at t_{n+1}; velocities by Newmark.
 [[nodiscard]] BodyStep body_step(const System& system, const State& state, const Trial& trial,
                                  int body);
+/// An interaction's view of the same step.
+[[nodiscard]] PairView pair_view(const System& system, const State& state, const Trial& trial,
+                                 const InteractionRef& ref);
 /// Renews what an iteration changed: t_{n+1}; velocities there only if `rates`.
 void update_body_step(const System& system, const State& state, const Trial& trial, int body,
                       BodyStep& step, bool rates);
