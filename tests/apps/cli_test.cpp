@@ -228,6 +228,40 @@ TEST_F(CommandLine, EndsWith4AndKeepsTheLastStateWhenAStepDoesNotConverge) {
   EXPECT_TRUE(exists("model.results/results.h5"));
 }
 
+// A motor without a limit: the rotor turns faster than the least step can follow.
+TEST_F(CommandLine, EndsWith4NamesTheBodyAndKeepsTheLastStateOfAModelThatRunsAway) {
+  write("motor.yaml", R"(format: 1
+bodies:
+  rotor: {mass: 1, inertia: [0.02, 0.02, 0.05]}
+joints:
+  shaft: {type: revolute, bodies: [ground, rotor], at: [0, 0, 0], axis: z}
+loads:
+  motor: {type: moment, body: rotor, moment: [0, 0, 200 N m]}
+analysis: {duration: 10 s, step: 2 ms, min_step: 0.5 ms}
+output:
+  every: 0.1 s
+  probes:
+    shaft: {joint: shaft}
+    motor: {load: motor}
+)");
+  const auto result = run({"run", "motor.yaml", "--json", "--isa", "baseline"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_EQ(value(result.out, "end"), "\"not_converged\"");
+  EXPECT_EQ(value(result.out, "instruction_set"), "\"baseline\"");
+  EXPECT_THAT(result.err, AllOf(HasSubstr("body 'rotor'"), HasSubstr("max_step_rotation")));
+  EXPECT_TRUE(exists("motor.results/checkpoint.pst"));
+  EXPECT_THAT(read("motor.results/probes/motor.csv"),
+              StartsWith("t [s],mx [N m],my [N m],mz [N m]\n0,0,0,200\n"));
+  const auto rest = run({"run", "motor.yaml", "--restart", "motor.results/checkpoint.pst"});
+  EXPECT_EQ(rest.code, 4) << rest.err;
+}
+
+TEST_F(CommandLine, RefusesAnInstructionSetThatIsNone) {
+  const auto result = run({"run", "model.yaml", "--isa", "avx1024"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--isa"));
+}
+
 TEST_F(CommandLine, RefusesACheckpointThatIsNone) {
   const auto result = run({"run", "model.yaml", "--restart", "model.yaml"});
   EXPECT_EQ(result.code, 3);

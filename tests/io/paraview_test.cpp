@@ -60,6 +60,31 @@ BodyMotion quarter_turned() {
   return m;
 }
 
+TEST(Paraview, DrawsAPlaneAsASquareThatReachesBeyondAllBodies) {
+  Model model = two_bodies();
+  model.bodies[1].position = {3.0, 4.0, 0.0};
+  BodySpec floor;
+  floor.name = "floor";
+  floor.fixed = true;
+  floor.position = {0.0, 0.0, 1.0};
+  ShapeSpec plane;
+  plane.type = "plane";
+  plane.sizes = {0.0, 1.0, 1.0};
+  floor.shapes.push_back(plane);
+  model.bodies.push_back(floor);
+  const TriangleSurface square = body_pictures(model, 0.5)[2].surface;
+  ASSERT_EQ(square.points.size(), 4u);
+  ASSERT_EQ(square.triangles.size(), 2u);
+  const double far = (Vec3(3, 4, 0) - floor.position).norm();
+  for (const Vec3& p : square.points) {
+    EXPECT_NEAR(p.dot(Vec3(0, 1, 1)), 0.0, 1e-12);
+    EXPECT_GT(p.norm(), std::sqrt(2.0) * far);
+  }
+  const auto& [a, b, c] = square.triangles[0];
+  const Vec3 out = (square.points[b] - square.points[a]).cross(square.points[c] - square.points[a]);
+  EXPECT_GT(out.dot(Vec3(0, 1, 1)), 0.0);
+}
+
 TEST(ParaviewWriter, PutsShapesWhereTheBodiesAre) {
   const test::Scratch scratch;
   ParaviewWriter writer(scratch / "view", "results", body_pictures(two_bodies(), 1.0));

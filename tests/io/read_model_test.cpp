@@ -153,14 +153,10 @@ TEST(ReadModel, TakesPointsAndAxesOfEachBody) {
   EXPECT_NEAR(angle, 0.0, kRounding);
 }
 
-TEST(ReadModel, MeasuresDistancesAndFreeLengthsAtTheStart) {
+TEST(ReadModel, MeasuresDistancesAtTheStart) {
   const Model m =
-      read(kTwo +
-           "joints:\n  rod: {type: distance, bodies: [a, b], at: [[1, 0, 0], [3, 2, 0]]}\n"
-           "loads:\n  s: {type: spring_damper, bodies: [ground, b], at_body: [[0, 0, 0], [0, 0, "
-           "0]], stiffness: 3}\n");
+      read(kTwo + "joints:\n  rod: {type: distance, bodies: [a, b], at: [[1, 0, 0], [3, 2, 0]]}\n");
   EXPECT_NEAR(m.joints[0].parameters.at("distance"), std::sqrt(8.0), kRounding);
-  EXPECT_NEAR(m.loads[0].parameters.at("free_length"), 3.0, kRounding);
   EXPECT_FALSE(m.joints[0].assembled_start);
 }
 

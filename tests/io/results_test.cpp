@@ -26,6 +26,7 @@ ResultsLayout layout(int bodies) {
   l.title = "Test";
   for (int i = 0; i < bodies; ++i) l.bodies.push_back("b" + std::to_string(i));
   l.joints = {{"hinge", "revolute", 1}, {"ball", "spherical", 3}, {"weld", "fixed", 0}};
+  l.loads = {{"push", "force"}, {"spring", "spring_damper"}};
   return l;
 }
 
@@ -47,6 +48,7 @@ ResultsFrame frame(const ResultsLayout& l, int k) {
     f.coordinates.push_back(10.0 * c + k);
     f.rates.push_back(-10.0 * c - k);
   }
+  for (int c = 0; c < l.load_numbers(); ++c) f.loads.push_back(10.0 * c + k);
   f.balance.kinetic = k;
   f.balance.potential = 2.0 * k;
   f.steps = k;
@@ -80,6 +82,8 @@ results = h5py.File(")" + scratch / "results.h5" +
 print(results["time"][:], results["bodies/b2/position"][:, 0])
 print(results["bodies/b1/orientation"][4], results["bodies/b1/position"].attrs["unit"])
 print(results["joints/ball/coordinates"][2], results["joints/hinge/force"][3], "weld" in results["joints"])
+spring = results["loads/spring"]
+print(spring["force"][2], spring["length"][4], spring["rate"].attrs["unit"], results["packed/loads/first"][1])
 print(results["packed/bodies/position"].shape, results["packed/bodies/names"].asstr()[:])
 print(results["energy/total"][4], results["solver/steps"][4], results["solver/steps"].dtype)
 print(results["provenance"].attrs["version"], results["provenance/model"].asstr()[0])
@@ -89,6 +93,7 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
             "[0.  0.5 1.  1.5 2. ] [0. 1. 2. 3. 4.]\n"
             "[ 0.5 -0.5 -0.5 -0.5] m\n"
             "[12. 22. 32.] [3. 0. 7.] True\n"
+            "[32. 42. 52.] 64.0 m/s 3\n"
             "(5, 3, 3) ['b0' 'b1' 'b2']\n"
             "12.0 4 int64\n"
             "1.2.3 format: 1\n\n");
@@ -130,10 +135,11 @@ TEST(ResultsFile, SaysWhichFileItCannotWrite) {
   }
 }
 
-TEST(ResultsFile, HoldsAModelWithoutJoints) {
+TEST(ResultsFile, HoldsAModelWithoutJointsAndLoads) {
   const test::Scratch scratch;
   ResultsLayout l = layout(1);
   l.joints.clear();
+  l.loads.clear();
   ResultsFile file(scratch / "results.h5", l, {});
   file.append(frame(l, 0));
   EXPECT_NO_THROW(file.close());

@@ -9,6 +9,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/io/checkpoint.hpp>
+#include <polhode/io/field_table.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/recorder.hpp>
 #include <polhode/model/build_system.hpp>
@@ -25,7 +26,7 @@ constexpr const char* kCheckpointName = "checkpoint.pst";
 
 struct Options {
   ModelArguments model;
-  std::string folder, restart;
+  std::string folder, restart, isa;
   std::optional<double> wall_limit;
   bool json = false, quiet = false;
 };
@@ -156,6 +157,12 @@ Action add_run(CLI::App& command) {
                   "Folder for the results; left out: the model's name with .results")
       ->type_name("DIR");
   add_set_option(command, options->model);
+  command
+      .add_option("--isa", options->isa,
+                  "Instruction set: results are equal bit for bit within one; left out: the "
+                  "model's analysis.isa, or the best of this machine")
+      ->type_name("SET")
+      ->check(CLI::IsMember(analysis_fields().at("isa").choices));
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
       ->type_name("FILE");
   command
@@ -165,7 +172,10 @@ Action add_run(CLI::App& command) {
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "Print the figures of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Say nothing but errors");
-  return [options] { return run(*options); };
+  return [options] {
+    if (!options->isa.empty()) options->model.overrides.push_back("analysis.isa=" + options->isa);
+    return run(*options);
+  };
 }
 
 }  // namespace polhode::cli

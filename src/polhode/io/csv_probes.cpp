@@ -13,6 +13,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/io/file_error.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/model/build_system.hpp>
 
 namespace polhode {
@@ -98,6 +99,18 @@ std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
   return header;
 }
 
+std::vector<std::string> load_header(const Simulation& simulation, int load) {
+  std::vector<std::string> header{"t [s]"};
+  const LoadSpec& spec = simulation.model().loads[static_cast<std::size_t>(load)];
+  for (const LoadChannel& channel : load_kind(spec.type).channels) {
+    if (channel.size == 3)
+      extend(header, vector_header(channel.name.substr(0, 1), channel.unit));
+    else
+      header.push_back(format("{} [{}]", channel.name, channel.unit));
+  }
+  return header;
+}
+
 }  // namespace
 
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
@@ -156,17 +169,26 @@ CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
   if (model.output.probes.empty()) return;
   make_folder(folder);
   for (const ProbeSpec& spec : model.output.probes) {
-    const bool body = spec.kind == "body";
-    if (!body && spec.kind != "joint")
+    int index = kGround;
+    std::vector<std::string> header;
+    if (spec.kind == "body") {
+      index = model.body_index(spec.target);
+      header = body_header();
+      if (index == kGround)
+        throw InputError(format("output.probes.{}", spec.name),
+                         "records the ground, which stands still", "Name a body");
+    } else if (spec.kind == "joint") {
+      index = model.joint_index(spec.target);
+      header = joint_header(simulation, index);
+    } else if (spec.kind == "load") {
+      index = model.load_index(spec.target);
+      header = load_header(simulation, index);
+    } else {
       throw InputError(format("output.probes.{}", spec.name),
-                       format("records a {}, but only bodies and joints have channels", spec.kind),
-                       "Name a body or a joint");
-    const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
-    if (body && index == kGround)
-      throw InputError(format("output.probes.{}", spec.name),
-                       "records the ground, which stands still", "Name a body");
-    CsvTable table(format("{}/{}.csv", folder, spec.name),
-                   body ? body_header() : joint_header(simulation, index), keep);
+                       format("records a '{}', which is not known", spec.kind),
+                       "Name a body, a joint or a load");
+    }
+    CsvTable table(format("{}/{}.csv", folder, spec.name), header, keep);
     const double every = spec.every.value_or(model.output.every.value_or(0.0));
     std::int64_t next = 0;
     if (every > 0.0 && table.last_time())
@@ -188,6 +210,9 @@ void CsvProbes::record(const Simulation& simulation) {
     if (probe.spec.kind == "body") {
       const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
       for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
+    } else if (probe.spec.kind == "load") {
+      const std::vector<double> values = simulation.load(probe.index);
+      row.insert(row.end(), values.begin(), values.end());
     } else {
       const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
       extend(row, joint.force);

@@ -50,7 +50,7 @@ class CsvProbes {
  private:
   struct Probe {
     ProbeSpec spec;
-    int index;          ///< Of the body or joint.
+    int index;          ///< Of the body, joint or load.
     double every;       ///< [s]; 0: every step.
     std::int64_t next;  ///< The next row is due at next·every.
     CsvTable table;

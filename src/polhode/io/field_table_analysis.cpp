@@ -166,7 +166,10 @@ const FieldTable& probe_fields() {
            .meaning = "Axes of the joint's reaction.",
            .standard = "world",
            .choices = {"world", "joint"}},
-          {.name = "load", .kind = kLoad, .meaning = "Record the force or moment of this load."},
+          {.name = "load",
+           .kind = kLoad,
+           .meaning = "Record force or moment of this load; of a spring also length or angle, "
+                      "rate, energy."},
           {.name = "every",
            .kind = kNumber,
            .dimension = kTime,

@@ -4,6 +4,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/io/field_table.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
 
 namespace polhode {
 
@@ -53,14 +54,32 @@ Axis axis_of(const std::string& name) {
   return Axis::kRequired;
 }
 
+Field parameter_field(const Parameter& p) {
+  const UnitReading unit = read_unit(p.unit);
+  Field field{.name = p.name, .kind = kNumber, .meaning = sentence(p.meaning)};
+  if (unit.unit) field.dimension = unit.unit->dimension;
+  if (p.standard) field.standard = format("{:g}", *p.standard);
+  // The smallest positive number stands for "above zero", the largest for "any".
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const bool positive = p.least == std::numeric_limits<double>::min();
+  if (p.least != -kMost) field.range.least = positive ? 0.0 : p.least;
+  if (p.most != kMost) field.range.most = p.most;
+  field.range.above_least = positive;
+  return field;
+}
+
+Field type_field(const std::string& what, const std::string& name) {
+  return {.name = "type",
+          .kind = kChoice,
+          .meaning = format("The kind of {}.", what),
+          .required = true,
+          .choices = {name}};
+}
+
 KindTable joint_table(const JointKind& kind) {
   KindTable result{kind.name, {"joint " + kind.name, sentence(kind.meaning), {}}};
   std::vector<Field>& fields = result.table.fields;
-  fields.push_back({.name = "type",
-                    .kind = kChoice,
-                    .meaning = "The kind of joint.",
-                    .required = true,
-                    .choices = {kind.name}});
+  fields.push_back(type_field("joint", kind.name));
   fields.push_back(kBodies);
   fields.push_back(kind.name == "distance" ? kPointsAt : kAt);
   fields.push_back(kAtBody);
@@ -82,31 +101,62 @@ KindTable joint_table(const JointKind& kind) {
                       .meaning = "The free ones, in the joint's axes.",
                       .required = true,
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
-  for (const Parameter& p : kind.parameters) {
-    const UnitReading unit = read_unit(p.unit);
-    Field field{.name = p.name, .kind = kNumber, .meaning = sentence(p.meaning)};
-    if (unit.unit) field.dimension = unit.unit->dimension;
-    if (p.standard) field.standard = format("{:g}", *p.standard);
-    // The smallest positive number stands for "above zero".
-    const bool positive = p.least == std::numeric_limits<double>::min();
-    field.range = {positive ? 0.0 : p.least, p.most, positive};
-    if (p.most == std::numeric_limits<double>::max())
-      field.range.most = std::numeric_limits<double>::infinity();
-    fields.push_back(std::move(field));
-  }
+  for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
   return result;
 }
 
-KindTable load(const std::string& name, const std::string& meaning,
-               const std::vector<Field>& more) {
-  KindTable kind{name, {"load " + name, meaning, {}}};
-  kind.table.fields.push_back({.name = "type",
-                               .kind = kChoice,
-                               .meaning = "The kind of load.",
-                               .required = true,
-                               .choices = {name}});
-  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
-  return kind;
+const Field kLoadBody{
+    .name = "body", .kind = kBody, .meaning = "The body it acts on.", .required = true};
+const Field kBodyPointAt{.name = "at",
+                         .kind = kVector,
+                         .dimension = kLength,
+                         .meaning = "The body's point, world at the start. Or at_body."};
+const Field kBodyPoint{.name = "at_body",
+                       .kind = kVector,
+                       .dimension = kLength,
+                       .meaning = "The body's point, body coordinates.",
+                       .standard = "the centre of mass"};
+const Field kBodyFixed{.name = "body_fixed",
+                       .kind = kBoolean,
+                       .meaning = "The components turn with the body.",
+                       .standard = "false"};
+const Field kLoadBodies{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true};
+const Field kLoadPointsBody{
+    .name = "at_body",
+    .kind = kVectorPair,
+    .dimension = kLength,
+    .meaning = "The points on a and b, each in its body's coordinates (ground: world)."};
+const Field kLoadJoint{.name = "joint",
+                       .kind = kJoint,
+                       .meaning = "A joint that turns about its axis: revolute or cylindrical.",
+                       .required = true};
+
+KindTable load_table(const LoadKind& kind) {
+  KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  fields.push_back(type_field("load", kind.name));
+  switch (kind.place) {
+    case LoadPlace::body:
+      fields.push_back(kLoadBody);
+      if (!kind.turns) fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
+      break;
+    case LoadPlace::points:
+      fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody});
+      break;
+    case LoadPlace::joint:
+      fields.push_back(kLoadJoint);
+      break;
+  }
+  if (!kind.vector.empty()) {
+    fields.push_back({.name = kind.vector,
+                      .kind = kTimeVector,
+                      .dimension = kind.turns ? kMoment : kForce,
+                      .meaning = "Components along the world's axes, or the body's if body_fixed.",
+                      .required = true});
+    fields.push_back(kBodyFixed);
+  }
+  for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
+  return result;
 }
 
 }  // namespace
@@ -121,89 +171,11 @@ const std::vector<KindTable>& joint_tables() {
 }
 
 const std::vector<KindTable>& load_tables() {
-  const Field body{
-      .name = "body", .kind = kBody, .meaning = "The body it acts on.", .required = true};
-  const Field fixed_axes{.name = "body_fixed",
-                         .kind = kBoolean,
-                         .meaning = "The components turn with the body.",
-                         .standard = "false"};
-  static const std::vector<KindTable> tables = {
-      load("force", "A force at a point of a body.",
-           {body,
-            {.name = "at",
-             .kind = kVector,
-             .dimension = kLength,
-             .meaning = "The body's point, world at the start. Or at_body."},
-            {.name = "at_body",
-             .kind = kVector,
-             .dimension = kLength,
-             .meaning = "The body's point, body coordinates.",
-             .standard = "the centre of mass"},
-            {.name = "force",
-             .kind = kTimeVector,
-             .dimension = kForce,
-             .meaning = "Components along the world's axes, or the body's if body_fixed.",
-             .required = true},
-            fixed_axes}),
-      load("moment", "A moment on a body.",
-           {body,
-            {.name = "moment",
-             .kind = kTimeVector,
-             .dimension = kMoment,
-             .meaning = "Components along the world's axes, or the body's if body_fixed.",
-             .required = true},
-            fixed_axes}),
-      load("spring_damper", "A linear spring and damper between two points.",
-           {{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true},
-            {.name = "at",
-             .kind = kVectorPair,
-             .dimension = kLength,
-             .meaning = "The points on a and b, world at the start. Or at_body."},
-            {.name = "at_body",
-             .kind = kVectorPair,
-             .dimension = kLength,
-             .meaning = "The points on a and b, each in its body's coordinates (ground: world)."},
-            {.name = "stiffness",
-             .kind = kNumber,
-             .dimension = kStiffness,
-             .meaning = "Force per length.",
-             .standard = "0",
-             .range = kNotNegative},
-            {.name = "damping",
-             .kind = kNumber,
-             .dimension = kDamping,
-             .meaning = "Force per speed along the line of the points.",
-             .standard = "0",
-             .range = kNotNegative},
-            {.name = "free_length",
-             .kind = kNumber,
-             .dimension = kLength,
-             .meaning = "Length without force.",
-             .standard = "that at the start",
-             .range = kNotNegative}}),
-      load("torsional_spring", "A spring and damper on the angle of a joint.",
-           {{.name = "joint",
-             .kind = kJoint,
-             .meaning = "A joint that turns about its axis: revolute or cylindrical.",
-             .required = true},
-            {.name = "stiffness",
-             .kind = kNumber,
-             .dimension = kAngularStiffness,
-             .meaning = "Moment per angle.",
-             .standard = "0",
-             .range = kNotNegative},
-            {.name = "damping",
-             .kind = kNumber,
-             .dimension = kAngularDamping,
-             .meaning = "Moment per angular velocity.",
-             .standard = "0",
-             .range = kNotNegative},
-            {.name = "free_angle",
-             .kind = kNumber,
-             .dimension = kAngle,
-             .meaning = "Angle without moment.",
-             .standard = "0"}}),
-  };
+  static const std::vector<KindTable> tables = [] {
+    std::vector<KindTable> list;
+    for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
+    return list;
+  }();
   return tables;
 }
 

@@ -180,7 +180,7 @@ struct Hdf5File::Impl {
                    view.get(), links.get(), properties.get(), H5P_DEFAULT),
         H5Dclose);
     if (!dataset.valid()) fail("cannot hold a view");
-    text_attribute(dataset.get(), "unit", c.unit);
+    text_attribute(dataset.get(), "unit", v.unit.empty() ? c.unit : v.unit);
   }
 
   void text_attribute(hid_t object, const std::string& name, const std::string& value) {

@@ -24,8 +24,9 @@ struct ChannelView {
   std::string path;
   std::size_t channel = 0;
   std::size_t first = 0, count = 1;
-  bool squeeze =
-      false;  ///< One entry without its dimension: (frames, 3) rather than (frames, 1, 3).
+  /// One entry without its dimension: (frames, 3) rather than (frames, 1, 3).
+  bool squeeze = false;
+  std::string unit{};  ///< Where the channel holds numbers of several units; "": the channel's.
 };
 
 /// An HDF5 file in which channels grow frame by frame, whole after a kill at any moment.

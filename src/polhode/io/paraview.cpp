@@ -40,7 +40,7 @@ void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, co
 /// The box with this mass and inertia: I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
 TriangleSurface inertia_box(const BodySpec& body, double size) {
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(body.inertia);
-  const Vec3 I = axes.eigenvalues();
+  const Vec3& I = axes.eigenvalues();
   Vec3 squares = 6.0 / body.mass * (Vec3::Constant(I.sum()) - 2.0 * I);
   double largest = std::sqrt(std::max(0.0, squares.maxCoeff()));
   if (body.point_mass || !(largest > 0.0)) largest = 0.02 * size;
@@ -55,11 +55,34 @@ TriangleSurface inertia_box(const BodySpec& body, double size) {
   return box;
 }
 
-TriangleSurface picture_of(const BodySpec& body, double size) {
+/// A square of a plane about its point; both sides are seen.
+TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
+  const Vec3 n(normal[0], normal[1], normal[2]);
+  const Mat3 R = Quat::FromTwoVectors(Vec3::UnitZ(), n).toRotationMatrix();
+  TriangleSurface square;
+  for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+    square.points.push_back(half_width * (x * R.col(0) + y * R.col(1)));
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return square;
+}
+
+/// Farthest that a body stands from a point at the start, with room for its own size.
+double reach_from(const Vec3& point, const Model& model, double size) {
+  double farthest = size;
+  for (const BodySpec& body : model.bodies)
+    farthest = std::max(farthest, (body.position - point).norm() + size);
+  return farthest;
+}
+
+TriangleSurface picture_of(const BodySpec& body, const Model& model, double size) {
   TriangleSurface sum;
   for (const ShapeSpec& shape : body.shapes) {
     TriangleSurface surface;
-    if (const ShapeKind* kind = find_shape_kind(shape.type))
+    if (shape.type == "plane")
+      surface = plane_patch(
+          shape.sizes,
+          reach_from(body.position + body.orientation * (shape.position - body.com), model, size));
+    else if (const ShapeKind* kind = find_shape_kind(shape.type))
       surface = shape_surface(*kind, shape.sizes, kSegments);
     else if (!shape.file.empty())
       surface = scaled(read_surface(shape.file), shape.scale);
@@ -164,7 +187,8 @@ std::vector<double> listed_times(const std::string& path, double t) {
 
 std::vector<BodyPicture> body_pictures(const Model& model, double size) {
   std::vector<BodyPicture> pictures;
-  for (const BodySpec& body : model.bodies) pictures.push_back({body.name, picture_of(body, size)});
+  for (const BodySpec& body : model.bodies)
+    pictures.push_back({body.name, picture_of(body, model, size)});
   return pictures;
 }
 

@@ -18,7 +18,8 @@ struct BodyPicture {
 };
 
 /// Pictures of the bodies of a model. A moving body without shapes is drawn as the box that has
-/// its mass and inertia, a point mass as a small cube. Planes are not drawn: they have no end.
+/// its mass and inertia, a point mass as a small cube. Of a plane, which has no
+/// end, a square about its point is drawn that reaches beyond all bodies at the start.
 /// @param size  Extent of the mechanism, which the cube's size follows [m].
 /// @throws InputError if a mesh file cannot be read.
 [[nodiscard]] std::vector<BodyPicture> body_pictures(const Model& model, double size);

@@ -4,6 +4,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/io/read_context.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
 
 namespace polhode {
 namespace {
@@ -19,12 +20,6 @@ Vec3 seen_from(const ReadContext& context, int body, const Vec3& point) {
 Vec3 from_com(const ReadContext& context, int body, const Vec3& point) {
   if (body == kGround) return point;
   return point - context.model.bodies[static_cast<std::size_t>(body)].com;
-}
-
-Vec3 world_point(const ReadContext& context, int body, const Vec3& Z) {
-  if (body == kGround) return Z;
-  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
-  return b.position + b.orientation * Z;
 }
 
 /// Whether a joint leaves one rotation free, and that about its z.
@@ -49,12 +44,17 @@ class LoadReader {
         section_(context, node, load.place, "loads." + load.name, table) {}
 
   void read() {
-    if (load_.type == "spring_damper") {
-      read_spring();
-    } else if (load_.type == "torsional_spring") {
-      read_torsional_spring();
-    } else {
-      read_wrench();
+    const LoadKind& kind = load_kind(load_.type);
+    switch (kind.place) {
+      case LoadPlace::body:
+        read_wrench(kind);
+        break;
+      case LoadPlace::points:
+        read_spring();
+        break;
+      case LoadPlace::joint:
+        read_torsional_spring();
+        break;
     }
     for (const Field& field : table_.fields)
       if (field.kind == FieldKind::kNumber)
@@ -63,15 +63,15 @@ class LoadReader {
 
  private:
   /// A force or moment on one body.
-  void read_wrench() {
+  void read_wrench(const LoadKind& kind) {
     if (const auto body = section_.body("body")) {
       load_.b = *body;
       if (*body == kGround)
         section_.fault("body", "a load on the ground moves nothing", "Name a body.");
     }
-    if (const auto vector = section_.time_vector(load_.type)) load_.vector = *vector;
+    if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
     load_.body_fixed = section_.boolean("body_fixed").value_or(false);
-    if (load_.type != "force") return;
+    if (kind.turns) return;  // The same wherever it acts.
     if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
     if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
     if (const auto point = section_.vector("at_body"))
@@ -79,7 +79,6 @@ class LoadReader {
   }
 
   void read_spring() {
-    const std::size_t before = context_.diagnostics.size();
     if (const auto bodies = section_.body_pair("bodies")) {
       load_.a = (*bodies)[0];
       load_.b = (*bodies)[1];
@@ -95,11 +94,6 @@ class LoadReader {
       load_.Z_a = from_com(context_, load_.a, (*points)[0]);
       load_.Z_b = from_com(context_, load_.b, (*points)[1]);
     }
-    const bool sound = context_.diagnostics.size() == before;
-    if (sound && !section_.has("free_length"))
-      load_.parameters["free_length"] =
-          (world_point(context_, load_.a, load_.Z_a) - world_point(context_, load_.b, load_.Z_b))
-              .norm();
     require_effect();
   }
 

@@ -17,11 +17,16 @@ inline constexpr const char* kPackedBodies = "/packed/bodies";
 /// (frames, coordinates), joint k owns entries first[k] to first[k] + count[k] − 1.
 inline constexpr const char* kPackedJoints = "/packed/joints";
 
-/// The same under the names of bodies and joints: bodies/<name>/position is (frames, 3).
+/// All loads side by side: values (frames, numbers), load k owns those from first[k] on, the
+/// channels of its type one after the other.
+inline constexpr const char* kPackedLoads = "/packed/loads";
+
+/// The same under the names of bodies, joints, loads: bodies/<name>/position is (frames, 3).
 inline constexpr const char* kBodies = "/bodies";
 inline constexpr const char* kJoints = "/joints";
-/// Models with more bodies and joints than this have only the packed form: each takes a fifth of a
-/// millisecond when the file is made.
+inline constexpr const char* kLoads = "/loads";
+/// Models with more bodies, joints and loads than this have only the packed form: each takes a
+/// fifth of a millisecond when the file is made.
 inline constexpr int kMostNamed = 200;
 
 inline constexpr const char* kEnergy = "/energy";

@@ -3,6 +3,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/io/results_format.hpp>
+#include <polhode/loads/registry.hpp>
 
 namespace polhode {
 
@@ -43,13 +44,31 @@ struct FilePlan {
   }
 };
 
+/// All numbers of all loads in one channel, with a view of each under the load's name.
+void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
+  namespace r = results;
+  const auto numbers = static_cast<std::size_t>(layout.load_numbers());
+  if (numbers == 0) return;
+  p.add(r::kPackedLoads, {"values", 1, "SI"}, {numbers});
+  std::size_t first = 0;
+  for (const auto& load : layout.loads)
+    for (const LoadChannel& channel : load_kind(load.type).channels) {
+      const auto size = static_cast<std::size_t>(channel.size);
+      if (named) {
+        p.view(r::kLoads, load.name, {channel.name.c_str(), size, ""}, first, size, size == 1);
+        p.views.back().unit = channel.unit;
+      }
+      first += size;
+    }
+}
+
 /// The order of the channels is the order in which append() lists the numbers.
 FilePlan plan(const ResultsLayout& layout) {
   namespace r = results;
   FilePlan p;
   const std::size_t bodies = layout.bodies.size();
   const std::size_t joints = layout.joints.size();
-  const bool named = bodies + joints <= r::kMostNamed;
+  const bool named = bodies + joints + layout.loads.size() <= r::kMostNamed;
   p.channels.push_back({r::kTime, {}, "s", false});
   for (const Quantity& q : kBodyQuantities) {
     if (bodies == 0) break;
@@ -74,6 +93,7 @@ FilePlan plan(const ResultsLayout& layout) {
       first += count;
     }
   }
+  add_loads(p, layout, named);
   for (const Quantity& q : kEnergies) p.add(r::kEnergy, q, {});
   p.add(r::kMomentum, {"linear", 3, "kg m/s"}, {3});
   p.add(r::kMomentum, {"angular", 3, "kg m^2/s"}, {3});
@@ -103,6 +123,12 @@ int ResultsLayout::coordinates() const {
   return sum;
 }
 
+int ResultsLayout::load_numbers() const {
+  int sum = 0;
+  for (const LoadEntry& load : loads) sum += load_kind(load.type).report_size();
+  return sum;
+}
+
 ResultsLayout results_layout(const Simulation& simulation) {
   const Model& model = simulation.model();
   ResultsLayout layout;
@@ -112,6 +138,7 @@ ResultsLayout results_layout(const Simulation& simulation) {
     const auto count = simulation.joint(static_cast<int>(i)).coordinates.size();
     layout.joints.push_back({model.joints[i].name, model.joints[i].type, static_cast<int>(count)});
   }
+  for (const LoadSpec& load : model.loads) layout.loads.push_back({load.name, load.type});
   return layout;
 }
 
@@ -133,6 +160,10 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.coordinates.insert(frame.coordinates.end(), joint.coordinates.begin(),
                              joint.coordinates.end());
     frame.rates.insert(frame.rates.end(), joint.rates.begin(), joint.rates.end());
+  }
+  for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    const std::vector<double> values = simulation.load(static_cast<int>(i));
+    frame.loads.insert(frame.loads.end(), values.begin(), values.end());
   }
   frame.balance = simulation.balance();
   const State& state = simulation.state();
@@ -163,6 +194,8 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.numbers(join(r::kPackedJoints, "first"), first);
   file_.numbers(join(r::kPackedJoints, "count"), count);
 
+  if (layout.load_numbers() > 0) name_loads(layout);
+
   file_.attribute("/", "format", "polhode results");
   file_.attribute("/", "format_version", r::kFormatVersion);
   file_.attribute("/", "title", layout.title);
@@ -174,6 +207,24 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   // A list of one text: attributes hold at most 64 KB, models may be longer.
   file_.names(join(r::kProvenance, "model"), {provenance.model_text});
   file_.flush();
+}
+
+void ResultsFile::name_loads(const ResultsLayout& layout) {
+  namespace r = results;
+  std::vector<std::string> names, types;
+  std::vector<std::int64_t> first, count;
+  std::int64_t next = 0;
+  for (const auto& load : layout.loads) {
+    names.push_back(load.name);
+    types.push_back(load.type);
+    first.push_back(next);
+    count.push_back(load_kind(load.type).report_size());
+    next += count.back();
+  }
+  file_.names(join(r::kPackedLoads, "names"), names);
+  file_.names(join(r::kPackedLoads, "types"), types);
+  file_.numbers(join(r::kPackedLoads, "first"), first);
+  file_.numbers(join(r::kPackedLoads, "count"), count);
 }
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
@@ -201,6 +252,7 @@ void ResultsFile::append(const ResultsFrame& frame) {
   vectors(frame.moment);
   for (double x : frame.coordinates) scalar(x);
   for (double x : frame.rates) scalar(x);
+  for (double x : frame.loads) scalar(x);
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
     scalar(x);

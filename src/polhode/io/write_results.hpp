@@ -26,20 +26,26 @@ struct ResultsLayout {
     std::string name, type;
     int coordinates = 0;  ///< Free coordinates reported.
   };
-  std::string title;
-  std::vector<std::string> bodies;
-  std::vector<JointEntry> joints;
+  struct LoadEntry {
+    std::string name, type;
+  };
+  std::string title{};
+  std::vector<std::string> bodies{};
+  std::vector<JointEntry> joints{};
+  std::vector<LoadEntry> loads{};
 
-  [[nodiscard]] int coordinates() const;  ///< Of all joints.
+  [[nodiscard]] int coordinates() const;   ///< Of all joints.
+  [[nodiscard]] int load_numbers() const;  ///< That all loads report.
 };
 
-/// What stands at one time. Lists hold one entry per body, joint or coordinate of the layout.
+/// What stands at one time. Lists hold one entry per body, joint, coordinate or number of a load of
+/// the layout.
 struct ResultsFrame {
   double t = 0.0;
   std::vector<Vec3> position, velocity,
       angular_velocity;           ///< Centre of mass, world [m, m/s, rad/s].
   std::vector<Quat> orientation;  ///< Body to world.
-  std::vector<double> coordinates, rates;
+  std::vector<double> coordinates, rates, loads;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
   Balance balance;
   double dt = 0.0;                                       ///< Length of the last step [s].
@@ -62,6 +68,7 @@ class ResultsFile {
   void close() { file_.close(); }  ///< @throws FileError
 
  private:
+  void name_loads(const ResultsLayout& layout);
   explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
   Hdf5File file_;
   std::vector<double> numbers_;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <polhode/assembly/free_coordinate.hpp>
 #include <polhode/assembly/system.hpp>
@@ -44,6 +46,14 @@ struct LoadDescription {
   for (std::size_t i = 0; i < 3; ++i)
     if (f[i] && f[i]->is_constant()) v[static_cast<int>(i)] *= step.load_factor;
   return v;
+}
+
+/// A vector and numbers in one list: what loads report.
+[[nodiscard]] inline std::vector<double> numbers(const Vec3& v,
+                                                 std::initializer_list<double> more = {}) {
+  std::vector<double> list(v.data(), v.data() + 3);
+  list.insert(list.end(), more);
+  return list;
 }
 
 [[nodiscard]] inline bool is_constant(const TimeVector& f) {

@@ -25,6 +25,11 @@ Work Moment::work(const PairStep& step) const {
   return {.put_in = (body_fixed_ ? step.b.vector(M).at_alpha : M).dot(step.b.theta)};
 }
 
+std::vector<double> Moment::report(const PairStep& step) const {
+  const Vec3 M = polhode::evaluate(moment_, step.context.t_n1());
+  return numbers(body_fixed_ ? step.b.vector(M).at_n1 : M);
+}
+
 void add_moment(System& system, const LoadDescription& load) {
   system.group<Moment>().items.emplace_back(load);
 }

@@ -16,6 +16,7 @@ class Moment : public InteractionItem {
   [[nodiscard]] bool conservative() const { return false; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;  ///< Moment [N m].
 
  private:
   TimeVector moment_;

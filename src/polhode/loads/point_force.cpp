@@ -36,6 +36,11 @@ Work PointForce::work(const PairStep& step) const {
   return {.put_in = f.dot(step.b.u + step.b.theta.cross(step.b.vector(Z_).at_alpha))};
 }
 
+std::vector<double> PointForce::report(const PairStep& step) const {
+  const Vec3 F = polhode::evaluate(force_, step.context.t_n1());
+  return numbers(body_fixed_ ? step.b.vector(F).at_n1 : F);
+}
+
 void add_point_force(System& system, const LoadDescription& load) {
   system.group<PointForce>().items.emplace_back(load);
 }

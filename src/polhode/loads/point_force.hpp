@@ -18,6 +18,7 @@ class PointForce : public InteractionItem {
   [[nodiscard]] bool conservative() const { return potential_; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;  ///< Force [N].
 
  private:
   Vec3 Z_;

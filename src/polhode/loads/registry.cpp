@@ -9,6 +9,16 @@
 
 namespace polhode {
 
+namespace {
+
+template <class Item>
+std::vector<double> report_of(const InteractionGroup& group, int item, const PairStep& step) {
+  const auto& items = dynamic_cast<const Group<Item>&>(group).items;
+  return items[static_cast<std::size_t>(item)].report(step);
+}
+
+}  // namespace
+
 const std::vector<LoadKind>& load_kinds() {
   constexpr double kMost = std::numeric_limits<double>::max();
   static const std::vector<LoadKind> kinds{
@@ -18,14 +28,18 @@ const std::vector<LoadKind>& load_kinds() {
        "force",
        {},
        false,
-       add_point_force},
+       add_point_force,
+       {{"force", "N", 3}},
+       report_of<PointForce>},
       {"moment",
        "moment on a body, in world or body axes",
        LoadPlace::body,
        "moment",
        {},
        true,
-       add_moment},
+       add_moment,
+       {{"moment", "N m", 3}},
+       report_of<Moment>},
       {"spring_damper",
        "linear spring and damper between two points",
        LoadPlace::points,
@@ -39,7 +53,9 @@ const std::vector<LoadKind>& load_kinds() {
          kMost,
          "length without force; left out: the distance at the start"}},
        false,
-       add_spring_damper},
+       add_spring_damper,
+       {{"force", "N", 3}, {"length", "m"}, {"rate", "m/s"}, {"energy", "J"}},
+       report_of<SpringDamper>},
       {"torsional_spring",
        "linear spring and damper about the axis of a joint",
        LoadPlace::joint,
@@ -48,9 +64,17 @@ const std::vector<LoadKind>& load_kinds() {
         {"damping", "N*m*s/rad", 0.0, 0.0, kMost, "moment per rate of the angle"},
         {"free_angle", "rad", 0.0, -kMost, kMost, "angle of the joint without moment"}},
        true,
-       add_torsional_spring},
+       add_torsional_spring,
+       {{"moment", "N m", 3}, {"angle", "rad"}, {"rate", "rad/s"}, {"energy", "J"}},
+       report_of<TorsionalSpring>},
   };
   return kinds;
+}
+
+int LoadKind::report_size() const {
+  int size = 0;
+  for (const LoadChannel& channel : channels) size += channel.size;
+  return size;
 }
 
 const LoadKind& load_kind(std::string_view name) {

@@ -16,15 +16,28 @@ enum class LoadPlace {
   joint    ///< The freedom of a joint: `joint`.
 };
 
+/// A quantity that a load reports at an instant: one number, or a vector along the world's axes.
+struct LoadChannel {
+  std::string name;  ///< e.g. "length".
+  std::string unit;  ///< As text for people, e.g. "m/s".
+  int size = 1;      ///< 1 or 3.
+};
+
 /// A type of load as users name it.
 struct LoadKind {
   std::string name;     ///< "type" in the model file.
   std::string meaning;  ///< One line.
   LoadPlace place = LoadPlace::body;
-  std::string vector;  ///< Key of the vector it takes, with unit [N] or [N m]; "" for none.
+  std::string vector;  ///< Key of the vector it takes: force [N] or moment [N m]; "" for none.
   std::vector<Parameter> parameters;
-  bool turns = false;  ///< Gives a moment even at the centre of mass.
+  bool turns = false;  ///< Gives a moment even at the centre of mass; on a body, needs no point.
   void (*add)(System&, const LoadDescription&) = nullptr;
+  std::vector<LoadChannel> channels;  ///< What it reports, see report.
+  /// The channels' numbers one after the other, for an item of its group and a step that ends at
+  /// the instant. Forces and moments are those on body b.
+  std::vector<double> (*report)(const InteractionGroup&, int item, const PairStep&) = nullptr;
+
+  [[nodiscard]] int report_size() const;  ///< Numbers in a report.
 };
 
 /// Every load type; the order is that of the documentation.

@@ -112,6 +112,16 @@ Work SpringDamper::work(const PairStep& step) const {
           .dissipated = c_ * s.rate * s.rate * step.context.dt};
 }
 
+Vec3 SpringDamper::force_on_b(const Stretch& s) const {
+  if (s.has_direction) return -(k_ * (s.l_alpha - l_0_) + c_ * s.rate) / s.l_alpha * s.u_alpha;
+  return l_0_ == 0.0 ? Vec3(-k_ * s.u_alpha) : Vec3::Zero();
+}
+
+std::vector<double> SpringDamper::report(const PairStep& step) const {
+  const Stretch s = stretch(step);
+  return numbers(force_on_b(s), {s.l_n1, s.rate, work(step).stored});
+}
+
 double SpringDamper::length(const PairStep& step) const { return stretch(step).l_n1; }
 
 void add_spring_damper(System& system, const LoadDescription& load) {

@@ -25,12 +25,15 @@ class SpringDamper : public InteractionItem {
   [[nodiscard]] bool dissipates() const { return c_ != 0.0; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
+  /// At an instant: force on b [N], length [m], its rate [m/s], energy stored [J].
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   /// Distance of the points at t_{n+1} [m].
   [[nodiscard]] double length(const PairStep& step) const;
 
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
+  [[nodiscard]] Vec3 force_on_b(const Stretch& s) const;
 
   Vec3 Z_a_, Z_b_;
   double k_, c_, l_0_;

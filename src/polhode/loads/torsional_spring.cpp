@@ -37,6 +37,13 @@ Work TorsionalSpring::work(const PairStep& step) const {
           .dissipated = c_ * phi.rate * phi.rate * step.context.dt};
 }
 
+std::vector<double> TorsionalSpring::report(const PairStep& step) const {
+  const AngleStep phi =
+      angle_step(angle_, step.a, step.b, step.history[0], step.context.conserving);
+  const double turned = phi.at_n1 - phi_0_, M = k_ * turned + c_ * phi.rate;
+  return numbers(-M * phi.mu, {phi.at_n1, phi.rate, 0.5 * k_ * turned * turned});
+}
+
 void TorsionalSpring::initialize(const PairStep& step, double* history) const {
   history[0] = angle_.at_n1(step.a, step.b, 0.0);
 }

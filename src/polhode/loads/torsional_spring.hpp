@@ -20,6 +20,8 @@ class TorsionalSpring : public InteractionItem {
   [[nodiscard]] int history_size() const { return 1; }  ///< The angle at t_n.
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
+  /// At an instant: moment on b [N m], angle, turns counted [rad], its rate [rad/s], energy [J].
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
 

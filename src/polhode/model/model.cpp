@@ -38,4 +38,8 @@ int Model::solid_index(const std::string& name) const {
   return index_of(solids, name, "solid", "solids", {});
 }
 
+int Model::load_index(const std::string& name) const {
+  return index_of(loads, name, "load", "loads", {});
+}
+
 }  // namespace polhode

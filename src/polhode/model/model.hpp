@@ -146,6 +146,7 @@ struct Model {
   [[nodiscard]] int material_index(
       const std::string& name) const;                            ///< Throws InputError if unknown.
   [[nodiscard]] int solid_index(const std::string& name) const;  ///< Throws InputError if unknown.
+  [[nodiscard]] int load_index(const std::string& name) const;   ///< Likewise.
 };
 
 }  // namespace polhode

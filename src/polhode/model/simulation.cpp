@@ -9,6 +9,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/body/point_motion.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/method.hpp>
 #include <polhode/model/simulation.hpp>
@@ -238,12 +239,8 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   const int interaction = impl_->map.joint[joint];
   const InteractionRef& ref = system.interactions()[interaction];
   const InstantSolution& now = impl_->at_instant();
-  const BodyStep a = system.instant(impl_->projected, ref.a);
-  const BodyStep b = system.instant(impl_->projected, ref.b);
-  StepContext context;
-  context.t_n = impl_->state.t;
-  const PairStep step{a, b, context, now.lambda.data() + ref.first_row,
-                      impl_->state.history.data() + ref.first_history};
+  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
+  const PairStep step = view.step();
   const Joint& item = joint_at(system, interaction);
   const JointCoordinates free = item.coordinates(step);
   const Reaction reaction = item.reaction(step, joint_axes);
@@ -255,6 +252,14 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   report.residual =
       item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
   return report;
+}
+
+std::vector<double> Simulation::load(int load) const {
+  impl_->at_instant();
+  const System& system = impl_->system;
+  const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
+  const PairView view = system.instant(impl_->projected, ref, nullptr);
+  return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }

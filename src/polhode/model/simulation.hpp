@@ -83,6 +83,8 @@ class Simulation {
   };
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
+  /// The numbers of the channels of its kind, see LoadKind::channels.
+  [[nodiscard]] std::vector<double> load(int load) const;
   [[nodiscard]] Balance balance() const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
