@@ -15,7 +15,7 @@ namespace {
 constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
 /// Rounding of a residual, in units of the products of stiffness and position it is made of.
 constexpr double kFloor = 16.0;
-/// Most a body may turn in one iteration [rad].
+/// Most a body may turn in one iteration: Cayley vector [-].
 constexpr double kRotationCap = 1.9;
 /// An increment above this, in sizes of the model, is no Newton iteration any more.
 constexpr double kDiverged = 1e6;
@@ -257,7 +257,8 @@ void StaticNewton::name_free_motions(StaticStep& step) {
   }
 }
 
-/// Moves work_ by part of x_. @returns the largest scaled increment of the whole.
+/// Moves work_ by part of x_; stresses are extrapolated by the whole of it. @returns the largest
+/// scaled increment of the whole.
 double StaticNewton::apply(double part, StaticStep& step) {
   const double per_length = 1.0 / system_->length_scale();
   double most = 0.0;
@@ -266,7 +267,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
   for (const InteractionRef& ref : system_->interactions()) {
     if (system_->group(ref.group).history_size(ref.item) == 0) continue;
     const auto of = [&](int body) -> Vec6 {
-      return body == kGround ? Vec6::Zero() : Vec6(part * x_.segment<6>(6 * body));
+      return body == kGround ? Vec6::Zero() : Vec6(x_.segment<6>(6 * body));
     };
     const BodyStep a = body_step(*system_, work_, trial_, ref.a);
     const BodyStep b = body_step(*system_, work_, trial_, ref.b);
@@ -284,7 +285,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
     }
     BodyMotion m = system_->motion(work_, b);
     m.r += part * r;
-    m.q = (quaternion_from_rotation_vector(part * theta) * m.q).normalized();
+    m.q = (quaternion_from_cayley(part * theta) * m.q).normalized();
     work_.set_motion(system_->slot(b), m);
   }
   for (int row = 0; row < system_->rows(); ++row)
