@@ -4,89 +4,11 @@
 #pragma once
 
 #include <polhode/solve/lanes/joint_sums.hpp>
+#include <polhode/solve/lanes/loop_joints.hpp>
 #include <polhode/solve/lanes/loops.hpp>
+#include <polhode/solve/lanes/small_inverse.hpp>
 
 namespace polhode::POLHODE_ISA {
-
-/// Inverse of a small matrix by Gauss-Jordan with row exchanges. False: a pivot vanished.
-template <int n>
-POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
-  double a[n][n], e[n][n];
-  double largest = 0.0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      a[i][j] = D[i][j];
-      e[i][j] = i == j ? 1.0 : 0.0;
-      largest = __builtin_fabs(a[i][j]) > largest ? __builtin_fabs(a[i][j]) : largest;
-    }
-  for (int c = 0; c < n; ++c) {
-    int p = c;
-    for (int i = c + 1; i < n; ++i)
-      if (__builtin_fabs(a[i][c]) > __builtin_fabs(a[p][c])) p = i;
-    if (!(__builtin_fabs(a[p][c]) > 1e-14 * largest)) return false;
-    if (p != c)
-      for (int j = 0; j < n; ++j) {
-        const double x = a[c][j], y = e[c][j];
-        a[c][j] = a[p][j];
-        e[c][j] = e[p][j];
-        a[p][j] = x;
-        e[p][j] = y;
-      }
-    const double pivot = 1.0 / a[c][c];
-    for (int j = 0; j < n; ++j) {
-      a[c][j] *= pivot;
-      e[c][j] *= pivot;
-    }
-    for (int i = 0; i < n; ++i) {
-      if (i == c) continue;
-      const double factor = a[i][c];
-      for (int j = 0; j < n; ++j) {
-        a[i][j] -= factor * a[c][j];
-        e[i][j] -= factor * e[c][j];
-      }
-    }
-  }
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) inverse[i][j] = e[i][j];
-  return true;
-}
-
-/// The same in closed form.
-template <>
-POLHODE_INLINE bool invert<2>(const double (*D)[8], double (*inverse)[8]) {
-  const double det = D[0][0] * D[1][1] - D[0][1] * D[1][0];
-  const double size = __builtin_fabs(D[0][0] * D[1][1]) + __builtin_fabs(D[0][1] * D[1][0]);
-  if (!(__builtin_fabs(det) > 1e-14 * size)) return false;
-  const double k = 1.0 / det;
-  inverse[0][0] = k * D[1][1];
-  inverse[0][1] = -k * D[0][1];
-  inverse[1][0] = -k * D[1][0];
-  inverse[1][1] = k * D[0][0];
-  return true;
-}
-
-template <>
-POLHODE_INLINE bool invert<3>(const double (*D)[8], double (*inverse)[8]) {
-  const double c00 = D[1][1] * D[2][2] - D[1][2] * D[2][1];
-  const double c01 = D[1][2] * D[2][0] - D[1][0] * D[2][2];
-  const double c02 = D[1][0] * D[2][1] - D[1][1] * D[2][0];
-  const double det = D[0][0] * c00 + D[0][1] * c01 + D[0][2] * c02;
-  const double size = __builtin_fabs(D[0][0] * D[1][1] * D[2][2]) +
-                      __builtin_fabs(D[0][1] * D[1][2] * D[2][0]) +
-                      __builtin_fabs(D[0][2] * D[1][0] * D[2][1]);
-  if (!(__builtin_fabs(det) > 1e-15 * size)) return false;
-  const double k = 1.0 / det;
-  inverse[0][0] = k * c00;
-  inverse[1][0] = k * c01;
-  inverse[2][0] = k * c02;
-  inverse[0][1] = k * (D[0][2] * D[2][1] - D[0][1] * D[2][2]);
-  inverse[1][1] = k * (D[0][0] * D[2][2] - D[0][2] * D[2][0]);
-  inverse[2][1] = k * (D[0][1] * D[2][0] - D[0][0] * D[2][1]);
-  inverse[0][2] = k * (D[0][1] * D[1][2] - D[0][2] * D[1][1]);
-  inverse[1][2] = k * (D[0][2] * D[1][0] - D[0][0] * D[1][2]);
-  inverse[2][2] = k * (D[0][0] * D[1][1] - D[0][1] * D[1][0]);
-  return true;
-}
 
 /// The body's rows: own balance, what is attached to it, children.
 POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s,
@@ -337,49 +259,13 @@ void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
   if (v.first_common[slot] != v.first_common[slot + 1]) solve_common_loops(v, slot);
 }
 
-/// Calls f.template operator()<Shape>() for a shape code that is not a root.
-template <class F>
-POLHODE_INLINE void with_shape(int code, F&& f) {
-  switch (code) {
-    case 1:
-      return f.template operator()<Shape<0, 1>>();
-    case 2:
-      return f.template operator()<Shape<0, 2>>();
-    case 3:
-      return f.template operator()<Shape<0, 3>>();
-    case 4:
-      return f.template operator()<Shape<1, 0>>();
-    case 5:
-      return f.template operator()<Shape<1, 1>>();
-    case 6:
-      return f.template operator()<Shape<1, 2>>();
-    case 7:
-      return f.template operator()<Shape<1, 3>>();
-    case 8:
-      return f.template operator()<Shape<2, 0>>();
-    case 9:
-      return f.template operator()<Shape<2, 1>>();
-    case 10:
-      return f.template operator()<Shape<2, 2>>();
-    case 11:
-      return f.template operator()<Shape<2, 3>>();
-    case 12:
-      return f.template operator()<Shape<3, 0>>();
-    case 13:
-      return f.template operator()<Shape<3, 1>>();
-    case 14:
-      return f.template operator()<Shape<3, 2>>();
-    default:
-      return f.template operator()<Shape<3, 3>>();
-  }
-}
-
 /// Most blocks a chunk can have: its bodies, and a part-filled block for each shape.
 inline constexpr int kChunkBlocks = kChunkBodies / kLanes + 16;
 
 inline bool up(const TreeView* view, int* failed_slot) {
   const TreeView& v = *view;
   const bool rho1 = v.c == 2.0;
+  assemble_all_loop_joints(v);
   static thread_local BlockScratch scratch[kChunkBlocks];
   for (int c = v.chunks - 1; c >= 0; --c) {
     const TreeChunk& chunk = v.chunk[c];
@@ -460,21 +346,20 @@ inline SweepResult down(const TreeView* view) {
       }
     }
   }
+  move_all_loop_multipliers(v);
   return {largest(most.increment), largest(most.rotation)};
 }
 
-inline void check(const TreeView* view, const int* body_of_slot, double* largest_residual,
-                  int* worst_slot, double* work_defect, double* work_scale) {
+inline void check(const TreeView* view, const int* body_of_slot, LaneCheck* result) {
   const TreeView& v = *view;
   for (int c = 0; c < v.chunks; ++c)
     for (int r = v.chunk[c].first_run; r < v.chunk[c].last_run; ++r) {
       const TreeRun& run = v.run[r];
       if (run.shape == 0) continue;
       for (int b = run.first_block; b < run.first_block + run.blocks; ++b)
-        with_shape(run.shape, [&]<class S>() {
-          check_block<S>(v, body_of_slot, b, largest_residual, worst_slot, work_defect, work_scale);
-        });
+        with_shape(run.shape, [&]<class S>() { check_block<S>(v, body_of_slot, b, *result); });
     }
+  check_all_loop_joints(v, *result);
 }
 
 /// Blocks with a joint to the ground, summed.

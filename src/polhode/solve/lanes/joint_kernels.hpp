@@ -7,6 +7,7 @@
 #pragma once
 
 #include <polhode/solve/lanes/body_kernels.hpp>
+#include <polhode/solve/lanes/joint_geometry.hpp>
 
 namespace polhode::POLHODE_ISA {
 
@@ -27,30 +28,6 @@ struct alignas(64) BlockScratch {
   double F_tau[3][3][8];  ///< −F × τ of the sliding directions.
   double F_t[3][8];       ///< F × t.
 };
-
-template <int kTranslation, int kDirections>
-struct Shape {
-  static constexpr JointLayout layout{kTranslation, kDirections};
-  static constexpr int T = kTranslation, ND = kDirections;
-  static constexpr int taus = T == 3 ? 0 : 3 - T;  ///< Free slides come first,
-  static constexpr int omegas = 3 - ND;            ///< then free rotations.
-  static constexpr int free = taus + omegas;
-  static constexpr int directors = layout.directors();
-  static constexpr int of_a = ND == 3 ? 2 : 1;  ///< Directors 0..of_a−1 belong to a.
-  static constexpr int slides = layout.slides();
-  static constexpr bool sliding = slides > 0;
-  /// Row i of the direction rows: director `left(i)` of a · director `right(i)` of b.
-  static constexpr int left(int i) { return i == 2 ? 1 : 0; }
-  static constexpr int right(int i) { return of_a + (i == 2 ? 1 : i); }
-};
-
-POLHODE_INLINE P3 get3(const double* data, int field, int at) {
-  return {load(data + 8 * field + at), load(data + 8 * (field + 1) + at),
-          load(data + 8 * (field + 2) + at)};
-}
-POLHODE_INLINE void put3(double* data, int field, int at, const P3& v) {
-  for (int i = 0; i < 3; ++i) store(data + 8 * (field + i) + at, v[i]);
-}
 
 /// Momentum rates and gravity of a block. @eq{eq:ga-residual-vector} @eq{ga-K-momentum}
 template <bool kRho1>
@@ -120,138 +97,6 @@ POLHODE_INLINE void put_theta_rows(const P3* rows, const P3& rhs, int at, BlockS
   }
 }
 
-/// A joint's geometry at t_{n+1}.
-template <class S>
-struct JointGeometry {
-  P3 z_b, arm, u;  ///< u = x_b − x_a.
-  P3 director[S::directors > 0 ? S::directors : 1];
-  P3 slide[2];
-  Pack g[6];  ///< Translation rows, then direction rows.
-};
-
-template <class S>
-POLHODE_INLINE JointGeometry<S> joint_geometry(const TreeView& v, int block, int at) {
-  constexpr JointLayout l = S::layout;
-  const TrialBlock& t = v.trial[block];
-  const double* data = v.joint_data + v.joint[block];
-  const double* trial = reinterpret_cast<const double*>(v.trial);
-  const int* from = v.gather + block * kLanes + at;
-  JointGeometry<S> q;
-  PM L_a;
-  for (int i = 0; i < 9; ++i) L_a[i] = gather(trial + 8 * (3 + i), from);
-  const P3 r_a = {gather(trial, from), gather(trial + 8, from), gather(trial + 16, from)};
-  const PM L_b = load9(t.Lambda, at);
-  q.z_b = L_b * get3(data, l.Z_b(), at);
-  const P3 z_a = L_a * get3(data, l.Z_a(), at);
-  const P3 y = load3(t.r, at) + q.z_b - r_a;
-  q.u = y - z_a;
-  q.arm = S::T == 3 ? z_a : y;
-  for (int i = 0; i < S::directors; ++i)
-    q.director[i] = (i < S::of_a ? L_a : L_b) * get3(data, l.director() + 3 * i, at);
-  for (int i = 0; i < S::slides; ++i) q.slide[i] = L_a * get3(data, l.slide() + 3 * i, at);
-  for (int i = 0; i < S::T; ++i)
-    q.g[i] = S::T == 3 ? q.u[i] : dot(q.slide[S::sliding ? i : 0], q.u);
-  for (int i = 0; i < S::ND; ++i)
-    q.g[S::T + i] = dot(q.director[S::left(i)], q.director[S::right(i)]);
-  return q;
-}
-
-/// Arms, directors and slides at t_n, stored for the iterations of the step.
-template <class S>
-POLHODE_INLINE void joint_at_n(const TreeView& v, int block, int at) {
-  constexpr JointLayout l = S::layout;
-  const TrialBlock& t = v.trial[block];
-  double* data = v.joint_data + v.joint[block];
-  const double* trial = reinterpret_cast<const double*>(v.trial);
-  const int* from = v.gather + block * kLanes + at;
-  PM L_a;
-  for (int i = 0; i < 9; ++i) L_a[i] = gather(trial + 8 * (12 + i), from);
-  const PM L_b = load9(t.Lambda_n, at);
-  const P3 z_b = L_b * get3(data, l.Z_b(), at);
-  put3(data, l.arm_b_n(), at, z_b);
-  if constexpr (S::T == 3) {
-    put3(data, l.arm_a_n(), at, L_a * get3(data, l.Z_a(), at));
-  } else {
-    P3 r_a;
-    for (int i = 0; i < 3; ++i)
-      r_a[i] = gather(trial + 8 * i, from) - gather(trial + 8 * (21 + i), from);
-    put3(data, l.arm_a_n(), at, load3(t.r, at) - load3(t.u, at) + z_b - r_a);
-  }
-  for (int i = 0; i < S::directors; ++i)
-    put3(data, l.director_n() + 3 * i, at,
-         (i < S::of_a ? L_a : L_b) * get3(data, l.director() + 3 * i, at));
-  for (int i = 0; i < S::slides; ++i)
-    put3(data, l.slide_n() + 3 * i, at, L_a * get3(data, l.slide() + 3 * i, at));
-}
-
-/// Free slides of a joint: any basis of what the slide rows leave, in world components.
-template <class S>
-POLHODE_INLINE P3 tau(const P3* slide, int i) {
-  if constexpr (S::T == 2) {
-    return cross(slide[0], slide[1]);
-  } else if constexpr (S::T == 1) {
-    const P3 along = cross(slide[0], slide[1]);
-    return i == 0 ? along : cross(slide[0], along);
-  } else {
-    P3 e = {Pack{}, Pack{}, Pack{}};
-    e[i] = broadcast(1.0);
-    return e;
-  }
-}
-
-/// Free rotations of a joint.
-template <class S>
-POLHODE_INLINE P3 axis(const P3* director, int i) {
-  if constexpr (S::ND == 0) {
-    P3 e = {Pack{}, Pack{}, Pack{}};
-    e[i] = broadcast(1.0);
-    return e;
-  } else {
-    return director[i];  // one row: x_a and y_b; two rows: z_a
-  }
-}
-
-/// Solves Σ x_i (d_i × e_i) = t for the direction rows; t lies in their span.
-template <class S>
-POLHODE_INLINE void direction_coefficients(const P3* director, const P3& t, Pack* x) {
-  if constexpr (S::ND == 1) {
-    const P3 y = cross(director[0], director[1]);
-    x[0] = dot(t, y) / dot(y, y);
-  } else if constexpr (S::ND == 2) {
-    const Pack k = 1.0 / dot(director[0], cross(director[1], director[2]));
-    x[0] = k * dot(t, director[2]);
-    x[1] = -k * dot(t, director[1]);
-  } else if constexpr (S::ND == 3) {
-    const P3 y1 = cross(director[0], director[2]), y2 = cross(director[0], director[3]);
-    const P3 y3 = cross(director[1], director[3]);
-    const P3 y23 = cross(y2, y3);
-    const Pack k = 1.0 / dot(y1, y23);
-    x[0] = k * dot(t, y23);
-    x[1] = k * dot(t, cross(y3, y1));
-    x[2] = k * dot(t, cross(y1, y2));
-  }
-}
-
-/// The rotation w with (d_i × e_i)·w = g_i.
-template <class S>
-POLHODE_INLINE P3 direction_correction(const P3* director, const Pack* g) {
-  if constexpr (S::ND == 1) {
-    const P3 y = cross(director[0], director[1]);
-    return (g[0] / dot(y, y)) * y;
-  } else if constexpr (S::ND == 2) {
-    const Pack k = 1.0 / dot(director[0], cross(director[1], director[2]));
-    return (k * g[0]) * director[2] - (k * g[1]) * director[1];
-  } else if constexpr (S::ND == 3) {
-    const P3 y1 = cross(director[0], director[2]), y2 = cross(director[0], director[3]);
-    const P3 y3 = cross(director[1], director[3]);
-    const P3 y23 = cross(y2, y3);
-    const Pack k = 1.0 / dot(y1, y23);
-    return (k * g[0]) * y23 + (k * g[1]) * cross(y3, y1) + (k * g[2]) * cross(y1, y2);
-  } else {
-    return {Pack{}, Pack{}, Pack{}};
-  }
-}
-
 template <class S, bool kRho1>
 void assemble_block(const TreeView& v, int block, BlockScratch& s) {
   constexpr JointLayout l = S::layout;
@@ -260,8 +105,9 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
   for (int at = 0; at < kLanes; at += kWidth) {
     P3 rows[3], rhs_theta;
     assemble_inertia<kRho1>(v, block, at, rows, rhs_theta, s);
-    if (v.first_iteration) joint_at_n<S>(v, block, at);
-    const JointGeometry<S> q = joint_geometry<S>(v, block, at);
+    if (v.first_iteration)
+      joint_at_n<S>(data, at, parents_at_n(v, block, at), bodies_at_n(v, block, at));
+    const JointGeometry<S> q = tree_joint<S>(v, block, at);
     const auto average = [&](int field, const P3& at_n1) {
       return (1.0 - weight) * get3(data, field, at) + weight * at_n1;
     };

@@ -101,6 +101,29 @@ struct LaterLoop {
   int common_pair;            ///< Pair of `later` at the present loop's common ancestor; -1: none.
 };
 
+/// Eight joints with coincident points that close loops, of one shape, assembled together; `count`
+/// lanes hold one. Their values stand in TreeView::loop_data, as JointLayout has them.
+struct LoopJoints {
+  int directions = 0;   ///< Direction rows.
+  bool couple = false;  ///< The couple is the unknown, three numbers; else the multipliers are.
+  int count = 0;
+  int data = 0;                                  ///< Offset into loop_data, doubles.
+  int from_a[kLanes] = {}, from_b[kLanes] = {};  ///< Offsets of the bodies' lanes in the trial.
+  int slot_a[kLanes] = {}, slot_b[kLanes] = {};  ///< The ground has the last one.
+  int extra_a[kLanes] = {}, extra_b[kLanes] = {};
+  int pair_a[kLanes] = {}, pair_b[kLanes] = {};  ///< Where C and Rᵀ begin; −1: the ground.
+  int S[kLanes] = {}, nu[kLanes] = {};           ///< Of their loops.
+  int row[kLanes] = {};                          ///< First multiplier.
+};
+
+/// How well constraints hold at the trial.
+struct LaneCheck {
+  double largest = 0.0;                        ///< |g|.
+  int worst_slot = -1;                         ///< A tree joint's body, or
+  int worst_row = -1;                          ///< a loop joint's row.
+  double work_defect = 0.0, work_scale = 0.0;  ///< Σ|λ g|, Σ|λ|(ℓ + |x|) [J].
+};
+
 /// Everything the tree kernels touch, as plain pointers: the kernels are compiled for several
 /// instruction sets and must not instantiate library code.
 struct TreeView {
@@ -146,6 +169,12 @@ struct TreeView {
   double* y = nullptr;
   int* pivots = nullptr;
   double* U = nullptr;
+  int loop_blocks = 0;
+  const LoopJoints* loop_joints = nullptr;
+  double* loop_data = nullptr;
+  double* lambda = nullptr;  ///< By row; tree joints keep theirs in joint_data.
+  const double* lambda_centre = nullptr;
+  double proximal = 0.0;  ///< ε of loop rows.
   // Step.
   double gravity[3] = {0, 0, 0};
   double scale = 0.0;  ///< s_c = βΔt²/m_ref.
@@ -192,9 +221,8 @@ struct LaneKernels {
   SweepResult (*down)(const TreeView* view);
   /// Force and moment about the origin of the tree joints to the ground; added to.
   void (*ground)(const TreeView* view, const int* body_of_slot, double* force, double* moment);
-  /// Constraints of the tree joints at the trial.
-  void (*check)(const TreeView* view, const int* body_of_slot, double* largest, int* worst_slot,
-                double* work_defect, double* work_scale);
+  /// Constraints of the tree joints and of LoopJoints at the trial.
+  void (*check)(const TreeView* view, const int* body_of_slot, LaneCheck* result);
 };
 
 }  // namespace polhode
