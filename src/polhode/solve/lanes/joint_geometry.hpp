@@ -18,6 +18,7 @@ struct Shape {
   static constexpr int of_a = ND == 3 ? 2 : 1;  ///< Directors 0..of_a−1 belong to a.
   static constexpr int slides = layout.slides();
   static constexpr bool sliding = slides > 0;
+  static constexpr bool ball = layout.ball();
   /// Row i of the direction rows: director `left(i)` of a · director `right(i)` of b.
   static constexpr int left(int i) { return i == 2 ? 1 : 0; }
   static constexpr int right(int i) { return of_a + (i == 2 ? 1 : i); }

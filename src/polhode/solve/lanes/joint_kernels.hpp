@@ -13,16 +13,20 @@ namespace polhode::POLHODE_ISA {
 
 /// What assembly hands to elimination for a block of eight bodies.
 struct alignas(64) BlockScratch {
-  double T[3][8][8];       ///< Row i of [X_r | S_r | x_g], i = 0..2, of each body.
-  double theta[3][8][8];   ///< Rows of the body's own moment balance [0 | A | 0 | −ρ].
-  double S_rows[6][8][8];  ///< Row i of S_r padded to 8, two or more free directions.
-  Lane mass;               ///< α_m m / m_ref: the translational diagonal.
-  double rhs[3][8];        ///< −ρ of the force balance.
-  double F[3][8];          ///< s f.
-  double arm[3][8];        ///< Arm on the parent at t_{n+1}.
+  double T[3][8][8];         ///< Row i of [X_r | S_r | x_g], i = 0..2, of each body;
+                             ///< of a ball joint of [0 | ẑ_b | · | x_g].
+  double arm_rows[3][8][8];  ///< Row i of [0 | −arm^ | · | ·]: ball joints.
+  double F_rows[8][8];       ///< [0 | F | · | ·] of each body.
+  double k_rows[8][8];       ///< k_a of one free direction, likewise.
+  double theta[3][8][8];     ///< Rows of the body's own moment balance [0 | A | 0 | −ρ].
+  double S_rows[6][8][8];    ///< Row i of S_r padded to 8, two or more free directions.
+  Lane mass;                 ///< α_m m / m_ref: the translational diagonal.
+  double rhs[3][8];          ///< −ρ of the force balance.
+  double arm[3][8];          ///< Arm on the parent at t_{n+1}.
   double F_dot_arm[8];
-  double c_l[3][8];       ///< Lever of X_l.
-  double S_l[6][6][8];    ///< Left free directions [direction][component].
+  double c_l[3][8];               ///< Lever of X_l.
+  double arm_l[3][8], z_l[3][8];  ///< Its arms on both bodies: ball joints.
+  double S_l[6][6][8];            ///< Left free directions [direction][component].
   double k_a[6][3][8];    ///< Geometric stiffness of the projected rows, on Δθ of the parent.
   double k_b[3][8];       ///< The same on Δθ of the body (universal shape's second rotation).
   double F_tau[3][3][8];  ///< −F × τ of the sliding directions.
@@ -97,6 +101,22 @@ POLHODE_INLINE void put_theta_rows(const P3* rows, const P3& rhs, int at, BlockS
   }
 }
 
+/// Rows [0 | ẑ | · | x].
+POLHODE_INLINE void put_hat_rows(const P3& z, const P3& x, int at, double (*rows)[8][8]) {
+  for (int i = 0; i < 3; ++i) {
+    Pack columns[8] = {Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, x[i]};
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    columns[3 + j] = -z[k];
+    columns[3 + k] = z[j];
+    to_rows(columns, rows[i][at]);
+  }
+}
+/// Rows [0 | x | · | ·].
+POLHODE_INLINE void put_vector_rows(const P3& x, int at, double (*rows)[8]) {
+  const Pack columns[8] = {Pack{}, Pack{}, Pack{}, x[0], x[1], x[2], Pack{}, Pack{}};
+  to_rows(columns, rows[at]);
+}
+
 template <class S, bool kRho1>
 void assemble_block(const TreeView& v, int block, BlockScratch& s) {
   constexpr JointLayout l = S::layout;
@@ -140,7 +160,7 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
       }
     }
     put_theta_rows(rows, rhs_theta, at, s);
-    store3(s.F, at, F);
+    put_vector_rows(F, at, s.F_rows);
     store3(s.arm, at, q.arm);
     store(s.F_dot_arm + at, dot(F, q.arm));
 
@@ -157,6 +177,14 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
     put3(data, l.c_r(), at, c_r);
     put3(data, l.arm_b_alpha(), at, z_b_al);
     store3(s.c_l, at, arm_al - z_b_al);
+    if constexpr (S::ball) {
+      store3(s.arm_l, at, arm_al);
+      store3(s.z_l, at, z_b_al);
+      put3(data, l.z_b(), at, q.z_b);
+      put_hat_rows(q.z_b, x_r, at, s.T);
+      put_hat_rows(-1.0 * q.arm, {Pack{}, Pack{}, Pack{}}, at, s.arm_rows);
+      continue;
+    }
 
     // Free directions, right at t_{n+1} and left at t_{n+αf}.
     P3 S_r[S::free > 0 ? S::free : 1][2];
@@ -196,7 +224,9 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
         if (k == 1) store3(s.k_b, at, turn);
       }
       store3(s.k_a[S::taus + k], at, k_a);
+      if constexpr (S::free == 1) put_vector_rows(k_a, at, s.k_rows);
     }
+    if constexpr (S::free == 1 && S::taus == 1) put_vector_rows(load3(s.k_a[0], at), at, s.k_rows);
     for (int k = 0; k < S::free; ++k) {
       put3(data, l.S_r() + 6 * k, at, S_r[k][0]);
       put3(data, l.S_r() + 6 * k + 3, at, S_r[k][1]);

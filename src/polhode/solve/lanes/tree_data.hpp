@@ -42,6 +42,8 @@ struct JointLayout {
     return translation == 1 || translation == 2 ? 2 : 0;
   }
   [[nodiscard]] constexpr bool root() const { return translation == 0 && directions == 0; }
+  /// Points coincide, all rotations are free.
+  [[nodiscard]] constexpr bool ball() const { return translation == 3 && directions == 0; }
   // Constants of the joint.
   [[nodiscard]] constexpr int Z_a() const { return 0; }
   [[nodiscard]] constexpr int Z_b() const { return 3; }
@@ -59,7 +61,8 @@ struct JointLayout {
   [[nodiscard]] constexpr int c_r() const { return arm_b_alpha() + 3; }
   [[nodiscard]] constexpr int x_g() const { return c_r() + 3; }
   [[nodiscard]] constexpr int S_r() const { return x_g() + 6; }
-  [[nodiscard]] constexpr int director_alpha() const { return S_r() + 6 * free(); }
+  [[nodiscard]] constexpr int z_b() const { return S_r(); }  ///< Of a ball joint: all of S_r.
+  [[nodiscard]] constexpr int director_alpha() const { return S_r() + (ball() ? 3 : 6 * free()); }
   [[nodiscard]] constexpr int director_n1() const { return director_alpha() + 3 * directors(); }
   [[nodiscard]] constexpr int slide_alpha() const { return director_n1() + 3 * directors(); }
   [[nodiscard]] constexpr int slide_n1() const { return slide_alpha() + 3 * slides(); }
