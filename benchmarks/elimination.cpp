@@ -119,8 +119,9 @@ class Contender {
 };
 
 /// Times all contenders on one model in turns and prints a line for each.
-void measure(const Family& family, int size, const std::vector<std::string>& sets,
-             int repetitions) {
+/// @param alone  Leave out the block LU, for a profiler.
+void measure(const Family& family, int size, const std::vector<std::string>& sets, int repetitions,
+             bool alone) {
   const Model model = family.model(size);
   const int bodies = static_cast<int>(model.bodies.size());
   const double before = heap_bytes();
@@ -131,9 +132,10 @@ void measure(const Family& family, int size, const std::vector<std::string>& set
 
   std::vector<Contender> contenders;
   contenders.reserve(sets.size() + 1);
-  const bool compared = bodies <= kMostBodiesCompared;
+  const bool compared = bodies <= kMostBodiesCompared && !alone;
   for (const std::string& isa : sets)
-    if (compared || contenders.empty()) contenders.emplace_back(system, start, family.step, isa);
+    if (compared || alone || contenders.empty())
+      contenders.emplace_back(system, start, family.step, isa);
   if (compared) contenders.emplace_back(system, start, family.step, "");
 
   const int steps = std::clamp(kBodySteps / bodies, kFewestSteps, kMostSteps);
@@ -163,18 +165,20 @@ int main(int argc, char** argv) {
   std::vector<std::string> names, sets = available_instruction_sets();
   std::vector<int> sizes;
   int repetitions = 5;
+  bool alone = false;
   app.add_option("--model", names, "Only these: chain_revolute, chain_spherical, ...");
   app.add_option("--size", sizes, "Instead of the standard sizes, to 1000000");
   app.add_option("--isa", sets, "Only these instruction sets");
   app.add_option("--repetitions", repetitions, "Of which the median counts")
       ->check(CLI::PositiveNumber);
+  app.add_flag("--alone", alone, "Leave out the block LU, for a profiler");
   CLI11_PARSE(app, argc, argv);
   try {
     for (const Family& family : families()) {
       if (!names.empty() && std::find(names.begin(), names.end(), family.name) == names.end())
         continue;
       for (const int size : sizes.empty() ? family.sizes : sizes)
-        measure(family, size, sets, repetitions);
+        measure(family, size, sets, repetitions, alone);
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -41,6 +43,10 @@ struct InstantSolver::Impl {
   KktValues values;
   Vec rhs, x, correction;
   std::unique_ptr<NodeInertia> nodes;  ///< Of deformable solids, if there are any.
+  /// Positions and time that the factorisation at hand belongs to.
+  std::vector<BodyBlock> factored_at;
+  double factored_t = 0.0;
+  Vec G_x, M_x;
 
   Impl(const System& s, std::string name)
       : system(s), solver_name(std::move(name)), sweep(s), map(kkt_map(s)) {
@@ -188,15 +194,32 @@ struct InstantSolver::Impl {
     double residual = 0.0;
     int solves = 0;
   };
+  /// Factors the matrix unless that has been done: positions and time make it. (Solids' masses
+  /// stand in that of accelerations alone.)
+  bool factor(const State& state) {
+    const auto same_positions = [](const BodyBlock& x, const BodyBlock& y) {
+      return std::memcmp(&x, &y, offsetof(BodyBlock, v)) == 0;
+    };
+    if (!nodes && state.t == factored_t &&
+        std::equal(state.blocks.begin(), state.blocks.end(), factored_at.begin(), factored_at.end(),
+                   same_positions))
+      return true;
+    factored_at.clear();
+    if (!solver->factor(values)) return false;
+    factored_at = state.blocks;
+    factored_t = state.t;
+    return true;
+  }
   /// Solves for x with the right-hand side `rhs`, repeating until the rows hold to round-off.
-  Outcome solve() {
+  Outcome solve(const State& state) {
     Outcome outcome;
     x.setZero();
-    if (!solver->factor(values)) return outcome;
+    if (!factor(state)) return outcome;
     outcome.solved = true;
     const int bodies = 6 * map.topology.bodies, rows = map.topology.rows;
     correction = rhs;
-    Vec G_x(rows), M_x(bodies);
+    G_x.resize(rows);
+    M_x.resize(bodies);
     double before = std::numeric_limits<double>::infinity();
     while (outcome.solves < kMaxRepeats) {
       solver->solve(correction);
@@ -205,8 +228,8 @@ struct InstantSolver::Impl {
       x += correction;
       if (rows == 0) return outcome;
       const double scale = rows_times(x, G_x) + rhs.lpNorm<Eigen::Infinity>();
-      const Vec left = rhs.tail(rows) - G_x;
-      outcome.residual = left.lpNorm<Eigen::Infinity>();
+      G_x = rhs.tail(rows) - G_x;  // what is left
+      outcome.residual = G_x.lpNorm<Eigen::Infinity>();
       if (outcome.residual <= 16.0 * kRoundOff * scale) return outcome;
       if (outcome.residual > 0.9 * before) {
         // What no x can satisfy adds the same redundant multipliers each time: take them out.
@@ -217,7 +240,7 @@ struct InstantSolver::Impl {
       before = outcome.residual;
       bodies_times(x, M_x);
       correction.head(bodies) = rhs.head(bodies) - M_x;
-      correction.tail(rows) = left;
+      correction.tail(rows) = G_x;
     }
     return outcome;
   }
@@ -311,6 +334,7 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
       for (int k = 0; k < s.map.topology.pairs[p].rows; ++k)
         if (s.values.pairs[p].C[k] != 1.0) s.values.pairs[p].C[k] = epsilon;
     s.put_masses();
+    s.factored_at.clear();
     if (!s.solver->factor(s.values)) {
       report.assembled = false;
       break;
@@ -394,7 +418,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   s.rhs.setZero();
   s.rows_times(given, s.rhs.tail(system.rows()));
   s.rhs = -s.rhs;
-  const Impl::Outcome outcome = s.solve();
+  const Impl::Outcome outcome = s.solve(state);
   report.solves = outcome.solves;
   if (!outcome.solved) return report;
   report.residual = outcome.residual;
@@ -459,11 +483,13 @@ InstantSolution InstantSolver::accelerations(const State& state) {
     solution.solved = false;
     return solution;
   }
-  const Impl::Outcome outcome = s.solve();
+  const Impl::Outcome outcome = s.solve(state);
   s.clear_cliques();
   solution.solved = outcome.solved;
   solution.consistent = outcome.consistent;
   solution.residual = outcome.residual;
+  solution.r_ddot.reserve(static_cast<std::size_t>(bodies));
+  solution.alpha.reserve(static_cast<std::size_t>(bodies));
   for (int b = 0; b < bodies; ++b) {
     solution.r_ddot.emplace_back(s.x.segment<3>(6 * b));
     solution.alpha.emplace_back(s.x.segment<3>(6 * b + 3));
@@ -489,7 +515,7 @@ void InstantSolver::keep_admissible(const State& state, std::vector<Vec6>& field
   s.x.setZero();
   for (int b = 0; b < s.system.body_count(); ++b) s.x.segment<6>(6 * b) = field[b];
   s.bodies_times(s.x, s.rhs.head(6 * s.system.body_count()));
-  if (!s.solve().solved) return;
+  if (!s.solve(state).solved) return;
   for (int b = 0; b < s.system.body_count(); ++b) field[b] = s.x.segment<6>(6 * b);
 }
 

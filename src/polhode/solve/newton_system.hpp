@@ -31,6 +31,7 @@ class InteractionSweep {
   /// Only these interactions, in ascending order.
   InteractionSweep(const System& system, std::vector<int> interactions);
 
+  [[nodiscard]] bool empty() const { return interactions_.empty(); }
   /// @param steps    By body, the ground last.
   /// @param visit    visit(int interaction, const PairStep&, const PairTerms&).
   /// @param rows_only  Leave out batches without multiplier rows.

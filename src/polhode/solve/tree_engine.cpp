@@ -10,10 +10,15 @@ namespace polhode {
 
 namespace {
 
-std::vector<int> not_in_tree(const System& system) {
+/// ε of loop rows. Tree joints have none, so redundant loops need a little more than the sparse
+/// engine's rows.
+constexpr double kProximalOfLoops = 1e-11;
+
+/// What is evaluated one by one.
+std::vector<int> not_in_lanes(const TreeLoopPlan& plan) {
   std::vector<int> list;
-  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
-    if (!system.tree().in_tree[i]) list.push_back(i);
+  for (const TreeExtra& x : plan.extras)
+    if (!x.in_lanes) list.push_back(x.interaction);
   return list;
 }
 
@@ -21,9 +26,6 @@ template <class T>
 double* doubles(std::vector<T>& v) {
   return v.empty() ? nullptr : v.data()->x;
 }
-
-/// A unit vector at right angles to n.
-Vec3 helper(const Vec3& n) { return n.unitOrthogonal(); }
 
 }  // namespace
 
@@ -43,27 +45,49 @@ std::vector<MassBlock> mass_blocks(const System& system) {
   return mass;
 }
 
+void put_joint_constants(const MotionBasis& basis, const JointLayout& l, double* lane) {
+  const auto put = [&](int field, const Vec3& x) {
+    for (int i = 0; i < 3; ++i) lane[8 * (field + i)] = x[i];
+  };
+  put(l.Z_a(), basis.Z_a);
+  put(l.Z_b(), basis.Z_b);
+  const Vec3 x_a = basis.R_a.col(0), z_a = basis.R_a.col(2);
+  const Vec3 x_b = basis.R_b.col(0), y_b = basis.R_b.col(1);
+  std::vector<Vec3> directors;
+  if (l.directions == 1) directors = {x_a, y_b};
+  if (l.directions == 2) directors = {z_a, x_b, y_b};
+  if (l.directions == 3) directors = {z_a, x_a, x_b, y_b};
+  for (int i = 0; i < static_cast<int>(directors.size()); ++i)
+    put(l.director() + 3 * i, directors[i]);
+  if (l.slides() > 0) {
+    put(l.slide(), basis.slide[0]);
+    put(l.slide() + 3, l.translation == 2 ? basis.slide[1] : Vec3(basis.slide[0].unitOrthogonal()));
+  }
+}
+
 TreeEngine::TreeEngine(const System& system, const std::string& isa)
     : system_(&system),
       kernels_(&lane_kernels(isa)),
       plan_(plan_tree_loops(system)),
-      sweep_(system, not_in_tree(system)),
+      sweep_(system, not_in_lanes(plan_)),
       mass_(mass_blocks(system)) {
   lay_out();
+  lay_out_loop_joints();
   fill_joint_constants();
+}
+
+int TreeEngine::trial_offset(int slot) const {
+  constexpr int kTrialDoubles = sizeof(TrialBlock) / sizeof(double);
+  const int ground = system_->tree().slots / kLanes;  // the trial's last block
+  return slot < 0 ? ground * kTrialDoubles : slot / kLanes * kTrialDoubles + slot % kLanes;
 }
 
 void TreeEngine::lay_out() {
   const SpanningTree& tree = system_->tree();
   const int blocks = tree.slots / kLanes;
-  const int ground = blocks;  // the trial's last block
-  constexpr int kTrialDoubles = sizeof(TrialBlock) / sizeof(double);
-  const auto offset_of = [&](int slot) {
-    return slot < 0 ? ground * kTrialDoubles : slot / kLanes * kTrialDoubles + slot % kLanes;
-  };
   parent_.assign(tree.slots, -1);
   shape_.assign(tree.slots, 0);
-  gather_.assign(tree.slots, offset_of(-1));
+  gather_.assign(tree.slots, trial_offset(-1));
   y_row_.assign(tree.slots, 0);
   has_children_.assign(tree.slots, 0);
   first_child_.assign(tree.slots, 0);
@@ -72,7 +96,7 @@ void TreeEngine::lay_out() {
     const int s = tree.slot_of_body[body];
     slot_in_order_.push_back(s);
     if (tree.link[body].parent != kGround) parent_[s] = tree.slot_of_body[tree.link[body].parent];
-    gather_[s] = offset_of(parent_[s]);
+    gather_[s] = trial_offset(parent_[s]);
   }
   for (auto s = slot_in_order_.rbegin(); s != slot_in_order_.rend(); ++s) {
     if (parent_[*s] < 0) continue;
@@ -111,12 +135,14 @@ void TreeEngine::lay_out() {
   for (int i = 0; i < static_cast<int>(plan_.extras.size()); ++i) {
     const TreeExtra& x = plan_.extras[i];
     extra_index_[x.interaction] = i;
+    if (x.in_lanes) continue;
+    loops_outside_ = loops_outside_ || x.rows > 0;
+    rates_ = rates_ || x.rows == 0;
     const InteractionRef& ref = system_->interactions()[x.interaction];
     for (int body : {ref.a, ref.b})
       if (body != kGround) touched_.push_back(body);
   }
   std::sort(touched_.begin(), touched_.end());
-  for (const TreeExtra& x : plan_.extras) rates_ = rates_ || x.rows == 0;
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   if (!touched_.empty()) steps_.resize(system_->body_count() + 1);
 
@@ -161,6 +187,7 @@ void TreeEngine::lay_out() {
   v.y = doubles(y_);
   v.pivots = pivots_.data();
   v.U = doubles(U_);
+  v.proximal = kProximalOfLoops;
   for (int i = 0; i < 3; ++i) v.gravity[i] = system_->gravity()[i];
   v.inverse_mass = 1.0 / system_->mean_mass();
   v.inverse_length = 1.0 / system_->length_scale();
@@ -178,24 +205,7 @@ void TreeEngine::fill_joint_constants() {
       const InteractionRef& ref = system_->interactions()[tree.link[body].interaction];
       basis = *system_->group(ref.group).motion_basis(ref.item);
     }
-    double* data = view_.joint_data + joint_[s / kLanes] + s % kLanes;
-    const auto put = [&](int field, const Vec3& x) {
-      for (int i = 0; i < 3; ++i) data[8 * (field + i)] = x[i];
-    };
-    put(l.Z_a(), basis.Z_a);
-    put(l.Z_b(), basis.Z_b);
-    const Vec3 x_a = basis.R_a.col(0), z_a = basis.R_a.col(2);
-    const Vec3 x_b = basis.R_b.col(0), y_b = basis.R_b.col(1);
-    std::vector<Vec3> directors;
-    if (l.directions == 1) directors = {x_a, y_b};
-    if (l.directions == 2) directors = {z_a, x_b, y_b};
-    if (l.directions == 3) directors = {z_a, x_a, x_b, y_b};
-    for (int i = 0; i < static_cast<int>(directors.size()); ++i)
-      put(l.director() + 3 * i, directors[i]);
-    if (l.slides() > 0) {
-      put(l.slide(), basis.slide[0]);
-      put(l.slide() + 3, l.translation == 2 ? basis.slide[1] : helper(basis.slide[0]));
-    }
+    put_joint_constants(basis, l, view_.joint_data + joint_[s / kLanes] + s % kLanes);
   }
 }
 
@@ -227,6 +237,8 @@ void TreeEngine::set_step(const State& state, Trial& trial) {
   v.c = ga.c;
   v.c_A = ga.c_A;
   v.dt = trial.context.dt;
+  v.lambda = trial.lambda.data();
+  v.lambda_centre = trial.lambda_centre.data();
 }
 
 void TreeEngine::begin_step(const State& state, Trial& trial) {
@@ -253,6 +265,7 @@ void TreeEngine::evaluate_extras(const State& state, const Trial& trial) {
   for (ExtraRows& e : extra_rows_) std::memset(e.A, 0, sizeof e.A);
   for (EdgeRows& e : edge_rows_) std::memset(static_cast<void*>(&e), 0, sizeof e);
   if (!S_.empty()) std::memset(S_.data(), 0, S_.size() * sizeof(LaneData));
+  if (sweep_.empty()) return;
   take_steps(state, trial, view_.first_iteration != 0);
   sweep_.run(steps_, trial.context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& terms) {
@@ -296,14 +309,17 @@ int TreeEngine::worst_body() const {
 
 ConstraintCheck TreeEngine::check(const State& state, Trial& trial) {
   ConstraintCheck c;
-  int slot = -1;
-  kernels_->check(&view_, system_->tree().body_of_slot.data(), &c.residual, &slot, &c.work_defect,
-                  &c.work_scale);
-  if (slot >= 0) {
-    const int joint = system_->tree().link[system_->tree().body_of_slot[slot]].interaction;
-    c.worst_row = system_->interactions()[joint].first_row;
+  LaneCheck lanes;
+  kernels_->check(&view_, system_->tree().body_of_slot.data(), &lanes);
+  c.residual = lanes.largest;
+  c.work_defect = lanes.work_defect;
+  c.work_scale = lanes.work_scale;
+  c.worst_row = lanes.worst_row;
+  if (lanes.worst_slot >= 0) {
+    const int body = system_->tree().body_of_slot[lanes.worst_slot];
+    c.worst_row = system_->interactions()[system_->tree().link[body].interaction].first_row;
   }
-  if (plan_.loops.empty()) return c;
+  if (!loops_outside_) return c;
   take_steps(state, trial, false);
   StepContext values_only = trial.context;
   values_only.tangents = false;
@@ -331,12 +347,13 @@ ConstraintCheck TreeEngine::check(const State& state, Trial& trial) {
 
 std::size_t TreeEngine::memory() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(mass_) + bytes(joint_data_) + bytes(Y_) + bytes(pair_) + bytes(kept_) + bytes(S_) +
-         bytes(body_) + bytes(extra_rows_) + bytes(edge_rows_) + bytes(slot_in_order_) +
-         bytes(parent_) + bytes(gather_) + bytes(shape_) + bytes(y_row_) + bytes(joint_) +
-         bytes(has_children_) + bytes(first_child_) + bytes(steps_) + bytes(extra_index_) +
-         bytes(plan_.extra_of_slot) + bytes(plan_.edge_of_slot) + bytes(plan_.first_open) +
-         bytes(plan_.first_update) + bytes(plan_.first_common);
+  return bytes(mass_) + bytes(joint_data_) + bytes(loop_data_) + bytes(loop_joints_) + bytes(Y_) +
+         bytes(pair_) + bytes(kept_) + bytes(S_) + bytes(body_) + bytes(extra_rows_) +
+         bytes(edge_rows_) + bytes(slot_in_order_) + bytes(parent_) + bytes(gather_) +
+         bytes(shape_) + bytes(y_row_) + bytes(joint_) + bytes(has_children_) +
+         bytes(first_child_) + bytes(steps_) + bytes(extra_index_) + bytes(plan_.extra_of_slot) +
+         bytes(plan_.edge_of_slot) + bytes(plan_.first_open) + bytes(plan_.first_update) +
+         bytes(plan_.first_common);
 }
 
 }  // namespace polhode

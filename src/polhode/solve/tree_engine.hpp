@@ -41,6 +41,9 @@ class TreeEngine final : public NewtonEngine {
 
  private:
   void lay_out();
+  /// Where a body's lane begins in the trial, in doubles; −1: the ground's.
+  [[nodiscard]] int trial_offset(int slot) const;
+  void lay_out_loop_joints();
   void fill_joint_constants();
   void set_step(const State& state, Trial& trial);
   /// Steps of the bodies that extras act on; `first`: of the step, else only t_{n+1} has changed.
@@ -57,15 +60,16 @@ class TreeEngine final : public NewtonEngine {
   const System* system_;
   const LaneKernels* kernels_;
   TreeLoopPlan plan_;
-  InteractionSweep sweep_;       ///< Over what the tree does not hold.
+  InteractionSweep sweep_;       ///< Over what neither the tree holds nor LoopJoints.
   std::vector<BodyStep> steps_;  ///< By body, the ground last; only where needed.
-  std::vector<int> touched_;     ///< Bodies of extras.
+  std::vector<int> touched_;     ///< Bodies of those.
   /// How the multipliers of direction rows follow from a loop joint's couple.
   struct Couple {
     Mat3 dual, by_a, by_b;
   };
   std::vector<Couple> couples_;
   bool rates_ = false;            ///< Some extra may want velocities at t_{n+1}.
+  bool loops_outside_ = false;    ///< Some loop is not among LoopJoints.
   std::vector<int> extra_index_;  ///< By interaction: index into plan_.extras.
   TreeView view_;
 
@@ -76,7 +80,8 @@ class TreeEngine final : public NewtonEngine {
   struct alignas(64) LaneData {
     double x[8];
   };
-  std::vector<LaneData> joint_data_, Y_, pair_, kept_, S_, nu_, y_, U_;
+  std::vector<LoopJoints> loop_joints_;
+  std::vector<LaneData> joint_data_, loop_data_, Y_, pair_, kept_, S_, nu_, y_, U_;
   std::vector<int> pivots_;
   std::vector<EliminatedBody> body_;
   std::vector<ExtraRows> extra_rows_;
@@ -85,5 +90,7 @@ class TreeEngine final : public NewtonEngine {
 
 /// Mass properties by slot, for the kernels that need nothing else.
 [[nodiscard]] std::vector<MassBlock> mass_blocks(const System& system);
+/// Writes a joint's points, directors and slides into its lane of joint data.
+void put_joint_constants(const MotionBasis& basis, const JointLayout& l, double* lane);
 
 }  // namespace polhode

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tree does not hold: rows of springs and loads, rows and columns of loops.
 // Derivation: docs/theory/elimination_along_the_tree.md.
+#include <algorithm>
+
 #include <polhode/solve/tree_engine.hpp>
 
 namespace polhode {
 
 namespace {
-
-/// ε of loop rows. Tree joints have none, so redundant loops need a little more than the sparse
-/// engine's rows.
-constexpr double kProximalOfLoops = 1e-11;
 
 /// The columns y_i = d_i × e_i of a joint's direction rows: what they leave free, and how to find
 /// their multipliers in a couple.
@@ -48,6 +46,53 @@ DirectionRows direction_rows(const PairTerms& terms, int first, int count) {
 }
 
 }  // namespace
+
+void TreeEngine::lay_out_loop_joints() {
+  std::vector<const TreeExtra*> joints;
+  for (const TreeExtra& x : plan_.extras)
+    if (x.in_lanes) joints.push_back(&x);
+  const auto kind = [](const TreeExtra* x) { return 2 * x->rows + (x->couple >= 0 ? 1 : 0); };
+  std::stable_sort(joints.begin(), joints.end(),
+                   [&](const TreeExtra* x, const TreeExtra* y) { return kind(x) < kind(y); });
+  int size = 0;  // lanes of loop_data_
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const TreeExtra& x = *joints[i];
+    const JointLayout layout{3, x.rows - 3};
+    if (i == 0 || kind(joints[i - 1]) != kind(&x) || loop_joints_.back().count == kLanes) {
+      LoopJoints& fresh = loop_joints_.emplace_back();
+      fresh.directions = layout.directions;
+      fresh.couple = x.couple >= 0;
+      fresh.data = kLanes * size;
+      size += layout.size();
+      loop_data_.resize(static_cast<std::size_t>(size), LaneData{});
+      for (int lane = 0; lane < kLanes; ++lane) {
+        fresh.from_a[lane] = fresh.from_b[lane] = trial_offset(-1);
+        put_joint_constants(MotionBasis{}, layout, loop_data_[0].x + fresh.data + lane);
+      }
+    }
+    LoopJoints& block = loop_joints_.back();
+    const int lane = block.count++, ground = system_->tree().slots;
+    const InteractionRef& ref = system_->interactions()[x.interaction];
+    const auto place = [&](int slot, int pair, int& from, int& body, int& extra, int& to) {
+      from = trial_offset(slot);
+      body = slot < 0 ? ground : slot;
+      extra = slot < 0 ? -1 : plan_.extra_of_slot[slot];
+      to = pair;
+    };
+    place(x.slot_a, x.pair_a, block.from_a[lane], block.slot_a[lane], block.extra_a[lane],
+          block.pair_a[lane]);
+    place(x.slot_b, x.pair_b, block.from_b[lane], block.slot_b[lane], block.extra_b[lane],
+          block.pair_b[lane]);
+    block.S[lane] = plan_.loops[x.loop].S;
+    block.nu[lane] = plan_.loops[x.loop].nu;
+    block.row[lane] = ref.first_row;
+    put_joint_constants(*system_->group(ref.group).motion_basis(ref.item), layout,
+                        loop_data_[0].x + block.data + lane);
+  }
+  view_.loop_blocks = static_cast<int>(loop_joints_.size());
+  view_.loop_joints = loop_joints_.data();
+  view_.loop_data = loop_data_.empty() ? nullptr : loop_data_[0].x;
+}
 
 void TreeEngine::add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial) {
   const double s = view_.scale;
@@ -89,8 +134,8 @@ void TreeEngine::write_loop(const TreeExtra& x, const PairTerms& terms, const Tr
   for (int k = 0; k < x.rows; ++k) {
     const bool exact = terms.compliance[k] == 0.0;
     const double lambda = trial.lambda[first + k];
-    softness[k] = exact ? kProximalOfLoops : terms.compliance[k] / s;
-    nu[k] = terms.g[k] + (exact ? kProximalOfLoops * s * (lambda - trial.lambda_centre[first + k])
+    softness[k] = exact ? view_.proximal : terms.compliance[k] / s;
+    nu[k] = terms.g[k] + (exact ? view_.proximal * s * (lambda - trial.lambda_centre[first + k])
                                 : terms.compliance[k] * lambda);
   }
   // Columns of multipliers and rows of constraints; unknowns beyond them follow.
@@ -166,7 +211,7 @@ void TreeEngine::move_multipliers(Trial& trial, double damping) {
   const double unscale = damping / view_.scale;
   const auto turn = [&](int slot) { return Vec3(body_[slot].X + 3); };
   for (const TreeExtra& x : plan_.extras) {
-    if (x.rows == 0) continue;
+    if (x.rows == 0 || x.in_lanes) continue;
     double* lambda = trial.lambda.data() + system_->interactions()[x.interaction].first_row;
     const double* y = view_.y + plan_.loops[x.loop].nu;
     const int plain = x.coupling == Coupling::couple ? x.translation_rows : x.rows;

@@ -67,6 +67,8 @@ class Planner {
         }
       }
     }
+    if (const auto basis = system_.group(ref.group).motion_basis(ref.item))
+      x.in_lanes = basis->coincident && x.edge < 0;
     if (unknowns > 0) {
       x.loop = static_cast<int>(plan_.loops.size());
       TreeLoop loop;

@@ -25,6 +25,7 @@ struct TreeExtra {
   int translation_rows = 0;     ///< Of a joint coupled by a couple: rows before the direction rows.
   int couple = -1;              ///< Its index among those.
   bool rotations_only = false;  ///< Its tangents are of moments by rotations.
+  bool in_lanes = false;  ///< A joint with coincident points, assembled with others: LoopJoints.
 };
 
 /// Symbolic part of elimination along the tree with loops: what is carried where, in which order

@@ -7,50 +7,31 @@
 #pragma once
 
 #include <polhode/solve/lanes/body_kernels.hpp>
+#include <polhode/solve/lanes/joint_geometry.hpp>
 
 namespace polhode::POLHODE_ISA {
 
 /// What assembly hands to elimination for a block of eight bodies.
 struct alignas(64) BlockScratch {
-  double T[3][8][8];       ///< Row i of [X_r | S_r | x_g], i = 0..2, of each body.
-  double theta[3][8][8];   ///< Rows of the body's own moment balance [0 | A | 0 | −ρ].
-  double S_rows[6][8][8];  ///< Row i of S_r padded to 8, two or more free directions.
-  Lane mass;               ///< α_m m / m_ref: the translational diagonal.
-  double rhs[3][8];        ///< −ρ of the force balance.
-  double F[3][8];          ///< s f.
-  double arm[3][8];        ///< Arm on the parent at t_{n+1}.
+  double T[3][8][8];         ///< Row i of [X_r | S_r | x_g], i = 0..2, of each body;
+                             ///< of a ball joint of [0 | ẑ_b | · | x_g].
+  double arm_rows[3][8][8];  ///< Row i of [0 | −arm^ | · | ·]: ball joints.
+  double F_rows[8][8];       ///< [0 | F | · | ·] of each body.
+  double k_rows[8][8];       ///< k_a of one free direction, likewise.
+  double theta[3][8][8];     ///< Rows of the body's own moment balance [0 | A | 0 | −ρ].
+  double S_rows[6][8][8];    ///< Row i of S_r padded to 8, two or more free directions.
+  Lane mass;                 ///< α_m m / m_ref: the translational diagonal.
+  double rhs[3][8];          ///< −ρ of the force balance.
+  double arm[3][8];          ///< Arm on the parent at t_{n+1}.
   double F_dot_arm[8];
-  double c_l[3][8];       ///< Lever of X_l.
-  double S_l[6][6][8];    ///< Left free directions [direction][component].
+  double c_l[3][8];               ///< Lever of X_l.
+  double arm_l[3][8], z_l[3][8];  ///< Its arms on both bodies: ball joints.
+  double S_l[6][6][8];            ///< Left free directions [direction][component].
   double k_a[6][3][8];    ///< Geometric stiffness of the projected rows, on Δθ of the parent.
   double k_b[3][8];       ///< The same on Δθ of the body (universal shape's second rotation).
   double F_tau[3][3][8];  ///< −F × τ of the sliding directions.
   double F_t[3][8];       ///< F × t.
 };
-
-template <int kTranslation, int kDirections>
-struct Shape {
-  static constexpr JointLayout layout{kTranslation, kDirections};
-  static constexpr int T = kTranslation, ND = kDirections;
-  static constexpr int taus = T == 3 ? 0 : 3 - T;  ///< Free slides come first,
-  static constexpr int omegas = 3 - ND;            ///< then free rotations.
-  static constexpr int free = taus + omegas;
-  static constexpr int directors = layout.directors();
-  static constexpr int of_a = ND == 3 ? 2 : 1;  ///< Directors 0..of_a−1 belong to a.
-  static constexpr int slides = layout.slides();
-  static constexpr bool sliding = slides > 0;
-  /// Row i of the direction rows: director `left(i)` of a · director `right(i)` of b.
-  static constexpr int left(int i) { return i == 2 ? 1 : 0; }
-  static constexpr int right(int i) { return of_a + (i == 2 ? 1 : i); }
-};
-
-POLHODE_INLINE P3 get3(const double* data, int field, int at) {
-  return {load(data + 8 * field + at), load(data + 8 * (field + 1) + at),
-          load(data + 8 * (field + 2) + at)};
-}
-POLHODE_INLINE void put3(double* data, int field, int at, const P3& v) {
-  for (int i = 0; i < 3; ++i) store(data + 8 * (field + i) + at, v[i]);
-}
 
 /// Momentum rates and gravity of a block. @eq{eq:ga-residual-vector} @eq{ga-K-momentum}
 template <bool kRho1>
@@ -120,136 +101,20 @@ POLHODE_INLINE void put_theta_rows(const P3* rows, const P3& rhs, int at, BlockS
   }
 }
 
-/// A joint's geometry at t_{n+1}.
-template <class S>
-struct JointGeometry {
-  P3 z_b, arm, u;  ///< u = x_b − x_a.
-  P3 director[S::directors > 0 ? S::directors : 1];
-  P3 slide[2];
-  Pack g[6];  ///< Translation rows, then direction rows.
-};
-
-template <class S>
-POLHODE_INLINE JointGeometry<S> joint_geometry(const TreeView& v, int block, int at) {
-  constexpr JointLayout l = S::layout;
-  const TrialBlock& t = v.trial[block];
-  const double* data = v.joint_data + v.joint[block];
-  const double* trial = reinterpret_cast<const double*>(v.trial);
-  const int* from = v.gather + block * kLanes + at;
-  JointGeometry<S> q;
-  PM L_a;
-  for (int i = 0; i < 9; ++i) L_a[i] = gather(trial + 8 * (3 + i), from);
-  const P3 r_a = {gather(trial, from), gather(trial + 8, from), gather(trial + 16, from)};
-  const PM L_b = load9(t.Lambda, at);
-  q.z_b = L_b * get3(data, l.Z_b(), at);
-  const P3 z_a = L_a * get3(data, l.Z_a(), at);
-  const P3 y = load3(t.r, at) + q.z_b - r_a;
-  q.u = y - z_a;
-  q.arm = S::T == 3 ? z_a : y;
-  for (int i = 0; i < S::directors; ++i)
-    q.director[i] = (i < S::of_a ? L_a : L_b) * get3(data, l.director() + 3 * i, at);
-  for (int i = 0; i < S::slides; ++i) q.slide[i] = L_a * get3(data, l.slide() + 3 * i, at);
-  for (int i = 0; i < S::T; ++i)
-    q.g[i] = S::T == 3 ? q.u[i] : dot(q.slide[S::sliding ? i : 0], q.u);
-  for (int i = 0; i < S::ND; ++i)
-    q.g[S::T + i] = dot(q.director[S::left(i)], q.director[S::right(i)]);
-  return q;
-}
-
-/// Arms, directors and slides at t_n, stored for the iterations of the step.
-template <class S>
-POLHODE_INLINE void joint_at_n(const TreeView& v, int block, int at) {
-  constexpr JointLayout l = S::layout;
-  const TrialBlock& t = v.trial[block];
-  double* data = v.joint_data + v.joint[block];
-  const double* trial = reinterpret_cast<const double*>(v.trial);
-  const int* from = v.gather + block * kLanes + at;
-  PM L_a;
-  for (int i = 0; i < 9; ++i) L_a[i] = gather(trial + 8 * (12 + i), from);
-  const PM L_b = load9(t.Lambda_n, at);
-  const P3 z_b = L_b * get3(data, l.Z_b(), at);
-  put3(data, l.arm_b_n(), at, z_b);
-  if constexpr (S::T == 3) {
-    put3(data, l.arm_a_n(), at, L_a * get3(data, l.Z_a(), at));
-  } else {
-    P3 r_a;
-    for (int i = 0; i < 3; ++i)
-      r_a[i] = gather(trial + 8 * i, from) - gather(trial + 8 * (21 + i), from);
-    put3(data, l.arm_a_n(), at, load3(t.r, at) - load3(t.u, at) + z_b - r_a);
-  }
-  for (int i = 0; i < S::directors; ++i)
-    put3(data, l.director_n() + 3 * i, at,
-         (i < S::of_a ? L_a : L_b) * get3(data, l.director() + 3 * i, at));
-  for (int i = 0; i < S::slides; ++i)
-    put3(data, l.slide_n() + 3 * i, at, L_a * get3(data, l.slide() + 3 * i, at));
-}
-
-/// Free slides of a joint: any basis of what the slide rows leave, in world components.
-template <class S>
-POLHODE_INLINE P3 tau(const P3* slide, int i) {
-  if constexpr (S::T == 2) {
-    return cross(slide[0], slide[1]);
-  } else if constexpr (S::T == 1) {
-    const P3 along = cross(slide[0], slide[1]);
-    return i == 0 ? along : cross(slide[0], along);
-  } else {
-    P3 e = {Pack{}, Pack{}, Pack{}};
-    e[i] = broadcast(1.0);
-    return e;
+/// Rows [0 | ẑ | · | x].
+POLHODE_INLINE void put_hat_rows(const P3& z, const P3& x, int at, double (*rows)[8][8]) {
+  for (int i = 0; i < 3; ++i) {
+    Pack columns[8] = {Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, Pack{}, x[i]};
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    columns[3 + j] = -z[k];
+    columns[3 + k] = z[j];
+    to_rows(columns, rows[i][at]);
   }
 }
-
-/// Free rotations of a joint.
-template <class S>
-POLHODE_INLINE P3 axis(const P3* director, int i) {
-  if constexpr (S::ND == 0) {
-    P3 e = {Pack{}, Pack{}, Pack{}};
-    e[i] = broadcast(1.0);
-    return e;
-  } else {
-    return director[i];  // one row: x_a and y_b; two rows: z_a
-  }
-}
-
-/// Solves Σ x_i (d_i × e_i) = t for the direction rows; t lies in their span.
-template <class S>
-POLHODE_INLINE void direction_coefficients(const P3* director, const P3& t, Pack* x) {
-  if constexpr (S::ND == 1) {
-    const P3 y = cross(director[0], director[1]);
-    x[0] = dot(t, y) / dot(y, y);
-  } else if constexpr (S::ND == 2) {
-    const Pack k = 1.0 / dot(director[0], cross(director[1], director[2]));
-    x[0] = k * dot(t, director[2]);
-    x[1] = -k * dot(t, director[1]);
-  } else if constexpr (S::ND == 3) {
-    const P3 y1 = cross(director[0], director[2]), y2 = cross(director[0], director[3]);
-    const P3 y3 = cross(director[1], director[3]);
-    const P3 y23 = cross(y2, y3);
-    const Pack k = 1.0 / dot(y1, y23);
-    x[0] = k * dot(t, y23);
-    x[1] = k * dot(t, cross(y3, y1));
-    x[2] = k * dot(t, cross(y1, y2));
-  }
-}
-
-/// The rotation w with (d_i × e_i)·w = g_i.
-template <class S>
-POLHODE_INLINE P3 direction_correction(const P3* director, const Pack* g) {
-  if constexpr (S::ND == 1) {
-    const P3 y = cross(director[0], director[1]);
-    return (g[0] / dot(y, y)) * y;
-  } else if constexpr (S::ND == 2) {
-    const Pack k = 1.0 / dot(director[0], cross(director[1], director[2]));
-    return (k * g[0]) * director[2] - (k * g[1]) * director[1];
-  } else if constexpr (S::ND == 3) {
-    const P3 y1 = cross(director[0], director[2]), y2 = cross(director[0], director[3]);
-    const P3 y3 = cross(director[1], director[3]);
-    const P3 y23 = cross(y2, y3);
-    const Pack k = 1.0 / dot(y1, y23);
-    return (k * g[0]) * y23 + (k * g[1]) * cross(y3, y1) + (k * g[2]) * cross(y1, y2);
-  } else {
-    return {Pack{}, Pack{}, Pack{}};
-  }
+/// Rows [0 | x | · | ·].
+POLHODE_INLINE void put_vector_rows(const P3& x, int at, double (*rows)[8]) {
+  const Pack columns[8] = {Pack{}, Pack{}, Pack{}, x[0], x[1], x[2], Pack{}, Pack{}};
+  to_rows(columns, rows[at]);
 }
 
 template <class S, bool kRho1>
@@ -260,8 +125,9 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
   for (int at = 0; at < kLanes; at += kWidth) {
     P3 rows[3], rhs_theta;
     assemble_inertia<kRho1>(v, block, at, rows, rhs_theta, s);
-    if (v.first_iteration) joint_at_n<S>(v, block, at);
-    const JointGeometry<S> q = joint_geometry<S>(v, block, at);
+    if (v.first_iteration)
+      joint_at_n<S>(data, at, parents_at_n(v, block, at), bodies_at_n(v, block, at));
+    const JointGeometry<S> q = tree_joint<S>(v, block, at);
     const auto average = [&](int field, const P3& at_n1) {
       return (1.0 - weight) * get3(data, field, at) + weight * at_n1;
     };
@@ -294,7 +160,7 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
       }
     }
     put_theta_rows(rows, rhs_theta, at, s);
-    store3(s.F, at, F);
+    put_vector_rows(F, at, s.F_rows);
     store3(s.arm, at, q.arm);
     store(s.F_dot_arm + at, dot(F, q.arm));
 
@@ -311,6 +177,14 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
     put3(data, l.c_r(), at, c_r);
     put3(data, l.arm_b_alpha(), at, z_b_al);
     store3(s.c_l, at, arm_al - z_b_al);
+    if constexpr (S::ball) {
+      store3(s.arm_l, at, arm_al);
+      store3(s.z_l, at, z_b_al);
+      put3(data, l.z_b(), at, q.z_b);
+      put_hat_rows(q.z_b, x_r, at, s.T);
+      put_hat_rows(-1.0 * q.arm, {Pack{}, Pack{}, Pack{}}, at, s.arm_rows);
+      continue;
+    }
 
     // Free directions, right at t_{n+1} and left at t_{n+αf}.
     P3 S_r[S::free > 0 ? S::free : 1][2];
@@ -350,7 +224,9 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
         if (k == 1) store3(s.k_b, at, turn);
       }
       store3(s.k_a[S::taus + k], at, k_a);
+      if constexpr (S::free == 1) put_vector_rows(k_a, at, s.k_rows);
     }
+    if constexpr (S::free == 1 && S::taus == 1) put_vector_rows(load3(s.k_a[0], at), at, s.k_rows);
     for (int k = 0; k < S::free; ++k) {
       put3(data, l.S_r() + 6 * k, at, S_r[k][0]);
       put3(data, l.S_r() + 6 * k + 3, at, S_r[k][1]);

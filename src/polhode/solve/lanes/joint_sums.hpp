@@ -8,12 +8,11 @@ namespace polhode::POLHODE_ISA {
 
 /// Largest |g|, Σ|λ g| and Σ|λ|(ℓ + |x|) of a block's joints.
 template <class S>
-void check_block(const TreeView& v, const int* body_of_slot, int block, double* largest,
-                 int* worst_slot, double* defect, double* scale) {
+void check_block(const TreeView& v, const int* body_of_slot, int block, LaneCheck& c) {
   const double* data = v.joint_data + v.joint[block];
   const double length = 1.0 / v.inverse_length;
   for (int at = 0; at < kLanes; at += kWidth) {
-    const JointGeometry<S> q = joint_geometry<S>(v, block, at);
+    const JointGeometry<S> q = tree_joint<S>(v, block, at);
     const P3 r = load3(v.trial[block].r, at);
     const Pack reach = length + abs(r[0]) + abs(r[1]) + abs(r[2]);
     Pack most{}, work{}, size{};
@@ -28,12 +27,12 @@ void check_block(const TreeView& v, const int* body_of_slot, int block, double* 
     }
     for (int i = 0; i < kWidth; ++i) {
       if (body_of_slot[block * kLanes + at + i] < 0) continue;
-      if (!(most[i] <= *largest)) {
-        *largest = most[i];
-        *worst_slot = block * kLanes + at + i;
+      if (!(most[i] <= c.largest)) {
+        c.largest = most[i];
+        c.worst_slot = block * kLanes + at + i;
       }
-      *defect += work[i];
-      *scale += size[i];
+      c.work_defect += work[i];
+      c.work_scale += size[i];
     }
   }
 }
@@ -46,7 +45,7 @@ void ground_block(const TreeView& v, const int* body_of_slot, int block, double*
   const double* data = v.joint_data + v.joint[block];
   const double weight = v.alpha_f;
   for (int at = 0; at < kLanes; at += kWidth) {
-    const JointGeometry<S> q = joint_geometry<S>(v, block, at);
+    const JointGeometry<S> q = tree_joint<S>(v, block, at);
     const auto average = [&](int field, const P3& at_n1) {
       return (1.0 - weight) * get3(data, field, at) + weight * at_n1;
     };

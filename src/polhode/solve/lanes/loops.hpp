@@ -218,22 +218,22 @@ inline bool eliminate_common_loops(const TreeView& v, int slot) {
 }
 
 /// Passes the loops open at a body on to its parent while the body is eliminated.
-/// S_l, S_r: nq × 6; P: 6 rows `stride` apart; D_inverse: rows of 8; Y = D⁻¹[Qᵀ | · | −β].
-__attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, int nq,
-                                                  const double* S_l, const double* S_r,
-                                                  const double* x_g, const double* c_l,
-                                                  const double* c_r, const double* P, int stride,
-                                                  const double* D_inverse, const Row* Y) {
+/// S_l, S_r: nq × 6; P: 6 rows of nq; D_inverse: rows of 8; Y = D⁻¹[Qᵀ | · | −β].
+template <int nq>
+__attribute__((noinline)) void carry_loops(const TreeView& v, int slot, const double* S_l,
+                                           const double* S_r, const double* x_g, const double* c_l,
+                                           const double* c_r, const double* P,
+                                           const double* D_inverse, const Row* Y) {
   for (int o = v.first_open[slot]; o < v.first_open[slot + 1]; ++o) {
     const LoopAtBody& here = v.open[o];
     TreeLoop& loop = v.loop[here.loop];
     for (int k = 0; k < loop.panels; ++k) {
-      Row C[6], R[6], e[6], gamma[6];
+      constexpr int most = nq > 0 ? nq : 1;
+      Row C[6], R[6], e[most], gamma[most], projected[most];
       for (int i = 0; i < 6; ++i) {
         C[i] = row_load(pair_row(v, here.pair, loop.panels, i) + 8 * k);
         R[i] = row_load(pair_row(v, here.pair, loop.panels, 6 + i) + 8 * k);
       }
-      Row projected[6];
       for (int d = 0; d < nq; ++d) {
         const double *l = S_l + 6 * d, *r = S_r + 6 * d;
         projected[d] = ((l[0] * C[0] + l[1] * C[1]) + l[2] * C[2]) +
@@ -260,7 +260,7 @@ __attribute__((noinline)) inline void carry_loops(const TreeView& v, int slot, i
       R[5] += c_r[0] * R[1] - c_r[1] * R[0];
       for (int i = 0; i < 6; ++i) {
         for (int d = 0; d < nq; ++d) {
-          C[i] -= P[stride * i + d] * gamma[d];
+          C[i] -= P[nq * i + d] * gamma[d];
           R[i] -= Y[d][i] * e[d];
         }
         double* to_C = pair_row(v, here.parent_pair, loop.panels, i) + 8 * k;

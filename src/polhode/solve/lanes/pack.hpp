@@ -94,6 +94,27 @@ POLHODE_INLINE double row_sum(const Row& a) {
 #endif
   return s[0] + s[1];
 }
+POLHODE_INLINE Row abs(const Row& a) {
+  Row r;
+  for (int i = 0; i < kParts; ++i) r.part[i] = abs(a.part[i]);
+  return r;
+}
+/// Number i of the row in all places.
+template <int i>
+POLHODE_INLINE Row spread(const Row& a) {
+  constexpr int k = i % kWidth;
+  const Pack from = a.part[i / kWidth];
+#if POLHODE_WIDTH == 8
+  const Pack x = __builtin_shufflevector(from, from, k, k, k, k, k, k, k, k);
+#elif POLHODE_WIDTH == 4
+  const Pack x = __builtin_shufflevector(from, from, k, k, k, k);
+#else
+  const Pack x = __builtin_shufflevector(from, from, k, k);
+#endif
+  Row r;
+  for (int p = 0; p < kParts; ++p) r.part[p] = x;
+  return r;
+}
 POLHODE_INLINE Row& operator+=(Row& a, const Row& b) { return a = a + b; }
 POLHODE_INLINE Row& operator-=(Row& a, const Row& b) { return a = a - b; }
 POLHODE_INLINE Row row_zero() { return Row{}; }
@@ -157,6 +178,46 @@ POLHODE_INLINE void transpose(const Pack* a, Pack* o) {
   o[1] = __builtin_shufflevector(a[0], a[1], 1, 3);
 }
 #endif
+
+/// The sums of six rows side by side, and two zeros.
+POLHODE_INLINE Row row_sums(const Row* rows) {
+  Row r;
+#if POLHODE_WIDTH == 8
+  const auto neighbours = [](Pack x, Pack y) {
+    return __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  };
+  const auto pairs = [](Pack x, Pack y) {
+    return __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13) +
+           __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
+  };
+  const Pack first = pairs(neighbours(rows[0].part[0], rows[1].part[0]),
+                           neighbours(rows[2].part[0], rows[3].part[0]));
+  const Pack last = pairs(neighbours(rows[4].part[0], rows[5].part[0]), Pack{});
+  r.part[0] = __builtin_shufflevector(first, last, 0, 1, 2, 3, 8, 9, 10, 11) +
+              __builtin_shufflevector(first, last, 4, 5, 6, 7, 12, 13, 14, 15);
+#elif POLHODE_WIDTH == 4
+  Pack pair[4] = {};
+  for (int i = 0; i < 3; ++i) {
+    const Pack x = rows[2 * i].part[0] + rows[2 * i].part[1];
+    const Pack y = rows[2 * i + 1].part[0] + rows[2 * i + 1].part[1];
+    pair[i] = __builtin_shufflevector(x, y, 0, 4, 2, 6) + __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  }
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = __builtin_shufflevector(pair[2 * i], pair[2 * i + 1], 0, 1, 4, 5) +
+                __builtin_shufflevector(pair[2 * i], pair[2 * i + 1], 2, 3, 6, 7);
+#else
+  const auto halves = [](const Row& a) {
+    return (a.part[0] + a.part[1]) + (a.part[2] + a.part[3]);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Pack x = halves(rows[2 * i]), y = halves(rows[2 * i + 1]);
+    r.part[i] = __builtin_shufflevector(x, y, 0, 2) + __builtin_shufflevector(x, y, 1, 3);
+  }
+  r.part[3] = Pack{};
+#endif
+  return r;
+}
 
 /// columns[8] of kWidth bodies -> rows of 8, body i's at to + 8 i.
 POLHODE_INLINE void to_rows(const Pack* columns, double* to) {

@@ -42,6 +42,8 @@ struct JointLayout {
     return translation == 1 || translation == 2 ? 2 : 0;
   }
   [[nodiscard]] constexpr bool root() const { return translation == 0 && directions == 0; }
+  /// Points coincide, all rotations are free.
+  [[nodiscard]] constexpr bool ball() const { return translation == 3 && directions == 0; }
   // Constants of the joint.
   [[nodiscard]] constexpr int Z_a() const { return 0; }
   [[nodiscard]] constexpr int Z_b() const { return 3; }
@@ -59,7 +61,8 @@ struct JointLayout {
   [[nodiscard]] constexpr int c_r() const { return arm_b_alpha() + 3; }
   [[nodiscard]] constexpr int x_g() const { return c_r() + 3; }
   [[nodiscard]] constexpr int S_r() const { return x_g() + 6; }
-  [[nodiscard]] constexpr int director_alpha() const { return S_r() + 6 * free(); }
+  [[nodiscard]] constexpr int z_b() const { return S_r(); }  ///< Of a ball joint: all of S_r.
+  [[nodiscard]] constexpr int director_alpha() const { return S_r() + (ball() ? 3 : 6 * free()); }
   [[nodiscard]] constexpr int director_n1() const { return director_alpha() + 3 * directors(); }
   [[nodiscard]] constexpr int slide_alpha() const { return director_n1() + 3 * directors(); }
   [[nodiscard]] constexpr int slide_n1() const { return slide_alpha() + 3 * slides(); }
@@ -99,6 +102,29 @@ struct TreeLoop {
 struct LaterLoop {
   int loop, S_row, S_column;  ///< S(present, later), S(later, present).
   int common_pair;            ///< Pair of `later` at the present loop's common ancestor; -1: none.
+};
+
+/// Eight joints with coincident points that close loops, of one shape, assembled together; `count`
+/// lanes hold one. Their values stand in TreeView::loop_data, as JointLayout has them.
+struct LoopJoints {
+  int directions = 0;   ///< Direction rows.
+  bool couple = false;  ///< The couple is the unknown, three numbers; else the multipliers are.
+  int count = 0;
+  int data = 0;                                  ///< Offset into loop_data, doubles.
+  int from_a[kLanes] = {}, from_b[kLanes] = {};  ///< Offsets of the bodies' lanes in the trial.
+  int slot_a[kLanes] = {}, slot_b[kLanes] = {};  ///< The ground has the last one.
+  int extra_a[kLanes] = {}, extra_b[kLanes] = {};
+  int pair_a[kLanes] = {}, pair_b[kLanes] = {};  ///< Where C and Rᵀ begin; −1: the ground.
+  int S[kLanes] = {}, nu[kLanes] = {};           ///< Of their loops.
+  int row[kLanes] = {};                          ///< First multiplier.
+};
+
+/// How well constraints hold at the trial.
+struct LaneCheck {
+  double largest = 0.0;                        ///< |g|.
+  int worst_slot = -1;                         ///< A tree joint's body, or
+  int worst_row = -1;                          ///< a loop joint's row.
+  double work_defect = 0.0, work_scale = 0.0;  ///< Σ|λ g|, Σ|λ|(ℓ + |x|) [J].
 };
 
 /// Everything the tree kernels touch, as plain pointers: the kernels are compiled for several
@@ -146,6 +172,12 @@ struct TreeView {
   double* y = nullptr;
   int* pivots = nullptr;
   double* U = nullptr;
+  int loop_blocks = 0;
+  const LoopJoints* loop_joints = nullptr;
+  double* loop_data = nullptr;
+  double* lambda = nullptr;  ///< By row; tree joints keep theirs in joint_data.
+  const double* lambda_centre = nullptr;
+  double proximal = 0.0;  ///< ε of loop rows.
   // Step.
   double gravity[3] = {0, 0, 0};
   double scale = 0.0;  ///< s_c = βΔt²/m_ref.
@@ -192,9 +224,8 @@ struct LaneKernels {
   SweepResult (*down)(const TreeView* view);
   /// Force and moment about the origin of the tree joints to the ground; added to.
   void (*ground)(const TreeView* view, const int* body_of_slot, double* force, double* moment);
-  /// Constraints of the tree joints at the trial.
-  void (*check)(const TreeView* view, const int* body_of_slot, double* largest, int* worst_slot,
-                double* work_defect, double* work_scale);
+  /// Constraints of the tree joints and of LoopJoints at the trial.
+  void (*check)(const TreeView* view, const int* body_of_slot, LaneCheck* result);
 };
 
 }  // namespace polhode
