@@ -49,7 +49,9 @@ class LoadReader {
         section_(context, node, load.place, "loads." + load.name, table) {}
 
   void read() {
-    if (load_.type == "spring_damper") {
+    if (table_.find("solid")) {
+      read_on_solid();
+    } else if (load_.type == "spring_damper") {
       read_spring();
     } else if (load_.type == "torsional_spring") {
       read_torsional_spring();
@@ -76,6 +78,23 @@ class LoadReader {
     if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
     if (const auto point = section_.vector("at_body"))
       load_.Z_b = from_com(context_, load_.b, *point);
+  }
+
+  /// A load on nodes or faces of a deformable solid.
+  void read_on_solid() {
+    if (const SourceNode* value = section_.find("solid"))
+      if (const auto solid = read_solid_name(context_, *value, section_.path("solid")))
+        load_.solid = *solid;
+    for (const char* key : {"surface", "nodes"}) {
+      if (!table_.find(key) || !section_.has(key)) continue;
+      if (auto selection = read_selections(context_, *section_.find(key), section_.path(key)))
+        load_.selection = std::move(*selection);
+    }
+    if (table_.find("pressure")) load_.value = section_.time_number("pressure");
+    if (table_.find("follower")) load_.follower = section_.boolean("follower").value_or(true);
+    for (const char* key : {"traction", "acceleration", "force"})
+      if (table_.find(key))
+        if (const auto vector = section_.time_vector(key)) load_.vector = *vector;
   }
 
   void read_spring() {

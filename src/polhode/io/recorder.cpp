@@ -15,13 +15,27 @@ namespace polhode {
 struct Recorder::Impl {
   std::optional<ResultsFile> results;
   std::optional<ParaviewWriter> paraview;
+  std::optional<SolidsWriter> solids;
   std::optional<CsvProbes> probes;
   double last_frame = -std::numeric_limits<double>::infinity();
   std::size_t frames = 0;
 };
 
-Recorder::Recorder(const Simulation& simulation, const std::string& folder,
-                   const Provenance& provenance, bool restarted)
+namespace {
+
+/// Whether the force at an interface of a solid goes into a file.
+bool records_reactions(const Model& model) {
+  bool interfaces = false, probes = false;
+  for (const SolidSpec& solid : model.solids)
+    interfaces = interfaces || !solid.bonded.empty() || !solid.prescribed.empty();
+  for (const ProbeSpec& probe : model.output.probes) probes = probes || !probe.reaction_of.empty();
+  return interfaces && (model.output.hdf5 || (model.output.csv && probes));
+}
+
+}  // namespace
+
+Recorder::Recorder(Simulation& simulation, const std::string& folder, const Provenance& provenance,
+                   bool restarted)
     : impl_(std::make_unique<Impl>()) {
   const OutputSpec& output = simulation.model().output;
   const std::optional<double> keep =
@@ -41,6 +55,17 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     impl_->paraview.emplace(folder + "/paraview", "results",
                             body_pictures(simulation.model(), simulation.system().length_scale()),
                             keep);
+  if (output.paraview && !simulation.solids().empty()) {
+    std::vector<std::string> names;
+    std::vector<const Mesh*> meshes;
+    for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
+      names.push_back(simulation.model().solids[i].name);
+      meshes.push_back(&simulation.solids()[i].plan.mesh);
+    }
+    impl_->solids.emplace(folder + "/paraview", "solids", std::move(names), std::move(meshes),
+                          keep);
+  }
+  if (records_reactions(simulation.model())) simulation.keep_reactions();
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
 
@@ -56,6 +81,12 @@ void Recorder::frame(const Simulation& simulation) {
       motions.push_back(simulation.body(static_cast<int>(i)));
     impl_->paraview->append(simulation.time(), motions);
   }
+  if (impl_->solids) {
+    std::vector<SolidReport> reports;
+    for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i)
+      reports.push_back(simulation.solid(i));
+    impl_->solids->append(simulation.time(), reports);
+  }
   ++impl_->frames;
 }
 
@@ -66,6 +97,7 @@ void Recorder::step(const Simulation& simulation) {
 void Recorder::close() {
   if (impl_->results) impl_->results->close();
   if (impl_->paraview) impl_->paraview->close();
+  if (impl_->solids) impl_->solids->close();
   if (impl_->probes) impl_->probes->flush();
 }
 

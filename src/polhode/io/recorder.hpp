@@ -10,13 +10,15 @@
 namespace polhode {
 
 /// Writes what a model's `output` asks for into one folder: results.h5, probes/<name>.csv,
-/// paraview/results.pvd.
+/// paraview/results.pvd and, of deformable solids, paraview/solids.pvd.
 class Recorder {
  public:
   /// @param restarted  The simulation continues from its present time: files of the earlier run
   ///                   in the folder are kept up to that time and continued.
   /// @throws FileError, InputError
-  Recorder(const Simulation& simulation, const std::string& folder, const Provenance& provenance,
+  /// The simulation keeps reactions at interfaces from now on if they are recorded; it outlives
+  /// the recorder.
+  Recorder(Simulation& simulation, const std::string& folder, const Provenance& provenance,
            bool restarted = false);
   ~Recorder();
 

@@ -8,6 +8,7 @@
 
 #include <polhode/io/hdf5_file.hpp>
 #include <polhode/model/simulation.hpp>
+#include <polhode/model/solid_report.hpp>
 
 namespace polhode {
 
@@ -26,9 +27,16 @@ struct ResultsLayout {
     std::string name, type;
     int coordinates = 0;  ///< Free coordinates reported.
   };
+  struct SolidEntry {
+    std::string name;
+    const Mesh* mesh = nullptr;   ///< Outlives the file.
+    std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
+    std::vector<std::string> interfaces;
+  };
   std::string title;
   std::vector<std::string> bodies;
   std::vector<JointEntry> joints;
+  std::vector<SolidEntry> solids;
 
   [[nodiscard]] int coordinates() const;  ///< Of all joints.
 };
@@ -41,6 +49,8 @@ struct ResultsFrame {
   std::vector<Quat> orientation;  ///< Body to world.
   std::vector<double> coordinates, rates;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
+  std::vector<SolidReport> solids;
+  std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.
   Balance balance;
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
@@ -62,8 +72,12 @@ class ResultsFile {
   void close() { file_.close(); }  ///< @throws FileError
 
  private:
-  explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
+  ResultsFile(Hdf5File file, const ResultsLayout& layout)
+      : file_(std::move(file)), solids_(layout.solids) {}
+  void add_solids(const ResultsFrame& frame);
+
   Hdf5File file_;
+  std::vector<ResultsLayout::SolidEntry> solids_;
   std::vector<double> numbers_;
 };
 

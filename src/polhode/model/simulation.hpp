@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -9,7 +10,10 @@
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
+#include <polhode/model/build_solids.hpp>
 #include <polhode/model/model.hpp>
+#include <polhode/model/solid_point.hpp>
+#include <polhode/model/solid_report.hpp>
 #include <polhode/solve/ledger.hpp>
 #include <polhode/solve/start.hpp>
 #include <polhode/solve/stepper.hpp>
@@ -84,10 +88,26 @@ class Simulation {
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
   [[nodiscard]] Balance balance() const;
+
+  // Deformable solids, by index in the Model.
+  [[nodiscard]] const std::vector<SolidMap>& solids() const;
+  [[nodiscard]] SolidReport solid(int solid) const;
+  /// Position, displacement since the start and velocity of a material point.
+  [[nodiscard]] std::array<Vec3, 3> solid_point(int solid, const SolidPoint& point) const;
+  /// Names of what holds nodes of a solid: bonded bodies, then prescribed nodes.
+  [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
+  /// Works out reactions at interfaces from the next step on; costs an evaluation of the solids
+  /// in each.
+  void keep_reactions();
+  /// Reaction of interfaces(solid)[k] at the middle of the last step; zero if none was taken
+  /// since keep_reactions().
+  [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
 
  private:
+  [[nodiscard]] Vec3 node_velocity(int node) const;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
