@@ -117,7 +117,7 @@ struct Target {
   int index = 0;
   SolidPoint point{};
   int interface = -1;
-  std::vector<std::string> header;
+  std::vector<std::string> header{};
 };
 
 Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
