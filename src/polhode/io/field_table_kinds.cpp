@@ -222,7 +222,13 @@ const std::vector<KindTable>& load_tables() {
              .kind = kBoolean,
              .meaning = "Turns with the faces and acts on their deformed area; else as on the "
                         "undeformed solid.",
-             .standard = "true"}}),
+             .standard = "true"},
+            {.name = "keeps",
+             .kind = kChoice,
+             .meaning = "What a follower keeps exactly over a step: on a closed surface no force "
+                        "and moment, or the work, pressure times change of volume.",
+             .standard = "momentum",
+             .choices = {"momentum", "work"}}}),
       load("traction", "A force per area on faces of a deformable solid.",
            {solid,
             surface,

@@ -92,6 +92,8 @@ class LoadReader {
     }
     if (table_.find("pressure")) load_.value = section_.time_number("pressure");
     if (table_.find("follower")) load_.follower = section_.boolean("follower").value_or(true);
+    if (table_.find("keeps"))
+      if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
     for (const char* key : {"traction", "acceleration", "force"})
       if (table_.find(key))
         if (const auto vector = section_.time_vector(key)) load_.vector = *vector;

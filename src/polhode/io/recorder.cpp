@@ -21,21 +21,8 @@ struct Recorder::Impl {
   std::size_t frames = 0;
 };
 
-namespace {
-
-/// Whether the force at an interface of a solid goes into a file.
-bool records_reactions(const Model& model) {
-  bool interfaces = false, probes = false;
-  for (const SolidSpec& solid : model.solids)
-    interfaces = interfaces || !solid.bonded.empty() || !solid.prescribed.empty();
-  for (const ProbeSpec& probe : model.output.probes) probes = probes || !probe.reaction_of.empty();
-  return interfaces && (model.output.hdf5 || (model.output.csv && probes));
-}
-
-}  // namespace
-
-Recorder::Recorder(Simulation& simulation, const std::string& folder, const Provenance& provenance,
-                   bool restarted)
+Recorder::Recorder(const Simulation& simulation, const std::string& folder,
+                   const Provenance& provenance, bool restarted)
     : impl_(std::make_unique<Impl>()) {
   const OutputSpec& output = simulation.model().output;
   const std::optional<double> keep =
@@ -65,7 +52,6 @@ Recorder::Recorder(Simulation& simulation, const std::string& folder, const Prov
     impl_->solids.emplace(folder + "/paraview", "solids", std::move(names), std::move(meshes),
                           keep);
   }
-  if (records_reactions(simulation.model())) simulation.keep_reactions();
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
 

@@ -13,12 +13,11 @@ namespace polhode {
 /// paraview/results.pvd and, of deformable solids, paraview/solids.pvd.
 class Recorder {
  public:
+  /// @param simulation  Outlives the recorder.
   /// @param restarted  The simulation continues from its present time: files of the earlier run
   ///                   in the folder are kept up to that time and continued.
   /// @throws FileError, InputError
-  /// The simulation keeps reactions at interfaces from now on if they are recorded; it outlives
-  /// the recorder.
-  Recorder(Simulation& simulation, const std::string& folder, const Provenance& provenance,
+  Recorder(const Simulation& simulation, const std::string& folder, const Provenance& provenance,
            bool restarted = false);
   ~Recorder();
 

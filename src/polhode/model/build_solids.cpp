@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <optional>
+#include <memory>
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/fe/loads/solid_loads.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/fe/solid_elements.hpp>
 #include <polhode/model/build_solids.hpp>
@@ -19,6 +19,13 @@ struct RigidMotion {
 
   [[nodiscard]] Vec3 at(const Vec3& x) const { return velocity + omega.cross(x - point); }
 };
+
+/// Reference positions by the system's numbers, as elements know nodes.
+std::vector<Vec3> positions(const SolidPlan& plan, int first_node) {
+  std::vector<Vec3> X(static_cast<std::size_t>(first_node), Vec3::Zero());
+  X.insert(X.end(), plan.start.begin(), plan.start.end());
+  return X;
+}
 
 class SolidBuilder {
  public:
@@ -45,9 +52,7 @@ class SolidBuilder {
         model_.materials[static_cast<std::size_t>(model_.material_index(solid_.material))];
     const std::shared_ptr<const Material> material =
         make_material(format("materials.{}", spec.name), material_description(spec));
-    // Elements know nodes by the system's numbers.
-    std::vector<Vec3> X(static_cast<std::size_t>(map_.first_node), Vec3::Zero());
-    X.insert(X.end(), map_.plan.start.begin(), map_.plan.start.end());
+    const std::vector<Vec3> X = positions(map_.plan, map_.first_node);
     for (std::size_t b = 0; b < map_.plan.mesh.blocks.size(); ++b) {
       SolidElementsDescription d{.name = format("solids.{}", solid_.name),
                                  .element = map_.plan.elements[b],
@@ -145,11 +150,47 @@ SolidMap add_solid(System& system, const Model& model, int solid, const std::vec
   return SolidBuilder(system, model, solid, body).build();
 }
 
-std::vector<int> add_solid_load(System& /*system*/, const LoadSpec& load,
-                                const SolidMap& /*solid*/) {
-  throw InputError(format("loads.{}", load.name),
-                   format("'{}' on solids is not supported by this version", load.type),
-                   "Leave it out");
+std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid) {
+  const std::string where = format("loads.{}", load.name);
+  const Mesh& mesh = solid.plan.mesh;
+  const std::vector<Vec3> X = positions(solid.plan, solid.first_node);
+  std::vector<int> groups;
+  const auto add = [&](std::unique_ptr<ElementGroup> group) {
+    groups.push_back(system.add_elements(std::move(group)));
+  };
+  if (load.type == "nodal_force") {
+    std::vector<int> nodes = select_nodes(where + ".nodes", mesh, load.selection);
+    for (int& node : nodes) node += solid.first_node;
+    add(make_nodal_force(where, std::move(nodes), X, load.vector.value()));
+    return groups;
+  }
+  if (load.type == "body_force") {
+    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+      std::vector<int> nodes = mesh.blocks[b].nodes;
+      for (int& node : nodes) node += solid.first_node;
+      add(make_body_force(where, solid.plan.elements[b], nodes, X, load.vector.value(),
+                          solid.plan.density));
+    }
+    return groups;
+  }
+  std::vector<LoadedFaces> faces;
+  for (const FaceBlock& block : select_faces(where + ".surface", mesh, load.selection).blocks) {
+    faces.push_back({block.type, block.nodes});
+    for (int& node : faces.back().nodes) node += solid.first_node;
+  }
+  if (load.type == "traction") {
+    add(make_traction(where, faces, X, load.vector.value()));
+  } else if (load.type != "pressure") {
+    throw InputError(where + ".type", format("'{}' does not act on solids", load.type),
+                     "Use pressure, traction, body_force or nodal_force");
+  } else if (load.follower) {
+    const FollowerRule rule = load.keeps == "work" ? FollowerRule::kWork : FollowerRule::kMomentum;
+    for (auto& group : make_follower_pressure(where, faces, load.value, rule))
+      add(std::move(group));
+  } else {
+    add(make_dead_pressure(where, faces, X, load.value));
+  }
+  return groups;
 }
 
 }  // namespace polhode

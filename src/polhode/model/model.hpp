@@ -75,6 +75,7 @@ struct LoadSpec {
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
   std::vector<Selection> selection;  ///< Its nodes or faces; empty: all.
   bool follower = false;  ///< A pressure that turns with the surface and grows with its area.
+  std::string keeps = "momentum";  ///< Of a follower pressure: momentum or work is exact.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
 };

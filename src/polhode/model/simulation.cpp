@@ -329,21 +329,26 @@ std::vector<std::string> Simulation::interfaces(int solid) const {
   return names;
 }
 
-void Simulation::keep_reactions() { impl_->stepper->keep_reactions(); }
-
 InterfaceReport Simulation::interface_reaction(int solid, int k) const {
   const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
   const auto bonds = static_cast<int>(map.plan.bonded.size());
   const std::vector<int>& nodes = k < bonds
                                       ? map.plan.bonded.at(static_cast<std::size_t>(k))
                                       : map.plan.prescribed.at(static_cast<std::size_t>(k - bonds));
-  const std::vector<NodeReaction>& reactions = impl_->stepper->reactions();
+  const Nodes& all = impl_->system.nodes();
+  const InstantSolution& now = impl_->at_instant();
   InterfaceReport report;
-  if (reactions.empty()) return report;
-  for (const int node : nodes) {
-    const NodeReaction& one = reactions[static_cast<std::size_t>(map.first_node + node)];
-    report.force += one.force;
-    report.moment += one.arm.cross(one.force);
+  if (now.node_force.empty()) return report;
+  for (const int k_node : nodes) {
+    const int node = map.first_node + k_node;
+    Vec3 force = at_node(now.node_force, node);
+    // Free components of a prescribed node are in balance but for round-off.
+    for (int c = 0; c < 3; ++c)
+      if (!all.bonded(node) && all.unknown(node, c) >= 0) force[c] = 0.0;
+    Vec3 arm = at_node(impl_->state.node_x, node);
+    if (all[node].body >= 0) arm -= impl_->system.motion(impl_->state, all[node].body).r;
+    report.force += force;
+    report.moment += arm.cross(force);
   }
   return report;
 }

@@ -96,11 +96,7 @@ class Simulation {
   [[nodiscard]] std::array<Vec3, 3> solid_point(int solid, const SolidPoint& point) const;
   /// Names of what holds nodes of a solid: bonded bodies, then prescribed nodes.
   [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
-  /// Works out reactions at interfaces from the next step on; costs an evaluation of the solids
-  /// in each.
-  void keep_reactions();
-  /// Reaction of interfaces(solid)[k] at the middle of the last step; zero if none was taken
-  /// since keep_reactions().
+  /// What interfaces(solid)[k] exerts on the solid.
   [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;

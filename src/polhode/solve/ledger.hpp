@@ -34,8 +34,6 @@ class LedgerKeeper {
   /// Compares with the start; at the end of whole steps.
   void close_step(State& state);
   [[nodiscard]] Balance balance(const State& state) const;
-  [[nodiscard]] NodeLedger& nodes() { return nodes_; }
-  [[nodiscard]] const NodeLedger& nodes() const { return nodes_; }
 
  private:
   [[nodiscard]] BodySums sums(const State& state) const;

@@ -74,10 +74,9 @@ double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3&
     force += f;
     moment += step.position_alpha(node).cross(f);
   };
-  if (!held_.empty() || keep_reactions_) {
+  if (!held_.empty()) {
     const std::vector<Mat3> here(nodes.pieces().size(), Mat3::Identity());
     nodes_.assemble(state, trial, false, here);
-    if (keep_reactions_) note_reactions(state, trial);
     for (int i : held_) {
       const bool all = nodes.bonded(i);
       Vec3 f = Vec3::Zero();
@@ -102,26 +101,6 @@ double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3&
       }
   }
   return potential;
-}
-
-void NodeLedger::note_reactions(const State& state, const Trial& trial) {
-  const Nodes& nodes = system_->nodes();
-  const NodeStep step = node_step(state, trial);
-  reactions_.resize(static_cast<std::size_t>(nodes.count()));
-  std::vector<Vec3> centres;
-  for (int b = 0; b < system_->body_count(); ++b) {
-    const BodyStep body = body_step(*system_, state, trial, b);
-    centres.emplace_back(body.r_n + trial.context.ga.alpha_f * body.u);
-  }
-  for (int i = 0; i < nodes.count(); ++i) {
-    NodeReaction& reaction = reactions_[i];
-    reaction.force = at(nodes_.residual(), i);
-    reaction.arm = step.position_alpha(i);
-    if (nodes[i].body >= 0) reaction.arm -= centres[nodes[i].body];
-    if (nodes.bonded(i)) continue;
-    for (int c = 0; c < 3; ++c)
-      if (nodes.unknown(i, c) >= 0) reaction.force[c] = 0.0;  // In balance but for round-off.
-  }
 }
 
 }  // namespace polhode

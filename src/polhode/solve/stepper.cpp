@@ -282,12 +282,6 @@ const NewtonEngine& Stepper::engine() const { return impl_->single.engine(); }
 
 Balance Stepper::balance(const State& state) const { return impl_->single.ledger().balance(state); }
 
-void Stepper::keep_reactions() { impl_->single.ledger().nodes().keep_reactions(); }
-
-const std::vector<NodeReaction>& Stepper::reactions() const {
-  return impl_->single.ledger().nodes().reactions();
-}
-
 std::vector<std::pair<std::string, double>> Stepper::phases() const {
   return impl_->single.phases();
 }

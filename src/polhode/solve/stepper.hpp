@@ -49,9 +49,6 @@ class Stepper {
   StepReport advance(State& state, double t_limit);
   [[nodiscard]] const NewtonEngine& engine() const;
   [[nodiscard]] Balance balance(const State& state) const;
-  /// Reactions of nodes that something holds, see NodeLedger.
-  void keep_reactions();
-  [[nodiscard]] const std::vector<NodeReaction>& reactions() const;
   /// Seconds spent in phases since construction.
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
 
