@@ -45,7 +45,22 @@ Overrides overrides_of(const fs::path& path) {
 
 TEST(Corpus, HoldsAtLeastSixtyBrokenModels) { EXPECT_GE(models("broken").size(), 60U); }
 
+/// Mesh files are named as seen from the model's folder.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const fs::path& folder) : before_(fs::current_path()) {
+    fs::current_path(folder);
+  }
+  ~WorkingFolder() { fs::current_path(before_); }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+ private:
+  fs::path before_;
+};
+
 TEST(Corpus, BrokenModelsAreRefusedWithTheirMessages) {
+  const WorkingFolder folder(kCorpus / "broken");
   for (const fs::path& path : models("broken")) {
     SCOPED_TRACE(path.filename().string());
     try {

@@ -99,6 +99,55 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
             "1.2.3 format: 1\n\n");
 }
 
+/// Solids have their nodes and elements side by side, and what holds them under its name.
+TEST(ResultsFile, HoldsDeformableSolids) {
+  const test::Scratch scratch;
+  Mesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.blocks = {{"tet4", {0, 1, 2, 3, 0, 2, 1, 4}}};
+  ResultsLayout l = layout(1);
+  l.solids = {{"pad", &mesh, mesh.nodes, {"b0", "lid"}}};
+  ResultsFile file(scratch / "results.h5", l, {});
+  for (int k = 0; k < 3; ++k) {
+    ResultsFrame f = frame(l, k);
+    SolidReport report;
+    for (int i = 0; i < 5; ++i) {
+      report.displacement.emplace_back(k, i, 0.5);
+      report.velocity.emplace_back(i, k, -0.5);
+    }
+    report.elements.resize(2);
+    for (int e = 0; e < 2; ++e) {
+      report.elements[static_cast<std::size_t>(e)].volume = 1.0 / 6.0;
+      report.elements[static_cast<std::size_t>(e)].cauchy(2, 2) = 10.0 * k + e;
+      report.elements[static_cast<std::size_t>(e)].strain_energy_density = e;
+    }
+    f.solids = {report};
+    f.interfaces.resize(2);
+    f.interfaces[0].force = {1.0 * k, 2.0, 3.0};
+    f.interfaces[1].moment = {4.0, 5.0, 6.0 * k};
+    file.append(f);
+  }
+  file.close();
+  const std::string output = python(R"(
+import h5py
+pad = h5py.File(")" + scratch / "results.h5" +
+                                    R"(")["solids/pad"]
+print(pad["nodes/displacement"].shape, pad["nodes/displacement"][2, 4], pad["nodes/velocity"][1, 3])
+print(pad["elements/cauchy"][2, 1], pad["elements/von_mises"][1], pad["nodes/von_mises"][1, [3, 4]])
+print(pad["nodes/strain_energy_density"][0], pad["elements/principal_stretches"].shape)
+first, last = pad["elements/offsets"][1:3]
+print(pad["elements/connectivity"][first:last], pad["elements/vtk_type"][:], pad["nodes/reference"][4])
+print(pad["interfaces/b0/force"][1], pad["interfaces/lid/moment"][2], pad["nodes/cauchy"].attrs["unit"])
+)");
+  if (output == "no h5py") GTEST_SKIP() << "h5py is not installed";
+  EXPECT_EQ(output,
+            "(3, 5, 3) [2.  4.  0.5] [ 3.   1.  -0.5]\n"
+            "[ 0.  0. 21.  0.  0.  0.] [10. 11.] [10. 11.]\n"
+            "[0.5 0.5 0.5 0.  1. ] (3, 2, 3)\n"
+            "[0 2 1 4] [10 10] [ 0.  0. -1.]\n"
+            "[1. 2. 3.] [ 4.  5. 12.] Pa\n");
+}
+
 TEST(ResultsFile, ContinuesAtATimeAndDropsWhatCameLater) {
   const test::Scratch scratch;
   const ResultsLayout l = layout(2);

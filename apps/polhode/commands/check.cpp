@@ -42,8 +42,47 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                "ones are reported.",
                rank.redundant, rank.rows, name_list(rank.names, 12)));
   }
-  if (rank.mobility == 0 && simulation.system().body_count() > 0)
+  if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
     list.emplace_back("The mobility is 0: nothing can move.");
+  for (const SolidMap& solid : simulation.solids())
+    list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
+  return list;
+}
+
+/// "base (25 nodes), plate (25 nodes)".
+std::string interfaces_text(const Simulation& simulation, std::size_t solid) {
+  const SolidPlan& plan = simulation.solids()[solid].plan;
+  const std::vector<std::string> names = simulation.interfaces(static_cast<int>(solid));
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto& nodes =
+        k < plan.bonded.size() ? plan.bonded[k] : plan.prescribed[k - plan.bonded.size()];
+    text +=
+        format("{}{} ({})", k == 0 ? "" : ", ", names[k], counted(nodes.size(), "node", "nodes"));
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+nlohmann::ordered_json solids_json(const Simulation& simulation) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
+    const SolidMap& solid = simulation.solids()[i];
+    nlohmann::ordered_json interfaces = nlohmann::ordered_json::object();
+    const std::vector<std::string> names = simulation.interfaces(static_cast<int>(i));
+    const std::size_t bonds = solid.plan.bonded.size();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      interfaces[names[k]] =
+          k < bonds ? solid.plan.bonded[k].size() : solid.plan.prescribed[k - bonds].size();
+    list.push_back({{"name", simulation.model().solids[i].name},
+                    {"nodes", solid.node_count()},
+                    {"elements", solid.plan.mesh.element_count()},
+                    {"element_kinds", solid.plan.elements},
+                    {"mass", solid.mass},
+                    {"volume", solid.plan.volume},
+                    {"interfaces", interfaces},
+                    {"smallest_det", solid.plan.least_jacobian},
+                    {"smallest_det_element", solid.plan.least_element}});
+  }
   return list;
 }
 
@@ -71,6 +110,7 @@ int check(const Options& options) {
                                    {"moving_bodies", simulation.system().body_count()},
                                    {"joints", simulation.model().joints.size()},
                                    {"loads", simulation.model().loads.size()},
+                                   {"solids", solids_json(simulation)},
                                    {"constraint_rows", rank.rows},
                                    {"rank", rank.rank},
                                    {"redundant_rows", rank.redundant},
@@ -106,6 +146,16 @@ int check(const Options& options) {
     if (tangents)
       rows.push_back({"tangents", format("{:.1e}", tangents->error),
                       failed ? "WRONG: " + tangents->text() : "against central differences"});
+    for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
+      const SolidMap& solid = simulation.solids()[i];
+      rows.push_back({format("solid {}", simulation.model().solids[i].name),
+                      counted(static_cast<std::size_t>(solid.node_count()), "node", "nodes"),
+                      format("{} {}, {:.6g} kg, {:.6g} m^3, held by {}; smallest det {:.3g} m^3 in "
+                             "element {}",
+                             solid.plan.mesh.element_count(), name_list(solid.plan.elements),
+                             solid.mass, solid.plan.volume, interfaces_text(simulation, i),
+                             solid.plan.least_jacobian, solid.plan.least_element)});
+    }
     print(table(rows));
     for (const std::string& note : notes) say("warning: " + note);
   }

@@ -6,6 +6,9 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/body/shapes.hpp>
+#include <polhode/fe/elements/registry.hpp>
+#include <polhode/fe/materials/registry.hpp>
+#include <polhode/fe/mesh/generators.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 
@@ -49,6 +52,21 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       KindLine line{kind.name, kind.meaning, "", {}};
       if (!kind.vector.empty()) line.takes.push_back(kind.vector);
       for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
+      lines.push_back(std::move(line));
+    }
+  if (kinds == "materials")
+    for (const MaterialKind& kind : material_kinds()) {
+      KindLine line{kind.name, kind.meaning, kind.uncoupled ? "uncoupled" : "", {}};
+      for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
+      lines.push_back(std::move(line));
+    }
+  if (kinds == "elements")
+    for (const ElementKind& kind : element_kinds())
+      lines.push_back({kind.name, kind.meaning, "cells: " + kind.shape, {}});
+  if (kinds == "meshes")
+    for (const MeshGenerator& kind : mesh_generators()) {
+      KindLine line{kind.name, kind.meaning, "sides: " + kind.sides, {}};
+      for (const MeshParameter& p : kind.parameters) line.takes.push_back(p.name);
       lines.push_back(std::move(line));
     }
   if (kinds == "shapes")
@@ -126,11 +144,26 @@ std::string describe(const Simulation& simulation) {
                                     name_of(model, j.a) + " - " + name_of(model, j.b)};
   });
   text += section("Loads", {"name", "type", "acts on"}, model.loads, [&](const LoadSpec& l) {
+    if (l.solid >= 0)
+      return std::vector<std::string>{
+          l.name, l.type, "solid " + model.solids[static_cast<std::size_t>(l.solid)].name};
     std::string on = name_of(model, l.b);
     if (l.a != kGround) on = name_of(model, l.a) + " - " + on;
     if (!l.joint.empty()) on = "joint " + l.joint;
     return std::vector<std::string>{l.name, l.type, on};
   });
+  std::size_t next = 0;
+  text += section(
+      "Solids", {"name", "elements", "nodes", "mass [kg]", "material", "stress"}, model.solids,
+      [&](const SolidSpec& spec) -> std::vector<std::string> {
+        const SolidMap& solid = simulation.solids()[next++];
+        return {spec.name,
+                format("{} {}", solid.plan.mesh.element_count(), joined(solid.plan.elements)),
+                format("{}", solid.node_count()),
+                format("{:.6g}", solid.mass),
+                spec.material,
+                spec.stress};
+      });
   return text;
 }
 
@@ -150,6 +183,15 @@ std::string describe_json(const Simulation& simulation) {
                       {"bodies", {name_of(model, j.a), name_of(model, j.b)}}});
   nlohmann::ordered_json loads = nlohmann::ordered_json::array();
   for (const LoadSpec& l : model.loads) loads.push_back({{"name", l.name}, {"type", l.type}});
+  nlohmann::ordered_json solids = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const SolidMap& solid = simulation.solids()[i];
+    solids.push_back({{"name", model.solids[i].name},
+                      {"material", model.solids[i].material},
+                      {"elements", solid.plan.elements},
+                      {"nodes", solid.node_count()},
+                      {"mass", solid.mass}});
+  }
   const nlohmann::ordered_json json = {{"title", model.title},
                                        {"moving_bodies", simulation.system().body_count()},
                                        {"constraint_rows", simulation.system().rows()},
@@ -158,7 +200,8 @@ std::string describe_json(const Simulation& simulation) {
                                        {"order", summary.order},
                                        {"bodies", bodies},
                                        {"joints", joints},
-                                       {"loads", loads}};
+                                       {"loads", loads},
+                                       {"solids", solids}};
   return json.dump(2) + "\n";
 }
 
@@ -168,9 +211,11 @@ Action add_info(CLI::App& command) {
   const auto options = std::make_shared<Options>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)");
   add_set_option(command, options->model);
-  command.add_option("--kinds", options->kinds, "List what exists: joints, loads or shapes")
+  command
+      .add_option("--kinds", options->kinds,
+                  "List what exists: joints, loads, shapes, materials, elements or meshes")
       ->type_name("WHAT")
-      ->check(CLI::IsMember({"joints", "loads", "shapes"}));
+      ->check(CLI::IsMember({"joints", "loads", "shapes", "materials", "elements", "meshes"}));
   command.add_flag("--json", options->json, "Print it as JSON");
   return [options] {
     if (!options->kinds.empty()) {
@@ -178,7 +223,9 @@ Action add_info(CLI::App& command) {
       return kOk;
     }
     if (options->model.file.empty()) {
-      say("polhode info: names no model. Give a MODEL, or --kinds joints, loads or shapes.");
+      say("polhode info: names no model. Give a MODEL, or --kinds and joints, loads, shapes, "
+          "materials, "
+          "elements or meshes.");
       return kUsage;
     }
     const Simulation simulation(load_model(options->model));

@@ -8,6 +8,7 @@
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
 #include <polhode/io/checkpoint.hpp>
 #include <polhode/io/field_table.hpp>
 #include <polhode/io/file_error.hpp>
@@ -69,6 +70,11 @@ void narrate_start(const Simulation& simulation, const std::string& folder) {
   say(format("{}: {}, {}, {}.", title, counted(model.bodies.size(), "body", "bodies"),
              counted(model.joints.size(), "joint", "joints"),
              counted(model.loads.size(), "load", "loads")));
+  for (std::size_t i = 0; i < model.solids.size(); ++i)
+    say(format("Solid {}: {}, {} {}.", model.solids[i].name,
+               counted(simulation.solids()[i].plan.start.size(), "node", "nodes"),
+               simulation.solids()[i].plan.mesh.element_count(),
+               name_list(simulation.solids()[i].plan.elements)));
   const StartReport& start = simulation.start_report();
   if (start.largest_move > 1e-9)
     say(format("The start was assembled: body '{}' moved most, by {:.2g} of the mechanism's size.",

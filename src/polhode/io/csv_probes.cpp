@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/csv_probes.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -111,6 +112,72 @@ std::vector<std::string> load_header(const Simulation& simulation, int load) {
   return header;
 }
 
+std::vector<std::string> solid_header(bool interface) {
+  std::vector<std::string> header{"t [s]"};
+  if (interface) {
+    extend(header, vector_header("f", "N"));
+    extend(header, vector_header("m", "N m"));
+    return header;
+  }
+  extend(header, vector_header("", "m"));
+  extend(header, vector_header("u", "m"));
+  extend(header, vector_header("v", "m/s"));
+  return header;
+}
+
+/// What a probe records, and the names of its columns.
+struct Target {
+  int index = 0;
+  SolidPoint point{};
+  int interface = -1;
+  std::vector<std::string> header{};
+};
+
+Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
+  const std::string where = format("output.probes.{}", spec.name);
+  Target target{.index = simulation.model().solid_index(spec.target)};
+  target.header = solid_header(!spec.reaction_of.empty());
+  const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
+  if (!spec.reaction_of.empty()) {
+    const std::vector<std::string> names = simulation.interfaces(target.index);
+    const auto found = std::find(names.begin(), names.end(), spec.reaction_of);
+    if (found == names.end())
+      throw InputError(where + ".interface",
+                       format("'{}' has no interface '{}'", spec.target, spec.reaction_of),
+                       "Name a body it is bonded to, or nodes it prescribes");
+    target.interface = static_cast<int>(found - names.begin());
+  } else if (spec.node) {
+    if (*spec.node < 0 || *spec.node >= static_cast<int>(mesh.nodes.size()))
+      throw InputError(where + ".node", format("node {} does not exist", *spec.node),
+                       format("The solid has {} nodes; the first is 0", mesh.nodes.size()));
+    target.point = {{*spec.node}, {1.0}};
+  } else {
+    target.point = solid_point(where + ".point", mesh, spec.point);
+  }
+  return target;
+}
+
+Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
+  const Model& model = simulation.model();
+  const std::string where = format("output.probes.{}", spec.name);
+  if (spec.kind == "solid") return find_solid_target(simulation, spec);
+  if (spec.kind == "load") {
+    const int load = model.load_index(spec.target);
+    if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
+      throw InputError(where, format("records '{}', a load on a solid", spec.target),
+                       "Record an interface or a point of the solid, or a load on bodies");
+    return {.index = load, .header = load_header(simulation, load)};
+  }
+  const bool body = spec.kind == "body";
+  if (!body && spec.kind != "joint")
+    throw InputError(where, format("records a '{}', which is not known", spec.kind),
+                     "Name a body, a joint, a load or a solid");
+  const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
+  if (body && index == kGround)
+    throw InputError(where, "records the ground, which stands still", "Name a body");
+  return {.index = index, .header = body ? body_header() : joint_header(simulation, index)};
+}
+
 }  // namespace
 
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
@@ -169,31 +236,14 @@ CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
   if (model.output.probes.empty()) return;
   make_folder(folder);
   for (const ProbeSpec& spec : model.output.probes) {
-    int index = kGround;
-    std::vector<std::string> header;
-    if (spec.kind == "body") {
-      index = model.body_index(spec.target);
-      header = body_header();
-      if (index == kGround)
-        throw InputError(format("output.probes.{}", spec.name),
-                         "records the ground, which stands still", "Name a body");
-    } else if (spec.kind == "joint") {
-      index = model.joint_index(spec.target);
-      header = joint_header(simulation, index);
-    } else if (spec.kind == "load") {
-      index = model.load_index(spec.target);
-      header = load_header(simulation, index);
-    } else {
-      throw InputError(format("output.probes.{}", spec.name),
-                       format("records a '{}', which is not known", spec.kind),
-                       "Name a body, a joint or a load");
-    }
-    CsvTable table(format("{}/{}.csv", folder, spec.name), header, keep);
+    const Target target = find_target(simulation, spec);
+    CsvTable table(format("{}/{}.csv", folder, spec.name), target.header, keep);
     const double every = spec.every.value_or(model.output.every.value_or(0.0));
     std::int64_t next = 0;
     if (every > 0.0 && table.last_time())
       next = static_cast<std::int64_t>(std::floor(*table.last_time() / every * (1 + 1e-12))) + 1;
-    probes_.push_back({spec, index, every, next, std::move(table)});
+    probes_.push_back(
+        {spec, target.index, target.point, target.interface, every, next, std::move(table)});
   }
 }
 
@@ -206,22 +256,32 @@ void CsvProbes::record(const Simulation& simulation) {
       if (t * (1 + 1e-12) < static_cast<double>(probe.next) * probe.every) continue;
       probe.next = static_cast<std::int64_t>(std::floor(t / probe.every * (1 + 1e-12))) + 1;
     }
-    std::vector<double> row{t};
-    if (probe.spec.kind == "body") {
-      const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
-      for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
-    } else if (probe.spec.kind == "load") {
-      const std::vector<double> values = simulation.load(probe.index);
-      row.insert(row.end(), values.begin(), values.end());
-    } else {
-      const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
-      extend(row, joint.force);
-      extend(row, joint.moment);
-      row.insert(row.end(), joint.coordinates.begin(), joint.coordinates.end());
-      row.insert(row.end(), joint.rates.begin(), joint.rates.end());
-    }
-    probe.table.append(row);
+    probe.table.append(row(probe, simulation));
   }
+}
+
+std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulation) {
+  std::vector<double> row{simulation.time()};
+  if (probe.spec.kind == "body") {
+    const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
+    for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
+  } else if (probe.spec.kind == "solid" && probe.interface >= 0) {
+    const InterfaceReport reaction = simulation.interface_reaction(probe.index, probe.interface);
+    extend(row, reaction.force);
+    extend(row, reaction.moment);
+  } else if (probe.spec.kind == "load") {
+    const std::vector<double> values = simulation.load(probe.index);
+    row.insert(row.end(), values.begin(), values.end());
+  } else if (probe.spec.kind == "solid") {
+    for (const Vec3& x : simulation.solid_point(probe.index, probe.point)) extend(row, x);
+  } else {
+    const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
+    extend(row, joint.force);
+    extend(row, joint.moment);
+    row.insert(row.end(), joint.coordinates.begin(), joint.coordinates.end());
+    row.insert(row.end(), joint.rates.begin(), joint.rates.end());
+  }
+  return row;
 }
 
 void CsvProbes::flush() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polhode/model/simulation.hpp>
+#include <polhode/model/solid_point.hpp>
 
 namespace polhode {
 
@@ -50,11 +51,15 @@ class CsvProbes {
  private:
   struct Probe {
     ProbeSpec spec;
-    int index;          ///< Of the body, joint or load.
+    int index;          ///< Of the body, joint, load or solid.
+    SolidPoint point;   ///< Of a solid.
+    int interface;      ///< Of a solid; -1: none.
     double every;       ///< [s]; 0: every step.
     std::int64_t next;  ///< The next row is due at next·every.
     CsvTable table;
   };
+  [[nodiscard]] static std::vector<double> row(const Probe& probe, const Simulation& simulation);
+
   std::vector<Probe> probes_;
 };
 

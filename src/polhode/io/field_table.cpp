@@ -36,7 +36,7 @@ std::string sentence(std::string text) {
 const FieldTable& model_fields() {
   static const FieldTable table{
       "model",
-      "The whole file. Bodies, joints and loads keep their order.",
+      "The whole file. Bodies, joints, loads and solids keep their order.",
       {
           {.name = "format",
            .kind = kInteger,
@@ -63,6 +63,14 @@ const FieldTable& model_fields() {
            .table = "body"},
           {.name = "joints", .kind = kNamed, .meaning = "Joints by name.", .table = "joint"},
           {.name = "loads", .kind = kNamed, .meaning = "Loads by name.", .table = "load"},
+          {.name = "materials",
+           .kind = kNamed,
+           .meaning = "Materials of deformable solids by name.",
+           .table = "material"},
+          {.name = "solids",
+           .kind = kNamed,
+           .meaning = "Deformable solids by name.",
+           .table = "solid"},
           {.name = "analysis",
            .kind = kSection,
            .meaning = "What to compute and how.",
@@ -366,8 +374,15 @@ std::vector<const FieldTable*> all_field_tables() {
       &orientation_fields(), &euler_fields(), &shape_fields(), &mesh_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
+  for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
+  tables.push_back(&viscosity_fields());
+  for (const KindTable& kind : fibre_tables()) tables.push_back(&kind.table);
+  tables.push_back(&solid_fields());
+  tables.push_back(&solid_mesh_fields());
+  for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);
   for (const FieldTable* table :
-       {&time_table_fields(), &analysis_fields(), &output_fields(), &probe_fields()})
+       {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),
+        &time_table_fields(), &analysis_fields(), &output_fields(), &probe_fields()})
     tables.push_back(table);
   return tables;
 }

@@ -30,6 +30,16 @@ enum class FieldKind : unsigned char {
   kBodyPair,       ///< Two such names.
   kJoint,          ///< Name of a joint.
   kLoad,           ///< Name of a load.
+  kMaterial,       ///< Name of a material.
+  kSolid,          ///< Name of a deformable solid.
+  kSelection,      ///< Nodes or faces of a solid: the name of a set, a section, or a list of these.
+  kBonds,          ///< A map from bodies to selections.
+  kPoints,         ///< A list of vectors.
+  kIndices,        ///< A list of whole numbers, not negative.
+  kIndexLists,     ///< A list of such lists.
+  kIndexSets,      ///< A map from names to such lists.
+  kLevel,          ///< min, max or a number.
+  kNumberList,     ///< A number, or a list of any length.
   kSection,        ///< A map with a table of its own.
   kNamed,          ///< A map from names the user chooses to sections.
   kShapes,         ///< A shape or a list of shapes.
@@ -43,6 +53,7 @@ struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool above_least = false;  ///< least itself is not allowed.
+  bool below_most = false;   ///< most itself is not allowed.
 };
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true};
@@ -76,7 +87,7 @@ struct FieldTable {
   [[nodiscard]] std::vector<std::string> names() const;
 };
 
-/// A kind of joint or load and the keys it takes.
+/// A kind of joint, load, material ... and the keys it takes.
 struct KindTable {
   std::string name;
   FieldTable table;
@@ -93,6 +104,17 @@ const FieldTable& orientation_fields();
 const FieldTable& euler_fields();
 const FieldTable& shape_fields();
 const FieldTable& mesh_fields();
+const std::vector<KindTable>& material_tables();
+const FieldTable& viscosity_fields();
+const std::vector<KindTable>& fibre_tables();
+const FieldTable& solid_fields();
+const FieldTable& solid_mesh_fields();
+const std::vector<KindTable>& mesh_generator_tables();
+const FieldTable& prescribed_fields();
+const FieldTable& selection_fields();
+const FieldTable& plane_fields();
+const FieldTable& box_fields();
+const FieldTable& sphere_fields();
 const FieldTable& time_table_fields();
 const FieldTable& analysis_fields();
 const FieldTable& output_fields();

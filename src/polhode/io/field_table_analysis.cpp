@@ -139,7 +139,7 @@ const FieldTable& output_fields() {
            .standard = "true"},
           {.name = "paraview",
            .kind = kBoolean,
-           .meaning = "Write .pvd and .vtp files for ParaView.",
+           .meaning = "Write .pvd, .vtp and, of solids, .vtu files for ParaView.",
            .standard = "false"},
       }};
   return table;
@@ -148,7 +148,7 @@ const FieldTable& output_fields() {
 const FieldTable& probe_fields() {
   static const FieldTable table{
       "probe",
-      "One of body, joint, load.",
+      "One of body, joint, load, solid.",
       {
           {.name = "body",
            .kind = kBody,
@@ -156,8 +156,8 @@ const FieldTable& probe_fields() {
           {.name = "point",
            .kind = kVector,
            .dimension = kLength,
-           .meaning = "The point, in body coordinates.",
-           .standard = "the centre of mass"},
+           .meaning = "The point, in body coordinates; of a solid in those of its mesh.",
+           .standard = "the centre of mass of a body"},
           {.name = "joint",
            .kind = kJoint,
            .meaning = "Record reaction, free coordinates and their rates."},
@@ -170,6 +170,18 @@ const FieldTable& probe_fields() {
            .kind = kLoad,
            .meaning = "Record force or moment of this load; of a spring also length or angle, "
                       "rate, energy."},
+          {.name = "solid",
+           .kind = kSolid,
+           .meaning = "Record position, displacement and velocity of a point of this solid, or the "
+                      "reaction at an interface."},
+          {.name = "node",
+           .kind = kInteger,
+           .meaning = "A node of the solid instead of a point; the first is 0.",
+           .range = kNotNegative},
+          {.name = "interface",
+           .kind = kText,
+           .meaning = "Of a solid: the bonded body, or the prescribed nodes, whose force and "
+                      "moment are recorded."},
           {.name = "every",
            .kind = kNumber,
            .dimension = kTime,

@@ -131,6 +131,13 @@ const Field kLoadJoint{.name = "joint",
                        .meaning = "A joint that turns about its axis: revolute or cylindrical.",
                        .required = true};
 
+KindTable load(const std::string& name, const std::string& meaning,
+               const std::vector<Field>& more) {
+  KindTable kind{name, {"load " + name, meaning, {type_field("load", name)}}};
+  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
+  return kind;
+}
+
 KindTable load_table(const LoadKind& kind) {
   KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
   std::vector<Field>& fields = result.table.fields;
@@ -171,9 +178,65 @@ const std::vector<KindTable>& joint_tables() {
 }
 
 const std::vector<KindTable>& load_tables() {
-  static const std::vector<KindTable> tables = [] {
+  const Field solid{
+      .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
+  const Field surface{.name = "surface",
+                      .kind = kSelection,
+                      .meaning = "The faces, among those of the solid's boundary.",
+                      .standard = "the whole boundary",
+                      .table = "selection"};
+  static const std::vector<KindTable> tables = [&] {
     std::vector<KindTable> list;
     for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
+    const std::vector<KindTable> on_solids = {
+      load("pressure", "A pressure on faces of a deformable solid, against their outward normals.",
+           {solid,
+            surface,
+            {.name = "pressure",
+             .kind = kTimeNumber,
+             .dimension = kPressure,
+             .meaning = "Positive pushes inward.",
+             .required = true},
+            {.name = "follower",
+             .kind = kBoolean,
+             .meaning = "Turns with the faces and acts on their deformed area; else as on the "
+                        "undeformed solid.",
+             .standard = "true"},
+            {.name = "keeps",
+             .kind = kChoice,
+             .meaning = "What a follower keeps exactly over a step: on a closed surface no force "
+                        "and moment, or the work, pressure times change of volume.",
+             .standard = "momentum",
+             .choices = {"momentum", "work"}}}),
+      load("traction", "A force per area on faces of a deformable solid.",
+           {solid,
+            surface,
+            {.name = "traction",
+             .kind = kTimeVector,
+             .dimension = kPressure,
+             .meaning = "World components, per undeformed area.",
+             .required = true}}),
+      load("body_force", "A force on all of a deformable solid, in proportion to its mass.",
+           {solid,
+            {.name = "acceleration",
+             .kind = kTimeVector,
+             .dimension = kAcceleration,
+             .meaning = "Force per mass, world components; gravity acts by itself.",
+             .required = true}}),
+      load("nodal_force", "A force on each of some nodes of a deformable solid.",
+           {solid,
+            {.name = "nodes",
+             .kind = kSelection,
+             .meaning = "The nodes.",
+             .required = true,
+             .table = "selection"},
+            {.name = "force",
+             .kind = kTimeVector,
+             .dimension = kForce,
+             .meaning = "On each of the nodes, world components.",
+             .required = true}}),
+    };
+    list.insert(list.end(), on_solids.begin(), on_solids.end());
     return list;
   }();
   return tables;

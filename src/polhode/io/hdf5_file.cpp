@@ -382,6 +382,23 @@ void Hdf5File::numbers(const std::string& path, const std::vector<std::int64_t>&
         "cannot hold a list of numbers");
 }
 
+void Hdf5File::vectors(const std::string& path, const std::vector<Vec3>& values,
+                       const std::string& unit) {
+  const Dims dims{values.size(), 3};
+  const Id space = dataspace(dims, dims);
+  const Id links = link_properties();
+  const Id dataset(H5Dcreate2(impl_->file.get(), path.c_str(), H5T_IEEE_F64LE, space.get(),
+                              links.get(), H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
+  if (!dataset.valid()) impl_->fail("cannot hold a list of vectors");
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  if (!values.empty())
+    impl_->require(
+        H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "cannot hold a list of vectors");
+  impl_->text_attribute(dataset.get(), "unit", unit);
+}
+
 void Hdf5File::append(const std::vector<double>& frame) {
   Impl& m = *impl_;
   if (frame.size() != m.frame_size)

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <polhode/base/types.hpp>
+
 namespace polhode {
 
 /// One quantity that grows by one entry each frame.
@@ -52,6 +54,8 @@ class Hdf5File {
   void attribute(const std::string& group, const std::string& name, double value);
   void names(const std::string& path, const std::vector<std::string>& values);
   void numbers(const std::string& path, const std::vector<std::int64_t>& values);
+  /// Vectors that do not change: one row each.
+  void vectors(const std::string& path, const std::vector<Vec3>& values, const std::string& unit);
 
   /// Adds a frame: every channel's numbers one after the other. @throws FileError
   void append(const std::vector<double>& frame);

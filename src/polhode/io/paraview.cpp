@@ -2,20 +2,14 @@
 #include <polhode/io/paraview.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include <Eigen/Eigenvalues>
 
 #include <polhode/base/format.hpp>
 #include <polhode/body/read_surface.hpp>
 #include <polhode/body/shapes.hpp>
-#include <polhode/io/file_error.hpp>
 
 namespace polhode {
 
@@ -23,12 +17,6 @@ namespace {
 
 /// Triangles around the circle of a round shape: a picture needs no more.
 constexpr int kSegments = 24;
-/// The list of times is written again at most this often, but at every frame of a slow run [s].
-constexpr double kListEvery = 0.2;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, const Vec3& offset) {
   const int first = static_cast<int>(sum.points.size());
@@ -92,42 +80,6 @@ TriangleSurface picture_of(const BodySpec& body, const Model& model, double size
   return sum;
 }
 
-/// Binary blocks of a .vtp file: each is its length and its numbers.
-class Blocks {
- public:
-  template <class T>
-  std::size_t add(const std::vector<T>& values) {
-    const std::size_t offset = bytes_.size();
-    const std::uint64_t length = values.size() * sizeof(T);
-    bytes_.append(reinterpret_cast<const char*>(&length), sizeof length);
-    bytes_.append(reinterpret_cast<const char*>(values.data()), length);
-    return offset;
-  }
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-std::string data_array(const char* type, const char* name, int components, std::size_t offset) {
-  return format(
-      R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
-      "\n",
-      type, name, components, offset);
-}
-
-/// Names as VTK writes texts: character codes, each text ended by 0.
-std::string name_array(const std::vector<BodyPicture>& pictures) {
-  std::string text = format(
-      R"(<FieldData><Array type="String" Name="body_names" NumberOfTuples="{}" format="ascii">)",
-      pictures.size());
-  for (const BodyPicture& picture : pictures) {
-    for (const char c : picture.name) text += format("{} ", static_cast<unsigned char>(c));
-    text += "0 ";
-  }
-  return text + "</Array></FieldData>\n";
-}
-
 std::string vtp(const std::vector<BodyPicture>& pictures, const std::vector<BodyMotion>& motions) {
   std::vector<float> points, velocities;
   std::vector<std::int64_t> corners, ends;
@@ -151,36 +103,22 @@ std::string vtp(const std::vector<BodyPicture>& pictures, const std::vector<Body
     }
     first += static_cast<std::int64_t>(surface.points.size());
   }
-  Blocks blocks;
-  std::string text = R"(<?xml version="1.0"?>
-<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<PolyData>
-)";
-  text += name_array(pictures);
-  text += format("<Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n", first, ends.size());
-  text += "<Points>\n" + data_array("Float32", "points", 3, blocks.add(points)) + "</Points>\n";
-  text += "<PointData Vectors=\"velocity\">\n" +
-          data_array("Float32", "velocity", 3, blocks.add(velocities)) + "</PointData>\n";
-  text += "<Polys>\n" + data_array("Int64", "connectivity", 1, blocks.add(corners)) +
-          data_array("Int64", "offsets", 1, blocks.add(ends)) + "</Polys>\n";
-  text += "<CellData Scalars=\"body\">\n" + data_array("Int32", "body", 1, blocks.add(owners)) +
-          "</CellData>\n";
-  text += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
-  return text + blocks.bytes() + "\n</AppendedData>\n</VTKFile>\n";
-}
-
-/// Times of a list written earlier, up to t.
-std::vector<double> listed_times(const std::string& path, double t) {
-  std::vector<double> times;
-  if (!std::filesystem::exists(path)) return times;
-  const std::string text = read_file(path);
-  constexpr std::string_view kKey = "timestep=\"";
-  for (std::size_t at = text.find(kKey); at != std::string::npos; at = text.find(kKey, at)) {
-    at += kKey.size();
-    const double time = std::strtod(text.c_str() + at, nullptr);
-    if (time <= t * (1.0 + 1e-14)) times.push_back(time);
-  }
-  return times;
+  std::vector<std::string> names;
+  for (const BodyPicture& picture : pictures) names.push_back(picture.name);
+  VtkFile file("PolyData");
+  file.names("body_names", names);
+  file.text(
+      format("<Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n<Points>\n", first, ends.size()));
+  file.array("points", 3, points);
+  file.text("</Points>\n<PointData Vectors=\"velocity\">\n");
+  file.array("velocity", 3, velocities);
+  file.text("</PointData>\n<Polys>\n");
+  file.array("connectivity", 1, corners);
+  file.array("offsets", 1, ends);
+  file.text("</Polys>\n<CellData Scalars=\"body\">\n");
+  file.array("body", 1, owners);
+  file.text("</CellData>\n</Piece>\n");
+  return file.bytes();
 }
 
 }  // namespace
@@ -192,44 +130,8 @@ std::vector<BodyPicture> body_pictures(const Model& model, double size) {
   return pictures;
 }
 
-ParaviewWriter::ParaviewWriter(std::string folder, std::string name,
-                               std::vector<BodyPicture> pictures, std::optional<double> keep)
-    : folder_(std::move(folder)), name_(std::move(name)), pictures_(std::move(pictures)) {
-  make_folder(folder_ + "/" + name_);
-  if (keep) times_ = listed_times(format("{}/{}.pvd", folder_, name_), *keep);
-  write_list();
-}
-
-std::string ParaviewWriter::file(std::size_t frame) const {
-  return format("{}/{:06}.vtp", name_, frame);
-}
-
 void ParaviewWriter::append(double t, const std::vector<BodyMotion>& motions) {
-  const std::string path = folder_ + "/" + file(times_.size());
-  const std::string bytes = vtp(pictures_, motions);
-  // A new file: many file systems wait for the disk when an old one is written over.
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  if (!stream) throw FileError::from_errno(path, "cannot be written");
-  times_.push_back(t);
-  if (now() >= next_listing_) write_list();
-}
-
-void ParaviewWriter::write_list() {
-  std::string text = R"(<?xml version="1.0"?>
-<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">
-<Collection>
-)";
-  for (std::size_t i = 0; i < times_.size(); ++i)
-    text += format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_[i], file(i));
-  text += "</Collection>\n</VTKFile>\n";
-  const double begin = now();
-  write_file_atomically(format("{}/{}.pvd", folder_, name_), text, false);
-  // Long lists are written less often, so that all lists together stay a small part of the run.
-  next_listing_ = now() + std::max(kListEvery, 20.0 * (now() - begin));
+  series_.append(t, vtp(pictures_, motions));
 }
 
 }  // namespace polhode

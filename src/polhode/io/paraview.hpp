@@ -6,8 +6,10 @@
 #include <vector>
 
 #include <polhode/body/triangle_surface.hpp>
+#include <polhode/io/paraview_series.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/model/simulation.hpp>
+#include <polhode/model/solid_report.hpp>
 
 namespace polhode {
 
@@ -24,32 +26,52 @@ struct BodyPicture {
 /// @throws InputError if a mesh file cannot be read.
 [[nodiscard]] std::vector<BodyPicture> body_pictures(const Model& model, double size);
 
-/// Moving shapes for ParaView: <name>.pvd lists the times, <name>/<number>.vtp holds the triangles
-/// of one time, with point data "velocity" [m/s], cell data "body" (index) and the names of the
-/// bodies as field data "body_names".
-///
-/// Every file is whole before the .pvd names it, and the .pvd is replaced at once, so that a run
-/// that was killed leaves readable files.
+/// Moving shapes for ParaView, as a ParaviewSeries of .vtp files: the triangles of one time, with
+/// point data "velocity" [m/s], cell data "body" (index) and the names of the bodies as field data
+/// "body_names".
 class ParaviewWriter {
  public:
   /// @param keep  Continue existing files: times up to that one stay listed.
   /// @throws FileError
-  ParaviewWriter(std::string folder, std::string name, std::vector<BodyPicture> pictures,
-                 std::optional<double> keep = std::nullopt);
+  ParaviewWriter(const std::string& folder, const std::string& name,
+                 std::vector<BodyPicture> pictures, std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtp", keep), pictures_(std::move(pictures)) {}
 
   /// @param motions  Of every picture's body. @throws FileError
   void append(double t, const std::vector<BodyMotion>& motions);
-  [[nodiscard]] std::size_t frames() const { return times_.size(); }
-  void close() { write_list(); }  ///< @throws FileError
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
 
  private:
-  void write_list();
-  [[nodiscard]] std::string file(std::size_t frame) const;
-
-  std::string folder_, name_;
+  ParaviewSeries series_;
   std::vector<BodyPicture> pictures_;
-  std::vector<double> times_;
-  double next_listing_ = 0.0;  ///< Seconds of the steady clock.
+};
+
+/// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points stand where the nodes
+/// are at the time. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
+/// "von_mises" [Pa], "strain_energy_density" [J/m³]. Cell data: these three by element,
+/// "principal_stretches" [-], largest first, and "solid" (index); the names of the solids are
+/// field data "solid_names". Stresses have six components: xx, yy, zz, xy, yz, xz.
+class SolidsWriter {
+ public:
+  /// @param meshes  Of the solids; nodes and cells in the order of the reports.
+  /// @param keep    Continue existing files: times up to that one stay listed.
+  /// @throws FileError
+  SolidsWriter(const std::string& folder, const std::string& name, std::vector<std::string> solids,
+               std::vector<const Mesh*> meshes, std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtu", keep),
+        solids_(std::move(solids)),
+        meshes_(std::move(meshes)) {}
+
+  /// @param reports  Of every solid. @throws FileError
+  void append(double t, const std::vector<SolidReport>& reports);
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> solids_;
+  std::vector<const Mesh*> meshes_;
 };
 
 }  // namespace polhode

@@ -98,24 +98,56 @@ std::string read_target(ReadContext& context, Section& section, const std::strin
   return *name;
 }
 
+/// A point, a node or an interface of a solid.
+void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  const auto solid = read_solid_name(context, *section.find("solid"), section.path("solid"));
+  const auto point = section.vector("point");
+  const auto node = section.integer("node");
+  const auto interface = section.text("interface");
+  if (section.refuse_both("point", "node", "Give one of them.") ||
+      section.refuse_both("point", "interface", "Give one of them.") ||
+      section.refuse_both("node", "interface", "Give one of them.") || !solid)
+    return;
+  const SolidSpec& spec = context.model.solids[static_cast<std::size_t>(*solid)];
+  probe.target = spec.name;
+  if (!section.has("point") && !section.has("node") && !section.has("interface"))
+    section.fault("names no point of the solid", "Give one of: point, node, interface.");
+  if (point) probe.point = *point;
+  probe.node = node;
+  if (!interface) return;
+  std::vector<std::string> names;
+  for (const BondSpec& bond : spec.bonded) names.push_back(context.model.body_name(bond.body));
+  for (const PrescribedSpec& prescribed : spec.prescribed) names.push_back(prescribed.name);
+  probe.reaction_of = *interface;
+  if (std::find(names.begin(), names.end(), *interface) == names.end())
+    section.fault(
+        "interface",
+        format("the solid {} has no interface {}", quote(spec.name), quote(*interface)),
+        did_you_mean(*interface, names) +
+            (names.empty() ? "It is bonded to nothing." : "Interfaces: " + name_list(names) + "."));
+}
+
 void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) {
   Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
   if (!node.is_map()) return;
   int targets = 0;
-  for (const char* kind : {"body", "joint", "load"}) {
+  for (const char* kind : {"body", "joint", "load", "solid"}) {
     if (!section.has(kind)) continue;
     probe.kind = kind;
     ++targets;
   }
   if (targets != 1) {
     section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
-                  "Give one of: body, joint, load.");
+                  "Give one of: body, joint, load, solid.");
     return;
   }
   probe.every = section.number("every");
-  if (section.has("point") && probe.kind != "body")
+  if (section.has("point") && probe.kind != "body" && probe.kind != "solid")
     section.fault("point", format("does not go with '{}'", probe.kind),
-                  "A point belongs to a body.");
+                  "A point belongs to a body or a solid.");
+  for (const char* key : {"node", "interface"})
+    if (section.has(key) && probe.kind != "solid")
+      section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a solid.");
   if (section.has("axes") && probe.kind != "joint")
     section.fault("axes", format("does not go with '{}'", probe.kind),
                   "Axes belong to a joint's reaction.");
@@ -131,6 +163,8 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
     const BodySpec& spec = context.model.bodies[static_cast<std::size_t>(*body)];
     probe.target = spec.name;
     if (point) probe.point = *point - spec.com;
+  } else if (probe.kind == "solid") {
+    read_solid_probe(context, section, probe);
   } else if (probe.kind == "joint") {
     probe.target = read_target(context, section, "joint", context.joints, context.joint_names());
   } else {

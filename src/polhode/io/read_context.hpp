@@ -23,6 +23,8 @@ struct ReadContext {
   std::string folder{};  ///< Of the model file; mesh files are seen from it.
   Model model{};
   std::unordered_map<std::string, int> bodies{}, joints{}, loads{};  ///< Index by name.
+  std::unordered_map<std::string, int> materials{}, solids{};        ///< Likewise.
+  std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
 
   /// Adds a fault of a value.
@@ -30,6 +32,8 @@ struct ReadContext {
   [[nodiscard]] std::vector<std::string> body_names() const;  ///< With ground.
   [[nodiscard]] std::vector<std::string> joint_names() const;
   [[nodiscard]] std::vector<std::string> load_names() const;
+  [[nodiscard]] std::vector<std::string> material_names() const;
+  [[nodiscard]] std::vector<std::string> solid_names() const;
 };
 
 /// The text of a value as a dimension-checked number or expression; null after a fault.
@@ -71,6 +75,26 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node, const
 std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const SourceNode& node,
                                                  const std::string& path);
 
+/// A number, or a list of them that is not empty.
+std::optional<std::vector<double>> read_number_list(ReadContext& context, const SourceNode& node,
+                                                    const std::string& path, const Field& field);
+/// Index of a material or solid.
+std::optional<int> read_material_name(ReadContext& context, const SourceNode& node,
+                                      const std::string& path);
+std::optional<int> read_solid_name(ReadContext& context, const SourceNode& node,
+                                   const std::string& path);
+/// A whole number, not negative; a list of such numbers.
+std::optional<int> read_index(ReadContext& context, const SourceNode& node,
+                              const std::string& path);
+std::optional<std::vector<int>> read_indices(ReadContext& context, const SourceNode& node,
+                                             const std::string& path);
+/// Nodes or faces of a solid: a set's name, a map, or a list of these.
+std::optional<std::vector<Selection>> read_selections(ReadContext& context, const SourceNode& node,
+                                                      const std::string& path);
+/// A path to a file that exists, seen from the model file's folder.
+std::optional<std::string> read_file_name(ReadContext& context, const SourceNode& node,
+                                          const std::string& path);
+
 /// Whether a user may give this name to a body, joint, load or probe; adds a fault if not.
 bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                 const std::string& collection);
@@ -95,12 +119,14 @@ class Section {
   [[nodiscard]] const Place& place() const { return place_; }
 
   std::optional<double> number(const std::string& name);
+  std::optional<std::vector<double>> number_list(const std::string& name);
   std::optional<int> integer(const std::string& name);
   std::optional<bool> boolean(const std::string& name);
   std::optional<std::string> text(const std::string& name);
   std::optional<std::string> choice(const std::string& name);
   std::optional<std::vector<std::string>> choices(const std::string& name);
   std::optional<Vec3> vector(const std::string& name);
+  TimeFunctionPtr time_number(const std::string& name);  ///< Null if absent or faulty.
   std::optional<TimeVector> time_vector(const std::string& name);
   std::optional<std::array<Vec3, 2>> vector_pair(const std::string& name);
   std::optional<Vec3> direction(const std::string& name);
@@ -125,10 +151,10 @@ class Section {
   std::vector<std::string> likely_meant_;  ///< By unknown keys.
 };
 
-/// The table of the kind that "type" names; null after a fault.
+/// The table of the kind that "type", or another key, names; null after a fault.
 const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const Place& place,
                             const std::string& path, const std::vector<KindTable>& kinds,
-                            std::string& type);
+                            std::string& type, const char* key = "type");
 
 /// The shortest text of a number for messages.
 std::string shown(double value);
@@ -142,9 +168,15 @@ void read_bodies(ReadContext& context, const SourceNode& node);
 std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path);
 void read_joints(ReadContext& context, const SourceNode& node);
+void read_materials(ReadContext& context, const SourceNode& node);
+void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::string& path,
+                     MeshSpec& mesh);
+void read_solids(ReadContext& context, const SourceNode& node);
 void read_loads(ReadContext& context, const SourceNode& node);
 void read_analysis(ReadContext& context, const SourceNode& node, const Place& place);
 void read_output(ReadContext& context, const SourceNode& node, const Place& place);
+/// What only the mesh of a solid shows: sets that match nothing, nodes held twice, and the like.
+void check_solids(ReadContext& context, const SourceNode& root);
 /// What only the whole model shows: orders against loads, and the like.
 void check_model(ReadContext& context, const SourceNode& root);
 

@@ -44,17 +44,10 @@ class LoadReader {
         section_(context, node, load.place, "loads." + load.name, table) {}
 
   void read() {
-    const LoadKind& kind = load_kind(load_.type);
-    switch (kind.place) {
-      case LoadPlace::body:
-        read_wrench(kind);
-        break;
-      case LoadPlace::points:
-        read_spring();
-        break;
-      case LoadPlace::joint:
-        read_torsional_spring();
-        break;
+    if (table_.find("solid")) {
+      read_on_solid();
+    } else {
+      read_on_bodies(load_kind(load_.type));
     }
     for (const Field& field : table_.fields)
       if (field.kind == FieldKind::kNumber)
@@ -76,6 +69,39 @@ class LoadReader {
     if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
     if (const auto point = section_.vector("at_body"))
       load_.Z_b = from_com(context_, load_.b, *point);
+  }
+
+  void read_on_bodies(const LoadKind& kind) {
+    switch (kind.place) {
+      case LoadPlace::body:
+        read_wrench(kind);
+        break;
+      case LoadPlace::points:
+        read_spring();
+        break;
+      case LoadPlace::joint:
+        read_torsional_spring();
+        break;
+    }
+  }
+
+  /// A load on nodes or faces of a deformable solid.
+  void read_on_solid() {
+    if (const SourceNode* value = section_.find("solid"))
+      if (const auto solid = read_solid_name(context_, *value, section_.path("solid")))
+        load_.solid = *solid;
+    for (const char* key : {"surface", "nodes"}) {
+      if (!table_.find(key) || !section_.has(key)) continue;
+      if (auto selection = read_selections(context_, *section_.find(key), section_.path(key)))
+        load_.selection = std::move(*selection);
+    }
+    if (table_.find("pressure")) load_.value = section_.time_number("pressure");
+    if (table_.find("follower")) load_.follower = section_.boolean("follower").value_or(true);
+    if (table_.find("keeps"))
+      if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
+    for (const char* key : {"traction", "acceleration", "force"})
+      if (table_.find(key))
+        if (const auto vector = section_.time_vector(key)) load_.vector = *vector;
   }
 
   void read_spring() {

@@ -107,13 +107,18 @@ void read_root(ReadContext& context, const SourceNode& root) {
     read_bodies(context, *node);
   if (const SourceNode* node = named_things(context, section, "joints"))
     read_joints(context, *node);
+  if (const SourceNode* node = named_things(context, section, "materials"))
+    read_materials(context, *node);
+  if (const SourceNode* node = named_things(context, section, "solids"))
+    read_solids(context, *node);
   if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);
   if (const SourceNode* node = section.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));
   if (const SourceNode* node = section.find("output"))
     read_output(context, *node, context.tree.place_of(*node));
-  if (model.bodies.empty() && context.diagnostics.empty())
+  if (model.bodies.empty() && model.solids.empty() && context.diagnostics.empty())
     section.fault("bodies", "the model has no bodies", "Add 'bodies: {name: {...}}'.");
+  check_solids(context, root);
   check_model(context, root);
 }
 
@@ -135,6 +140,18 @@ void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
   const int order = model.analysis.order.value_or(2);
   if (order > 2) {
+    for (const SolidSpec& solid : model.solids) {
+      const auto material = context.materials.find(solid.material);
+      if (material == context.materials.end() ||
+          !model.materials[static_cast<std::size_t>(material->second)].viscosity.any())
+        continue;
+      context.fault(
+          *root.find("analysis")->find("order"), "analysis.order",
+          format("order {} stands beside the viscosity of {}", order, quote(solid.material)),
+          "Orders above 2 go back in time within a step, where viscosity would feed "
+          "energy in: use order 2.");
+      break;
+    }
     for (const LoadSpec& load : model.loads) {
       const auto damping = load.parameters.find("damping");
       if (damping == load.parameters.end() || damping->second <= 0.0) continue;

@@ -11,7 +11,7 @@ namespace {
 
 /// Keys of the file format that later versions read.
 bool is_planned(const std::string& key) {
-  for (const char* planned : {"solids", "beams", "cables", "materials", "sections", "contacts"})
+  for (const char* planned : {"beams", "cables", "sections", "contacts"})
     if (key == planned) return true;
   return false;
 }
@@ -38,21 +38,21 @@ bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNo
 
 const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const Place& place,
                             const std::string& path, const std::vector<KindTable>& kinds,
-                            std::string& type) {
+                            std::string& type, const char* key) {
   std::vector<std::string> names;
   for (const KindTable& kind : kinds) names.push_back(kind.name);
   if (!node.is_map()) {
     context.fault(node, path, "expects a map of keys and values, but is " + node.description(),
-                  "Start with 'type', one of: " + name_list(names) + ".");
+                  format("Start with '{}', one of: {}.", key, name_list(names)));
     return nullptr;
   }
-  const SourceNode* value = node.find("type");
+  const SourceNode* value = node.find(key);
   if (!value) {
-    context.diagnostics.add(place, path, "'type' is missing",
+    context.diagnostics.add(place, path, format("'{}' is missing", key),
                             "Use one of: " + name_list(names) + ".");
     return nullptr;
   }
-  const auto word = read_choice(context, *value, path + ".type", names);
+  const auto word = read_choice(context, *value, path + "." + key, names);
   if (!word) return nullptr;
   type = *word;
   for (const KindTable& kind : kinds)
@@ -78,7 +78,7 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
     const Place key_place = context.tree.place_of(key, node.children[k]);
     if (path_.empty() && is_planned(key.name)) {
       context.diagnostics.add(key_place, key_path, "is not supported by this version",
-                              "Leave it out; this version reads rigid bodies, joints and loads.");
+                              "Leave it out; this version reads bodies, joints, loads and solids.");
       continue;
     }
     if (table.find(key.name)) continue;
@@ -127,6 +127,12 @@ std::optional<double> Section::number(const std::string& name) {
   return node ? read_number(context_, *node, path(name), table_.at(name)) : std::nullopt;
 }
 
+std::optional<std::vector<double>> Section::number_list(const std::string& name) {
+  const SourceNode* node = find(name);
+  if (!node) return std::nullopt;
+  return read_number_list(context_, *node, path(name), table_.at(name));
+}
+
 std::optional<int> Section::integer(const std::string& name) {
   const std::optional<double> value = number(name);
   if (!value) return std::nullopt;
@@ -160,6 +166,11 @@ std::optional<Vec3> Section::vector(const std::string& name) {
   const SourceNode* node = find(name);
   if (!node) return std::nullopt;
   return read_vector(context_, *node, path(name), table_.at(name));
+}
+
+TimeFunctionPtr Section::time_number(const std::string& name) {
+  const SourceNode* node = find(name);
+  return node ? read_time_number(context_, *node, path(name), table_.at(name)) : nullptr;
 }
 
 std::optional<TimeVector> Section::time_vector(const std::string& name) {

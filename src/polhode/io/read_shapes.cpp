@@ -74,14 +74,9 @@ bool read_mesh(ReadContext& context, const SourceNode& node, const std::string& 
   } else {
     shape.scale = context.units.length;
   }
-  std::error_code ignored;
-  const fs::path full = fs::path(context.folder) / fs::path(file->text);
-  if (file->text.empty() || !fs::is_regular_file(full, ignored)) {
-    context.fault(*file, path, "there is no file " + quote(file->text),
-                  "Give the path as seen from the model file's folder.");
-    return false;
-  }
-  shape.file = full.lexically_normal().string();
+  const auto full = read_file_name(context, *file, path);
+  if (!full) return false;
+  shape.file = *full;
   return true;
 }
 
@@ -131,6 +126,18 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
 }
 
 }  // namespace
+
+std::optional<std::string> read_file_name(ReadContext& context, const SourceNode& node,
+                                          const std::string& path) {
+  const auto name = read_text(context, node, path);
+  if (!name) return std::nullopt;
+  std::error_code ignored;
+  const fs::path full = fs::path(context.folder) / fs::path(*name);
+  if (!name->empty() && fs::is_regular_file(full, ignored)) return full.lexically_normal().string();
+  context.fault(node, path, "there is no file " + quote(*name),
+                "Give the path as seen from the model file's folder.");
+  return std::nullopt;
+}
 
 std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path) {

@@ -32,14 +32,14 @@ bool check_range(ReadContext& context, const SourceNode& node, const std::string
                  const Field& field, double value) {
   const Range& r = field.range;
   const bool low = value < r.least || (r.above_least && value <= r.least);
-  if (!low && !(value > r.most)) return true;
+  if (!low && !(value > r.most || (r.below_most && value >= r.most))) return true;
   const std::string unit = field.dimension.si_unit();
   const std::string with = unit.empty() ? "" : " " + unit;
   std::string must;
   if (std::isfinite(r.least) && std::isfinite(r.most)) {
     must = r.least == r.most ? "must be " + shown(r.least)
-                             : format("must lie in {}{}, {}]", r.above_least ? "(" : "[",
-                                      shown(r.least), shown(r.most)) +
+                             : format("must lie in {}{}, {}{}", r.above_least ? "(" : "[",
+                                      shown(r.least), shown(r.most), r.below_most ? ")" : "]") +
                                    with;
   } else if (std::isfinite(r.least)) {
     must = r.least == 0.0 ? (r.above_least ? "must be positive" : "must not be negative")
@@ -118,6 +118,18 @@ std::vector<std::string> ReadContext::joint_names() const {
 std::vector<std::string> ReadContext::load_names() const {
   std::vector<std::string> names;
   for (const LoadSpec& load : model.loads) names.push_back(load.name);
+  return names;
+}
+
+std::vector<std::string> ReadContext::material_names() const {
+  std::vector<std::string> names;
+  for (const MaterialSpec& material : model.materials) names.push_back(material.name);
+  return names;
+}
+
+std::vector<std::string> ReadContext::solid_names() const {
+  std::vector<std::string> names;
+  for (const SolidSpec& solid : model.solids) names.push_back(solid.name);
   return names;
 }
 
@@ -241,6 +253,23 @@ std::optional<std::vector<double>> read_numbers(ReadContext& context, const Sour
                   count == 3 ? "Write [x, y, z]." : "Write [w, x, y, z]."))
     return std::nullopt;
   std::vector<double> values;
+  for (const SourceNode& child : node.children)
+    if (const auto value = read_number(context, child, path, field)) values.push_back(*value);
+  if (values.size() != node.children.size()) return std::nullopt;
+  return values;
+}
+
+std::optional<std::vector<double>> read_number_list(ReadContext& context, const SourceNode& node,
+                                                    const std::string& path, const Field& field) {
+  std::vector<double> values;
+  if (!node.is_list()) {
+    if (const auto value = read_number(context, node, path, field)) values.push_back(*value);
+    if (values.empty()) return std::nullopt;
+    return values;
+  }
+  if (!check_list(context, node, path, node.children.empty() ? 1 : 0, "a list of numbers",
+                  "Write at least one number."))
+    return std::nullopt;
   for (const SourceNode& child : node.children)
     if (const auto value = read_number(context, child, path, field)) values.push_back(*value);
   if (values.size() != node.children.size()) return std::nullopt;

@@ -15,6 +15,7 @@ namespace polhode {
 struct Recorder::Impl {
   std::optional<ResultsFile> results;
   std::optional<ParaviewWriter> paraview;
+  std::optional<SolidsWriter> solids;
   std::optional<CsvProbes> probes;
   double last_frame = -std::numeric_limits<double>::infinity();
   std::size_t frames = 0;
@@ -41,6 +42,16 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     impl_->paraview.emplace(folder + "/paraview", "results",
                             body_pictures(simulation.model(), simulation.system().length_scale()),
                             keep);
+  if (output.paraview && !simulation.solids().empty()) {
+    std::vector<std::string> names;
+    std::vector<const Mesh*> meshes;
+    for (std::size_t i = 0; i < simulation.solids().size(); ++i) {
+      names.push_back(simulation.model().solids[i].name);
+      meshes.push_back(&simulation.solids()[i].plan.mesh);
+    }
+    impl_->solids.emplace(folder + "/paraview", "solids", std::move(names), std::move(meshes),
+                          keep);
+  }
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
 
@@ -56,6 +67,12 @@ void Recorder::frame(const Simulation& simulation) {
       motions.push_back(simulation.body(static_cast<int>(i)));
     impl_->paraview->append(simulation.time(), motions);
   }
+  if (impl_->solids) {
+    std::vector<SolidReport> reports;
+    for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i)
+      reports.push_back(simulation.solid(i));
+    impl_->solids->append(simulation.time(), reports);
+  }
   ++impl_->frames;
 }
 
@@ -66,6 +83,7 @@ void Recorder::step(const Simulation& simulation) {
 void Recorder::close() {
   if (impl_->results) impl_->results->close();
   if (impl_->paraview) impl_->paraview->close();
+  if (impl_->solids) impl_->solids->close();
   if (impl_->probes) impl_->probes->flush();
 }
 

@@ -10,9 +10,10 @@
 namespace polhode {
 
 /// Writes what a model's `output` asks for into one folder: results.h5, probes/<name>.csv,
-/// paraview/results.pvd.
+/// paraview/results.pvd and, of deformable solids, paraview/solids.pvd.
 class Recorder {
  public:
+  /// @param simulation  Outlives the recorder.
   /// @param restarted  The simulation continues from its present time: files of the earlier run
   ///                   in the folder are kept up to that time and continued.
   /// @throws FileError, InputError

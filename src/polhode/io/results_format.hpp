@@ -29,6 +29,11 @@ inline constexpr const char* kLoads = "/loads";
 /// fifth of a millisecond when the file is made.
 inline constexpr int kMostNamed = 200;
 
+/// Deformable solids by name: solids/<name>/nodes/displacement is (frames, nodes, 3),
+/// solids/<name>/elements/von_mises (frames, elements),
+/// solids/<name>/interfaces/<body>/force (frames, 3).
+inline constexpr const char* kSolids = "/solids";
+
 inline constexpr const char* kEnergy = "/energy";
 inline constexpr const char* kMomentum = "/momentum";
 inline constexpr const char* kSolver = "/solver";

@@ -35,7 +35,8 @@ void add_bounds(json& schema, const Field& field) {
   };
   if (holds(field.range.least))
     schema[field.range.above_least ? "exclusiveMinimum" : "minimum"] = field.range.least;
-  if (holds(field.range.most)) schema["maximum"] = field.range.most;
+  if (holds(field.range.most))
+    schema[field.range.below_most ? "exclusiveMaximum" : "maximum"] = field.range.most;
 }
 
 json choice(const std::vector<std::string>& choices) {
@@ -48,6 +49,9 @@ json choice(const std::vector<std::string>& choices) {
   }
   return {{"enum", words}};
 }
+
+/// Numbers of nodes.
+json indices() { return list_of({{"type", "integer"}, {"minimum", 0}}, 1, 0); }
 
 /// Sizes of a shape: a list in order, a map by name, or a number if there is only one.
 json shape_sizes(const ShapeKind& kind) {
@@ -113,6 +117,8 @@ json field_schema(const FieldTable& table, const Field& field) {
     case kBody:
     case kJoint:
     case kLoad:
+    case kMaterial:
+    case kSolid:
       return reference("name");
     case kBodyPair:
       return list_of(reference("name"), 2, 2);
@@ -122,6 +128,26 @@ json field_schema(const FieldTable& table, const Field& field) {
       const json shape = reference("shape");
       return {{"anyOf", json::array({shape, list_of(shape, 1, 0)})}};
     }
+    case kSelection:
+      return reference("selections");
+    case kBonds:
+      return {{"type", json::array({"object", "null"})},
+              {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]+$"}}},
+              {"additionalProperties", reference("selections")}};
+    case kPoints:
+      return list_of(reference("vector"), 1, 0);
+    case kIndices:
+      return indices();
+    case kIndexLists:
+      return list_of(indices(), 1, 0);
+    case kIndexSets:
+      return {{"type", "object"},
+              {"propertyNames", reference("new_name")},
+              {"additionalProperties", indices()}};
+    case kNumberList:
+      return {{"anyOf", json::array({reference("number"), list_of(reference("number"), 1, 0)})}};
+    case kLevel:
+      return {{"anyOf", json::array({{{"enum", {"min", "max"}}}, reference("number")})}};
     case kStep:
       return {{"anyOf", json::array({{{"const", "auto"}}, reference("number")})}};
     case kVariables:
@@ -188,6 +214,10 @@ json definitions() {
     if (table != &model_fields()) defs[definition_name(table->title)] = table_schema(*table);
   defs["joint"] = kinds_schema(joint_tables());
   defs["load"] = kinds_schema(load_tables());
+  defs["material"] = kinds_schema(material_tables());
+  defs["fibre"] = kinds_schema(fibre_tables());
+  const json selection = {{"anyOf", json::array({{{"type", "string"}}, reference("selection")})}};
+  defs["selections"] = {{"anyOf", json::array({selection, list_of(selection, 1, 0)})}};
   return defs;
 }
 

@@ -49,6 +49,26 @@ std::string form(const Field& field) {
       return "joint";
     case kLoad:
       return "load";
+    case kMaterial:
+      return "material";
+    case kSolid:
+      return "solid";
+    case kSelection:
+      return "selection";
+    case kBonds:
+      return "map from bodies to selections";
+    case kPoints:
+      return "list of vectors";
+    case kIndices:
+      return "list of whole numbers";
+    case kIndexLists:
+      return "list of lists of whole numbers";
+    case kIndexSets:
+      return "map from names to lists of whole numbers";
+    case kNumberList:
+      return "number, or list of numbers";
+    case kLevel:
+      return "min, max, or number";
     case kShapes:
       return "shape, or list of shapes";
     case kInertiaTensor:
@@ -70,7 +90,8 @@ std::string bounds(const Range& range) {
   if (range.least == -infinity && range.most == infinity) return "";
   if (range.least == range.most) return format("= {:g}", range.least);
   if (range.most == infinity) return format("{} {:g}", range.above_least ? ">" : ">=", range.least);
-  return format("{}{:g}, {:g}]", range.above_least ? "(" : "[", range.least, range.most);
+  return format("{}{:g}, {:g}{}", range.above_least ? "(" : "[", range.least, range.most,
+                range.below_most ? ")" : "]");
 }
 
 std::string cell(std::string text) {

@@ -43,6 +43,8 @@ inline constexpr Dimension kForce{1, 1, -2, 0};
 inline constexpr Dimension kMoment{2, 1, -2, 0};
 inline constexpr Dimension kInertia{2, 1, 0, 0};
 inline constexpr Dimension kDensity{-3, 1, 0, 0};
+inline constexpr Dimension kPressure{-1, 1, -2, 0};
+inline constexpr Dimension kViscosity{-1, 1, -1, 0};
 inline constexpr Dimension kStiffness{0, 1, -2, 0};
 inline constexpr Dimension kDamping{0, 1, -1, 0};
 inline constexpr Dimension kAngularStiffness{2, 1, -2, -1};

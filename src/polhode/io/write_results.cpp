@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/write_results.hpp>
 
+#include <span>
+
 #include <polhode/base/format.hpp>
 #include <polhode/io/results_format.hpp>
 #include <polhode/loads/registry.hpp>
@@ -9,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-std::string join(const char* group, const std::string& name) { return group + ("/" + name); }
+std::string join(const std::string& group, const std::string& name) { return group + "/" + name; }
 
 /// A per-body or per-joint quantity: its name in the file, entries of one body, unit.
 struct Quantity {
@@ -29,11 +31,21 @@ constexpr Quantity kEnergies[] = {{"kinetic", 1, "J"},
                                   {"dissipated", 1, "J"},
                                   {"total", 1, "J"}};
 
+constexpr Quantity kNodeQuantities[] = {{"displacement", 3, "m"},
+                                        {"velocity", 3, "m/s"},
+                                        {"cauchy", 6, "Pa"},
+                                        {"von_mises", 1, "Pa"},
+                                        {"strain_energy_density", 1, "J/m^3"}};
+constexpr Quantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
+                                           {"von_mises", 1, "Pa"},
+                                           {"principal_stretches", 3, "-"},
+                                           {"strain_energy_density", 1, "J/m^3"}};
+
 struct FilePlan {
   std::vector<Channel> channels;
   std::vector<ChannelView> views;
 
-  void add(const char* group, const Quantity& q, std::vector<std::size_t> dims,
+  void add(const std::string& group, const Quantity& q, std::vector<std::size_t> dims,
            bool integer = false) {
     channels.push_back({join(group, q.name), std::move(dims), q.unit, integer});
   }
@@ -60,6 +72,30 @@ void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
       }
       first += size;
     }
+}
+
+/// Path of a part of a solid in the file.
+std::string part(const std::string& solid, const std::string& name) {
+  return format("{}/{}/{}", results::kSolids, solid, name);
+}
+
+void plan_solids(const ResultsLayout& layout, FilePlan& p) {
+  const auto add = [&](const std::string& group, std::span<const Quantity> quantities,
+                       std::size_t rows) {
+    for (const Quantity& q : quantities) {
+      std::vector<std::size_t> dims{rows};
+      if (q.size > 1) dims.push_back(q.size);
+      p.add(group, q, std::move(dims));
+    }
+  };
+  for (const auto& solid : layout.solids) {
+    add(part(solid.name, "nodes"), kNodeQuantities, solid.mesh->nodes.size());
+    add(part(solid.name, "elements"), kElementQuantities,
+        static_cast<std::size_t>(solid.mesh->element_count()));
+    for (const std::string& interface : solid.interfaces)
+      for (const Quantity& q : kReactions)
+        p.add(part(solid.name, "interfaces/" + interface), q, {q.size});
+  }
 }
 
 /// The order of the channels is the order in which append() lists the numbers.
@@ -101,7 +137,22 @@ FilePlan plan(const ResultsLayout& layout) {
   p.add(r::kSolver, {"steps", 1, "-"}, {}, true);
   p.add(r::kSolver, {"iterations", 1, "-"}, {}, true);
   p.add(r::kSolver, {"rejected", 1, "-"}, {}, true);
+  plan_solids(layout, p);
   return p;
+}
+
+/// What does not change: where the nodes start and which of them an element has.
+void write_mesh(Hdf5File& file, const ResultsLayout::SolidEntry& solid) {
+  std::vector<std::int64_t> connectivity, offsets{0}, types;
+  for (int e = 0; e < solid.mesh->element_count(); ++e) {
+    for (const int node : solid.mesh->element_nodes(e)) connectivity.push_back(node);
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(solid.mesh->element_shape(e).vtk);
+  }
+  file.vectors(part(solid.name, "nodes/reference"), solid.reference, "m");
+  file.numbers(part(solid.name, "elements/connectivity"), connectivity);
+  file.numbers(part(solid.name, "elements/offsets"), offsets);
+  file.numbers(part(solid.name, "elements/vtk_type"), types);
 }
 
 Hdf5File create(const std::string& path, const ResultsLayout& layout) {
@@ -138,7 +189,13 @@ ResultsLayout results_layout(const Simulation& simulation) {
     const auto count = simulation.joint(static_cast<int>(i)).coordinates.size();
     layout.joints.push_back({model.joints[i].name, model.joints[i].type, static_cast<int>(count)});
   }
-  for (const LoadSpec& load : model.loads) layout.loads.push_back({load.name, load.type});
+  for (const LoadSpec& load : model.loads)
+    if (load.solid < 0) layout.loads.push_back({load.name, load.type});
+  for (std::size_t i = 0; i < model.solids.size(); ++i) {
+    const SolidPlan& plan = simulation.solids()[i].plan;
+    layout.solids.push_back(
+        {model.solids[i].name, &plan.mesh, plan.start, simulation.interfaces(static_cast<int>(i))});
+  }
   return layout;
 }
 
@@ -162,8 +219,14 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.rates.insert(frame.rates.end(), joint.rates.begin(), joint.rates.end());
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
+    if (model.loads[i].solid >= 0) continue;
     const std::vector<double> values = simulation.load(static_cast<int>(i));
     frame.loads.insert(frame.loads.end(), values.begin(), values.end());
+  }
+  for (int i = 0; i < static_cast<int>(model.solids.size()); ++i) {
+    frame.solids.push_back(simulation.solid(i));
+    const auto count = static_cast<int>(simulation.interfaces(i).size());
+    for (int k = 0; k < count; ++k) frame.interfaces.push_back(simulation.interface_reaction(i, k));
   }
   frame.balance = simulation.balance();
   const State& state = simulation.state();
@@ -176,7 +239,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
 
 ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
                          const Provenance& provenance)
-    : file_(create(path, layout)) {
+    : file_(create(path, layout)), solids_(layout.solids) {
   namespace r = results;
   std::vector<std::string> joints, types;
   std::vector<std::int64_t> first, count;
@@ -188,6 +251,7 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
     count.push_back(joint.coordinates);
     next += joint.coordinates;
   }
+  for (const auto& solid : layout.solids) write_mesh(file_, solid);
   file_.names(join(r::kPackedBodies, "names"), layout.bodies);
   file_.names(join(r::kPackedJoints, "names"), joints);
   file_.names(join(r::kPackedJoints, "types"), types);
@@ -228,7 +292,7 @@ void ResultsFile::name_loads(const ResultsLayout& layout) {
 }
 
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
-  return ResultsFile(Hdf5File::append_to(path, plan(layout).channels, t));
+  return {Hdf5File::append_to(path, plan(layout).channels, t), layout};
 }
 
 void ResultsFile::append(const ResultsFrame& frame) {
@@ -261,7 +325,34 @@ void ResultsFile::append(const ResultsFrame& frame) {
   scalar(frame.dt);
   for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
     scalar(static_cast<double>(x));
+  add_solids(frame);
   file_.append(numbers_);
+}
+
+void ResultsFile::add_solids(const ResultsFrame& frame) {
+  const auto vector = [&](const Vec3& x) { numbers_.insert(numbers_.end(), x.begin(), x.end()); };
+  const auto tensor = [&](const Mat3& T) {
+    numbers_.insert(numbers_.end(), {T(0, 0), T(1, 1), T(2, 2), T(0, 1), T(1, 2), T(0, 2)});
+  };
+  std::size_t next = 0;
+  for (std::size_t s = 0; s < solids_.size(); ++s) {
+    const SolidReport& report = frame.solids[s];
+    const NodalAverages nodal = nodal_averages(*solids_[s].mesh, report.elements);
+    for (const Vec3& x : report.displacement) vector(x);
+    for (const Vec3& x : report.velocity) vector(x);
+    for (const Mat3& T : nodal.cauchy) tensor(T);
+    numbers_.insert(numbers_.end(), nodal.von_mises.begin(), nodal.von_mises.end());
+    numbers_.insert(numbers_.end(), nodal.strain_energy_density.begin(),
+                    nodal.strain_energy_density.end());
+    for (const ElementSample& e : report.elements) tensor(e.cauchy);
+    for (const ElementSample& e : report.elements) numbers_.push_back(von_mises(e.cauchy));
+    for (const ElementSample& e : report.elements) vector(e.principal_stretches);
+    for (const ElementSample& e : report.elements) numbers_.push_back(e.strain_energy_density);
+    for (std::size_t k = 0; k < solids_[s].interfaces.size(); ++k) {
+      vector(frame.interfaces[next].force);
+      vector(frame.interfaces[next++].moment);
+    }
+  }
 }
 
 }  // namespace polhode

@@ -8,6 +8,7 @@
 
 #include <polhode/io/hdf5_file.hpp>
 #include <polhode/model/simulation.hpp>
+#include <polhode/model/solid_report.hpp>
 
 namespace polhode {
 
@@ -29,10 +30,17 @@ struct ResultsLayout {
   struct LoadEntry {
     std::string name, type;
   };
+  struct SolidEntry {
+    std::string name;
+    const Mesh* mesh = nullptr;   ///< Outlives the file.
+    std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
+    std::vector<std::string> interfaces;
+  };
   std::string title{};
   std::vector<std::string> bodies{};
   std::vector<JointEntry> joints{};
   std::vector<LoadEntry> loads{};
+  std::vector<SolidEntry> solids{};
 
   [[nodiscard]] int coordinates() const;   ///< Of all joints.
   [[nodiscard]] int load_numbers() const;  ///< That all loads report.
@@ -47,6 +55,8 @@ struct ResultsFrame {
   std::vector<Quat> orientation;  ///< Body to world.
   std::vector<double> coordinates, rates, loads;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
+  std::vector<SolidReport> solids;
+  std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.
   Balance balance;
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
@@ -69,8 +79,12 @@ class ResultsFile {
 
  private:
   void name_loads(const ResultsLayout& layout);
-  explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
+  ResultsFile(Hdf5File file, const ResultsLayout& layout)
+      : file_(std::move(file)), solids_(layout.solids) {}
+  void add_solids(const ResultsFrame& frame);
+
   Hdf5File file_;
+  std::vector<ResultsLayout::SolidEntry> solids_;
   std::vector<double> numbers_;
 };
 

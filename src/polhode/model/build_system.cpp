@@ -24,6 +24,8 @@ class Builder {
     const double reach = dummy_reach();
     for (const BodySpec& body : model_.bodies) add_body(body, reach);
     for (const JointSpec& joint : model_.joints) add_joint(joint);
+    for (std::size_t i = 0; i < model_.solids.size(); ++i)
+      map_.solids.push_back(add_solid(system_, model_, static_cast<int>(i), map_.body));
     for (const LoadSpec& load : model_.loads) add_load(load);
     for (const BeamSpec& beam : model_.beams) add_beam(beam);
     for (const CableLineSpec& cable : model_.cables) add_cable(cable);
@@ -138,6 +140,10 @@ class Builder {
 
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
+    if (load.solid >= 0) {
+      add_solid_load(system_, load, map_.solids.at(static_cast<std::size_t>(load.solid)));
+      return;
+    }
     const LoadKind& kind = load_kind(load.type);
     int a = load.a, b = load.b;
     std::optional<FreeAngle> angle;
@@ -225,7 +231,7 @@ class Builder {
     map_.joint = interactions[Joint::kKind];
     std::map<std::string, std::size_t> next;
     for (const LoadSpec& load : model_.loads)
-      map_.load.push_back(interactions.at(load.type).at(next[load.type]++));
+      map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(next[load.type]++));
     const auto take = [&](const std::string& kind, auto& things, auto&& size,
                           std::vector<std::vector<int>>& of) {
       std::size_t first = 0;
@@ -241,7 +247,7 @@ class Builder {
     take(
         Cable::kKind, model_.cables, [](const CableLineSpec& c) { return c.pieces.size(); },
         map_.cable);
-    map = map_;
+    map = std::move(map_);
   }
 
   const Model& model_;

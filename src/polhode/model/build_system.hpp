@@ -5,6 +5,7 @@
 
 #include <polhode/assembly/system.hpp>
 #include <polhode/joints/joint.hpp>
+#include <polhode/model/build_solids.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -13,7 +14,9 @@ namespace polhode {
 struct SystemMap {
   std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
-  std::vector<int> load;   ///< By Model::loads: likewise.
+  /// By Model::loads: likewise; of a load on a solid -1.
+  std::vector<int> load;
+  std::vector<SolidMap> solids;  ///< By Model::solids.
   std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
   std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
 };

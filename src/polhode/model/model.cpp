@@ -26,6 +26,11 @@ int Model::body_index(const std::string& name) const {
   return name == "ground" ? kGround : index_of(bodies, name, "body", "bodies", {"ground"});
 }
 
+const std::string& Model::body_name(int body) const {
+  static const std::string ground = "ground";
+  return body == kGround ? ground : bodies.at(static_cast<std::size_t>(body)).name;
+}
+
 int Model::joint_index(const std::string& name) const {
   return index_of(joints, name, "joint", "joints", {});
 }

@@ -71,11 +71,12 @@ struct LoadSpec {
        Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
   bool body_fixed = false;  ///< Components turn with the body (follower).
   std::optional<TimeVector>
-      vector;                ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
-  TimeFunctionPtr value;     ///< Pressure [Pa].
-  int solid = -1;            ///< Of a load on a solid: index into Model::solids.
-  SelectionSpecs selection;  ///< Its nodes or faces; empty: all.
-  bool follower = false;     ///< A pressure that turns with the surface and grows with its area.
+      vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
+  TimeFunctionPtr value;  ///< Pressure [Pa].
+  int solid = -1;         ///< Of a load on a solid: index into Model::solids.
+  std::vector<Selection> selection;  ///< Its nodes or faces; empty: all.
+  bool follower = false;  ///< A pressure that turns with the surface and grows with its area.
+  std::string keeps = "momentum";  ///< Of a follower pressure: momentum or work is exact.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
 };
@@ -142,6 +143,7 @@ struct Model {
 
   [[nodiscard]] int body_index(
       const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
+  [[nodiscard]] const std::string& body_name(int body) const;    ///< "ground" for kGround.
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
   [[nodiscard]] int material_index(
       const std::string& name) const;                            ///< Throws InputError if unknown.

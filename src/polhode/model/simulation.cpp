@@ -13,6 +13,7 @@
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/method.hpp>
 #include <polhode/model/simulation.hpp>
+#include <polhode/solve/node_motion.hpp>
 
 namespace polhode {
 
@@ -54,6 +55,9 @@ struct Simulation::Impl {
   explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
     method = choose_method(system, model.analysis);
     narration = method.narration;
+    for (const SolidMap& solid : map.solids)
+      for (const std::string& warning : solid.plan.warnings)
+        narration += format("Warning: {}\n", warning);
     engine_name = method.engine->name();
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
@@ -118,6 +122,7 @@ Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(mod
 
 Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(std::move(model))) {
   if (state.blocks.size() != impl_->system.initial_state().blocks.size() ||
+      state.node_x.size() != impl_->system.initial_state().node_x.size() ||
       state.lambda.size() != impl_->system.initial_state().lambda.size())
     throw InputError("restart", "the state belongs to another model",
                      "Restart with the model it was saved from");
@@ -263,6 +268,95 @@ std::vector<double> Simulation::load(int load) const {
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
+
+const std::vector<SolidMap>& Simulation::solids() const { return impl_->map.solids; }
+
+namespace {
+
+Vec3 at_node(const std::vector<double>& field, int node) {
+  return Eigen::Map<const Vec3>(field.data() + 3 * node);
+}
+
+}  // namespace
+
+/// Velocity of a node: a bonded one has its body's, without what Newmark's adds of order Δt².
+Vec3 Simulation::node_velocity(int node) const {
+  const int body = impl_->system.nodes()[node].body;
+  if (body == kFreeNode) return at_node(impl_->state.node_v, node);
+  if (body == kGround) return Vec3::Zero();
+  impl_->at_instant();
+  const BodyMotion m = impl_->system.motion(impl_->projected, body);
+  return m.v + m.omega().cross(at_node(impl_->state.node_x, node) - m.r);
+}
+
+std::array<Vec3, 3> Simulation::solid_point(int solid, const SolidPoint& point) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  std::array<Vec3, 3> sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    const int node = map.first_node + point.nodes[k];
+    const Vec3 x = at_node(impl_->state.node_x, node);
+    sum[0] += point.weights[k] * x;
+    sum[1] += point.weights[k] * (x - map.plan.start[static_cast<std::size_t>(point.nodes[k])]);
+    sum[2] += point.weights[k] * node_velocity(node);
+  }
+  return sum;
+}
+
+SolidReport Simulation::solid(int solid) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  const Nodes& nodes = impl_->system.nodes();
+  const State& state = impl_->state;
+  SolidReport report;
+  for (int k = 0; k < map.node_count(); ++k) {
+    const Vec3 x = at_node(state.node_x, map.first_node + k);
+    report.position.push_back(x);
+    report.displacement.emplace_back(x - map.plan.start[static_cast<std::size_t>(k)]);
+    report.velocity.push_back(node_velocity(map.first_node + k));
+  }
+  StepContext still;
+  still.t_n = state.t;
+  const NodeStep instant = node_instant(state, still);
+  for (const int g : map.groups) {
+    const ElementGroup& group = nodes.group(g);
+    std::vector<ElementSample> samples(static_cast<std::size_t>(group.size()));
+    group.sample(instant, state.element_history.data() + nodes.first_history(g), samples);
+    report.elements.insert(report.elements.end(), samples.begin(), samples.end());
+  }
+  return report;
+}
+
+std::vector<std::string> Simulation::interfaces(int solid) const {
+  const Model& model = impl_->model;
+  const SolidSpec& spec = model.solids.at(static_cast<std::size_t>(solid));
+  std::vector<std::string> names;
+  for (const BondSpec& bond : spec.bonded) names.push_back(model.body_name(bond.body));
+  for (const PrescribedSpec& prescribed : spec.prescribed) names.push_back(prescribed.name);
+  return names;
+}
+
+InterfaceReport Simulation::interface_reaction(int solid, int k) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  const auto bonds = static_cast<int>(map.plan.bonded.size());
+  const std::vector<int>& nodes = k < bonds
+                                      ? map.plan.bonded.at(static_cast<std::size_t>(k))
+                                      : map.plan.prescribed.at(static_cast<std::size_t>(k - bonds));
+  const Nodes& all = impl_->system.nodes();
+  const InstantSolution& now = impl_->at_instant();
+  InterfaceReport report;
+  if (now.node_force.empty()) return report;
+  for (const int k_node : nodes) {
+    const int node = map.first_node + k_node;
+    Vec3 force = at_node(now.node_force, node);
+    // Free components of a prescribed node are in balance but for round-off.
+    for (int c = 0; c < 3; ++c)
+      if (!all.bonded(node) && all.unknown(node, c) >= 0) force[c] = 0.0;
+    Vec3 arm = at_node(impl_->state.node_x, node);
+    if (all[node].body >= 0) arm -= impl_->system.motion(impl_->state, all[node].body).r;
+    report.force += force;
+    report.moment += arm.cross(force);
+  }
+  return report;
+}
 
 std::string Simulation::state_hash() const {
   return polhode::state_hash(impl_->system, impl_->state);

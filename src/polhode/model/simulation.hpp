@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -9,7 +10,10 @@
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
+#include <polhode/model/build_solids.hpp>
 #include <polhode/model/model.hpp>
+#include <polhode/model/solid_point.hpp>
+#include <polhode/model/solid_report.hpp>
 #include <polhode/solve/ledger.hpp>
 #include <polhode/solve/start.hpp>
 #include <polhode/solve/stepper.hpp>
@@ -86,10 +90,22 @@ class Simulation {
   /// The numbers of the channels of its kind, see LoadKind::channels.
   [[nodiscard]] std::vector<double> load(int load) const;
   [[nodiscard]] Balance balance() const;
+
+  // Deformable solids, by index in the Model.
+  [[nodiscard]] const std::vector<SolidMap>& solids() const;
+  [[nodiscard]] SolidReport solid(int solid) const;
+  /// Position, displacement since the start and velocity of a material point.
+  [[nodiscard]] std::array<Vec3, 3> solid_point(int solid, const SolidPoint& point) const;
+  /// Names of what holds nodes of a solid: bonded bodies, then prescribed nodes.
+  [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
+  /// What interfaces(solid)[k] exerts on the solid.
+  [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
 
  private:
+  [[nodiscard]] Vec3 node_velocity(int node) const;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -8,37 +8,13 @@
 
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
+#include <polhode/fe/mesh/selection.hpp>
 #include <polhode/model/place.hpp>
 
 namespace polhode {
 
-/// Which nodes or faces of a solid are meant. Coordinates are the mesh's own: in metres, before
-/// the mesh is placed by its position and orientation. Faces are meant if all their nodes are.
-struct SelectionSpec {
-  enum class Kind : unsigned char { kAll, kSet, kPlane, kBox, kSphere, kNodes };
-  enum class Level : unsigned char { kLeast, kMost, kValue };
-
-  Kind kind = Kind::kAll;
-  Place place;
-  std::string set;              ///< kSet: name of a set of nodes or faces of the mesh.
-  Vec3 normal = Vec3::UnitZ();  ///< kPlane: unit normal.
-  Level level = Level::kValue;  ///< kPlane: at the mesh's least or largest extent, or at a value.
-  double value = 0.0;           ///< kPlane: normal · X [m].
-  Vec3 least = Vec3::Zero();    ///< kBox: corner of least coordinates [m].
-  Vec3 most = Vec3::Zero();     ///< kBox: corner of largest coordinates [m].
-  Vec3 centre = Vec3::Zero();   ///< kSphere [m].
-  double radius = 0.0;          ///< kSphere; inside it, or with on_surface on it [m].
-  bool on_surface = false;      ///< kSphere: only what lies at the radius itself.
-  double tolerance = 0.0;       ///< [m]; 0: a small part of the mesh's extent.
-  std::vector<int> nodes;       ///< kNodes: indices, the first node is 0.
-};
-
-/// One or several selections: what any of them holds.
-using SelectionSpecs = std::vector<SelectionSpec>;
-
 /// Where the mesh of a solid comes from and where it stands.
 struct MeshSpec {
-  Place place;
   std::string type;  ///< file, inline, or a generator: block, cylinder, tube, sphere ...
   // From a file
   std::string file;    ///< Resolved against the model file's folder.
@@ -59,14 +35,14 @@ struct MeshSpec {
 struct BondSpec {
   int body = kGround;  ///< Index into Model::bodies, or kGround.
   Place place;
-  SelectionSpecs nodes;
+  std::vector<Selection> nodes;
 };
 
 /// Nodes whose displacement from the start is given as a function of time.
 struct PrescribedSpec {
   std::string name;
   Place place;
-  SelectionSpecs nodes;
+  std::vector<Selection> nodes;
   TimeVector displacement;  ///< World components [m]; null: this component is free.
 };
 
@@ -78,7 +54,6 @@ struct SolidSpec {
   std::string element;   ///< A kind of the registry of elements; "": what suits mesh and material.
   std::string material;  ///< Name of a material of the model.
   std::string stress = "conserving";  ///< conserving | midpoint.
-  std::string tangent = "full";       ///< full | symmetric.
   std::optional<double> density;      ///< Instead of the material's [kg/m^3].
   std::vector<BondSpec> bonded;
   std::vector<PrescribedSpec> prescribed;

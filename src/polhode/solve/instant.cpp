@@ -494,7 +494,10 @@ InstantSolution InstantSolver::accelerations(const State& state) {
     solution.r_ddot.emplace_back(s.x.segment<3>(6 * b));
     solution.alpha.emplace_back(s.x.segment<3>(6 * b + 3));
   }
-  if (s.nodes) solution.node_a = s.nodes->accelerations(s.x.data());
+  if (s.nodes) {
+    solution.node_a = s.nodes->accelerations(s.x.data());
+    solution.node_force = s.nodes->reactions();
+  }
   for (int row = 0; row < system.rows(); ++row)
     solution.lambda[row] += system.mean_mass() * s.x[6 * bodies + row];
   return solution;

@@ -34,6 +34,7 @@ struct InstantSolution {
   bool solved = true;               ///< False: a value is not finite.
   std::vector<Vec3> r_ddot, alpha;  ///< By body: of the centre [m/s²], angular, world [rad/s²].
   std::vector<double> node_a;       ///< Of the nodes of solids, three each [m/s²].
+  std::vector<double> node_force;   ///< What holds the nodes of solids, three each [N].
   std::vector<double> lambda;       ///< By row; the smallest ones where rows are redundant.
   double residual = 0.0;            ///< Largest |G q̈ + γ|.
   bool consistent = true;           ///< False: the velocities fit no motion of a singular position.

@@ -73,4 +73,16 @@ const std::vector<double>& NodeInertia::accelerations(const double* bodies) {
   return a_;
 }
 
+std::vector<double> NodeInertia::reactions() const {
+  const Nodes& nodes = system_->nodes();
+  std::vector<double> F = residual_;  // M γ − f − M g
+  for (int i = 0; i < nodes.count(); ++i)
+    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b) {
+      const int j = nodes.column()[b];
+      for (int c = 0; c < 3; ++c)
+        F[3 * i + c] += nodes.mass()[b] * (a_[3 * j + c] - gamma_[3 * j + c]);
+    }
+  return F;
+}
+
 }  // namespace polhode

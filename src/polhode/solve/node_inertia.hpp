@@ -23,6 +23,9 @@ class NodeInertia {
            std::span<KktValues::Pair> pairs);
   /// Accelerations of all nodes (3 each) from those of the bodies (6 each).
   [[nodiscard]] const std::vector<double>& accelerations(const double* bodies);
+  /// M a − f − M g of all nodes (3 each) for the accelerations last asked for: what bodies, ground
+  /// and prescribed motion exert on those they hold, nothing but round-off on the free ones [N].
+  [[nodiscard]] std::vector<double> reactions() const;
 
  private:
   const System* system_;
