@@ -16,7 +16,7 @@ struct SystemMap {
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
   /// By Model::loads: likewise; of a load on a solid -1.
   std::vector<int> load;
-  std::vector<SolidMap> solids;  ///< By Model::solids.
+  std::vector<SolidMap> solids;         ///< By Model::solids.
   std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
   std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
 };

@@ -14,7 +14,8 @@ struct StepContext {
   bool conserving = true;    ///< Potentials in discrete-gradient form.
   double load_factor = 1.0;  ///< Part of all loads and of gravity that acts: statics. [-]
   bool tangents = true;      ///< Tangents and G are wanted; else only wrenches and values.
-  /// Geometric stiffness from the stress that histories hold, not from that of the iterate: statics.
+  /// Geometric stiffness from the stress that histories hold, not from that of the iterate:
+  /// statics.
   bool mixed_point = false;
 
   [[nodiscard]] double t_alpha() const { return t_n + ga.alpha_f * dt; }  ///< t_{n+αf} [s].
