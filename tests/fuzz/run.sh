@@ -1,19 +1,35 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Fuzzes the reader of model files: tests/fuzz/run.sh [seconds, default 600] [build folder].
-# Inputs that break it are left in <build folder>/crashes and make the script fail.
+# Fuzzes one reader: tests/fuzz/run.sh [seconds, default 600] [build folder] [reader: model (default),
+# gmsh, vtu, abaqus]. Inputs that break it are left in <build folder>/crashes and make the script
+# fail.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 seconds=${1:-600}
 build=${2:-$root/build/fuzz}
+reader=${3:-model}
+
+meshes=$root/tests/fe/mesh/data
+case $reader in
+  model)
+    corpus="$root/tests/corpus/good $root/tests/corpus/broken"
+    words=model_file.dict ;;
+  gmsh | vtu | abaqus)
+    corpus="$meshes $root/tests/fuzz/found_in_meshes"
+    words=mesh.dict ;;
+  *)
+    echo "There is no reader '$reader': model, gmsh, vtu or abaqus." >&2
+    exit 2 ;;
+esac
 
 CC=clang CXX=clang++ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DPOLHODE_BUILD_FUZZERS=ON -DPOLHODE_BUILD_APPS=OFF > /dev/null
-cmake --build "$build" --target read_model_fuzzer
+cmake --build "$build" --target "read_${reader}_fuzzer"
 
-mkdir -p "$build/found" "$build/crashes"
-fuzzer=$(find "$build" -name read_model_fuzzer -type f | head -n 1)
-"$fuzzer" "$build/found" "$root/tests/corpus/good" "$root/tests/corpus/broken" \
-  -dict="$root/tests/fuzz/model_file.dict" -artifact_prefix="$build/crashes/" \
+mkdir -p "$build/found_$reader" "$build/crashes" "$root/tests/fuzz/found_in_meshes"
+fuzzer=$(find "$build" -name "read_${reader}_fuzzer" -type f | head -n 1)
+# shellcheck disable=SC2086
+"$fuzzer" "$build/found_$reader" $corpus \
+  -dict="$root/tests/fuzz/$words" -artifact_prefix="$build/crashes/" \
   -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=8192 -print_final_stats=1
 echo "No input broke the reader in $seconds seconds."

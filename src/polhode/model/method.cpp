@@ -65,6 +65,15 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   return order;
 }
 
+/// Bodies hang together by beams or cables, of which the tree makes loops.
+bool has_elastic_pairs(const System& system) {
+  for (const InteractionRef& ref : system.interactions())
+    if (ref.rows == 0 && ref.a != kGround && ref.b != kGround &&
+        system.group(ref.group).reach(ref.item) > 0.0)
+      return true;
+  return false;
+}
+
 std::unique_ptr<NewtonEngine> choose_engine(const System& system, const AnalysisSpec& a,
                                             MomentumRate rate, JacobianPolicy policy,
                                             std::string& narration) {
@@ -91,11 +100,13 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     return std::make_unique<SparseEngine>(system, "block_lu", rate);
   }
   auto tree = std::make_unique<TreeEngine>(system, a.isa);
-  if (a.solver == "tree" || tree->plan().most_open <= kFewOpenLoops) return tree;
+  const bool elastic = has_elastic_pairs(system);
+  if (a.solver == "tree" || (!elastic && tree->plan().most_open <= kFewOpenLoops)) return tree;
   auto sparse = std::make_unique<SparseEngine>(system, "block_lu", rate);
   if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
-  narration +=
-      format("Solver: block LU, as up to {} loops are open at one body.\n", tree->plan().most_open);
+  narration += elastic ? "Solver: block LU, as beams or cables hold bodies together.\n"
+                       : format("Solver: block LU, as up to {} loops are open at one body.\n",
+                                tree->plan().most_open);
   return sparse;
 }
 

@@ -171,6 +171,26 @@ std::string test_name(const testing::TestParamInfo<std::string>& one) {
 }
 INSTANTIATE_TEST_SUITE_P(Files, MeshFile, testing::ValuesIn(files()), test_name);
 
+// What fuzzers found once must stay mended.
+TEST(ReadMesh, WithstandsWhatFuzzersFound) {
+  int inputs = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_dir() + "/tests/fuzz/found_in_meshes")) {
+    std::ifstream stream(entry.path(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream),
+                            std::istreambuf_iterator<char>()};
+    for (const char* name : {"a.msh", "a.vtu", "a.inp"}) {
+      try {
+        (void)mesh_faults(parse_mesh(name, bytes));
+      } catch (const InputError& e) {
+        EXPECT_FALSE(e.what_is_wrong().empty());
+      }
+    }
+    ++inputs;
+  }
+  EXPECT_GT(inputs, 0);
+}
+
 TEST(ReadMesh, ScalesToMetres) {
   const Mesh mesh = read_mesh(folder() + "/hex8_4_text.msh", 0.001);
   EXPECT_LT((extent(mesh).most - Vec3(2e-3, 1e-3, 1e-3)).norm(), 1e-14);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Feeds arbitrary bytes to one reader of meshes. A mesh that hangs together or an InputError may
+// come out, and nothing else: no crash, no other exception, no error without a place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <polhode/base/error.hpp>
+#include <polhode/fe/mesh/check_mesh.hpp>
+#include <polhode/fe/mesh/read_mesh.hpp>
+
+namespace polhode::fuzz {
+
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+inline void check_numbers(const Mesh& mesh) {
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  const auto exists = [&](int node) { return node >= 0 && node < nodes; };
+  for (const ElementBlock& block : mesh.blocks) {
+    require(block.nodes.size() % block.shape().nodes.size() == 0);
+    for (int node : block.nodes) require(exists(node));
+  }
+  const int elements = mesh.element_count();
+  require(mesh.element_labels.size() == static_cast<std::size_t>(elements));
+  for (const auto& [name, set] : mesh.node_sets)
+    for (int node : set) require(exists(node));
+  for (const auto& [name, set] : mesh.element_sets)
+    for (int element : set) require(element >= 0 && element < elements);
+  for (const auto& [name, surface] : mesh.surfaces)
+    for (const FaceBlock& block : surface.blocks) {
+      require(block.nodes.size() == block.owners.size() * block.shape().nodes.size());
+      for (int node : block.nodes) require(exists(node));
+      for (int owner : block.owners) require(owner >= -1 && owner < elements);
+    }
+}
+
+using Parser = Mesh (*)(const std::string& name, std::string_view bytes);
+
+inline int read(Parser parse, const std::uint8_t* data, std::size_t size) {
+  try {
+    const Mesh mesh = parse("fuzz", std::string_view(reinterpret_cast<const char*>(data), size));
+    check_numbers(mesh);
+    (void)mesh_faults(mesh);
+    check_numbers(part_of(mesh, {}));
+    (void)boundary(mesh);
+  } catch (const InputError& error) {
+    require(error.where().starts_with("fuzz") && !error.what_is_wrong().empty() &&
+            !error.mend().empty());
+  }
+  return 0;
+}
+
+}  // namespace polhode::fuzz
