@@ -32,7 +32,7 @@ void MeshBuilder::refuse(std::size_t at, const std::string& what, const std::str
 }
 
 void MeshBuilder::add_node(std::int64_t label, const Vec3& X, std::size_t at) {
-  if (!(X.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+  if (!X.allFinite() || X.cwiseAbs().maxCoeff() > kLargestCoordinate)
     refuse(at,
            format("node {} has the coordinates ({:.3g}, {:.3g}, {:.3g})", label, X[0], X[1], X[2]),
            kExportMeshAgain);

@@ -31,7 +31,14 @@ Mesh parse_mesh(const std::string& name, std::string_view bytes, double factor) 
   else
     throw InputError(name, format("a mesh cannot be read from a file ending in {}", quote(ending)),
                      "Use .msh (Gmsh 2.2 or 4.1), .vtu (VTK) or .inp (Abaqus)");
-  if (factor != 1.0) scale(mesh, factor);
+  if (factor == 1.0) return mesh;
+  const Extent box = extent(mesh);
+  const double largest = box.least.cwiseAbs().cwiseMax(box.most.cwiseAbs()).maxCoeff();
+  if (largest * factor > kLargestCoordinate)
+    throw InputError(name,
+                     format("the scale {} makes coordinates of {:.3g} m", factor, largest * factor),
+                     "Give the metres per unit of the file, such as 0.001");
+  scale(mesh, factor);
   return mesh;
 }
 
