@@ -93,7 +93,7 @@ TEST(Corpus, DamagedModelsAreReadOrRefused) {
     const std::string good = content(path);
     for (int round = 0; round < 150; ++round) {
       std::string text = good;
-      for (std::size_t change = 0; change <= random(4); ++change) {
+      for (std::size_t change = 0; change <= random(4) && !text.empty(); ++change) {
         const std::size_t at = random(text.size()), n = random(30);
         switch (random(4)) {
           case 0:

@@ -15,6 +15,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <polhode/solve/statics.hpp>
 #include <solve/static_models.hpp>
+#include <support/paths.hpp>
 
 namespace polhode {
 namespace {
@@ -83,7 +84,7 @@ Mat6 stiffness(double EA, double GA_y, double GA_z, double GJ, double EI_y, doub
 
 std::map<std::string, std::vector<double>> references() {
   std::map<std::string, std::vector<double>> all;
-  std::ifstream file(std::string(POLHODE_TEST_DATA_DIR) + "/static_beams.csv");
+  std::ifstream file(test::test_data_dir() + "/static_beams.csv");
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line[0] == '#') continue;
     std::istringstream fields(line);

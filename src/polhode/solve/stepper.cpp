@@ -81,7 +81,8 @@ struct Stepper::Impl {
   static double part_of(double way, double dt) {
     if (way > 2.0 * dt || std::abs(way - dt) <= kSameTime * dt) return dt;
     const double parts = std::ceil(way / dt - kStretch);
-    return parts > 1.0 ? way / parts : way;
+    const double part = parts > 1.0 ? way / parts : way;
+    return std::abs(part - dt) <= kSameTime * dt ? dt : part;  // to the last bit, wherever it ends
   }
 
   /// Runs stages from the state; on failure the state is not restored.
