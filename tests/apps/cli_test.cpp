@@ -200,7 +200,11 @@ TEST_F(CommandLine, FinishesTheStepAndSavesWhenInterrupted) {
 TEST_F(CommandLine, LeavesReadableFilesWhenItIsKilled) {
   test::Program program = start({"run", "model.yaml", "--set", "analysis.duration=1e7 s", "--set",
                                  "analysis.checkpoint_every=0.05"});
-  for (int i = 0; i < 200 && !exists("model.results/checkpoint.pst"); ++i)
+  const auto has_a_picture = [&] {
+    return exists("model.results/paraview/results.pvd") &&
+           read("model.results/paraview/results.pvd").find("file=\"") != std::string::npos;
+  };
+  for (int i = 0; i < 500 && !(exists("model.results/checkpoint.pst") && has_a_picture()); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   program.signal(SIGKILL);
