@@ -10,7 +10,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(libc6-dev libstdc++6 libeigen3-dev libfmt-dev libyaml-cpp-dev libhdf5-dev
-  libsuitesparse-dev libssl-dev nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev)
+  libsuitesparse-dev libmumps-seq-dev libopenblas-pthread-dev libspectra-dev libssl-dev zlib1g-dev
+  nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev)
 sysroot=$PWD/build/arm64-sysroot
 
 if ! command -v aarch64-linux-gnu-g++ >/dev/null || ! command -v qemu-aarch64 >/dev/null; then
