@@ -41,6 +41,7 @@ void add_set_option(CLI::App& command, ModelArguments& arguments);
 
 // One file of commands/ each.
 Action add_run(CLI::App& command);
+Action add_modes(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_schema(CLI::App& command);

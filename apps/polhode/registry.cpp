@@ -7,6 +7,7 @@ namespace polhode::cli {
 const std::vector<Command>& commands() {
   static const std::vector<Command> list{
       {"run", "Run a model and write its results", add_run},
+      {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
       {"check", "Look for faults in a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "Tell what a model holds, or which joints, loads and shapes exist", add_info},
       {"schema", "Write the JSON Schema or the reference page of the model file", add_schema},

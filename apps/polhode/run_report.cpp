@@ -58,7 +58,39 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
       {"results", folder},
       {"frames", frames},
   };
+  if (s.statics) {
+    json["load_factor"] = s.statics->load_factor;
+    json["strain_energy"] = s.strain_energy;
+    json["residual"] = s.statics->residual;
+    json["largest_force"] = s.statics->force;
+    json["unstable_directions"] = s.statics->unstable;
+    json["free_motions"] = s.statics->free_motions;
+    json["limit_points"] = s.statics->limit_points;
+  }
   return json.dump(2);
+}
+
+std::string statics_table(const RunSummary& s) {
+  const StaticReport& r = *s.statics;
+  std::vector<std::vector<std::string>> rows{
+      {"load carried", format("{:.6g}", r.load_factor), "of the whole"},
+      {"load steps", format("{}", s.steps), format("{} cut", s.rejected_steps)},
+      {"Newton iterations", format("{}", r.iterations)},
+      {"unbalanced force", format("{:.1e} N", r.residual),
+       format("the largest force is {:.3g} N", r.force)},
+      {"strain energy", format("{:.6g} J", s.strain_energy)},
+      {"stable", r.unstable < 0    ? "not known"
+                 : r.unstable == 0 ? "yes"
+                                   : format("no, in {} directions", r.unstable)},
+      {"time", seconds(s.wall_time_s)},
+      {"solver", s.solver}};
+  std::string text = table(rows);
+  for (const std::string& motion : r.free_motions)
+    text += format("  Nothing resists that {}.\n", motion);
+  for (double factor : r.limit_points)
+    text +=
+        format("  Stability changed before load factor {:.6g}: a limit point or branch.\n", factor);
+  return text;
 }
 
 std::string summary_table(const RunSummary& s) {

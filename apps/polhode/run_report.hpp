@@ -15,6 +15,8 @@ namespace polhode::cli {
                                        const std::string& folder, std::size_t frames);
 
 /// The ledger for people: energy, momenta, constraints, iterations, time by phase.
+/// The same of a static analysis.
+[[nodiscard]] std::string statics_table(const RunSummary& summary);
 [[nodiscard]] std::string summary_table(const RunSummary& summary);
 
 /// "1 body", "3 bodies".

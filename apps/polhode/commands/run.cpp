@@ -17,6 +17,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "modes_report.hpp"
 #include "run_report.hpp"
 
 namespace polhode::cli {
@@ -48,8 +49,7 @@ std::string results_folder(const Options& options) {
   return std::filesystem::path(options.model.file).replace_extension(".results").string();
 }
 
-Simulation make_simulation(const Options& options) {
-  Model model = load_model(options.model);
+Simulation make_simulation(const Options& options, Model model) {
   if (options.restart.empty()) return Simulation(std::move(model));
   State state = read_checkpoint(options.restart, model, build_system(model));
   return {std::move(model), std::move(state)};
@@ -100,7 +100,10 @@ int exit_code(const RunSummary& summary, bool limit_reached) {
 
 int run(const Options& options) {
   const double start = wall_clock();
-  Simulation simulation = make_simulation(options);
+  Model model = load_model(options.model);
+  if (model.analysis.type == "modes")
+    return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
+  Simulation simulation = make_simulation(options, std::move(model));
   const std::string folder = results_folder(options);
   const std::string checkpoint = folder + "/" + kCheckpointName;
   Recorder recorder(simulation, folder, provenance_of(options, simulation.summary()),
@@ -149,7 +152,7 @@ int run(const Options& options) {
   if (options.json)
     print(summary_json(summary, code, folder, recorder.frames()) + "\n");
   else if (!options.quiet)
-    print(summary_table(summary));
+    print(summary.statics ? statics_table(summary) : summary_table(summary));
   return code;
 }
 

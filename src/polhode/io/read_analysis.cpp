@@ -26,6 +26,21 @@ void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
   analysis.step = section.number("step");
 }
 
+/// Entries that mean nothing in an analysis of this type.
+void check_type(Section& section, const std::string& type) {
+  const auto refuse = [&](const char* key, const std::string& goes_with) {
+    if (section.has(key))
+      section.fault(key, "does not go with type " + type, "It goes with " + goes_with + ".");
+  };
+  if (type != "dynamics")
+    for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "momentum_rate",
+                            "min_step", "max_step", "smooth_multipliers"})
+      refuse(key, "type dynamics");
+  if (type == "dynamics") refuse("load_steps", "type statics or modes");
+  if (type != "modes")
+    for (const char* key : {"count", "about"}) refuse(key, "type modes");
+}
+
 }  // namespace
 
 void read_analysis(ReadContext& context, const SourceNode& node, const Place& place) {
@@ -33,13 +48,7 @@ void read_analysis(ReadContext& context, const SourceNode& node, const Place& pl
   analysis.place = place;
   Section section(context, node, place, "analysis", analysis_fields());
   if (!node.is_map()) return;
-  const SourceNode* type = section.find("type");
-  if (type && type->is_text() && (type->text == "statics" || type->text == "modes")) {
-    section.fault("type", quote(type->text) + " is not supported by this version",
-                  "Use: dynamics.");
-  } else {
-    assign(analysis.type, section.choice("type"));
-  }
+  assign(analysis.type, section.choice("type"));
   assign(analysis.duration, section.number("duration"));
   read_step(context, section, analysis);
   analysis.tolerance = section.number("tolerance");
@@ -51,7 +60,10 @@ void read_analysis(ReadContext& context, const SourceNode& node, const Place& pl
   assign(analysis.isa, section.choice("isa"));
   assign(analysis.conserving, section.boolean("conserving"));
   assign(analysis.newton_tolerance, section.number("newton_tolerance"));
-  assign(analysis.max_iterations, section.integer("max_iterations"));
+  if (const auto most = section.integer("max_iterations")) analysis.max_iterations = *most;
+  if (const auto parts = section.integer("load_steps")) analysis.load_steps = *parts;
+  assign(analysis.count, section.integer("count"));
+  assign(analysis.about, section.choice("about"));
   assign(analysis.line_search, section.boolean("line_search"));
   assign(analysis.max_step_rotation, section.number("max_step_rotation"));
   assign(analysis.assembly_tolerance, section.number("assembly_tolerance"));
@@ -60,6 +72,7 @@ void read_analysis(ReadContext& context, const SourceNode& node, const Place& pl
   assign(analysis.smooth_multipliers, section.boolean("smooth_multipliers"));
   assign(analysis.checkpoint_every, section.number("checkpoint_every"));
 
+  check_type(section, analysis.type);
   if (analysis.step && analysis.tolerance)
     section.fault("tolerance", "stands beside a fixed step of " + shown(*analysis.step) + " s",
                   "A tolerance chooses the steps by itself: leave 'step' out, write 'step: auto', "

@@ -14,7 +14,7 @@ namespace {
 /// solids, of which a step may leave no more than round-off in many vibrations, too.
 constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 /// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
-constexpr int kIterationsSolids = 30;
+constexpr int kIterations = 12, kIterationsSolids = 30;
 /// Error of automatic steps if the user gives none.
 constexpr double kDefaultError = 1e-6;
 /// Below this many loops open at one body the tree is ahead whatever the rest.
@@ -130,7 +130,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
                        : !system.nodes().empty() ? kToleranceSolids
                                                  : kTolerance;
   c.newton.max_iterations =
-      system.nodes().empty() ? a.max_iterations : std::max(a.max_iterations, kIterationsSolids);
+      a.max_iterations.value_or(system.nodes().empty() ? kIterations : kIterationsSolids);
   c.newton.jacobian = policy;
   c.newton.line_search = a.line_search;
   c.newton.max_rotation = a.max_step_rotation;

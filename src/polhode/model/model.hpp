@@ -104,7 +104,7 @@ struct OutputSpec {
 
 /// What to compute and how.
 struct AnalysisSpec {
-  std::string type = "dynamics";
+  std::string type = "dynamics";    ///< dynamics | statics | modes.
   double duration = 1.0;            ///< [s]
   std::optional<double> step;       ///< [s]; absent: automatic.
   std::optional<double> tolerance;  ///< Error per step for automatic steps [-].
@@ -116,13 +116,16 @@ struct AnalysisSpec {
   std::string isa = "automatic";           ///< automatic | baseline | avx2 | avx512.
   bool conserving = true;                  ///< Potentials in discrete-gradient form.
   double newton_tolerance = 0.0;           ///< 0: default of the order [-].
-  int max_iterations = 12;
+  std::optional<int> max_iterations;       ///< Absent: 12; solids 30; statics 25.
   bool line_search = true;
   double max_step_rotation = 2.0;   ///< Largest |Theta| of a step [-].
   double assembly_tolerance = 0.0;  ///< Largest move the assembly may make [m or rad]; 0: default.
   std::optional<double> min_step, max_step;  ///< [s]
   bool smooth_multipliers = true;            ///< Smooth-multiplier start (rigid.md 7.3).
-  double checkpoint_every = 0.0;             ///< Wall-clock seconds; 0: only at the end.
+  std::optional<int> load_steps;      ///< Statics: equal parts of the load; absent: automatic.
+  int count = 10;                     ///< Modes: how many.
+  std::string about = "equilibrium";  ///< Modes: equilibrium | start.
+  double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.
   Place place;
 };
 

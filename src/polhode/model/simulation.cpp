@@ -41,6 +41,7 @@ struct Simulation::Impl {
   System system;
   Method method;
   std::unique_ptr<Stepper> stepper;
+  std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
   State state;
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; the rest is in the state.
@@ -59,8 +60,45 @@ struct Simulation::Impl {
       for (const std::string& warning : solid.plan.warnings)
         narration += format("Warning: {}\n", warning);
     engine_name = method.engine->name();
+    if (model.analysis.type == "statics") choose_statics();
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
+  }
+
+  void choose_statics() {
+    for (const BodySpec& body : model.bodies)
+      if (!body.velocity.isZero(0.0) || !body.angular_velocity.isZero(0.0))
+        throw InputError(format("bodies.{}", body.name),
+                         "has a velocity, but in statics and modes nothing moves",
+                         "Leave velocity and angular_velocity out, or use type: dynamics");
+    StaticOptions options;
+    options.load_steps = model.analysis.load_steps.value_or(0);
+    options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
+    statics = std::make_unique<LoadStepper>(system, options);
+    engine_name = "mumps";
+    narration.clear();
+  }
+
+  /// Time that the run ends at; in statics the full load.
+  [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
+
+  StepReport advance(double t_limit) {
+    if (!statics) return stepper->advance(state, t_limit);
+    const double before = state.t;
+    const std::size_t tried = statics->report().steps.size();
+    const int iterations = statics->report().iterations;
+    StepReport report;
+    report.accepted = statics->advance(state, std::min(t_limit, 1.0));
+    const StaticReport& r = statics->report();
+    report.t = state.t;
+    report.dt = state.t - before;
+    report.rejected = static_cast<int>(r.steps.size() - tried) - (report.accepted ? 1 : 0);
+    report.message = r.message;
+    state.dt_last = report.dt;
+    state.ledger.steps += report.accepted ? 1 : 0;
+    state.ledger.rejected += report.rejected;
+    state.ledger.iterations += r.iterations - iterations;
+    return report;
   }
 
   void start_consistently() {
@@ -74,6 +112,7 @@ struct Simulation::Impl {
         a.smooth_multipliers && small && a.step && method.control.order == 2;
     start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
     refuse_bad_start();
+    if (statics) statics->begin(state);
     stepper->begin(state);
     state.ledger.constraint_max = 0.0;
     start_seconds = wall_clock() - t0;
@@ -105,6 +144,14 @@ struct Simulation::Impl {
 
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
+    if (statics) {
+      projected = state;
+      instant.r_ddot.assign(system.body_count(), Vec3::Zero());
+      instant.alpha.assign(system.body_count(), Vec3::Zero());
+      instant.lambda = state.lambda;
+      instant_step = state.ledger.steps;
+      return instant;
+    }
     if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
     projected = state;
     const VelocityReport v = instant_solver->project_velocities(projected);
@@ -139,7 +186,7 @@ const StartReport& Simulation::start_report() const { return impl_->start_report
 
 StepReport Simulation::step(double t_limit) {
   const double wall = wall_clock(), cpu = cpu_clock();
-  StepReport report = impl_->stepper->advance(impl_->state, t_limit);
+  StepReport report = impl_->advance(t_limit);
   impl_->figures.wall_time_s += wall_clock() - wall;
   impl_->figures.cpu_time_s += cpu_clock() - cpu;
   return report;
@@ -149,8 +196,8 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
                            const std::function<void(Simulation&)>& on_step,
                            const std::atomic<bool>* stop) {
   Impl& s = *impl_;
-  const double end = s.model.analysis.duration;
-  const std::optional<double> every = s.model.output.every;
+  const double end = s.end();
+  const std::optional<double> every = s.statics ? std::nullopt : s.model.output.every;
   const bool automatic = !s.model.analysis.step;
   const double wall = wall_clock(), cpu = cpu_clock();
   const auto look = [&] {
@@ -170,7 +217,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.figures.end = RunEnd::interrupted;
       break;
     }
-    const StepReport report = s.stepper->advance(s.state, automatic ? std::min(next, end) : end);
+    const StepReport report = s.advance(automatic ? std::min(next, end) : end);
     if (!report.accepted) {
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
@@ -212,6 +259,10 @@ RunSummary Simulation::summary() const {
   r.version = POLHODE_VERSION;
   r.order = s.method.control.order;
   r.narration = s.narration;
+  if (s.statics) {
+    r.statics = s.statics->report();
+    r.strain_energy = s.statics->strain_energy(s.state);
+  }
   return r;
 }
 

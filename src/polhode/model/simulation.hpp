@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <polhode/model/solid_report.hpp>
 #include <polhode/solve/ledger.hpp>
 #include <polhode/solve/start.hpp>
+#include <polhode/solve/statics.hpp>
 #include <polhode/solve/stepper.hpp>
 
 namespace polhode {
@@ -45,7 +47,9 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> phases;  ///< Name, seconds.
   std::string result_hash, solver, instruction_set, version;
   int order = 2;
-  std::string narration;  ///< What was chosen and why, a few lines.
+  std::optional<StaticReport> statics;  ///< Of a static analysis; t is the load factor then.
+  double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
+  std::string narration;                ///< What was chosen and why, a few lines.
 };
 
 /// A compiled model with its state and method: what steps, runs and is looked at.
@@ -65,11 +69,12 @@ class Simulation {
   [[nodiscard]] double time() const { return state().t; }
   [[nodiscard]] const StartReport& start_report() const;
 
-  /// Takes one accepted step, not beyond t_limit.
+  /// Takes one accepted step, not beyond t_limit. In statics time is the load factor, and a step
+  /// goes to the next equilibrium.
   StepReport step(double t_limit);
-  /// Steps to the model's duration; calls observe(*this) at the start and after every step
-  /// whose end is an output time (model.output.every), and on_step after every step.
-  /// Stops early, after the current step, when *stop becomes true.
+  /// Steps to the model's duration, or to the full load; calls observe(*this) at the start and
+  /// after every step whose end is an output time (model.output.every), and on_step after every
+  /// step. Stops early, after the current step, when *stop becomes true.
   RunSummary run(const std::function<void(Simulation&)>& observe = {},
                  const std::function<void(Simulation&)>& on_step = {},
                  const std::atomic<bool>* stop = nullptr);

@@ -18,6 +18,8 @@ constexpr int kEasy = 6, kHard = 12;
 constexpr double kCut = 0.25, kLeastIncrement = 1e-4;
 /// Load factors closer than this are the same.
 constexpr double kSame = 1e-12;
+/// Interactions of this kind are loads whose potential is no strain energy.
+constexpr const char* kForceKind = "force";
 
 void stop_moving(const System& system, State& state) {
   for (int b = 0; b < system.body_count(); ++b) {
@@ -149,6 +151,28 @@ void LoadStepper::begin(State& state) {
 }
 
 bool LoadStepper::advance(State& state, double limit) { return impl_->advance(state, limit); }
+double LoadStepper::strain_energy(const State& state) const {
+  const System& system = *impl_->system;
+  StepContext still;
+  still.t_n = state.t;
+  double sum = 0.0;
+  for (const InteractionRef& ref : system.interactions()) {
+    const InteractionGroup& group = system.group(ref.group);
+    if (ref.rows > 0 || group.kind() == kForceKind) continue;
+    const BodyStep a = system.instant(state, ref.a), b = system.instant(state, ref.b);
+    const PairStep step{a, b, still, nullptr, state.history.data() + ref.first_history};
+    sum += group.work(ref.item, step).stored;
+  }
+  const Nodes& nodes = system.nodes();
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (!nodes.group(g).external())
+      sum += nodes.group(g)
+                 .work(node_instant(state, still),
+                       state.element_history.data() + nodes.first_history(g), nullptr)
+                 .stored;
+  return sum;
+}
+
 const StaticReport& LoadStepper::report() const { return impl_->report; }
 StaticNewton& LoadStepper::newton() { return impl_->newton; }
 

@@ -37,6 +37,8 @@ class LoadStepper {
   /// @returns true if an equilibrium at a higher load factor was reached.
   bool advance(State& state, double limit = 1.0);
   [[nodiscard]] const StaticReport& report() const;
+  /// Stored in springs, beams and solids [J]: all potentials but those of gravity and loads.
+  [[nodiscard]] double strain_energy(const State& state) const;
   /// Tangent and residual at the last equilibrium.
   [[nodiscard]] StaticNewton& newton();
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/io/write_modes.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "modes_report.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct Options {
+  ModelArguments model;
+  std::string folder, about;
+  int count = 0;
+  bool json = false, quiet = false;
+};
+
+int modes(const Options& options) {
+  Model model = load_model(options.model);
+  if (options.count > 0) model.analysis.count = options.count;
+  if (!options.about.empty()) model.analysis.about = options.about;
+  return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
+}
+
+nlohmann::ordered_json vector_json(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+std::string modes_json(const ModalAnalysis& analysis, int code, const std::string& folder) {
+  const ModesReport& r = analysis.report();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Mode& m : r.modes)
+    list.push_back({{"frequency", m.frequency},
+                    {"omega_squared", m.omega_squared},
+                    {"rigid", m.rigid},
+                    {"participation", vector_json(m.participation)},
+                    {"effective_mass", vector_json(m.effective_mass)},
+                    {"residual", m.residual}});
+  const nlohmann::ordered_json json = {{"exit_code", code},      {"message", analysis.message()},
+                                       {"modes", list},          {"total_mass", r.total_mass},
+                                       {"complete", r.complete}, {"unbalanced", r.unbalanced},
+                                       {"warnings", r.warnings}, {"results", folder}};
+  return json.dump(2);
+}
+
+std::string modes_table(const ModesReport& r) {
+  std::vector<std::vector<std::string>> rows{
+      {"mode", "Hz", "mass x", "mass y", "mass z", "residual", ""}};
+  const auto part = [](double x) { return format("{:.4f}", x); };
+  for (std::size_t i = 0; i < r.modes.size(); ++i) {
+    const Mode& m = r.modes[i];
+    rows.push_back({format("{}", i + 1), format("{:.6g}", m.frequency), part(m.effective_mass[0]),
+                    part(m.effective_mass[1]), part(m.effective_mass[2]),
+                    format("{:.0e}", m.residual),
+                    m.rigid                 ? "without stiffness"
+                    : m.omega_squared < 0.0 ? "unstable: grows as exp(2 pi f t)"
+                                            : ""});
+  }
+  return table(rows);
+}
+
+}  // namespace
+
+int run_modes(Model model, const ModelArguments& arguments, std::string folder, bool json,
+              bool quiet) {
+  if (folder.empty())
+    folder = std::filesystem::path(arguments.file).replace_extension(".results").string();
+  const ModalAnalysis analysis(std::move(model));
+  const int code = analysis.converged() ? kOk : kNotConverged;
+  if (analysis.converged())
+    write_modes(analysis, folder,
+                {.version = POLHODE_VERSION,
+                 .solver = "mumps",
+                 .model_file = std::filesystem::path(arguments.file).filename().string(),
+                 .model_text = read_file(arguments.file),
+                 .overrides = arguments.overrides});
+  else
+    say(analysis.message());
+  for (const std::string& warning : analysis.report().warnings) say("warning: " + warning);
+  if (json)
+    print(modes_json(analysis, code, folder) + "\n");
+  else if (!quiet && analysis.converged())
+    print(modes_table(analysis.report()));
+  return code;
+}
+
+Action add_modes(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
+  command
+      .add_option("-o,--output", options->folder,
+                  "Folder for the results; left out: the model's name with .results")
+      ->type_name("DIR");
+  add_set_option(command, options->model);
+  command.add_option("-n,--count", options->count, "How many modes; left out: analysis.count")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--about", options->about,
+                  "The equilibrium found from the start, or the start itself")
+      ->check(CLI::IsMember({"equilibrium", "start"}));
+  command.add_flag("--json", options->json, "Print frequencies as one JSON object");
+  command.add_flag("--quiet", options->quiet, "Say nothing but errors");
+  return [options] { return modes(*options); };
+}
+
+}  // namespace polhode::cli

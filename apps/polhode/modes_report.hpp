@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/model/modal.hpp>
+
+#include "console.hpp"
+
+namespace polhode::cli {
+
+/// Natural frequencies of a model: writes them, prints them, returns the exit code.
+int run_modes(Model model, const ModelArguments& arguments, std::string folder, bool json,
+              bool quiet);
+
+}  // namespace polhode::cli
