@@ -232,6 +232,69 @@ TEST_F(CommandLine, EndsWith4AndKeepsTheLastStateWhenAStepDoesNotConverge) {
   EXPECT_TRUE(exists("model.results/results.h5"));
 }
 
+TEST_F(CommandLine, FindsAnEquilibriumAndWritesItsLoadSteps) {
+  write("weight.yaml", R"(format: 1
+gravity: [0, 0, -10]
+bodies:
+  weight: {mass: 2, inertia: [1, 1, 1], position: [0, 0, -1]}
+joints:
+  guide: {type: prismatic, bodies: [ground, weight], at: [0, 0, 0], axis: z}
+loads:
+  spring: {type: spring_damper, bodies: [ground, weight], at: [[0, 0, 0], [0, 0, -1]],
+           stiffness: 400 N/m, free_length: 1 m}
+analysis: {type: statics, load_steps: 4}
+output:
+  probes:
+    weight: {body: weight}
+)");
+  const auto result = run({"run", "weight.yaml", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(value(result.out, "steps"), "4");
+  EXPECT_EQ(value(result.out, "frames"), "5");
+  EXPECT_EQ(value(result.out, "unstable_directions"), "0");
+  EXPECT_NEAR(std::stod(value(result.out, "strain_energy")), 0.5 * 400 * 0.05 * 0.05, 1e-12);
+  const std::string table = read("weight.results/probes/weight.csv");
+  EXPECT_THAT(table, HasSubstr("-1.05"));
+  const auto shown = run({"run", "weight.yaml"});
+  EXPECT_THAT(shown.out, AllOf(HasSubstr("load carried"), HasSubstr("stable")));
+}
+
+TEST_F(CommandLine, EndsWith4AndNamesWhatNothingHolds) {
+  write("stone.yaml", R"(format: 1
+gravity: [0, 0, -10]
+bodies:
+  stone: {mass: 2, inertia: [1, 1, 1]}
+analysis: {type: statics}
+)");
+  const auto result = run({"run", "stone.yaml"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("body 'stone'"));
+  EXPECT_TRUE(exists("stone.results/results.h5"));
+}
+
+TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {
+  write("swing.yaml", R"(format: 1
+gravity: [0, -10, 0]
+bodies:
+  bob: {mass: 1, inertia: [1, 1, 1], position: [0, -1, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, bob], at: [0, 0, 0], axis: z}
+analysis: {type: modes}
+output: {paraview: true}
+)");
+  for (const char* command : {"modes", "run"}) {
+    const auto result = run({command, "swing.yaml", "--json"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    // ω² = m g a / (J + m a²) = 5.
+    EXPECT_NEAR(std::stod(value(result.out, "frequency")), std::sqrt(5.0) / 6.283185307179586,
+                1e-12);
+    EXPECT_EQ(value(result.out, "complete"), "true");
+  }
+  EXPECT_TRUE(exists("swing.results/modes.h5"));
+  EXPECT_TRUE(exists("swing.results/paraview/modes.pvd"));
+  EXPECT_THAT(run({"modes", "swing.yaml"}).out, HasSubstr("0.355881"));
+}
+
 // A motor without a limit: the rotor turns faster than the least step can follow.
 TEST_F(CommandLine, EndsWith4NamesTheBodyAndKeepsTheLastStateOfAModelThatRunsAway) {
   write("motor.yaml", R"(format: 1
