@@ -39,13 +39,9 @@ struct LoadDescription {
   return v;
 }
 
-/// The vector over a step: at t_{n+αf}; in statics constant components times the load factor, while
-/// functions of time take the load factor for the time.
+/// The vector over a step: at t_{n+αf}, times the load factor of statics.
 [[nodiscard]] inline Vec3 evaluate(const TimeVector& f, const StepContext& step) {
-  Vec3 v = evaluate(f, step.t_alpha());
-  for (std::size_t i = 0; i < 3; ++i)
-    if (f[i] && f[i]->is_constant()) v[static_cast<int>(i)] *= step.load_factor;
-  return v;
+  return step.load_factor * evaluate(f, step.t_alpha());
 }
 
 /// A vector and numbers in one list: what loads report.

@@ -56,11 +56,11 @@ struct Simulation::Impl {
   explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
     method = choose_method(system, model.analysis);
     narration = method.narration;
+    if (model.analysis.type == "statics") choose_statics();
     for (const SolidMap& solid : map.solids)
       for (const std::string& warning : solid.plan.warnings)
         narration += format("Warning: {}\n", warning);
-    engine_name = method.engine->name();
-    if (model.analysis.type == "statics") choose_statics();
+    engine_name = statics ? "mumps" : method.engine->name();
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
   }
@@ -75,8 +75,7 @@ struct Simulation::Impl {
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
     statics = std::make_unique<LoadStepper>(system, options);
-    engine_name = "mumps";
-    narration.clear();
+    narration.clear();  // it was about steps in time
   }
 
   /// Time that the run ends at; in statics the full load.
@@ -149,6 +148,7 @@ struct Simulation::Impl {
       instant.r_ddot.assign(system.body_count(), Vec3::Zero());
       instant.alpha.assign(system.body_count(), Vec3::Zero());
       instant.lambda = state.lambda;
+      instant.node_force = statics->newton().node_residual();
       instant_step = state.ledger.steps;
       return instant;
     }

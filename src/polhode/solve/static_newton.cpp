@@ -59,6 +59,7 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
   trial_.element_scratch.resize(nodes.scratch_size());
   rhs_ = x_ = noise_ = Vec::Zero(matrix_.size());
   moments_.assign(system.body_count(), Vec6::Zero());
+  held_ = nodes_.residual();
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
@@ -69,7 +70,7 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
 void StaticNewton::enter(double load_factor) {
   StepContext& c = trial_.context;
   c.load_factor = load_factor;
-  c.t_n = load_factor - c.dt;  // functions of time take the load factor for it
+  c.t_n = load_factor - c.dt;  // so that t_{n+1} is the load factor
 }
 
 void StaticNewton::start_scratch(const State& state) {
@@ -191,9 +192,8 @@ void StaticNewton::aim(std::vector<double>& du) const {
   const StepContext& c = trial_.context;
   for (const PrescribedComponent& p : nodes.prescribed()) {
     const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
-    const double part = p.displacement->is_constant() ? c.load_factor : 1.0;
-    du[k] =
-        nodes[p.node].position[p.component] + part * (*p.displacement)(c.t_n1()) - work_.node_x[k];
+    const double target = c.load_factor * (*p.displacement)(c.t_n1());
+    du[k] = nodes[p.node].position[p.component] + target - work_.node_x[k];
   }
 }
 
@@ -428,6 +428,7 @@ void StaticNewton::commit(State& state, double load_factor) {
                             trial_.element_scratch.data() + nodes.first_scratch(g));
   }
   work_.t = load_factor;
+  held_ = nodes_.residual();
   state = work_;
 }
 

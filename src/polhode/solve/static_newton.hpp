@@ -48,8 +48,8 @@ class StaticNewton {
   [[nodiscard]] SaddleMatrix& matrix() { return matrix_; }  ///< Scaled by scale().
   [[nodiscard]] double scale() const { return trial_.compliance_scale; }
   [[nodiscard]] const NewtonSystem& bodies() const { return newton_; }
-  /// Of the nodes at the last equilibrium [N]: minus what holds bonded and prescribed ones.
-  [[nodiscard]] const std::vector<double>& node_residual() const { return nodes_.residual(); }
+  /// What holds bonded and prescribed nodes at the last equilibrium, three each [N].
+  [[nodiscard]] const std::vector<double>& node_residual() const { return held_; }
   /// Part of the unbalanced forces at the last assembly: largest, and the largest force [N].
   void measure(StaticStep& step) const;
   [[nodiscard]] bool has_mixed_points() const { return mixed_; }
@@ -84,7 +84,7 @@ class StaticNewton {
   std::vector<Mat3> here_;     ///< No piece has turned since its condensation.
   Vec x_, rhs_, noise_;        ///< Increment; minus the residual; its rounding. All scaled.
   std::vector<Vec6> moments_;  ///< Residual of bodies with what they carry, scaled.
-  std::vector<double> du_, forces_, given_;
+  std::vector<double> du_, forces_, given_, held_;
   double force_ = 0.0;      ///< Largest force of the last assembly [N].
   std::vector<int> turns_;  ///< Interactions whose history counts turns.
 };
