@@ -35,6 +35,8 @@ class Writer {
     if constexpr (std::is_arithmetic_v<T>)
       if (!list.empty()) (*this)(list);
   }
+  /// A list of any length.
+  void sized(const std::vector<double>& values) { (*this)(values); }
   std::string bytes;
 };
 
@@ -67,6 +69,14 @@ class Reader {
     list.assign(there == 1 ? count : 0, T{});
     if constexpr (std::is_arithmetic_v<T>)
       if (!list.empty()) (*this)(list);
+  }
+  void sized(std::vector<double>& values) {
+    std::int64_t count = 0;
+    (*this)(count);
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() / sizeof(double))
+      throw InputError(where_, "ends in the middle of a list", kMend);
+    values.resize(static_cast<std::size_t>(count));
+    take(values.data(), values.size() * sizeof(double));
   }
   void expect(std::int64_t found, std::int64_t wanted, const char* what) const {
     if (found != wanted)
@@ -167,6 +177,7 @@ void whole_state(Archive& archive, const System& system, AnyState& state) {
   archive(state.node_a);
   archive(state.node_past);
   archive(state.element_history);
+  archive.sized(state.contacts);
   archive(state.past_count);
   archive(state.past_next);
   for (int k = 0; k < kPast; ++k) archive(state.past_time[k]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/assembly/interaction.hpp>
+#include <polhode/assembly/moving_contacts.hpp>
 #include <polhode/assembly/nodes.hpp>
 #include <polhode/assembly/spanning_tree.hpp>
 #include <polhode/assembly/state.hpp>
@@ -56,6 +57,9 @@ class System {
   int add_elements(std::unique_ptr<ElementGroup> elements) {
     return nodes_.add_elements(std::move(elements));
   }
+  /// Contact between bodies, if any.
+  void set_contacts(std::shared_ptr<MovingContacts> contacts) { contacts_ = std::move(contacts); }
+  [[nodiscard]] const std::shared_ptr<MovingContacts>& contacts() const { return contacts_; }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   /// Numbers everything. @throws InputError if an interaction names a body that does not exist.
   void finish();
@@ -97,6 +101,7 @@ class System {
   std::vector<BodyMotion> start_;
   std::vector<std::unique_ptr<InteractionGroup>> groups_;
   std::vector<InteractionRef> refs_;
+  std::shared_ptr<MovingContacts> contacts_;
   Nodes nodes_;
   SpanningTree tree_;
   State initial_;

@@ -83,7 +83,9 @@ class Evaluation {
         move_b_(b, 6) {}
 
   Wrenches<T> run(PointReport* report) {
-    const Gap<double> g_0 = gap(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
+    Gap<double> g_0 = gap(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
+    // To the last bit what the last step ended with: deep in the barrier rounding would count.
+    if (data_.history.closed) g_0.distance = data_.history.gap;
     const Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
     kinematics(g_0, g_1);
     forces(g_0, g_1);

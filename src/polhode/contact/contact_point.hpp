@@ -32,6 +32,7 @@ struct PointHistory {
   double torsion = 0.0;         ///< [rad]
   double approach = 0.0;        ///< w_pre: normal velocity when it closed [m/s], negative.
   double stiffness = 0.0;       ///< k of the normal law, kept while closed.
+  double gap = 0.0;             ///< Of a closed point at t_n, as the last step left it [m].
   bool closed = false;          ///< The gap was within reach at t_n.
   bool plastic = false;         ///< No rebound: part of the force is that of the end of the step.
   bool fresh = true;            ///< Has not turned since it closed.

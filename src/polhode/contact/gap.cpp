@@ -15,8 +15,11 @@ Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
   const V3<T> first = at_b.point(b.corners[c[r.k]]);
   switch (r.kind) {
     case TriangleRegion::face: {
+      // A surface has two sides; the solid of a polyhedron has one.
       const Vec3& normal = b.planes[triangle].normal;
-      g = over_plane(x, first, at_b.vector(normal), rho_a, b.rounding);
+      const bool behind = b.solid == Solid::surface &&
+                          normal.dot(at_b.to_body(value(x))) < b.planes[triangle].offset;
+      g = over_plane(x, first, at_b.vector(behind ? Vec3(-normal) : normal), rho_a, b.rounding);
       return g;
     }
     case TriangleRegion::edge: {

@@ -77,7 +77,7 @@ BodySums LedgerKeeper::sums(const State& state) const {
 }
 
 double LedgerKeeper::stored(const State& state) const {
-  double potential = nodes_.stored(state);
+  double potential = nodes_.stored(state) + engine_->stored(state);
   for (int i : working_) {
     const InteractionRef& ref = system_->interactions()[i];
     const PairView view = system_->instant(state, ref, nullptr);
@@ -140,6 +140,20 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
   for (int i = 0; i < 3; ++i) {
     l.impulse[i].add(dt * impulse[i]);
     l.angular_impulse[i].add(dt * turning[i]);
+  }
+}
+
+void LedgerKeeper::add(State& state, const Work& work) {
+  potential_ += work.stored;
+  state.ledger.dissipated.add(work.dissipated);
+  state.ledger.put_in.add(work.put_in);
+}
+
+void LedgerKeeper::add(State& state, const VelocityJump& jump) {
+  state.ledger.dissipated.add(jump.energy_lost);
+  for (int i = 0; i < 3; ++i) {
+    state.ledger.impulse[i].add(jump.impulse[i]);
+    state.ledger.angular_impulse[i].add(jump.turning[i]);
   }
 }
 

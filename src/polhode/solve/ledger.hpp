@@ -29,6 +29,9 @@ class LedgerKeeper {
   /// moves to t_{n+1}.
   void before_commit(State& state, Trial& trial);
   void after_commit(State& state, const Trial& trial);
+  /// What the engine's own forces did over the step, between before_commit() and after_commit().
+  void add(State& state, const Work& work);
+  void add(State& state, const VelocityJump& jump);
   /// The next call is about another state than the last one.
   void forget() { sums_are_of_state_ = false; }
   /// Compares with the start; at the end of whole steps.

@@ -127,8 +127,13 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (search.undid(e, last)) continue;
     report.increments.push_back(e);
     report.rotation = done.rotation;
+    if (done.applied < 1.0) {  // held back by what lies ahead: no measure of convergence
+      close = false;
+      slow = 0;
+      continue;
+    }
     if (e > kDiverged) return fail("diverges"), report;
-    slow = last > 0.0 && !close && e > 0.9 * last && e > options.tolerance ? slow + 1 : 0;
+    slow = last > 0.0 && !close && !engine.may_grow() && e > 0.9 * last && e > options.tolerance ? slow + 1 : 0;
     if (slow >= 2) return fail("contracts too slowly"), report;
 
     polished = close;

@@ -114,6 +114,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   if (predictor.remember) estimate_error();
 
   ledger_.before_commit(state, trial_);
+  ledger_.add(state, engine_->commit(state, trial_));
   commit_histories(state, report.rotation);
   std::copy(trial_.lambda.begin(), trial_.lambda.end(), state.lambda.begin());
   const GeneralizedAlpha& ga = trial_.context.ga;
@@ -130,6 +131,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
+  ledger_.add(state, engine_->settle_impacts(state, trial_));
   state.t += dt;
   state.dt_last = dt;
   state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);

@@ -49,6 +49,7 @@ void move_body(const State& state, Trial& trial, int slot, const Vec3& u, const 
 struct Iteration {
   bool solved = false;     ///< False: singular matrix or a value that is not finite.
   double increment = 0.0;  ///< Largest of |Δr|/ℓ and |Δθ| [-].
+  double applied = 1.0;    ///< Part that was applied; below 1 the iteration cannot be the last.
   double rotation = 0.0;   ///< Largest |θ| of the step after the update [-].
   int worst_body = -1;     ///< If not solved: whose pivot vanished, if known.
   std::string reason;      ///< If not solved: what else happened, and where.
@@ -79,10 +80,18 @@ class NewtonEngine {
   [[nodiscard]] virtual std::string worst_other() const { return {}; }
   /// Keeps factorisations over many steps: converges linearly, so the last increment must be small.
   [[nodiscard]] virtual bool keeps_factor() const { return false; }
+  /// Increments may grow for a while, as when bodies part that were pressed together hard.
+  [[nodiscard]] virtual bool may_grow() const { return false; }
   /// Adds force [N] and moment about the origin [N m] of ground joints that the engine sums itself,
   /// at the converged trial; `knows_ground(interaction)` says which.
   virtual void add_ground_wrench(double* /*force*/, double* /*moment*/) const {}
   [[nodiscard]] virtual bool knows_ground(int /*interaction*/) const { return false; }
+  /// Energy that forces of the engine's own, such as contacts, store at a state [J].
+  [[nodiscard]] virtual double stored(const State& /*state*/) const { return 0.0; }
+  /// The step is accepted, the state still at t_n: histories and work of such forces.
+  virtual Work commit(State& /*state*/, const Trial& /*trial*/) { return {}; }
+  /// The state has moved to t_{n+1}: impacts make velocities jump.
+  virtual VelocityJump settle_impacts(State& /*state*/, const Trial& /*trial*/) { return {}; }
   /// Called after convergence: makes trial.lambda complete.
   virtual void end_step(const State& state, Trial& trial) = 0;
 };

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/interaction.hpp>
+#include <polhode/assembly/state.hpp>
+
+namespace polhode {
+
+class System;
+
+/// One row of a velocity constraint between two bodies: G_a·(v, ω)_a + G_b·(v, ω)_b = 0.
+struct VelocityRow {
+  int a = kGround, b = kGround;
+  Vec6 G_a = Vec6::Zero(), G_b = Vec6::Zero();
+};
+
+/// What velocities jumped by when impacts were settled. World, about the origin.
+struct VelocityJump {
+  double energy_lost = 0.0;                             ///< [J]
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();  ///< Of what stands still [N s, N m s].
+};
+
+/// Forces between bodies that meet and part: which pairs of bodies they couple changes during a
+/// run. Their memory is State::contacts. Steps are given by body, the ground last.
+class MovingContacts {
+ public:
+  virtual ~MovingContacts() = default;
+  /// Once, when the system is finished.
+  virtual void prepare(const System& system) = 0;
+  /// Before the first iteration of a step, nobody having moved yet: finds what is near.
+  /// @returns whether pairs() changed.
+  virtual bool begin_step(const State& state, std::span<const BodyStep> steps,
+                          const StepContext& context) = 0;
+  /// Pairs of bodies that may touch in this step; at least one of each moves.
+  [[nodiscard]] virtual const std::vector<Participants>& pairs() const = 0;
+  /// Makes sure that bodies can move by the increments (Δr, Δθ) from where they are in the trial.
+  /// @returns whether pairs() changed.
+  virtual bool cover(std::span<const BodyStep> steps, const StepContext& context,
+                     std::span<const Vec6> increments) = 0;
+  /// Terms of every pair; rows are never used.
+  virtual void evaluate(std::span<const BodyStep> steps, const StepContext& context,
+                        std::span<PairTerms> terms) = 0;
+  /// The largest part of the increments, at most 1, that lets nothing pass through.
+  [[nodiscard]] virtual double filter(std::span<const BodyStep> steps,
+                                      std::span<const Vec6> increments) = 0;
+  /// Energy stored at the state [J].
+  [[nodiscard]] virtual double stored(const State& state, std::span<const BodyStep> instants) = 0;
+  /// The step is accepted: histories go into the state, before it moves to t_{n+1}.
+  virtual Work commit(State& state, std::span<const BodyStep> steps,
+                      const StepContext& context) = 0;
+  /// The state has moved to t_{n+1}: impacts that ended in the step take their part of the speed.
+  /// @param rows  Of joints: they hold while velocities jump.
+  virtual VelocityJump settle_impacts(State& state, std::span<const VelocityRow> rows) = 0;
+  /// Where a step that cannot be solved is tightest: "box 'a' on 'floor'"; may be empty.
+  [[nodiscard]] virtual std::string tightest() const = 0;
+};
+
+}  // namespace polhode

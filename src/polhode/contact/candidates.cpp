@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// A shape with more corners than this is bounded by a ball.
+constexpr std::size_t kManyCorners = 64;
+
+/// Box around a shape, grown by `margin`.
+Bounds bounds_of(const Shape& s, const Vec3& r, const Mat3& Lambda, double margin) {
+  if (s.corners.empty() || s.corners.size() > kManyCorners || s.round()) {
+    const Vec3 centre = r + Lambda * s.bound_centre;
+    const Vec3 half = Vec3::Constant(s.bound_radius + margin);
+    return {centre - half, centre + half};
+  }
+  Bounds b{Vec3::Constant(std::numeric_limits<double>::infinity()),
+           Vec3::Constant(-std::numeric_limits<double>::infinity())};
+  for (const Vec3& X : s.corners) {
+    const Vec3 x = r + Lambda * X;
+    b.low = b.low.cwiseMin(x);
+    b.high = b.high.cwiseMax(x);
+  }
+  const Vec3 more = Vec3::Constant(s.rounding + margin);
+  return {b.low - more, b.high + more};
+}
+
+}  // namespace
+
+/// Of any point of the body, at most: chords are shorter than arcs.
+double ContactSet::moved(int body, const Vec3& r, const Mat3& Lambda) const {
+  const Reference& from = references_[body];
+  if (from.margin < 0.0) return std::numeric_limits<double>::infinity();
+  return (r - from.r).norm() +
+         (Lambda - from.Lambda).norm() * std::sqrt(0.5) * reach_of_body_[body];
+}
+
+void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points) {
+  const Shape &A = shapes_[a].shape, &B = shapes_[b].shape;
+  Point sample;
+  sample.a = a, sample.b = b;
+  complete_law(sample, dt);
+  const auto margin = [&](int shape) {
+    return shapes_[shape].body == kGround ? 0.0 : references_[shapes_[shape].body].margin;
+  };
+  const double near = sample.data.normal.reach() + margin(a) + margin(b);
+  const Reference ground, &r_a = reference_of(a, ground), &r_b = reference_of(b, ground);
+  const Placement<double> at_a(r_a.r, r_a.Lambda, 0), at_b(r_b.r, r_b.Lambda, 6);
+  std::vector<OrderedPair> found;
+  near_feature_pairs(A, B, at_a, at_b, near, found);
+  for (const OrderedPair& f : found) {
+    Point p = sample;
+    if (f.swapped) std::swap(p.a, p.b);
+    p.data.pair = f.pair;
+    p.data.a = &shapes_[p.a].shape;
+    p.data.b = &shapes_[p.b].shape;
+    p.key = {(static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b), f.key()};
+    p.data.history = {};
+    points.push_back(p);
+  }
+}
+
+/// Where bodies are at t_n, and how far they may go until candidates are found again.
+void ContactSet::refer(std::span<const BodyStep> steps, const StepContext& context) {
+  for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
+    Reference& ref = references_[body];
+    const BodyStep& s = steps[body];
+    const double ahead =
+        std::abs(context.dt) * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]) +
+        context.dt * context.dt * system_->gravity().norm();
+    const double size = std::isfinite(size_of_body_[body]) ? size_of_body_[body] : 0.0;
+    ref.margin = std::max({ref.margin, 2.0 * ahead, 0.05 * size});
+    ref.r = s.r_n;
+    ref.Lambda = s.Lambda_n;
+  }
+}
+
+/// Depends on the references alone, so that a run goes on from an archive bit for bit.
+void ContactSet::find_candidates(double dt) {
+  const auto margin = [&](const PlacedShape& s) {
+    return s.body == kGround ? 0.0 : references_[s.body].margin;
+  };
+  // What has no bounds meets everything.
+  std::vector<int> bounded, unbounded;
+  const Reference ground;
+  bounds_.clear();
+  for (int i = 0; i < static_cast<int>(shapes_.size()); ++i) {
+    const PlacedShape& s = shapes_[i];
+    (s.shape.bounded() ? bounded : unbounded).push_back(i);
+    if (!s.shape.bounded()) continue;
+    const Reference& step = reference_of(i, ground);
+    const ContactLaw& law = this->law(i, i);
+    const double tolerance = law.tolerance > 0.0 ? law.tolerance : 1e-3 * s.shape.size;
+    bounds_.push_back(bounds_of(s.shape, step.r, step.Lambda, margin(s) + tolerance));
+  }
+  broad_.find(bounds_, near_);
+  std::vector<std::pair<int, int>> shape_pairs;
+  for (const auto& [i, j] : near_) shape_pairs.emplace_back(bounded[i], bounded[j]);
+  for (int u : unbounded)
+    for (int i : bounded) {
+      const Reference &step = reference_of(i, ground), &base = reference_of(u, ground);
+      const Shape &s = shapes_[i].shape, &plane = shapes_[u].shape;
+      const Vec3 centre = step.r + step.Lambda * s.bound_centre;
+      const Vec3 normal = base.Lambda * plane.axes.col(2);
+      const double height = normal.dot(centre - base.r - base.Lambda * plane.centre);
+      if (height < s.bound_radius + margin(shapes_[i]) + 2e-3 * s.size + law(i, u).tolerance ||
+          shapes_[u].body != kGround)
+        shape_pairs.emplace_back(std::min(i, u), std::max(i, u));
+    }
+  std::erase_if(shape_pairs,
+                [&](const auto& p) { return !may_meet(shapes_[p.first], shapes_[p.second]); });
+  std::sort(shape_pairs.begin(), shape_pairs.end());
+
+  // Pairs of bodies, in order; the ground is always second.
+  const auto bodies = [&](int a, int b) {
+    int x = shapes_[a].body, y = shapes_[b].body;
+    if (x == kGround || (y != kGround && y < x)) std::swap(x, y);
+    return std::pair(x, y);
+  };
+  std::map<std::pair<int, int>, int> pair_of;
+  for (const auto& [a, b] : shape_pairs) pair_of[bodies(a, b)] = 0;
+  pairs_.clear();
+  for (auto& [key, number] : pair_of) {
+    number = static_cast<int>(pairs_.size());
+    pairs_.push_back({key.first, key.second});
+  }
+  std::vector<Point> points;
+  for (const auto& [a, b] : shape_pairs) {
+    add_points(a, b, dt, points);
+    const auto key = bodies(a, b);
+    for (auto p = points.rbegin();
+         p != points.rend() &&
+         p->key[0] == ((static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b));
+         ++p) {
+      p->pair = pair_of[key];
+      p->swapped = shapes_[p->a].body != key.first;
+    }
+  }
+  // Histories go over to the new list.
+  std::map<std::array<int, 5>, const Point*> old;
+  const auto name = [](const Point& p) {
+    return std::array<int, 5>{p.a, p.b, static_cast<int>(p.data.pair.kind), p.data.pair.i,
+                              p.data.pair.j};
+  };
+  for (const Point& p : points_)
+    if (p.data.history.closed) old[name(p)] = &p;
+  if (!old.empty())
+    for (Point& p : points)
+      if (const auto found = old.find(name(p)); found != old.end()) {
+        p.data.history = found->second->data.history;
+        p.data.rate_damping = found->second->data.rate_damping;
+      }
+  points_ = std::move(points);
+}
+
+bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& context,
+                       std::span<const Vec6> increments) {
+  bool leaves = false;
+  for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
+    if (reach_of_body_[body] == 0.0) continue;
+    const BodyStep& s = steps[body];
+    const Vec3 dr = increments[body].head<3>(), dtheta = increments[body].tail<3>();
+    const double going = moved(body, s.r_n1, s.Lambda_n1) + dr.norm() +
+                         std::min(2.0, dtheta.norm()) * reach_of_body_[body];
+    if (going < references_[body].margin) continue;
+    leaves = true;
+    references_[body].margin = 1.5 * (moved(body, s.r_n, s.Lambda_n) + going);
+  }
+  if (!leaves) return false;
+  const std::vector<Participants> before = pairs_;
+  refer(steps, context);
+  find_candidates(context.dt);
+  for (Point& p : points_) {
+    complete_law(p, context.dt);
+    open_or_close(p, steps, context);
+  }
+  return !std::equal(
+      before.begin(), before.end(), pairs_.begin(), pairs_.end(),
+      [](const Participants& x, const Participants& y) { return x.a == y.a && x.b == y.b; });
+}
+
+}  // namespace polhode::contact

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Numbers of a point in State::contacts, after those of the references.
+constexpr std::size_t kPointNumbers = 23;
+constexpr std::size_t kReferenceNumbers = 13;
+
+void check_law(const ContactLaw& law) {
+  const auto refuse = [](const char* what, double value, const char* mend) {
+    throw InputError("contacts", format("{} is {}", what, value), mend);
+  };
+  if (!(law.friction.mu >= 0.0) || !(law.friction.mu_across >= 0.0))
+    refuse("the coefficient of friction", std::min(law.friction.mu, law.friction.mu_across),
+           "Give a number that is zero or positive");
+  if (!(law.restitution >= 0.0 && law.restitution <= 1.0))
+    refuse("the restitution", law.restitution, "Give a number from 0 to 1");
+  for (const double x : {law.stiffness, law.tolerance, law.friction.rolling, law.friction.torsion,
+                         law.friction.stiffness, law.friction.damping})
+    if (!(x >= 0.0)) refuse("a constant of the contact law", x, "Give it zero or positive");
+  if (law.damped && law.potential == NormalPotential::barrier)
+    refuse("the damped rebound with the barrier", law.restitution,
+           "Choose the linear or the Hertz law for it, or leave the rebound to the exit law");
+  if (law.damped && law.restitution < 0.05)
+    refuse("the restitution of a damped rebound", law.restitution,
+           "Give at least 0.05, or leave the rebound to the exit law");
+}
+
+}  // namespace
+
+int ContactSet::add_shape(PlacedShape shape) {
+  shapes_.push_back(std::move(shape));
+  return static_cast<int>(shapes_.size()) - 1;
+}
+
+int ContactSet::add_material(const ContactMaterial& material) {
+  ContactLaw law;
+  law.friction.mu = material.mu;
+  law.restitution = material.restitution;
+  check_law(law);
+  materials_.push_back(material);
+  return static_cast<int>(materials_.size()) - 1;
+}
+
+void ContactSet::set_default(const ContactLaw& law) {
+  check_law(law);
+  default_law_ = law;
+}
+
+void ContactSet::set_law(int material_a, int material_b, const ContactLaw& law) {
+  check_law(law);
+  laws_[std::minmax(material_a, material_b)] = law;
+}
+
+void ContactSet::exclude(int body_a, int body_b) { excluded_.insert(std::minmax(body_a, body_b)); }
+
+/// What no pair states is combined: √(μ_a μ_b), the smaller restitution.
+const ContactLaw& ContactSet::law(int shape_a, int shape_b) const {
+  const std::pair<int, int> key = std::minmax(shapes_[shape_a].material, shapes_[shape_b].material);
+  if (const auto stated = laws_.find(key); stated != laws_.end()) return stated->second;
+  if (key.first < 0) return default_law_;
+  const auto [at, fresh] = combined_.try_emplace(key, default_law_);
+  if (fresh) {
+    const ContactMaterial &a = materials_[key.first], &b = materials_[key.second];
+    at->second.friction.mu = std::sqrt(a.mu * b.mu);
+    at->second.restitution = std::min(a.restitution, b.restitution);
+  }
+  return at->second;
+}
+
+bool ContactSet::may_meet(const PlacedShape& a, const PlacedShape& b) const {
+  if (a.body == b.body) return false;
+  if (!(a.groups & b.meets) || !(b.groups & a.meets)) return false;
+  if (!a.shape.bounded() && !b.shape.bounded()) return false;
+  return !excluded_.contains(std::minmax(a.body, b.body));
+}
+
+void ContactSet::prepare(const System& system) {
+  system_ = &system;
+  const auto n = static_cast<std::size_t>(system.body_count());
+  reach_of_body_.assign(n, 0.0);
+  size_of_body_.assign(n, std::numeric_limits<double>::infinity());
+  for (const PlacedShape& s : shapes_) {
+    if (s.body == kGround) continue;
+    if (s.body < 0 || s.body >= system.body_count())
+      throw InputError("contacts", format("shape '{}' is on body {}", s.name, s.body),
+                       "Name a body of the model");
+    reach_of_body_[s.body] = std::max(reach_of_body_[s.body], s.shape.reach);
+    size_of_body_[s.body] = std::min(size_of_body_[s.body], s.shape.bound_radius);
+  }
+  references_.assign(n, {});
+}
+
+/// @eq{contact-stiffness}
+void ContactSet::complete_law(Point& p, double dt) const {
+  const PlacedShape &a = shapes_[p.a], &b = shapes_[p.b];
+  const ContactLaw& law = this->law(p.a, p.b);
+  const auto inverse_mass = [&](const PlacedShape& s) {
+    return s.body == kGround ? 0.0 : 1.0 / system_->bodies()[s.body].mass;
+  };
+  const double mass = 1.0 / (inverse_mass(a) + inverse_mass(b));
+  const double length = std::min(a.shape.size, b.shape.size);
+  const bool plane = !a.shape.bounded() || !b.shape.bounded();
+  const double rounding = a.shape.rounding + b.shape.rounding;
+  PointData& d = p.data;
+  d.length = length;
+  d.normal.potential = law.potential;
+  d.normal.tolerance = law.tolerance > 0.0 ? law.tolerance : 1e-3 * length;
+  if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, rounding);
+  const double weight = mass * system_->gravity().norm();
+  double k = law.stiffness;
+  if (k == 0.0) {
+    const double band = 2.0 * d.normal.tolerance;
+    k = std::max(1.5 * weight / band, mass / (dt * dt));
+    if (law.potential == NormalPotential::hertz) k /= std::sqrt(d.normal.tolerance);
+  }
+  if (d.history.closed && d.history.stiffness > 0.0) k = d.history.stiffness;
+  d.normal.stiffness = d.history.stiffness = k;
+  d.friction = law.friction;
+  FrictionLaw& f = d.friction;
+  const double k_T =
+      law.potential == NormalPotential::hertz ? k * std::sqrt(d.normal.tolerance) : k;
+  if (f.stiffness == 0.0) f.stiffness = k_T;
+  if (f.damping == 0.0) f.damping = 0.7 * std::sqrt(f.stiffness * mass);
+  if (f.turning_stiffness == 0.0) f.turning_stiffness = f.stiffness * length * length;
+  if (f.turning_damping == 0.0)
+    f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * length * length);
+  p.restitution = law.damped ? 1.0 : law.restitution;
+  p.sensor = law.sensor;
+  p.least_gap =
+      plane || law.potential == NormalPotential::barrier ? d.normal.floor() : -0.9 * rounding;
+}
+
+/// A point that is open gets its approach speed, and with it the decision whether it will rebound:
+/// not if the flight would be shorter than the step. @eq{exit-law}
+void ContactSet::open_or_close(Point& p, std::span<const BodyStep> steps,
+                               const StepContext& context) const {
+  PointHistory& h = p.data.history;
+  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+  const Gap<double> g =
+      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
+          Placement<double>(b.r_n, b.Lambda_n, 6));
+  p.gap_n = g.distance;
+  p.active = false;
+  if (h.closed) {
+    p.gap_n = h.gap;
+    return;
+  }
+  const Vec3 c = value(g.point), n = value(g.normal);
+  const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
+  const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
+  h.approach = std::min(0.0, n.dot(v_a - v_b));
+  const double slow = 2.0 * system_->gravity().norm() * context.dt;
+  const ContactLaw& law = this->law(p.a, p.b);
+  h.plastic = !law.damped &&
+              (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
+  h.fresh = true;
+  if (law.damped && h.approach < 0.0) {
+    const double e = law.restitution;
+    p.data.rate_damping = (1.0 - e * e) / e / -h.approach;
+  }
+  if (p.gap_n >= p.data.normal.reach()) return;
+  h.closed = true;
+  h.gap = p.gap_n;
+}
+
+bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
+                            const StepContext& context) {
+  const bool same = loaded_ && saved_ == state.contacts;
+  const std::vector<Participants> before = pairs_;
+  if (!same) {
+    load(state);
+    if (points_.size() + state.contacts.size() > 0) find_candidates(context.dt);
+  }
+  bool stale = false;
+  for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
+    if (reach_of_body_[body] == 0.0) continue;
+    const BodyStep& s = steps[body];
+    const double ahead = context.dt * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]);
+    if (!(moved(body, s.r_n, s.Lambda_n) + ahead < references_[body].margin)) stale = true;
+  }
+  if (stale) {
+    for (Reference& r : references_) r.margin = -1.0;
+    refer(steps, context);
+    find_candidates(context.dt);
+  }
+  for (Point& p : points_) {
+    complete_law(p, context.dt);
+    open_or_close(p, steps, context);
+  }
+  tightest_ = -1;
+  return !std::equal(
+      before.begin(), before.end(), pairs_.begin(), pairs_.end(),
+      [](const Participants& x, const Participants& y) { return x.a == y.a && x.b == y.b; });
+}
+
+void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& context,
+                          std::span<PairTerms> terms) {
+  for (PairTerms& t : terms) context.tangents ? t.set_sums_zero() : t.set_values_zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
+    if (p.sensor) continue;
+    const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    const double reach = p.data.normal.reach();
+    const double gap_1 = gap_n1(p.data, a, b);
+    p.active = p.gap_n < reach || gap_1 < reach;
+    if (!p.active) continue;
+    if (const double room = gap_1 - p.least_gap; room < least) least = room, tightest_ = i;
+    PairTerms& t = terms[p.pair];
+    if (!p.swapped) {
+      add_contact(p.data, a, b, context, t);
+      continue;
+    }
+    std::swap(t.wrench_a, t.wrench_b);
+    std::swap(t.D_aa, t.D_bb);
+    std::swap(t.D_ab, t.D_ba);
+    add_contact(p.data, a, b, context, t);
+    std::swap(t.wrench_a, t.wrench_b);
+    std::swap(t.D_aa, t.D_bb);
+    std::swap(t.D_ab, t.D_ba);
+  }
+}
+
+Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {
+  Work work;
+  StepContext values = context;
+  values.tangents = false;
+  PairTerms unused;
+  unused.set_zero();
+  for (Point& p : points_) {
+    const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    const double gap_1 = gap_n1(p.data, a, b);
+    const double reach = p.data.normal.reach();
+    p.active = p.gap_n < reach || gap_1 < reach;
+    PointHistory& h = p.data.history;
+    p.impact_loss = 0.0;
+    if (!p.active) {
+      p.report = {};
+      p.report.gap_n = p.gap_n;
+      p.report.gap_n1 = gap_1;
+      h.bristle.setZero();
+      h.closed = false;
+      continue;
+    }
+    add_contact(p.data, a, b, values, unused, &p.report);
+    const PointReport& r = p.report;
+    if (!p.sensor) {
+      work.stored += r.work.stored;
+      work.dissipated += r.work.dissipated;
+      lost_by_friction_ += r.work.dissipated;
+    }
+    const auto speed = [&](const Vec3& v, const Vec3& W, const Mat3& Lambda, const BodyStep& s) {
+      return Vec3(v + (Lambda * W).cross(r.point - s.r_n - 0.5 * s.u));
+    };
+    p.speed_n =
+        r.normal.dot(speed(a.v_n, a.W_n, a.Lambda_n, a) - speed(b.v_n, b.W_n, b.Lambda_n, b));
+    p.speed_n1 =
+        r.normal.dot(speed(a.v_n1, a.W_n1, a.Lambda_n1, a) - speed(b.v_n1, b.W_n1, b.Lambda_n1, b));
+    p.elastic_force = p.data.normal.quotient(r.gap_n, r.gap_n1);
+    const PointHistory kept = h;
+    h = r.after;
+    h.approach = kept.approach;
+    h.stiffness = kept.stiffness;
+    h.plastic = kept.plastic;
+    h.fresh = kept.fresh;
+    h.closed = gap_1 < reach;
+    h.gap = gap_1;
+  }
+  save(state);
+  return work;
+}
+
+double ContactSet::stored(const State& state, std::span<const BodyStep> instants) {
+  StepContext still;
+  still.dt = state.dt_next > 0.0 ? state.dt_next : 1e-2;
+  begin_step(state, instants, still);
+  double energy = 0.0;
+  for (const Point& p : points_) {
+    if (p.sensor || p.gap_n >= p.data.normal.reach()) continue;
+    energy += stored_n1(p.data, step_of(p.a, instants), step_of(p.b, instants)) +
+              0.5 * p.data.friction.stiffness * p.data.history.bristle.squaredNorm() +
+              0.5 * p.data.friction.turning_stiffness *
+                  (p.data.history.rolling.squaredNorm() +
+                   p.data.history.torsion * p.data.history.torsion);
+  }
+  return energy;
+}
+
+void ContactSet::save(State& state) const {
+  std::vector<double>& out = state.contacts;
+  out.clear();
+  const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
+  for (const Reference& r : references_) {
+    put(r.r);
+    put(r.Lambda);
+    out.push_back(r.margin);
+  }
+  for (const Point& p : points_) {
+    const PointHistory& h = p.data.history;
+    if (!h.closed) continue;
+    const FeaturePair& f = p.data.pair;
+    for (const double x :
+         {static_cast<double>(p.a), static_cast<double>(p.b), static_cast<double>(f.kind),
+          static_cast<double>(f.i), static_cast<double>(f.j)})
+      out.push_back(x);
+    put(h.bristle);
+    put(h.normal);
+    put(h.rolling);
+    for (const double x :
+         {h.torsion, h.approach, h.stiffness, h.closed ? 1.0 : 0.0, h.plastic ? 1.0 : 0.0,
+          h.fresh ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, p.data.rate_damping, h.gap})
+      out.push_back(x);
+  }
+  const_cast<ContactSet*>(this)->saved_ = out;
+  const_cast<ContactSet*>(this)->loaded_ = true;
+}
+
+void ContactSet::load(const State& state) {
+  const std::vector<double>& in = state.contacts;
+  points_.clear();
+  pairs_.clear();
+  loaded_ = true;
+  saved_ = in;
+  const std::size_t references = kReferenceNumbers * references_.size();
+  for (Reference& r : references_) r.margin = -1.0;
+  if (in.size() < references) return;
+  for (std::size_t k = 0; k < references_.size(); ++k) {
+    const double* x = in.data() + kReferenceNumbers * k;
+    references_[k].r = Eigen::Map<const Vec3>(x);
+    references_[k].Lambda = Eigen::Map<const Mat3>(x + 3);
+    references_[k].margin = x[12];
+  }
+  // Bare points that carry the histories: find_candidates() hands these on.
+  for (std::size_t at = references; at + kPointNumbers <= in.size(); at += kPointNumbers) {
+    const double* x = in.data() + at;
+    Point p;
+    p.a = static_cast<int>(x[0]);
+    p.b = static_cast<int>(x[1]);
+    p.data.pair = {static_cast<GapKind>(static_cast<int>(x[2])), static_cast<int>(x[3]),
+                   static_cast<int>(x[4])};
+    PointHistory& h = p.data.history;
+    h.bristle = Eigen::Map<const Vec3>(x + 5);
+    h.normal = Eigen::Map<const Vec3>(x + 8);
+    h.rolling = Eigen::Map<const Vec3>(x + 11);
+    h.torsion = x[14];
+    h.approach = x[15];
+    h.stiffness = x[16];
+    h.closed = x[17] != 0.0;
+    h.plastic = x[18] != 0.0;
+    h.fresh = x[19] != 0.0;
+    h.slips = x[20] != 0.0;
+    p.data.rate_damping = x[21];
+    h.gap = x[22];
+    points_.push_back(p);
+  }
+}
+
+std::vector<ShapePairReport> ContactSet::reports() const {
+  std::map<std::pair<int, int>, ShapePairReport> by_pair;
+  for (const Point& p : points_) {
+    const bool turned = p.a > p.b;
+    const std::pair<int, int> key = std::minmax(p.a, p.b);
+    const auto [at, fresh] = by_pair.try_emplace(key);
+    ShapePairReport& r = at->second;
+    if (fresh) {
+      r.a = key.first, r.b = key.second;
+      r.gap = std::numeric_limits<double>::infinity();
+    }
+    r.gap = std::min(r.gap, p.report.gap_n1);
+    if (!p.active) continue;
+    const double sign = turned ? -1.0 : 1.0;
+    r.force += sign * p.report.force;
+    r.friction += sign * p.report.friction_force;
+    r.normal_force += p.report.normal_force;
+    r.point += p.report.normal_force * p.report.point;
+    r.dissipated += p.report.work.dissipated + p.impact_loss;
+    ++r.points;
+    if (p.report.after.slips)
+      r.status = ContactStatus::slip;
+    else if (r.status == ContactStatus::open)
+      r.status = ContactStatus::stick;
+  }
+  std::vector<ShapePairReport> list;
+  for (auto& [key, r] : by_pair) {
+    if (r.normal_force > 0.0) r.point /= r.normal_force;
+    list.push_back(r);
+  }
+  return list;
+}
+
+std::vector<std::string> ContactSet::overlaps(std::span<const BodyStep> instants) {
+  StepContext context;
+  context.dt = 1e-2;
+  State none;
+  begin_step(none, instants, context);
+  std::map<std::pair<int, int>, double> deepest;
+  for (const Point& p : points_)
+    if (p.gap_n <= -p.data.normal.tolerance) {
+      double& depth = deepest[std::minmax(p.a, p.b)];
+      depth = std::max(depth, -p.gap_n);
+    }
+  std::vector<std::string> list;
+  for (const auto& [key, depth] : deepest)
+    list.push_back(format("'{}' in '{}' by {:.3g} m", shapes_[key.first].name,
+                          shapes_[key.second].name, depth));
+  return list;
+}
+
+std::string ContactSet::tightest() const {
+  if (tightest_ < 0) return {};
+  const Point& p = points_[tightest_];
+  return format("contact of '{}' and '{}'", shapes_[p.a].name, shapes_[p.b].name);
+}
+
+}  // namespace polhode::contact

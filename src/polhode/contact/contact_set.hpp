@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/moving_contacts.hpp>
+#include <polhode/assembly/system.hpp>
+#include <polhode/contact/broad_phase.hpp>
+#include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/feature_pairs.hpp>
+
+namespace polhode::contact {
+
+/// How two materials meet. Zero means: chosen from the bodies (see docs/theory/contact.md).
+struct ContactLaw {
+  NormalPotential potential = NormalPotential::barrier;
+  double stiffness = 0.0;    ///< k [N/m]; Hertz [N/m^{3/2}].
+  double tolerance = 0.0;    ///< g_tol of the barrier [m].
+  double restitution = 0.0;  ///< e, 0 to 1, by the exit law.
+  /// Hertz and linear: speed of rebound by a damper instead (Gonthier, Carvalho and Martins);
+  /// needs some twenty steps per contact.
+  bool damped = false;
+  bool sensor = false;   ///< Reports, but exerts no force.
+  FrictionLaw friction;  ///< stiffness, damping ...: 0 to choose them.
+
+  ContactLaw() { friction.stiffness = friction.turning_stiffness = 0.0; }
+};
+
+/// Friction and restitution of one material against itself, for laws that no pair states.
+struct ContactMaterial {
+  std::string name;
+  double mu = 0.0;
+  double restitution = 0.0;
+};
+
+/// A shape on a body.
+struct PlacedShape {
+  int body = kGround;
+  std::string name;
+  Shape shape;
+  int material = -1;                  ///< Of add_material(); −1: the default law.
+  std::uint32_t groups = 1;           ///< Belongs to these.
+  std::uint32_t meets = 0xffffffffu;  ///< Meets shapes of these; both have to agree.
+};
+
+enum class ContactStatus { open, stick, slip };
+
+/// What two shapes did to each other over the last step.
+struct ShapePairReport {
+  int a = 0, b = 0;              ///< Shapes.
+  double gap = 0.0;              ///< Smallest, at t_{n+1} [m].
+  Vec3 force = Vec3::Zero();     ///< On a, friction included [N].
+  double normal_force = 0.0;     ///< Sum of all points [N].
+  Vec3 friction = Vec3::Zero();  ///< On a [N].
+  Vec3 point = Vec3::Zero();     ///< Mean of the points, by normal force [m].
+  int points = 0;
+  ContactStatus status = ContactStatus::open;
+  double dissipated = 0.0;  ///< In the step, impacts included [J].
+};
+
+/// Contact between the shapes of bodies.
+///
+/// Candidates are found when a body has moved by more than its margin since they were found last;
+/// they are sorted, so that sums do not depend on how they were found.
+class ContactSet final : public MovingContacts {
+ public:
+  /// @returns the shape's number.
+  int add_shape(PlacedShape shape);
+  /// @returns the material's number. @throws InputError for values out of range.
+  int add_material(const ContactMaterial& material);
+  void set_default(const ContactLaw& law);
+  /// Law of two materials. @throws InputError for values out of range.
+  void set_law(int material_a, int material_b, const ContactLaw& law);
+  /// Shapes of these bodies do not meet.
+  void exclude(int body_a, int body_b);
+
+  [[nodiscard]] const std::vector<PlacedShape>& shapes() const { return shapes_; }
+  [[nodiscard]] const ContactLaw& law(int shape_a, int shape_b) const;
+  [[nodiscard]] std::vector<ShapePairReport> reports() const;
+  /// Energy lost in impacts and by friction and other dissipation since prepare() [J].
+  [[nodiscard]] double lost_in_impacts() const { return lost_in_impacts_; }
+  [[nodiscard]] double lost_by_friction() const { return lost_by_friction_; }
+  /// Shapes that overlap by more than the tolerance at an instant: "a in b by 0.01 m".
+  [[nodiscard]] std::vector<std::string> overlaps(std::span<const BodyStep> instants);
+  [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
+
+  void prepare(const System& system) override;
+  bool begin_step(const State& state, std::span<const BodyStep> steps,
+                  const StepContext& context) override;
+  const std::vector<Participants>& pairs() const override { return pairs_; }
+  bool cover(std::span<const BodyStep> steps, const StepContext& context,
+             std::span<const Vec6> increments) override;
+  void evaluate(std::span<const BodyStep> steps, const StepContext& context,
+                std::span<PairTerms> terms) override;
+  double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
+  double stored(const State& state, std::span<const BodyStep> instants) override;
+  Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
+  VelocityJump settle_impacts(State& state, std::span<const VelocityRow> rows) override;
+  std::string tightest() const override;
+
+ private:
+  struct Point {
+    int a = 0, b = 0;      ///< Shapes, in the order of the feature pair.
+    int pair = 0;          ///< Of bodies.
+    bool swapped = false;  ///< The feature's side a is side b of the pair of bodies.
+    std::array<std::uint64_t, 2> key{};
+    PointData data;
+    double restitution = 0.0;
+    double least_gap = 0.0;  ///< No step may go below [m].
+    bool sensor = false;
+    double gap_n = 0.0;
+    PointReport report;  ///< Of the last accepted step.
+    bool active = false;
+    double elastic_force = 0.0;
+    double speed_n = 0.0, speed_n1 = 0.0;  ///< Along the normal [m/s].
+    double impact_loss = 0.0;
+  };
+  /// Where a body was when candidates were found, and how far it may go from there.
+  struct Reference {
+    Vec3 r = Vec3::Zero();
+    Mat3 Lambda = Mat3::Identity();
+    double margin = -1.0;
+  };
+
+  void load(const State& state);
+  void save(State& state) const;
+  [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
+  void refer(std::span<const BodyStep> steps, const StepContext& context);
+  void find_candidates(double dt);
+  void add_points(int a, int b, double dt, std::vector<Point>& points);
+  void complete_law(Point& p, double dt) const;
+  void open_or_close(Point& p, std::span<const BodyStep> steps, const StepContext& context) const;
+  [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
+  [[nodiscard]] const Reference& reference_of(int shape, const Reference& ground) const {
+    const int body = shapes_[shape].body;
+    return body == kGround ? ground : references_[body];
+  }
+  [[nodiscard]] const BodyStep& step_of(int shape, std::span<const BodyStep> steps) const {
+    const int body = shapes_[shape].body;
+    return body == kGround ? steps.back() : steps[body];
+  }
+
+  std::vector<PlacedShape> shapes_;
+  std::vector<ContactMaterial> materials_;
+  ContactLaw default_law_;
+  std::map<std::pair<int, int>, ContactLaw> laws_;
+  std::set<std::pair<int, int>> excluded_;
+  mutable std::map<std::pair<int, int>, ContactLaw> combined_;
+
+  const System* system_ = nullptr;
+  std::vector<double> reach_of_body_, size_of_body_;
+  std::vector<Reference> references_;
+  std::vector<Point> points_;
+  std::vector<Participants> pairs_;
+  std::vector<double> saved_;
+  bool loaded_ = false;
+  double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
+  BroadPhase broad_;
+  std::vector<Bounds> bounds_;
+  std::vector<std::pair<int, int>> near_;
+  int tightest_ = -1;
+};
+
+}  // namespace polhode::contact

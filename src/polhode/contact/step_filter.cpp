@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Of the room a point has, this part is kept in one iteration.
+constexpr double kKept = 0.1;
+/// Points that cannot use more than this part of their room are not followed.
+constexpr double kHarmless = 0.9;
+/// An advance below this part of the increment ends the search.
+constexpr double kLeastAdvance = 1e-4;
+
+/// Farthest point of a feature from the origin of its body: how fast a turn moves it.
+double lever(const Shape& s, const FeaturePair& f, bool side_a) {
+  if (!s.bounded()) return 0.0;
+  const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
+                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner;
+  if (side_a && corner) return s.corners[f.i].norm();
+  if (s.solid == Solid::ball) return s.centre.norm();
+  return s.reach;
+}
+
+}  // namespace
+
+/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ no feature comes nearer faster than
+/// v = |Δr_a − Δr_b| + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a gap can be followed by steps of its own size.
+/// @eq{contact-filter}
+double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
+  struct Closing {
+    int point;
+    double speed, floor;
+  };
+  const Vec6 still = Vec6::Zero();
+  const auto increment = [&](int shape) -> const Vec6& {
+    const int body = shapes_[shape].body;
+    return body == kGround ? still : increments[body];
+  };
+  double most = 1.0;
+  for (const Vec6& x : increments) {  // a turn by more than this is no step of Newton
+    const double turn = x.tail<3>().norm();
+    if (turn > 0.6) most = std::min(most, 0.6 / turn);
+  }
+  std::vector<Closing> closing;
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const Point& p = points_[i];
+    if (p.sensor || p.data.pair.weight < 0.0 || !std::isfinite(p.least_gap)) continue;
+    const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
+    const Vec3 relative = x_a.head<3>() - x_b.head<3>();
+    const Shape &A = *p.data.a, &B = *p.data.b;
+    const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    double speed = x_a.tail<3>().norm() * lever(A, p.data.pair, true);
+    if (B.bounded()) {
+      speed += relative.norm() + x_b.tail<3>().norm() * lever(B, p.data.pair, false);
+    } else {
+      speed += std::abs(relative.dot(b.Lambda_n1 * B.axes.col(2)));
+      speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + A.reach + B.centre.norm());
+    }
+    if (speed == 0.0) continue;
+    const double room = gap_n1(p.data, a, b) - p.least_gap;
+    if (most * speed <= kHarmless * room) continue;
+    const double band = p.data.normal.reach() - p.least_gap;
+    closing.push_back({i, speed, kKept * std::min(room, band)});
+  }
+  if (closing.empty()) return most;
+  double done = 0.0, last = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    double advance = std::numeric_limits<double>::infinity();
+    for (const Closing& c : closing) {
+      const Point& p = points_[c.point];
+      const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
+      const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+      const Mat3 L_a = cay(done * x_a.tail<3>()) * a.Lambda_n1;
+      const Mat3 L_b = cay(done * x_b.tail<3>()) * b.Lambda_n1;
+      const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b,
+                                Placement<double>(a.r_n1 + done * x_a.head<3>(), L_a, 0),
+                                Placement<double>(b.r_n1 + done * x_b.head<3>(), L_b, 6));
+      const double next = (g.distance - p.least_gap - c.floor) / c.speed;
+      if (next < advance) {
+        advance = next;
+        tightest_ = c.point;
+      }
+    }
+    // Bodies that part from a narrow gap start with small advances, each larger than the last.
+    if (!(advance > 0.0) || (advance < kLeastAdvance * most && advance < last))
+      return done > 0.0 ? done : 1e-3 * most;
+    last = advance;
+    done += advance;
+    if (done >= most) return most;
+  }
+  return done;
+}
+
+}  // namespace polhode::contact

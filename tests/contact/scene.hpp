@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <polhode/contact/contact_set.hpp>
+#include <polhode/solve/contact_engine.hpp>
+#include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/solve/single_step.hpp>
+
+namespace polhode::test {
+
+/// Bodies with shapes, and a run of fixed steps.
+class Scene {
+ public:
+  System system;
+  std::shared_ptr<contact::ContactSet> contacts = std::make_shared<contact::ContactSet>();
+  State state;
+  int iterations = 0, steps = 0, cuts = 0;
+
+  explicit Scene(const Vec3& gravity = {0.0, 0.0, -9.81}) { system.set_gravity(gravity); }
+
+  /// A body with one shape in its middle. @returns its number.
+  int add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& inertia,
+          const BodyMotion& start) {
+    BodyData data;
+    data.name = name;
+    data.mass = mass;
+    data.inertia = inertia.asDiagonal();
+    const int body = system.add_body(data, start);
+    contacts->add_shape({body, name, shape});
+    return body;
+  }
+  int add_ball(const std::string& name, double radius, double mass, const BodyMotion& start) {
+    return add(name, contact::sphere(name, 2.0 * radius), mass,
+               Vec3::Constant(0.4 * mass * radius * radius), start);
+  }
+  int add_box(const std::string& name, const Vec3& size, double mass, const BodyMotion& start) {
+    const Vec3 s = size.cwiseProduct(size);
+    return add(name, contact::box(name, size), mass,
+               mass / 12.0 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()), start);
+  }
+  /// The half space below a plane through the origin, on the ground.
+  void add_floor(const Vec3& normal = Vec3::UnitZ()) {
+    contact::ShapePlace place;
+    place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+    contacts->add_shape({kGround, "floor", contact::plane(place)});
+  }
+  void law(double mu, double restitution, double tolerance = 0.0) {
+    contact::ContactLaw law;
+    law.friction.mu = mu;
+    law.restitution = restitution;
+    law.tolerance = tolerance;
+    contacts->set_default(law);
+  }
+  void begin(double dt) {
+    dt_ = dt;
+    system.set_contacts(contacts);
+    system.finish();
+    state = system.initial_state();
+    state.dt_next = dt;
+    restart();
+    single_->ledger().begin(state);
+  }
+  /// A fresh engine, as after reading the state from a file.
+  void restart() {
+    single_ = std::make_unique<SingleStep>(
+        system, std::make_unique<ContactEngine>(system, "block_lu"),
+        GeneralizedAlpha::from_spectral_radius(1.0), lane_kernels("automatic"), true);
+  }
+  /// One step, halved as often as needed. @returns false if that does not help.
+  bool step() {
+    double left = dt_;
+    NewtonOptions options;
+    options.tolerance = 1e-12;
+    options.max_iterations = 40;
+    options.jacobian = JacobianPolicy::every_iteration;
+    options.line_search = false;
+    double h = dt_;
+    while (left > 1e-9 * dt_) {
+      h = std::min(h, left);
+      last = single_->take(state, h, options, {1, false});
+      iterations += last.iterations;
+      if (last.converged) {
+        left -= h;
+        continue;
+      }
+      ++cuts;
+      h *= 0.5;
+      if (h < 1e-4 * dt_) return false;
+    }
+    ++steps;
+    single_->ledger().close_step(state);
+    return true;
+  }
+  /// Of the energy balance, largest so far [J].
+  [[nodiscard]] double drift() const { return state.ledger.energy_drift; }
+  [[nodiscard]] BodyMotion motion(int body) const { return system.motion(state, body); }
+  NewtonReport last;
+
+ private:
+  double dt_ = 1e-2;
+  std::unique_ptr<SingleStep> single_;
+};
+
+inline BodyMotion at(const Vec3& r, const Vec3& v = Vec3::Zero()) {
+  BodyMotion m;
+  m.r = r;
+  m.v = v;
+  return m;
+}
+
+}  // namespace polhode::test
