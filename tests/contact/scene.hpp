@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -94,6 +95,18 @@ class Scene {
     single_->ledger().close_step(state);
     return true;
   }
+  /// Steps for so long [s]. @returns false if one failed.
+  bool run(double duration) {
+    const auto count = static_cast<int>(std::lround(duration / dt_));
+    for (int k = 0; k < count; ++k)
+      if (!step()) return false;
+    return true;
+  }
+  /// Kinetic and stored energy [J].
+  [[nodiscard]] double energy() const {
+    const Balance b = single_->ledger().balance(state);
+    return b.kinetic + b.potential;
+  }
   /// Of the energy balance, largest so far [J].
   [[nodiscard]] double drift() const { return state.ledger.energy_drift; }
   [[nodiscard]] BodyMotion motion(int body) const { return system.motion(state, body); }
@@ -103,6 +116,19 @@ class Scene {
   double dt_ = 1e-2;
   std::unique_ptr<SingleStep> single_;
 };
+
+/// Gap of a barrier that carries a load at rest [m].
+inline double resting_gap(double stiffness, double tolerance, double load) {
+  contact::NormalLaw law;
+  law.stiffness = stiffness;
+  law.tolerance = tolerance;
+  double low = -tolerance * (1.0 - 1e-9), high = tolerance;
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    (law.force(middle) > load ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
 
 inline BodyMotion at(const Vec3& r, const Vec3& v = Vec3::Zero()) {
   BodyMotion m;

@@ -74,7 +74,7 @@ void ContactSet::refer(std::span<const BodyStep> steps, const StepContext& conte
         std::abs(context.dt) * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]) +
         context.dt * context.dt * system_->gravity().norm();
     const double size = std::isfinite(size_of_body_[body]) ? size_of_body_[body] : 0.0;
-    ref.margin = std::max({ref.margin, 2.0 * ahead, 0.05 * size});
+    ref.margin = std::max({ref.margin, 4.0 * ahead, 0.05 * size});
     ref.r = s.r_n;
     ref.Lambda = s.Lambda_n;
   }
@@ -122,39 +122,44 @@ void ContactSet::find_candidates(double dt) {
     if (x == kGround || (y != kGround && y < x)) std::swap(x, y);
     return std::pair(x, y);
   };
-  std::map<std::pair<int, int>, int> pair_of;
-  for (const auto& [a, b] : shape_pairs) pair_of[bodies(a, b)] = 0;
+  std::vector<std::pair<int, int>> body_pairs;
+  for (const auto& [a, b] : shape_pairs) body_pairs.push_back(bodies(a, b));
+  std::sort(body_pairs.begin(), body_pairs.end());
+  body_pairs.erase(std::unique(body_pairs.begin(), body_pairs.end()), body_pairs.end());
   pairs_.clear();
-  for (auto& [key, number] : pair_of) {
-    number = static_cast<int>(pairs_.size());
-    pairs_.push_back({key.first, key.second});
-  }
+  for (const auto& [a, b] : body_pairs) pairs_.push_back({a, b});
   std::vector<Point> points;
   for (const auto& [a, b] : shape_pairs) {
+    const std::size_t first = points.size();
     add_points(a, b, dt, points);
     const auto key = bodies(a, b);
-    for (auto p = points.rbegin();
-         p != points.rend() &&
-         p->key[0] == ((static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b));
-         ++p) {
-      p->pair = pair_of[key];
-      p->swapped = shapes_[p->a].body != key.first;
+    const auto pair = static_cast<int>(std::lower_bound(body_pairs.begin(), body_pairs.end(), key) -
+                                       body_pairs.begin());
+    for (std::size_t k = first; k < points.size(); ++k) {
+      points[k].pair = pair;
+      points[k].swapped = shapes_[points[k].a].body != key.first;
     }
   }
   // Histories go over to the new list.
-  std::map<std::array<int, 5>, const Point*> old;
   const auto name = [](const Point& p) {
     return std::array<int, 5>{p.a, p.b, static_cast<int>(p.data.pair.kind), p.data.pair.i,
                               p.data.pair.j};
   };
+  std::vector<std::pair<std::array<int, 5>, const Point*>> old;
   for (const Point& p : points_)
-    if (p.data.history.closed) old[name(p)] = &p;
+    if (p.data.history.closed) old.emplace_back(name(p), &p);
+  std::sort(old.begin(), old.end());
   if (!old.empty())
-    for (Point& p : points)
-      if (const auto found = old.find(name(p)); found != old.end()) {
-        p.data.history = found->second->data.history;
-        p.data.rate_damping = found->second->data.rate_damping;
-      }
+    for (Point& p : points) {
+      const std::array<int, 5> wanted = name(p);
+      const auto found =
+          std::lower_bound(old.begin(), old.end(), wanted,
+                           [](const auto& entry, const auto& key) { return entry.first < key; });
+      if (found == old.end() || found->first != wanted) continue;
+      p.data.history = found->second->data.history;
+      p.data.rate_damping = found->second->data.rate_damping;
+      complete_law(p, dt);
+    }
   points_ = std::move(points);
 }
 
@@ -175,10 +180,7 @@ bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& conte
   const std::vector<Participants> before = pairs_;
   refer(steps, context);
   find_candidates(context.dt);
-  for (Point& p : points_) {
-    complete_law(p, context.dt);
-    open_or_close(p, steps, context);
-  }
+  for (Point& p : points_) open_or_close(p, steps, context);
   return !std::equal(
       before.begin(), before.end(), pairs_.begin(), pairs_.end(),
       [](const Participants& x, const Participants& y) { return x.a == y.a && x.b == y.b; });

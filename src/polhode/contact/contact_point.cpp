@@ -104,6 +104,19 @@ class Evaluation {
     return w;
   }
 
+  /// After run() with numbers: what the tangent is like at the common point.
+  PointForce spring(const Wrenches<T>& w) const {
+    PointForce f;
+    f.force = value(w.force);
+    f.moment_a = value(w.moment_a);
+    f.moment_b = value(w.moment_b);
+    f.arm_a = value(c_ - r_a_);
+    f.arm_b = value(c_ - r_b_);
+    const Vec3 n = value(n_);
+    f.C = std::max(0.0, stiffness_) * n * n.transpose() + friction_C_;
+    return f;
+  }
+
  private:
   /// Common point, normal and exact relative displacement of the material points there.
   /// @eq{contact-direction}
@@ -134,6 +147,8 @@ class Evaluation {
   /// Normal force and, if the potential fades, the couple on the fading directions.
   void forces(const Gap<double>& g_0, const Gap<T>& g_1) {
     const NormalLaw& law = data_.normal;
+    if constexpr (std::is_same_v<T, double>)
+      stiffness_ = normal_stiffness(data_, g_0.distance, g_1.distance, context_.dt);
     lambda_ = law.quotient(g_0.distance, g_1.distance);
     if (data_.rate_damping > 0.0) {
       const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;
@@ -155,7 +170,9 @@ class Evaluation {
     const T y_1 = dot(f_1.a, f_1.b);
     const T energy =
         0.5 * (data_.normal.energy(g_0.distance) + data_.normal.energy_of(g_1.distance));
-    lambda_ = 0.5 * (fading(data_.pair.fade, y_0) + fading(data_.pair.fade, y_1)) * lambda_;
+    const T mean = 0.5 * (fading(data_.pair.fade, y_0) + fading(data_.pair.fade, y_1));
+    lambda_ = mean * lambda_;
+    stiffness_ *= value(mean);
     const T q = fading_quotient(data_.pair.fade, y_0, y_1);
     couple_ = (-(energy * q)) * cross(average(f_0.a, f_1.a, 0.5), average(f_0.b, f_1.b, 0.5));
   }
@@ -207,6 +224,7 @@ class Evaluation {
       const V3<T> s_0 = start(data_.history.bristle, spin, cone);
       const V3<T> middle = s_0 + (0.5 + f.damping / (f.stiffness * context_.dt)) * u_T;
       const V3<T> F = -f.stiffness * cone.nearest(middle);
+      if constexpr (std::is_same_v<T, double>) friction_C_ = friction_spring(f, middle, F);
       w.force = w.force + F;
       w.moment_a = w.moment_a + cross(c_ - r_a_, F);
       w.moment_b = w.moment_b - cross(c_ - r_b_, F);
@@ -254,6 +272,18 @@ class Evaluation {
     report->work.stored += stored;
     report->work.dissipated += dissipated;
     report->after.normal = n;
+  }
+
+  /// k_T (½ + c_T/(k_T Δt)) in the tangent plane; sliding, less of it, and none along the force.
+  [[nodiscard]] Mat3 friction_spring(const FrictionLaw& f, const V3<T>& middle,
+                                     const V3<T>& F) const {
+    const Vec3 n = value(n_), s = value(middle);
+    const double k = f.stiffness * (0.5 + f.damping / (f.stiffness * context_.dt));
+    Mat3 C = Mat3::Identity() - n * n.transpose();
+    const double length = s.norm(), part = value(F).norm() / std::max(f.stiffness * length, 1e-300);
+    if (!(part < 1.0 - 1e-12)) return k * C;
+    C -= s * s.transpose() / (length * length);
+    return (k * part) * C;
   }
 
   static void bristle_work(double k, const Vec3& F, const Vec3& u, const Vec3& before,
@@ -312,6 +342,8 @@ class Evaluation {
   Placement<T> e_a_, e_b_;       ///< At t_{n+1}.
   Motion<T> move_a_, move_b_;
   T change_{}, lambda_{};
+  double stiffness_ = 0.0;
+  Mat3 friction_C_ = Mat3::Zero();
   V3<T> c_, n_, u_, N_, point_N_, r_a_, r_b_, couple_;
 };
 
@@ -353,6 +385,25 @@ void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
   put(w.moment_a, 3, terms.D_aa, terms.D_ab);
   put(-w.force, 0, terms.D_ba, terms.D_bb);
   put(w.moment_b, 3, terms.D_ba, terms.D_bb);
+}
+
+PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep& b,
+                       const StepContext& context) {
+  Evaluation<double> evaluation(data, a, b, context);
+  return evaluation.spring(evaluation.run(nullptr));
+}
+
+double normal_stiffness(const PointData& data, double gap_n, double gap_n1, double dt) {
+  NormalLaw::WithSlope quotient = data.normal.quotient_and_slope(gap_n, gap_n1);
+  if (data.rate_damping > 0.0) {
+    const double factor = 1.0 - data.rate_damping / dt * (gap_n1 - gap_n);
+    if (factor <= 0.0) return 0.0;
+    quotient.slope = factor * quotient.slope - data.rate_damping / dt * quotient.value;
+  }
+  double k = -quotient.slope;
+  if (data.history.plastic && data.pair.weight > 0.0)
+    k = (1.0 - kPlasticShare) * k - kPlasticShare * data.normal.force_and_slope(gap_n1).slope;
+  return data.pair.weight * k;
 }
 
 double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b) {

@@ -75,6 +75,22 @@ inline constexpr double kPlasticShare = 0.5;
 void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
                  const StepContext& context, PairTerms& terms, PointReport* report = nullptr);
 
+/// What a contact point does, for solvers that take contacts as forces and springs at points.
+struct PointForce {
+  Vec3 force = Vec3::Zero();                              ///< On a, at t_{n+αf} [N].
+  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< About the centres of mass [N m].
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();        ///< From there to the point [m].
+  Mat3 C = Mat3::Zero();  ///< Symmetric stiffness between the points of a and b there [N/m].
+};
+
+/// The point's force, the same as that of add_contact(), and the spring that its tangent is like.
+[[nodiscard]] PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep& b,
+                                     const StepContext& context);
+
+/// −dλ/dg_{n+1} of a point: its law with damper and plastic share, weights included [N/m].
+[[nodiscard]] double normal_stiffness(const PointData& data, double gap_n, double gap_n1,
+                                      double dt);
+
 /// Gap at the start and at the end of the step, without derivatives.
 [[nodiscard]] double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b);
 [[nodiscard]] double gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b);

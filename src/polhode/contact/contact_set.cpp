@@ -6,6 +6,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/plain_point.hpp>
 
 namespace polhode::contact {
 
@@ -136,6 +137,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
     f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * length * length);
   p.restitution = law.damped ? 1.0 : law.restitution;
   p.sensor = law.sensor;
+  p.law_dt = dt;
   p.least_gap =
       plane || law.potential == NormalPotential::barrier ? d.normal.floor() : -0.9 * rounding;
 }
@@ -145,16 +147,17 @@ void ContactSet::complete_law(Point& p, double dt) const {
 void ContactSet::open_or_close(Point& p, std::span<const BodyStep> steps,
                                const StepContext& context) const {
   PointHistory& h = p.data.history;
-  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-  const Gap<double> g =
-      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
-          Placement<double>(b.r_n, b.Lambda_n, 6));
-  p.gap_n = g.distance;
+  p.plain = is_plain(p.data) && context.ga.alpha_f == 0.5;
   p.active = false;
   if (h.closed) {
     p.gap_n = h.gap;
     return;
   }
+  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+  const Gap<double> g =
+      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
+          Placement<double>(b.r_n, b.Lambda_n, 6));
+  p.gap_n = g.distance;
   const Vec3 c = value(g.point), n = value(g.normal);
   const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
   const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
@@ -194,7 +197,7 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
     find_candidates(context.dt);
   }
   for (Point& p : points_) {
-    complete_law(p, context.dt);
+    if (p.law_dt != context.dt) complete_law(p, context.dt);
     open_or_close(p, steps, context);
   }
   tightest_ = -1;
@@ -206,6 +209,7 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
 void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& context,
                           std::span<PairTerms> terms) {
   for (PairTerms& t : terms) context.tangents ? t.set_sums_zero() : t.set_values_zero();
+  pointwise_ = false;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
@@ -231,6 +235,39 @@ void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& co
   }
 }
 
+double ContactSet::gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const {
+  return p.plain && pointwise_ ? plain_gap_n1(p.data, a, b) : gap_n1(p.data, a, b);
+}
+
+void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
+                                    std::span<Vec6> wrenches, std::vector<ContactSpring>& springs) {
+  springs.clear();
+  pointwise_ = true;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
+    if (p.sensor) continue;
+    const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    const double reach = p.data.normal.reach();
+    const double gap_1 = gap_at_end(p, a, b);
+    p.active = p.gap_n < reach || gap_1 < reach;
+    if (!p.active) continue;
+    if (const double room = gap_1 - p.least_gap; room < least) least = room, tightest_ = i;
+    const PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
+                                 : point_force(p.data, a, b, context);
+    ContactSpring s{shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C};
+    if (s.a != kGround) {
+      wrenches[s.a].head<3>() += f.force;
+      wrenches[s.a].tail<3>() += f.moment_a;
+    }
+    if (s.b != kGround) {
+      wrenches[s.b].head<3>() -= f.force;
+      wrenches[s.b].tail<3>() += f.moment_b;
+    }
+    springs.push_back(s);
+  }
+}
+
 Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {
   Work work;
   StepContext values = context;
@@ -239,7 +276,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
   unused.set_zero();
   for (Point& p : points_) {
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    const double gap_1 = gap_n1(p.data, a, b);
+    const double gap_1 = gap_at_end(p, a, b);
     const double reach = p.data.normal.reach();
     p.active = p.gap_n < reach || gap_1 < reach;
     PointHistory& h = p.data.history;
@@ -252,7 +289,10 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       h.closed = false;
       continue;
     }
-    add_contact(p.data, a, b, values, unused, &p.report);
+    if (p.plain && pointwise_)
+      (void)plain_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
+    else
+      add_contact(p.data, a, b, values, unused, &p.report);
     const PointReport& r = p.report;
     if (!p.sensor) {
       work.stored += r.work.stored;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/assembly/contact_springs.hpp>
 #include <polhode/assembly/moving_contacts.hpp>
 #include <polhode/assembly/system.hpp>
 #include <polhode/contact/broad_phase.hpp>
@@ -65,7 +66,7 @@ struct ShapePairReport {
 ///
 /// Candidates are found when a body has moved by more than its margin since they were found last;
 /// they are sorted, so that sums do not depend on how they were found.
-class ContactSet final : public MovingContacts {
+class ContactSet final : public MovingContacts, public PointwiseContacts {
  public:
   /// @returns the shape's number.
   int add_shape(PlacedShape shape);
@@ -95,6 +96,8 @@ class ContactSet final : public MovingContacts {
              std::span<const Vec6> increments) override;
   void evaluate(std::span<const BodyStep> steps, const StepContext& context,
                 std::span<PairTerms> terms) override;
+  void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
+                          std::span<Vec6> wrenches, std::vector<ContactSpring>& springs) override;
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
@@ -111,6 +114,8 @@ class ContactSet final : public MovingContacts {
     double restitution = 0.0;
     double least_gap = 0.0;  ///< No step may go below [m].
     bool sensor = false;
+    bool plain = false;   ///< Closed forms hold.
+    double law_dt = 0.0;  ///< Step the constants of the law were chosen for [s].
     double gap_n = 0.0;
     PointReport report;  ///< Of the last accepted step.
     bool active = false;
@@ -125,6 +130,11 @@ class ContactSet final : public MovingContacts {
     double margin = -1.0;
   };
 
+  struct ImpactRow;
+  [[nodiscard]] static std::vector<std::vector<int>> islands(std::span<const ImpactRow> rows,
+                                                             int bodies);
+  void settle_in_turn(std::span<const ImpactRow> rows, const std::vector<int>& island,
+                      std::map<int, BodyMotion>& motions, VelocityJump& jump);
   void load(const State& state);
   void save(State& state) const;
   [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
@@ -132,6 +142,7 @@ class ContactSet final : public MovingContacts {
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
   void complete_law(Point& p, double dt) const;
+  [[nodiscard]] double gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
   void open_or_close(Point& p, std::span<const BodyStep> steps, const StepContext& context) const;
   [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
   [[nodiscard]] const Reference& reference_of(int shape, const Reference& ground) const {
@@ -162,6 +173,7 @@ class ContactSet final : public MovingContacts {
   std::vector<Bounds> bounds_;
   std::vector<std::pair<int, int>> near_;
   int tightest_ = -1;
+  bool pointwise_ = false;  ///< Who evaluates: closed forms differ in the last bit.
 };
 
 }  // namespace polhode::contact

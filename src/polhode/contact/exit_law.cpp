@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
@@ -9,20 +10,26 @@
 
 namespace polhode::contact {
 
-namespace {
-
-/// Eigenvalues of J M⁻¹ Jᵀ below this part of the largest count as zero.
-constexpr double kPseudoInverse = 1e-9;
-
 /// One velocity that impacts change: w_b − w_a along a row, and what it shall be.
-struct ImpactRow {
+struct ContactSet::ImpactRow {
   VelocityRow row;
   double before = 0.0, wanted = 0.0;
   int point = -1;  ///< −1: a row of a joint.
 };
 
+namespace {
+
+/// Eigenvalues of J M⁻¹ Jᵀ below this part of the largest count as zero.
+constexpr double kPseudoInverse = 1e-9;
+
+/// An island with more contacts than this and no joints is settled one contact after the other.
+constexpr int kTogether = 48;
+constexpr int kSweeps = 10;
+
+}  // namespace
+
 /// Groups of rows that share moving bodies, each in the order of the rows.
-std::vector<std::vector<int>> islands(const std::vector<ImpactRow>& rows, int bodies) {
+std::vector<std::vector<int>> ContactSet::islands(std::span<const ImpactRow> rows, int bodies) {
   std::vector<int> root(static_cast<std::size_t>(bodies));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int i) {
@@ -46,7 +53,73 @@ std::vector<std::vector<int>> islands(const std::vector<ImpactRow>& rows, int bo
   return result;
 }
 
-}  // namespace
+/// Each impulse takes energy, in whatever order.
+void ContactSet::settle_in_turn(std::span<const ImpactRow> rows, const std::vector<int>& island,
+                                std::map<int, BodyMotion>& motions, VelocityJump& jump) {
+  struct Side {
+    BodyMotion* motion;
+    Mat3 inverse_inertia;
+    double mass;
+  };
+  std::map<int, Side> sides;
+  for (int k : island)
+    for (int body : {rows[k].row.a, rows[k].row.b}) {
+      if (body == kGround || sides.contains(body)) continue;
+      const BodyData& data = system_->bodies()[body];
+      BodyMotion& m = motions.at(body);
+      const Mat3 Lambda = m.Lambda();
+      sides[body] = {&m, Lambda * data.inertia.inverse() * Lambda.transpose(), data.mass};
+    }
+  struct Row {
+    Side *a, *b;
+    Vec6 G_a, G_b;
+    double wanted, per_impulse;
+    int point;
+  };
+  std::vector<Row> list;
+  for (int k : island) {
+    const ImpactRow& r = rows[k];
+    Row row{r.row.a == kGround ? nullptr : &sides.at(r.row.a),
+            r.row.b == kGround ? nullptr : &sides.at(r.row.b),
+            r.row.G_a,
+            r.row.G_b,
+            r.wanted,
+            0.0,
+            r.point};
+    const auto add = [&](const Side* s, const Vec6& G) {
+      if (s)
+        row.per_impulse +=
+            G.head<3>().squaredNorm() / s->mass + G.tail<3>().dot(s->inverse_inertia * G.tail<3>());
+    };
+    add(row.a, row.G_a);
+    add(row.b, row.G_b);
+    list.push_back(row);
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (const Row& row : list) {
+      double speed = 0.0;
+      const auto read = [&](const Side* s, const Vec6& G) {
+        if (s) speed += G.head<3>().dot(s->motion->v) + G.tail<3>().dot(s->motion->omega());
+      };
+      read(row.a, row.G_a);
+      read(row.b, row.G_b);
+      if (!(speed > row.wanted)) continue;
+      const double p = (row.wanted - speed) / row.per_impulse;
+      const auto push = [&](Side* s, const Vec6& G) {
+        if (!s) return;
+        const Vec3 impulse = p * G.head<3>();
+        s->motion->v += impulse / s->mass;
+        s->motion->W += s->motion->Lambda().transpose() * (s->inverse_inertia * (p * G.tail<3>()));
+        jump.impulse += impulse;
+        jump.turning += s->motion->r.cross(impulse) + p * G.tail<3>();
+      };
+      push(row.a, row.G_a);
+      push(row.b, row.G_b);
+      const double lost = -0.5 * p * (row.wanted + speed);
+      jump.energy_lost += lost;
+      points_[row.point].impact_loss += lost;
+    }
+}
 
 /// Contacts that opened in the step keep the part e of the speed they had at the surface; those
 /// that do not rebound lose the speed with which midpoint kinematics would throw them back. All
@@ -108,6 +181,13 @@ VelocityJump ContactSet::settle_impacts(State& state, std::span<const VelocityRo
     return at->second;
   };
   for (const std::vector<int>& island : islands(rows, system_->body_count())) {
+    if (island.size() > kTogether && joint_rows.empty()) {
+      for (int k : island)
+        for (int body : {rows[k].row.a, rows[k].row.b})
+          if (body != kGround) (void)motion(body);
+      settle_in_turn(rows, island, motions, jump);
+      continue;
+    }
     // Bodies of the island and their rows.
     std::map<int, int> place;
     for (int k : island)

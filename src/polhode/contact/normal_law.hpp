@@ -41,12 +41,14 @@ struct NormalLaw {
   template <class T>
   [[nodiscard]] T quotient(double gap_0, const T& gap_1) const;  ///< λ [N]
 
- private:
+  /// With the derivative by the gap at the end of the step [N/m].
   struct WithSlope {
     double value, slope;
   };
   [[nodiscard]] WithSlope force_and_slope(double gap) const;
   [[nodiscard]] WithSlope quotient_and_slope(double gap_0, double gap_1) const;
+
+ private:
   [[nodiscard]] static double chained(double, const WithSlope& f) { return f.value; }
   [[nodiscard]] static Dual chained(const Dual& x, const WithSlope& f) {
     return x.chained(f.value, f.slope);

@@ -133,7 +133,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       continue;
     }
     if (e > kDiverged) return fail("diverges"), report;
-    slow = last > 0.0 && !close && !engine.may_grow() && e > 0.9 * last && e > options.tolerance ? slow + 1 : 0;
+    slow = last > 0.0 && !close && !engine.may_grow() && e > 0.9 * last && e > options.tolerance
+               ? slow + 1
+               : 0;
     if (slow >= 2) return fail("contracts too slowly"), report;
 
     polished = close;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <polhode/assembly/interaction.hpp>
+
+namespace polhode {
+
+/// How the force at a point that a and b share changes as they move: as if by a spring C between
+/// the points of both bodies there. What else the tangent has is left out, so that the matrix is
+/// symmetric and has no negative eigenvalue.
+struct ContactSpring {
+  int a = kGround, b = kGround;
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass, world [m].
+  Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
+};
+
+/// Contacts seen by iterative solvers of crowds: forces by body and springs by point.
+class PointwiseContacts {
+ public:
+  virtual ~PointwiseContacts() = default;
+  /// Adds the wrenches to those of the bodies, and replaces the springs.
+  virtual void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
+                                  std::span<Vec6> wrenches,
+                                  std::vector<ContactSpring>& springs) = 0;
+};
+
+}  // namespace polhode

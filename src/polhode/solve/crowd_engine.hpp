@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <polhode/assembly/contact_springs.hpp>
+#include <polhode/assembly/moving_contacts.hpp>
+#include <polhode/solve/block_cg.hpp>
+#include <polhode/solve/newton_system.hpp>
+
+namespace polhode {
+
+/// Newton iterations of a crowd: many bodies without joints that only contacts couple. Conjugate
+/// gradients instead of a factorisation; the tangent is the symmetric positive part of the true
+/// one, so Newton contracts by a factor. A step is solved when the residual of every body is below
+/// a part of its weight.
+class CrowdEngine final : public NewtonEngine {
+ public:
+  /// Residual that counts as solved, as part of a body's weight. With friction or restitution below
+  /// one it only shifts when energy is lost; with neither it is what energy is lost or gained by.
+  static constexpr double kResidual = 1e-6;
+
+  /// @throws InputError if the system has no contacts, or has joints or forces between bodies.
+  explicit CrowdEngine(const System& system, double residual = kResidual);
+  [[nodiscard]] std::string name() const override { return "crowd: conjugate gradients"; }
+  void begin_step(const State& state, Trial& trial) override;
+  Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
+  [[nodiscard]] ConstraintCheck check(const State&, Trial&) override { return {}; }
+  [[nodiscard]] int worst_body() const override { return worst_body_; }
+  [[nodiscard]] std::string worst_other() const override { return contacts_->tightest(); }
+  [[nodiscard]] bool may_grow() const override { return true; }
+  void add_ground_wrench(double* force, double* moment) const override;
+  void end_step(const State& state, Trial& trial) override;
+  [[nodiscard]] double stored(const State& state) const override;
+  Work commit(State& state, const Trial& trial) override;
+  VelocityJump settle_impacts(State& state, const Trial& trial) override;
+
+  /// Iterations of conjugate gradients so far.
+  [[nodiscard]] long inner_iterations() const { return inner_; }
+
+  /// Whether a system's bodies are coupled by contacts alone.
+  [[nodiscard]] static bool suits(const System& system);
+
+ private:
+  void take_steps(const State& state, const Trial& trial, bool all);
+  void evaluate(const State& state, const Trial& trial);
+
+  const System* system_;
+  MovingContacts* contacts_;
+  PointwiseContacts* pointwise_;
+  InteractionSweep loads_;
+  double tolerance_;
+  BlockCg cg_;
+  std::vector<BodyStep> steps_;  ///< By body, the ground last.
+  std::vector<BodyMotion> at_n_;
+  std::vector<Mat6> blocks_;
+  std::vector<Vec6> wrenches_, rhs_, x_, increments_;
+  std::vector<ContactSpring> springs_;
+  double merit_ = 0.0, residual_ = 0.0;
+  bool evaluated_ = false, touches_ = false;
+  int worst_body_ = -1, searches_ = 0;
+  long inner_ = 0;
+};
+
+}  // namespace polhode
