@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <polhode/so3/hat.hpp>
+#include <polhode/solve/block_cg.hpp>
+
+#include "random_kkt.hpp"
+
+namespace polhode {
+namespace {
+
+using test::Numbers;
+
+/// Bodies that push each other and the ground at points.
+struct Crowd {
+  std::vector<Mat6> blocks;
+  std::vector<ContactSpring> springs;
+};
+
+Crowd crowd(int bodies, double stiffness, unsigned seed) {
+  Crowd c;
+  Numbers number(seed);
+  const auto vector = [&] {
+    Vec3 x;
+    for (int i = 0; i < 3; ++i) x[i] = number();
+    return x;
+  };
+  c.blocks.assign(static_cast<std::size_t>(bodies), Mat6::Identity());
+  const auto push = [&](int a, int b) {
+    const Vec3 n = vector().normalized();
+    c.springs.push_back(
+        {a, b, vector(), vector(), stiffness * (n * n.transpose() + 0.3 * Mat3::Identity())});
+  };
+  for (int b = 0; b < bodies; ++b) {
+    push(b, kGround);
+    if (b > 0) push(b - 1, b);
+    if (b > 4) push(b, b - 5);
+  }
+  return c;
+}
+
+/// The matrix that BlockCg never writes down.
+Eigen::MatrixXd assembled(const Crowd& c) {
+  const auto n = 6 * static_cast<Eigen::Index>(c.blocks.size());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    A.block<6, 6>(6 * static_cast<Eigen::Index>(b), 6 * static_cast<Eigen::Index>(b)) = c.blocks[b];
+  for (const ContactSpring& s : c.springs) {
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(3, n);  // displacement of a's point from b's
+    if (s.a != kGround) P.middleCols<6>(6 * s.a) << Mat3::Identity(), -hat(s.arm_a);
+    if (s.b != kGround) P.middleCols<6>(6 * s.b) << -Mat3::Identity(), hat(s.arm_b);
+    A += P.transpose() * s.C * P;
+  }
+  return A;
+}
+
+std::vector<Vec6> numbers(int bodies, unsigned seed) {
+  Numbers number(seed);
+  std::vector<Vec6> x(static_cast<std::size_t>(bodies));
+  for (Vec6& v : x)
+    for (int i = 0; i < 6; ++i) v[i] = number();
+  return x;
+}
+
+Vec flat(const std::vector<Vec6>& x) {
+  return Eigen::Map<const Vec>(x.data()->data(), 6 * static_cast<Eigen::Index>(x.size()));
+}
+
+TEST(BlockCg, AgreesWithADirectSolver) {
+  for (const double stiffness : {0.0, 1.0, 100.0}) {
+    const Crowd c = crowd(40, stiffness, 3);
+    BlockCg cg;
+    ASSERT_TRUE(cg.set(c.blocks, c.springs));
+    const std::vector<Vec6> rhs = numbers(40, 5);
+    std::vector<Vec6> x;
+    cg.solve(rhs, x, 1e-26, 2000);
+    const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
+    EXPECT_LT((flat(x) - reference).norm(), 1e-10 * reference.norm()) << stiffness;
+  }
+}
+
+TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
+  const Crowd c = crowd(60, 50.0, 9);
+  BlockCg cg;
+  ASSERT_TRUE(cg.set(c.blocks, c.springs));
+  const std::vector<Vec6> rhs = numbers(60, 6);
+  const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
+  int before = 0;
+  double error = 1e30;
+  for (const double part : {1e-2, 1e-6, 1e-12}) {
+    std::vector<Vec6> x;
+    const int iterations = cg.solve(rhs, x, part, 2000);
+    EXPECT_GT(iterations, before);
+    const double now = (flat(x) - reference).norm();
+    EXPECT_LT(now, error);
+    before = iterations;
+    error = now;
+  }
+}
+
+TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
+  Crowd c = crowd(7, 0.0, 1);
+  c.springs.clear();
+  c.blocks[3] *= 5.0;
+  BlockCg cg;
+  ASSERT_TRUE(cg.set(c.blocks, c.springs));
+  const std::vector<Vec6> rhs = numbers(7, 2);
+  std::vector<Vec6> x;
+  EXPECT_EQ(cg.solve(rhs, x, 1e-24, 100), 1);
+  EXPECT_LT((x[3] - rhs[3] / 5.0).norm(), 1e-15);
+}
+
+TEST(BlockCg, RefusesABlockThatIsNotPositive) {
+  Crowd c = crowd(3, 1.0, 4);
+  c.blocks[1] -= 50.0 * Mat6::Identity();
+  BlockCg cg;
+  EXPECT_FALSE(cg.set(c.blocks, c.springs));
+}
+
+}  // namespace
+}  // namespace polhode
