@@ -418,4 +418,5 @@ def main():
         save(hero(), ROOT / "docs/images/hero.png", 105, None)
 
 
-main()
+if __name__ == "__main__":
+    main()

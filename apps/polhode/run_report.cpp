@@ -55,6 +55,7 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
       {"instruction_set", s.instruction_set},
       {"version", s.version.empty() ? POLHODE_VERSION : s.version},
       {"narration", s.narration},
+      {"warnings", s.warnings},
       {"results", folder},
       {"frames", frames},
   };

@@ -323,6 +323,50 @@ output:
   EXPECT_EQ(rest.code, 4) << rest.err;
 }
 
+/// A cube of one metre on the ground whose top is pressed, E = 1 Pa, in one step of nearly statics.
+std::string pressed_cube(const std::string& material, double pressure) {
+  return R"(format: 1
+materials:
+  foam: {type: )" +
+         material + R"(, youngs_modulus: 1, poisson_ratio: 0, density: 1}
+solids:
+  cube:
+    mesh: {block: {size: [1, 1, 1], cells: [2, 2, 2]}}
+    element: hex8
+    material: foam
+    bonded: {ground: zmin}
+loads:
+  press: {type: traction, solid: cube, surface: zmax, traction: [0, 0, )" +
+         std::to_string(-pressure) + R"(]}
+analysis: {duration: 50 s, step: 25 s, min_step: 25 s, rho_inf: 0}
+output:
+  probes:
+    top: {solid: cube, point: [0, 0, 0.5]}
+)";
+}
+
+// A material that gives way: no step carries so much.
+TEST_F(CommandLine, EndsWith4NamesTheElementAndKeepsTheLastStateOfASolidThatCollapses) {
+  write("cube.yaml", pressed_cube("elastic", 1.5));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_EQ(value(result.out, "end"), "\"not_converged\"");
+  EXPECT_THAT(result.err, testing::ContainsRegex("element [0-7] of 'solids.cube'"));
+  EXPECT_TRUE(exists("cube.results/checkpoint.pst"));
+  EXPECT_TRUE(exists("cube.results/results.h5"));
+  EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n0,0,0,0.5"));
+}
+
+TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
+  write("cube.yaml", pressed_cube("neo_hookean", 0.6));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("warning: solids.cube: element"), HasSubstr("0.7")));
+  EXPECT_THAT(value(result.out, "warnings"), HasSubstr("["));
+  write("cube.yaml", pressed_cube("neo_hookean", 0.1));
+  EXPECT_THAT(run({"run", "cube.yaml"}).err, testing::Not(HasSubstr("warning")));
+}
+
 TEST_F(CommandLine, RefusesAnInstructionSetThatIsNone) {
   const auto result = run({"run", "model.yaml", "--isa", "avx1024"});
   EXPECT_EQ(result.code, 2);

@@ -146,6 +146,7 @@ int run(const Options& options) {
 
   const int code = exit_code(summary, limit_reached);
   if (code == kNotConverged) say(summary.message);
+  for (const std::string& warning : summary.warnings) say("warning: " + warning);
   if (code == kInterrupted || code == kLimit)
     say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {} --restart {}", summary.t,
                code == kLimit ? " at the wall-time limit" : "", options.model.file, checkpoint));

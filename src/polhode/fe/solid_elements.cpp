@@ -122,6 +122,18 @@ class SolidGroup final : public SolidElements {
     return kernels_.kinds[kind_.kernel].advance(data_, s, du);
   }
 
+  std::size_t unknowns_size() const override {
+    return static_cast<std::size_t>(reference_.blocks) * kernels_.width * moved_packs();
+  }
+  void get_unknowns(const double* scratch, double* unknowns) const override {
+    const std::size_t n = moved_packs() * kernels_.width, all = sizes_.scratch() * kernels_.width;
+    for (int b = 0; b < reference_.blocks; ++b) std::copy_n(scratch + b * all, n, unknowns + b * n);
+  }
+  void set_unknowns(const double* unknowns, double* scratch) const override {
+    const std::size_t n = moved_packs() * kernels_.width, all = sizes_.scratch() * kernels_.width;
+    for (int b = 0; b < reference_.blocks; ++b) std::copy_n(unknowns + b * n, n, scratch + b * all);
+  }
+
   void commit(const NodeStep& step, double* history, const double* scratch) const override {
     const int n = sizes_.modes(), W = kernels_.width;
     if (sizes_.history() == 0) return;
@@ -175,6 +187,11 @@ class SolidGroup final : public SolidElements {
   }
 
  private:
+  /// Packs of a block's scratch that stand first and that advance() moves: enhanced modes, or the
+  /// pressures of mean dilatation.
+  [[nodiscard]] std::size_t moved_packs() const {
+    return static_cast<std::size_t>(sizes_.mean_dilatation ? 2 : sizes_.modes());
+  }
   [[nodiscard]] const double* history_of(const double* history, int lane) const {
     return history +
            static_cast<std::size_t>(std::min(lane, reference_.elements - 1)) * sizes_.history();

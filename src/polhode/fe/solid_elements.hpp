@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <polhode/assembly/element_group.hpp>
+#include <polhode/assembly/internal_unknowns.hpp>
 #include <polhode/fe/elements/registry.hpp>
 #include <polhode/fe/materials/material.hpp>
 
@@ -35,7 +36,7 @@ struct LeastStretch {
 /// A group of solid elements. `scratch` must be zero when it is first used, and a first evaluation
 /// with tangents must come before one without: elements with enhanced strains condense by it.
 /// work() over a step needs the history of t_n: call it before commit().
-class SolidElements : public ElementGroup {
+class SolidElements : public ElementGroup, public InternalUnknowns {
  public:
   [[nodiscard]] virtual const ElementKind& element() const = 0;
   [[nodiscard]] virtual const Material& material() const = 0;

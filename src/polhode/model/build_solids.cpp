@@ -66,7 +66,7 @@ class SolidBuilder {
       if (spec.fibre) d.fibres = {solid_.mesh.orientation.normalized() * spec.fibre->direction};
       groups_.push_back(make_solid_elements(std::move(d)));
       for (const std::string& warning : groups_.back()->warnings())
-        map_.plan.warnings.push_back(format("solids.{}: {}", solid_.name, warning));
+        map_.plan.warnings.push_back(warning);
     }
   }
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <map>
 
 #include <polhode/assembly/state_archive.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/body/point_motion.hpp>
+#include <polhode/fe/solid_elements.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/method.hpp>
@@ -52,6 +54,7 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
+  std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
 
   explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
     method = choose_method(system, model.analysis);
@@ -141,6 +144,32 @@ struct Simulation::Impl {
                        "assembly_tolerance");
   }
 
+  /// Elements that are compressed more than their kind stands: the worst of each group is kept.
+  void watch_stretches() {
+    StepContext still;
+    still.t_n = state.t;
+    const Nodes& nodes = system.nodes();
+    for (int g = 0; g < nodes.group_count(); ++g) {
+      const auto* solid = dynamic_cast<const SolidElements*>(&nodes.group(g));
+      if (!solid || solid->element().least_stretch == 0.0) continue;
+      const LeastStretch now = solid->least_stretch(
+          node_instant(state, still), state.element_history.data() + nodes.first_history(g));
+      LeastStretch& least = least_stretches[g];
+      if (now.value < least.value) least = now;
+    }
+  }
+
+  /// What watch_stretches() has seen.
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    std::vector<std::string> list;
+    for (const auto& [g, least] : least_stretches) {
+      const auto& solid = dynamic_cast<const SolidElements&>(system.nodes().group(g));
+      const std::string text = solid.stretch_warning(least);
+      if (!text.empty()) list.push_back(text);
+    }
+    return list;
+  }
+
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
     if (statics) {
@@ -203,6 +232,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   const auto look = [&] {
     const double t0 = wall_clock();
     s.at_instant();  // the velocity residual is part of the figures
+    s.watch_stretches();
     if (observe) observe(*this);
     s.output_seconds += wall_clock() - t0;
   };
@@ -221,6 +251,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
     if (!report.accepted) {
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
+      s.watch_stretches();
       break;
     }
     if (on_step) on_step(*this);
@@ -259,6 +290,7 @@ RunSummary Simulation::summary() const {
   r.version = POLHODE_VERSION;
   r.order = s.method.control.order;
   r.narration = s.narration;
+  r.warnings = s.warnings();
   if (s.statics) {
     r.statics = s.statics->report();
     r.strain_energy = s.statics->strain_energy(s.state);

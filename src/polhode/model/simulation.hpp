@@ -50,6 +50,7 @@ struct RunSummary {
   std::optional<StaticReport> statics;  ///< Of a static analysis; t is the load factor then.
   double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
   std::string narration;                ///< What was chosen and why, a few lines.
+  std::vector<std::string> warnings;    ///< What was seen at output times and deserves a look.
 };
 
 /// A compiled model with its state and method: what steps, runs and is looked at.

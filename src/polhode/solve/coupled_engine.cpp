@@ -17,6 +17,10 @@ constexpr int kFactorAlways = 3000;
 constexpr double kWorstContraction = 0.5;
 constexpr int kPatience = 8;
 constexpr double kStepChange = 0.2;
+/// An iterate that turns elements inside out is gone back from this often, half the way each time.
+constexpr int kHalvings = 8;
+/// Increments below this do not turn an element inside out: no iterate is kept to go back to.
+constexpr double kHarmless = 1e-3;
 
 }  // namespace
 
@@ -35,6 +39,7 @@ CoupledEngine::CoupledEngine(const System& system, const std::string& solver, Mo
 void CoupledEngine::begin_step(const State&, Trial&) {
   step_iterations_ = 0;
   last_increment_ = contraction_ = 0.0;
+  before_.forget();
 }
 
 bool CoupledEngine::must_factor(const Trial& trial, bool refactor) const {
@@ -50,7 +55,11 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   const System& system = newton_.system();
   Iteration done;
   const bool factor = must_factor(trial, refactor);
-  const ElementReport elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
+  ElementReport elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
+  for (int i = 0; i < kHalvings && before_.kept() && !(elements.least_volume > 0.0); ++i) {
+    retreat(state, trial);
+    elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
+  }
   if (!(elements.least_volume > 0.0)) {
     done.reason = format("{} is turned inside out (det F = {:.2g})",
                          system.nodes().element_name(nodes_.worst_group(), elements.worst_element),
@@ -85,6 +94,11 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   }
   condensation_.expand(x_.data(), du_);
   done.solved = true;
+  if (last_increment_ == 0.0 || last_increment_ > kHarmless)
+    before_.keep(system, trial);
+  else
+    before_.forget();
+  part_ = damping;
   move(state, trial, damping, done);
   move_nodes(state, trial, damping, done);
   if (!std::isfinite(done.increment)) done.solved = false;
@@ -101,27 +115,51 @@ void CoupledEngine::move(const State& state, Trial& trial, double damping, Itera
 }
 
 void CoupledEngine::move_nodes(const State& state, Trial& trial, double damping, Iteration& done) {
-  const System& system = newton_.system();
-  const Nodes& nodes = system.nodes();
+  const Nodes& nodes = newton_.system().nodes();
   for (double& d : du_) d *= damping;
   const double per_size = 1.0 / (damping * nodes.element_size());
   for (int i = 0; i < nodes.count(); ++i) {
     if (nodes.bonded(i)) continue;
     for (int c = 0; c < 3; ++c) {
-      const std::size_t k = 3 * static_cast<std::size_t>(i) + c;
-      trial.node_u[k] += du_[k];
-      trial.node_x[k] = state.node_x[k] + trial.node_u[k];
-      const double size = per_size * std::abs(du_[k]);
+      const double size = per_size * std::abs(du_[3 * static_cast<std::size_t>(i) + c]);
       if (!(size <= done.increment)) {
         done.increment = size;
         worst_node_ = i;
       }
     }
   }
-  follow_bodies(system, state, trial);
-  update_node_velocities(system, state, trial);
+  shift_nodes(state, trial);
   const double inside = nodes_.advance(du_.data(), trial, condensation_.turns(trial));
   done.increment = std::max(done.increment, per_size * inside);
+}
+
+/// Moves free nodes by du_, bonded ones with their bodies.
+void CoupledEngine::shift_nodes(const State& state, Trial& trial) const {
+  const System& system = newton_.system();
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i) {
+    if (nodes.bonded(i)) continue;
+    for (std::size_t k = 3 * static_cast<std::size_t>(i), end = k + 3; k < end; ++k) {
+      trial.node_u[k] += du_[k];
+      trial.node_x[k] = state.node_x[k] + trial.node_u[k];
+    }
+  }
+  follow_bodies(system, state, trial);
+  update_node_velocities(system, state, trial);
+}
+
+/// Half the way back to the iterate before.
+void CoupledEngine::retreat(const State& state, Trial& trial) {
+  const System& system = newton_.system();
+  const std::vector<double> inside =
+      part_way(before_.unknowns(), element_unknowns(system, trial), 0.5);
+  before_.restore(system, trial);
+  part_ *= 0.5;
+  for (double& d : du_) d *= 0.5;
+  Iteration again;
+  apply_increments(system, state, trial, x_, part_, again, worst_body_);
+  shift_nodes(state, trial);
+  set_element_unknowns(system, inside, trial);
 }
 
 std::string CoupledEngine::worst_other() const {

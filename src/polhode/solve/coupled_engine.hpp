@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include <polhode/solve/kept_iterate.hpp>
 #include <polhode/solve/newton_system.hpp>
 #include <polhode/solve/node_condensation.hpp>
 
@@ -43,6 +44,8 @@ class CoupledEngine final : public NewtonEngine {
   [[nodiscard]] bool must_factor(const Trial& trial, bool refactor) const;
   void move(const State& state, Trial& trial, double damping, Iteration& done);
   void move_nodes(const State& state, Trial& trial, double damping, Iteration& done);
+  void shift_nodes(const State& state, Trial& trial) const;
+  void retreat(const State& state, Trial& trial);
 
   NodeCondensation condensation_;
   NodeSystem nodes_;
@@ -51,6 +54,8 @@ class CoupledEngine final : public NewtonEngine {
   std::vector<Vec6> shares_;
   std::vector<double> du_;
   Vec x_;
+  KeptIterate before_;  ///< The iterate before, as long as increments are large.
+  double part_ = 1.0;   ///< Of x_ that was applied to it.
   bool reuse_ = false;
   double factored_dt_ = 0.0;
   int step_iterations_ = 0;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/base/format.hpp>
+#include <polhode/solve/kept_iterate.hpp>
 #include <polhode/solve/newton.hpp>
 
 namespace polhode {
@@ -40,8 +41,9 @@ constexpr double kRoundOff = 4.4e-16;
 /// Damping: goes back to the iterate before a step that made things worse, and takes less of it.
 class LineSearch {
  public:
-  LineSearch(bool active, const State& state, Trial& trial, NewtonEngine& engine)
-      : active_(active), state_(state), trial_(trial), engine_(engine) {}
+  LineSearch(bool active, const System& system, const State& state, Trial& trial,
+             NewtonEngine& engine)
+      : active_(active), system_(system), state_(state), trial_(trial), engine_(engine) {}
 
   [[nodiscard]] double damping() const { return damping_; }
 
@@ -50,7 +52,7 @@ class LineSearch {
     kept_ = active_ && last_increment > kLarge;
     if (!kept_) return;
     engine_.end_step(state_, trial_);  // brings the multipliers into the trial
-    iterate_ = trial_;
+    iterate_.keep(system_, trial_);
   }
   /// After an iteration: true if it was undone.
   bool undid(double increment, double last_increment) {
@@ -58,12 +60,7 @@ class LineSearch {
       damping_ = std::min(1.0, 2.0 * damping_);
       return false;
     }
-    std::copy(iterate_.blocks.begin(), iterate_.blocks.end(), trial_.blocks.begin());
-    trial_.lambda = iterate_.lambda;
-    trial_.node_x = iterate_.node_x;
-    trial_.node_u = iterate_.node_u;
-    trial_.node_v = iterate_.node_v;
-    trial_.element_scratch = iterate_.element_scratch;
+    iterate_.restore(system_, trial_);
     engine_.begin_step(state_, trial_);
     damping_ *= 0.5;
     return true;
@@ -71,10 +68,11 @@ class LineSearch {
 
  private:
   bool active_, kept_ = false;
+  const System& system_;
   const State& state_;
   Trial& trial_;
   NewtonEngine& engine_;
-  Trial iterate_;
+  KeptIterate iterate_;
   double damping_ = 1.0;
 };
 
@@ -88,7 +86,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   engine.begin_step(state, trial);
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
 
-  LineSearch search(options.line_search, state, trial, engine);
+  LineSearch search(options.line_search, system, state, trial, engine);
   bool close = false;     // an increment was below the tolerance
   bool polished = false;  // and another iteration followed
   int slow = 0;           // iterations in a row that hardly contracted

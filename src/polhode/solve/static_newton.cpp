@@ -5,6 +5,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
+#include <polhode/solve/kept_iterate.hpp>
 #include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/static_newton.hpp>
 
@@ -333,7 +334,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     return step;
   };
   State before;
-  std::vector<double> scratch_before;
+  std::vector<double> unknowns_before;
   double part = 1.0;
   int halvings = 0;
   for (;;) {
@@ -342,10 +343,12 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
       step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
       if (step.iterations == 0 || ++halvings > kHalvings)
         return fail(format("an element turns inside out (det F = {:.2g})", elements.least_volume));
+      const std::vector<double> inside =
+          part_way(unknowns_before, element_unknowns(*system_, trial_), 0.5);
       work_ = before;
-      trial_.element_scratch = scratch_before;
       part *= 0.5;
       apply(part, step);
+      set_element_unknowns(*system_, inside, trial_);
       continue;
     }
     halvings = 0;
@@ -372,7 +375,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     part = turn > kRotationCap ? kRotationCap / turn : 1.0;
     if (!system_->nodes().empty()) {
       before = work_;
-      scratch_before = trial_.element_scratch;
+      unknowns_before = element_unknowns(*system_, trial_);
     }
     const double e = apply(part, step);
     step.increments.push_back(e);
