@@ -324,7 +324,9 @@ output:
 }
 
 /// A cube of one metre on the ground whose top is pressed, E = 1 Pa, in one step of nearly statics.
-std::string pressed_cube(const std::string& material, double pressure) {
+std::string pressed_cube(
+    const std::string& material, double pressure,
+    const std::string& analysis = "{duration: 50 s, step: 25 s, min_step: 25 s, rho_inf: 0}") {
   return R"(format: 1
 materials:
   foam: {type: )" +
@@ -338,7 +340,8 @@ solids:
 loads:
   press: {type: traction, solid: cube, surface: zmax, traction: [0, 0, )" +
          std::to_string(-pressure) + R"(]}
-analysis: {duration: 50 s, step: 25 s, min_step: 25 s, rho_inf: 0}
+analysis: )" +
+         analysis + R"(
 output:
   probes:
     top: {solid: cube, point: [0, 0, 0.5]}
@@ -355,6 +358,18 @@ TEST_F(CommandLine, EndsWith4NamesTheElementAndKeepsTheLastStateOfASolidThatColl
   EXPECT_TRUE(exists("cube.results/checkpoint.pst"));
   EXPECT_TRUE(exists("cube.results/results.h5"));
   EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n0,0,0,0.5"));
+}
+
+TEST_F(CommandLine, EndsWith4AtTheLastEquilibriumOfASolidThatCollapses) {
+  write("cube.yaml", pressed_cube("elastic", 1.5, "{type: statics}"));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, testing::ContainsRegex("element [0-7] of 'solids.cube'"));
+  const double reached = std::stod(value(result.out, "load_factor"));
+  EXPECT_GT(reached, 0.1);
+  EXPECT_LT(reached, 0.2);  // E/(3 √3) is carried, were the sides guided
+  EXPECT_EQ(value(result.out, "t"), value(result.out, "load_factor"));
+  EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n" + value(result.out, "t") + ","));
 }
 
 TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
