@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/joints/joint.hpp>
+#include <polhode/joints/registry.hpp>
 #include <polhode/solve/contact_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
 #include <polhode/solve/single_step.hpp>
@@ -31,6 +34,7 @@ class Scene {
     data.inertia = inertia.asDiagonal();
     const int body = system.add_body(data, start);
     contacts->add_shape({body, name, shape});
+    starts_.push_back(start);
     return body;
   }
   int add_ball(const std::string& name, double radius, double mass, const BodyMotion& start) {
@@ -42,6 +46,19 @@ class Scene {
     return add(name, contact::box(name, size), mass,
                mass / 12.0 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()), start);
   }
+  /// A joint of two bodies, or of one and the ground, at a place in the world; bodies stand
+  /// upright.
+  void add_joint(const std::string& type, int a, int b, const Vec3& place) {
+    const auto seen_from = [&](int body) {
+      return body == kGround ? place : Vec3(place - starts_.at(body).r);
+    };
+    system.group<Joint>().items.emplace_back(
+        "joint", type, Participants{a, b},
+        joint_kind(type).recipe({.Z_a = seen_from(a), .Z_b = seen_from(b)}, {}));
+    if (a != kGround) contacts->exclude(a, b);
+  }
+  /// Largest |G v| of joints: how fast their two sides part [m/s].
+  [[nodiscard]] double parting() const;
   /// The half space below a plane through the origin, on the ground.
   void add_floor(const Vec3& normal = Vec3::UnitZ()) {
     contact::ShapePlace place;
@@ -83,6 +100,7 @@ class Scene {
       h = std::min(h, left);
       last = single_->take(state, h, options, {1, false});
       iterations += last.iterations;
+      if (watch) watch(h);
       if (last.converged) {
         left -= h;
         continue;
@@ -111,11 +129,41 @@ class Scene {
   [[nodiscard]] double drift() const { return state.ledger.energy_drift; }
   [[nodiscard]] BodyMotion motion(int body) const { return system.motion(state, body); }
   NewtonReport last;
+  std::function<void(double)> watch;  ///< After every attempt at a step of this length.
 
  private:
   double dt_ = 1e-2;
+  std::vector<BodyMotion> starts_;
   std::unique_ptr<SingleStep> single_;
 };
+
+inline double Scene::parting() const {
+  InteractionSweep sweep(system);
+  std::vector<BodyStep> instants;
+  for (int b = 0; b < system.body_count(); ++b) instants.push_back(system.instant(state, b));
+  instants.push_back(BodyStep::ground(1.0));
+  const std::vector<double> lambda(static_cast<std::size_t>(system.rows()), 0.0);
+  double most = 0.0;
+  StepContext context;
+  context.dt = dt_;
+  context.ga.alpha_f = 1.0;
+  sweep.run(instants, context, lambda.data(), state.history.data(),
+            [&](int interaction, const PairStep& step, const PairTerms& t) {
+              const InteractionRef& ref = system.interactions()[interaction];
+              const auto velocity = [](const BodyStep& s) {
+                Vec6 v;
+                v << s.v_n1, s.Lambda_n1 * s.W_n1;
+                return v;
+              };
+              for (int k = 0; k < ref.rows; ++k) {
+                double part = 0.0;
+                if (ref.a != kGround) part += t.G_a.row(k).dot(velocity(step.a));
+                if (ref.b != kGround) part += t.G_b.row(k).dot(velocity(step.b));
+                most = std::max(most, std::abs(part));
+              }
+            });
+  return most;
+}
 
 /// Gap of a barrier that carries a load at rest [m].
 inline double resting_gap(double stiffness, double tolerance, double load) {

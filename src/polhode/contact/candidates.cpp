@@ -61,6 +61,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
     p.data.b = &shapes_[p.b].shape;
     p.key = {(static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b), f.key()};
     p.data.history = {};
+    p.data.history.stiffness = p.data.normal.stiffness;
     points.push_back(p);
   }
 }
@@ -86,6 +87,8 @@ void ContactSet::find_candidates(double dt) {
     return s.body == kGround ? 0.0 : references_[s.body].margin;
   };
   // What has no bounds meets everything.
+  double widest = default_law_.tolerance;
+  for (const auto& [key, law] : laws_) widest = std::max(widest, law.tolerance);
   std::vector<int> bounded, unbounded;
   const Reference ground;
   bounds_.clear();
@@ -94,8 +97,7 @@ void ContactSet::find_candidates(double dt) {
     (s.shape.bounded() ? bounded : unbounded).push_back(i);
     if (!s.shape.bounded()) continue;
     const Reference& step = reference_of(i, ground);
-    const ContactLaw& law = this->law(i, i);
-    const double tolerance = law.tolerance > 0.0 ? law.tolerance : 1e-3 * s.shape.size;
+    const double tolerance = std::max(widest, 1e-3 * s.shape.size);
     bounds_.push_back(bounds_of(s.shape, step.r, step.Lambda, margin(s) + tolerance));
   }
   broad_.find(bounds_, near_);
@@ -108,7 +110,7 @@ void ContactSet::find_candidates(double dt) {
       const Vec3 centre = step.r + step.Lambda * s.bound_centre;
       const Vec3 normal = base.Lambda * plane.axes.col(2);
       const double height = normal.dot(centre - base.r - base.Lambda * plane.centre);
-      if (height < s.bound_radius + margin(shapes_[i]) + 2e-3 * s.size + law(i, u).tolerance ||
+      if (height < s.bound_radius + margin(shapes_[i]) + 2e-3 * s.size + widest ||
           shapes_[u].body != kGround)
         shape_pairs.emplace_back(std::min(i, u), std::max(i, u));
     }
@@ -166,19 +168,24 @@ void ContactSet::find_candidates(double dt) {
 bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const Vec6> increments) {
   bool leaves = false;
-  for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
-    if (reach_of_body_[body] == 0.0) continue;
-    const BodyStep& s = steps[body];
-    const Vec3 dr = increments[body].head<3>(), dtheta = increments[body].tail<3>();
-    const double going = moved(body, s.r_n1, s.Lambda_n1) + dr.norm() +
-                         std::min(2.0, dtheta.norm()) * reach_of_body_[body];
-    if (going < references_[body].margin) continue;
-    leaves = true;
-    references_[body].margin = 1.5 * (moved(body, s.r_n, s.Lambda_n) + going);
-  }
+  const auto ahead = [&](int body) {
+    return increments[body].head<3>().norm() +
+           std::min(2.0, increments[body].tail<3>().norm()) * reach_of_body_[body];
+  };
+  const auto bodies = static_cast<int>(references_.size());
+  for (int body = 0; body < bodies && !leaves; ++body)
+    leaves = reach_of_body_[body] > 0.0 &&
+             !(moved(body, steps[body].r_n1, steps[body].Lambda_n1) + ahead(body) <
+               references_[body].margin);
   if (!leaves) return false;
   const std::vector<Participants> before = pairs_;
   refer(steps, context);
+  // The references are those of t_n now: margins must hold from there, for every body.
+  for (int body = 0; body < bodies; ++body) {
+    const BodyStep& s = steps[body];
+    const double span = moved(body, s.r_n1, s.Lambda_n1) + ahead(body);
+    references_[body].margin = std::max(references_[body].margin, 1.5 * span);
+  }
   find_candidates(context.dt);
   for (Point& p : points_) open_or_close(p, steps, context);
   return !std::equal(

@@ -12,10 +12,6 @@ namespace polhode::contact {
 
 namespace {
 
-/// Numbers of a point in State::contacts, after those of the references.
-constexpr std::size_t kPointNumbers = 23;
-constexpr std::size_t kReferenceNumbers = 13;
-
 void check_law(const ContactLaw& law) {
   const auto refuse = [](const char* what, double value, const char* mend) {
     throw InputError("contacts", format("{} is {}", what, value), mend);
@@ -34,6 +30,18 @@ void check_law(const ContactLaw& law) {
   if (law.damped && law.restitution < 0.05)
     refuse("the restitution of a damped rebound", law.restitution,
            "Give at least 0.05, or leave the rebound to the exit law");
+}
+
+/// c |w_pre| of the damper with which a mass rebounds with e, from
+/// (1 + e) x = ln((1 + x)/(1 − e x)), whatever the exponent of the spring. @eq{contact-damped}
+double damping_number(double e) {
+  if (e >= 1.0) return 0.0;
+  double low = 0.75 * (1.0 - e * e) / (1.0 + e * e * e), high = 1.0 / e;
+  for (int k = 0; k < 60; ++k) {
+    const double x = 0.5 * (low + high);
+    ((1.0 + e) * x > std::log((1.0 + x) / (1.0 - e * x)) ? low : high) = x;
+  }
+  return low;
 }
 
 }  // namespace
@@ -136,6 +144,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   if (f.turning_damping == 0.0)
     f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * length * length);
   p.restitution = law.damped ? 1.0 : law.restitution;
+  p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
   p.sensor = law.sensor;
   p.law_dt = dt;
   p.least_gap =
@@ -167,10 +176,7 @@ void ContactSet::open_or_close(Point& p, std::span<const BodyStep> steps,
   h.plastic = !law.damped &&
               (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
   h.fresh = true;
-  if (law.damped && h.approach < 0.0) {
-    const double e = law.restitution;
-    p.data.rate_damping = (1.0 - e * e) / e / -h.approach;
-  }
+  if (law.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
   if (p.gap_n >= p.data.normal.reach()) return;
   h.closed = true;
   h.gap = p.gap_n;
@@ -235,6 +241,22 @@ void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& co
   }
 }
 
+namespace {
+
+/// A point that opened: what its bristles held is lost.
+void release_bristles(const FrictionLaw& f, PointReport& r) {
+  const double held = 0.5 * f.stiffness * r.after.bristle.squaredNorm() +
+                      0.5 * f.turning_stiffness *
+                          (r.after.rolling.squaredNorm() + r.after.torsion * r.after.torsion);
+  r.work.stored -= held;
+  r.work.dissipated += held;
+  r.after.bristle.setZero();
+  r.after.rolling.setZero();
+  r.after.torsion = 0.0;
+}
+
+}  // namespace
+
 double ContactSet::gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const {
   return p.plain && pointwise_ ? plain_gap_n1(p.data, a, b) : gap_n1(p.data, a, b);
 }
@@ -281,6 +303,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     p.active = p.gap_n < reach || gap_1 < reach;
     PointHistory& h = p.data.history;
     p.impact_loss = 0.0;
+    p.touched = p.active;
     if (!p.active) {
       p.report = {};
       p.report.gap_n = p.gap_n;
@@ -293,6 +316,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       (void)plain_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
     else
       add_contact(p.data, a, b, values, unused, &p.report);
+    if (gap_1 >= reach) release_bristles(p.data.friction, p.report);
     const PointReport& r = p.report;
     if (!p.sensor) {
       work.stored += r.work.stored;
@@ -334,132 +358,6 @@ double ContactSet::stored(const State& state, std::span<const BodyStep> instants
                    p.data.history.torsion * p.data.history.torsion);
   }
   return energy;
-}
-
-void ContactSet::save(State& state) const {
-  std::vector<double>& out = state.contacts;
-  out.clear();
-  const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
-  for (const Reference& r : references_) {
-    put(r.r);
-    put(r.Lambda);
-    out.push_back(r.margin);
-  }
-  for (const Point& p : points_) {
-    const PointHistory& h = p.data.history;
-    if (!h.closed) continue;
-    const FeaturePair& f = p.data.pair;
-    for (const double x :
-         {static_cast<double>(p.a), static_cast<double>(p.b), static_cast<double>(f.kind),
-          static_cast<double>(f.i), static_cast<double>(f.j)})
-      out.push_back(x);
-    put(h.bristle);
-    put(h.normal);
-    put(h.rolling);
-    for (const double x :
-         {h.torsion, h.approach, h.stiffness, h.closed ? 1.0 : 0.0, h.plastic ? 1.0 : 0.0,
-          h.fresh ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, p.data.rate_damping, h.gap})
-      out.push_back(x);
-  }
-  const_cast<ContactSet*>(this)->saved_ = out;
-  const_cast<ContactSet*>(this)->loaded_ = true;
-}
-
-void ContactSet::load(const State& state) {
-  const std::vector<double>& in = state.contacts;
-  points_.clear();
-  pairs_.clear();
-  loaded_ = true;
-  saved_ = in;
-  const std::size_t references = kReferenceNumbers * references_.size();
-  for (Reference& r : references_) r.margin = -1.0;
-  if (in.size() < references) return;
-  for (std::size_t k = 0; k < references_.size(); ++k) {
-    const double* x = in.data() + kReferenceNumbers * k;
-    references_[k].r = Eigen::Map<const Vec3>(x);
-    references_[k].Lambda = Eigen::Map<const Mat3>(x + 3);
-    references_[k].margin = x[12];
-  }
-  // Bare points that carry the histories: find_candidates() hands these on.
-  for (std::size_t at = references; at + kPointNumbers <= in.size(); at += kPointNumbers) {
-    const double* x = in.data() + at;
-    Point p;
-    p.a = static_cast<int>(x[0]);
-    p.b = static_cast<int>(x[1]);
-    p.data.pair = {static_cast<GapKind>(static_cast<int>(x[2])), static_cast<int>(x[3]),
-                   static_cast<int>(x[4])};
-    PointHistory& h = p.data.history;
-    h.bristle = Eigen::Map<const Vec3>(x + 5);
-    h.normal = Eigen::Map<const Vec3>(x + 8);
-    h.rolling = Eigen::Map<const Vec3>(x + 11);
-    h.torsion = x[14];
-    h.approach = x[15];
-    h.stiffness = x[16];
-    h.closed = x[17] != 0.0;
-    h.plastic = x[18] != 0.0;
-    h.fresh = x[19] != 0.0;
-    h.slips = x[20] != 0.0;
-    p.data.rate_damping = x[21];
-    h.gap = x[22];
-    points_.push_back(p);
-  }
-}
-
-std::vector<ShapePairReport> ContactSet::reports() const {
-  std::map<std::pair<int, int>, ShapePairReport> by_pair;
-  for (const Point& p : points_) {
-    const bool turned = p.a > p.b;
-    const std::pair<int, int> key = std::minmax(p.a, p.b);
-    const auto [at, fresh] = by_pair.try_emplace(key);
-    ShapePairReport& r = at->second;
-    if (fresh) {
-      r.a = key.first, r.b = key.second;
-      r.gap = std::numeric_limits<double>::infinity();
-    }
-    r.gap = std::min(r.gap, p.report.gap_n1);
-    if (!p.active) continue;
-    const double sign = turned ? -1.0 : 1.0;
-    r.force += sign * p.report.force;
-    r.friction += sign * p.report.friction_force;
-    r.normal_force += p.report.normal_force;
-    r.point += p.report.normal_force * p.report.point;
-    r.dissipated += p.report.work.dissipated + p.impact_loss;
-    ++r.points;
-    if (p.report.after.slips)
-      r.status = ContactStatus::slip;
-    else if (r.status == ContactStatus::open)
-      r.status = ContactStatus::stick;
-  }
-  std::vector<ShapePairReport> list;
-  for (auto& [key, r] : by_pair) {
-    if (r.normal_force > 0.0) r.point /= r.normal_force;
-    list.push_back(r);
-  }
-  return list;
-}
-
-std::vector<std::string> ContactSet::overlaps(std::span<const BodyStep> instants) {
-  StepContext context;
-  context.dt = 1e-2;
-  State none;
-  begin_step(none, instants, context);
-  std::map<std::pair<int, int>, double> deepest;
-  for (const Point& p : points_)
-    if (p.gap_n <= -p.data.normal.tolerance) {
-      double& depth = deepest[std::minmax(p.a, p.b)];
-      depth = std::max(depth, -p.gap_n);
-    }
-  std::vector<std::string> list;
-  for (const auto& [key, depth] : deepest)
-    list.push_back(format("'{}' in '{}' by {:.3g} m", shapes_[key.first].name,
-                          shapes_[key.second].name, depth));
-  return list;
-}
-
-std::string ContactSet::tightest() const {
-  if (tightest_ < 0) return {};
-  const Point& p = points_[tightest_];
-  return format("contact of '{}' and '{}'", shapes_[p.a].name, shapes_[p.b].name);
 }
 
 }  // namespace polhode::contact

@@ -112,12 +112,14 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
     std::array<std::uint64_t, 2> key{};
     PointData data;
     double restitution = 0.0;
-    double least_gap = 0.0;  ///< No step may go below [m].
+    double least_gap = 0.0;       ///< No step may go below [m].
+    double damping_number = 0.0;  ///< c |w_pre| of a damped rebound [-].
     bool sensor = false;
     bool plain = false;   ///< Closed forms hold.
     double law_dt = 0.0;  ///< Step the constants of the law were chosen for [s].
     double gap_n = 0.0;
-    PointReport report;  ///< Of the last accepted step.
+    PointReport report;    ///< Of the last accepted step.
+    bool touched = false;  ///< It acted in that step.
     bool active = false;
     double elastic_force = 0.0;
     double speed_n = 0.0, speed_n1 = 0.0;  ///< Along the normal [m/s].

@@ -213,7 +213,7 @@ VelocityJump ContactSet::settle_impacts(State& state, std::span<const VelocityRo
       const ImpactRow& r = rows[island[k]];
       if (r.row.a != kGround) J.row(k).segment<6>(6 * place[r.row.a]) += r.row.G_a.transpose();
       if (r.row.b != kGround) J.row(k).segment<6>(6 * place[r.row.b]) += r.row.G_b.transpose();
-      wanted[k] = r.point < 0 ? 0.0 : r.wanted - r.before;
+      wanted[k] = r.point < 0 ? -J.row(k).dot(velocity) : r.wanted - r.before;
     }
     const Eigen::SelfAdjointEigenSolver<Mat> A(J * inverse_mass * J.transpose());
     const auto solve = [&](const Vec& change) {

@@ -63,6 +63,7 @@ double plain_gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b)
 }
 
 /// @eq{contact-point-plane} @eq{contact-sphere-sphere} @eq{contact-plastic} @eq{contact-bristle}
+/// @eq{contact-spring}
 PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const BodyStep& a,
                        const BodyStep& b, const StepContext& context, PointReport* report) {
   const Shape &A = *data.a, &B = *data.b;

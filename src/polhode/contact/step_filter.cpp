@@ -26,15 +26,47 @@ double lever(const Shape& s, const FeaturePair& f, bool side_a) {
   return s.reach;
 }
 
+/// How fast points z of a body come nearer along n, per unit of the increment: what the turn does
+/// to the points themselves and, for what is left of it, at most.
+double approach_by_turn(const Vec3& theta, const Vec3& n, std::span<const Vec3> z, double left) {
+  double most = 0.0, farthest = 0.0;
+  for (const Vec3& x : z) {
+    most = std::max(most, -n.dot(theta.cross(x)));
+    farthest = std::max(farthest, x.norm());
+  }
+  return most + left * theta.squaredNorm() * farthest;
+}
+
+/// Points that span side a (or b) of a feature pair, if they are few. @returns how many.
+int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec3, 2>& points) {
+  const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
+                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner;
+  if (side_a && corner) {
+    points[0] = s.corners[f.i];
+    return 1;
+  }
+  if (s.solid == Solid::ball) {
+    points[0] = s.centre;
+    return 1;
+  }
+  if (f.kind == GapKind::edge_edge) {
+    const Shape::Edge& e = s.edges[side_a ? f.i : f.j];
+    points = {s.corners[e.i], s.corners[e.j]};
+    return 2;
+  }
+  return 0;
+}
+
 }  // namespace
 
-/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ no feature comes nearer faster than
-/// v = |Δr_a − Δr_b| + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a gap can be followed by steps of its own size.
+/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
+/// normal n of where they are no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a
+/// gap can be followed by steps of its own size.
 /// @eq{contact-filter}
 double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
   struct Closing {
     int point;
-    double speed, floor;
+    double floor;
   };
   const Vec6 still = Vec6::Zero();
   const auto increment = [&](int shape) -> const Vec6& {
@@ -65,7 +97,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     const double room = gap_n1(p.data, a, b) - p.least_gap;
     if (most * speed <= kHarmless * room) continue;
     const double band = p.data.normal.reach() - p.least_gap;
-    closing.push_back({i, speed, kKept * std::min(room, band)});
+    closing.push_back({i, kKept * std::min(room, band)});
   }
   if (closing.empty()) return most;
   double done = 0.0, last = 0.0;
@@ -80,15 +112,34 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
       const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b,
                                 Placement<double>(a.r_n1 + done * x_a.head<3>(), L_a, 0),
                                 Placement<double>(b.r_n1 + done * x_b.head<3>(), L_b, 6));
-      const double next = (g.distance - p.least_gap - c.floor) / c.speed;
+      const Vec3 n = value(g.normal), relative = x_a.head<3>() - x_b.head<3>();
+      double speed = std::max(0.0, -n.dot(relative));
+      std::array<Vec3, 2> few;
+      const auto turns = [&](const Vec3& theta, const Mat3& L, const Vec3& towards, bool side_a) {
+        const Shape& shape = side_a ? *p.data.a : *p.data.b;
+        const int count = few_points(shape, p.data.pair, side_a, few);
+        if (count == 0) return theta.norm() * lever(shape, p.data.pair, side_a);
+        for (int m = 0; m < count; ++m) few[m] = L * few[m];
+        return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
+      };
+      speed += turns(x_a.tail<3>(), L_a, n, true);
+      if (p.data.b->bounded())
+        speed += turns(x_b.tail<3>(), L_b, -n, false);
+      else
+        speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + x_a.norm() + p.data.a->reach +
+                                         p.data.b->centre.norm());
+      if (speed <= 0.0) continue;
+      const double next = (g.distance - p.least_gap - c.floor) / speed;
       if (next < advance) {
         advance = next;
         tightest_ = c.point;
       }
     }
     // Bodies that part from a narrow gap start with small advances, each larger than the last.
+    if (advance == std::numeric_limits<double>::infinity()) return most;
     if (!(advance > 0.0) || (advance < kLeastAdvance * most && advance < last))
       return done > 0.0 ? done : 1e-3 * most;
+    if (!(advance < most - done)) return most;
     last = advance;
     done += advance;
     if (done >= most) return most;

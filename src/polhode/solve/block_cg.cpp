@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <polhode/solve/block_cg.hpp>
-
-#include <Eigen/Cholesky>
-
-#include <polhode/so3/hat.hpp>
 
 namespace polhode {
 
@@ -11,11 +9,34 @@ namespace {
 
 /// Adds Pᵀ C P with P = [I, −arm^].
 void add_spring(const Mat3& C, const Vec3& arm, Mat6& block) {
-  const Mat3 hat_C = hat(arm) * C;
+  Mat3 turned, turned_twice;  // arm^ C, and arm^ C arm^ᵀ
+  for (int j = 0; j < 3; ++j) turned.col(j) = arm.cross(C.col(j));
+  for (int j = 0; j < 3; ++j) turned_twice.col(j) = arm.cross(Vec3(turned.row(j)));
   block.topLeftCorner<3, 3>() += C;
-  block.topRightCorner<3, 3>() += hat_C.transpose();
-  block.bottomLeftCorner<3, 3>() += hat_C;
-  block.bottomRightCorner<3, 3>() -= hat_C * hat(arm);
+  block.topRightCorner<3, 3>() += turned.transpose();
+  block.bottomLeftCorner<3, 3>() += turned;
+  block.bottomRightCorner<3, 3>() += turned_twice;
+}
+
+/// In place, by elimination without exchange of rows. @returns false if not positive.
+bool invert(Mat6& B) {
+  double* a = B.data();
+  for (int k = 0; k < 6; ++k) {
+    const double pivot = a[7 * k];
+    if (!(pivot > 0.0)) return false;
+    const double inverse = 1.0 / pivot;
+    double column[6];
+    for (int i = 0; i < 6; ++i) column[i] = a[6 * k + i] * inverse;
+    for (int j = 0; j < 6; ++j) {
+      if (j == k) continue;
+      const double f = a[6 * j + k];
+      for (int i = 0; i < 6; ++i) a[6 * j + i] -= f * column[i];
+      a[6 * j + k] = f * inverse;
+    }
+    for (int i = 0; i < 6; ++i) a[6 * k + i] = -column[i];
+    a[7 * k] = inverse;
+  }
+  return true;
 }
 
 }  // namespace
@@ -30,12 +51,7 @@ bool BlockCg::set(std::span<const Mat6> blocks, std::span<const ContactSpring> s
     if (s.a != kGround) add_spring(s.C, s.arm_a, inverse_[s.a]);
     if (s.b != kGround) add_spring(s.C, s.arm_b, inverse_[s.b]);
   }
-  for (Mat6& B : inverse_) {
-    const Eigen::LLT<Mat6> factor(B);
-    if (factor.info() != Eigen::Success) return false;
-    B = factor.solve(Mat6::Identity());
-  }
-  return true;
+  return std::all_of(inverse_.begin(), inverse_.end(), [](Mat6& B) { return invert(B); });
 }
 
 void BlockCg::multiply(const std::vector<Vec6>& p, std::vector<Vec6>& y) const {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What contacts remember from step to step, to and from State::contacts.
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Numbers of a point in State::contacts, after those of the references.
+constexpr std::size_t kPointNumbers = 23;
+constexpr std::size_t kReferenceNumbers = 13;
+
+}  // namespace
+
+void ContactSet::save(State& state) const {
+  std::vector<double>& out = state.contacts;
+  out.clear();
+  const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
+  for (const Reference& r : references_) {
+    put(r.r);
+    put(r.Lambda);
+    out.push_back(r.margin);
+  }
+  for (const Point& p : points_) {
+    const PointHistory& h = p.data.history;
+    if (!h.closed) continue;
+    const FeaturePair& f = p.data.pair;
+    for (const double x :
+         {static_cast<double>(p.a), static_cast<double>(p.b), static_cast<double>(f.kind),
+          static_cast<double>(f.i), static_cast<double>(f.j)})
+      out.push_back(x);
+    put(h.bristle);
+    put(h.normal);
+    put(h.rolling);
+    for (const double x :
+         {h.torsion, h.approach, h.stiffness, h.closed ? 1.0 : 0.0, h.plastic ? 1.0 : 0.0,
+          h.fresh ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, p.data.rate_damping, h.gap})
+      out.push_back(x);
+  }
+  const_cast<ContactSet*>(this)->saved_ = out;
+  const_cast<ContactSet*>(this)->loaded_ = true;
+}
+
+void ContactSet::load(const State& state) {
+  const std::vector<double>& in = state.contacts;
+  points_.clear();
+  pairs_.clear();
+  loaded_ = true;
+  saved_ = in;
+  const std::size_t references = kReferenceNumbers * references_.size();
+  for (Reference& r : references_) r.margin = -1.0;
+  if (in.size() < references) return;
+  for (std::size_t k = 0; k < references_.size(); ++k) {
+    const double* x = in.data() + kReferenceNumbers * k;
+    references_[k].r = Eigen::Map<const Vec3>(x);
+    references_[k].Lambda = Eigen::Map<const Mat3>(x + 3);
+    references_[k].margin = x[12];
+  }
+  // Bare points that carry the histories: find_candidates() hands these on.
+  for (std::size_t at = references; at + kPointNumbers <= in.size(); at += kPointNumbers) {
+    const double* x = in.data() + at;
+    Point p;
+    p.a = static_cast<int>(x[0]);
+    p.b = static_cast<int>(x[1]);
+    p.data.pair = {static_cast<GapKind>(static_cast<int>(x[2])), static_cast<int>(x[3]),
+                   static_cast<int>(x[4])};
+    PointHistory& h = p.data.history;
+    h.bristle = Eigen::Map<const Vec3>(x + 5);
+    h.normal = Eigen::Map<const Vec3>(x + 8);
+    h.rolling = Eigen::Map<const Vec3>(x + 11);
+    h.torsion = x[14];
+    h.approach = x[15];
+    h.stiffness = x[16];
+    h.closed = x[17] != 0.0;
+    h.plastic = x[18] != 0.0;
+    h.fresh = x[19] != 0.0;
+    h.slips = x[20] != 0.0;
+    p.data.rate_damping = x[21];
+    h.gap = x[22];
+    points_.push_back(p);
+  }
+}
+
+}  // namespace polhode::contact
