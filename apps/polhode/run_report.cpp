@@ -80,9 +80,11 @@ std::string statics_table(const RunSummary& s) {
       {"unbalanced force", format("{:.1e} N", r.residual),
        format("the largest force is {:.3g} N", r.force)},
       {"strain energy", format("{:.6g} J", s.strain_energy)},
-      {"stable", r.unstable < 0    ? "not known"
-                 : r.unstable == 0 ? "yes"
-                                   : format("no, in {} directions", r.unstable)},
+      {"stable", r.unstable < 0 ? "not known"
+                 : r.unstable == 0
+                     ? "yes"
+                     : format("no, in {}", counted(static_cast<std::size_t>(r.unstable),
+                                                   "direction", "directions"))},
       {"time", seconds(s.wall_time_s)},
       {"solver", s.solver}};
   std::string text = table(rows);

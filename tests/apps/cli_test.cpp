@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <polhode/base/format.hpp>
 #include <polhode/io/example_models.hpp>
 #include <support/paths.hpp>
 #include <support/program.hpp>
@@ -343,6 +344,7 @@ loads:
 analysis: )" +
          analysis + R"(
 output:
+  paraview: true
   probes:
     top: {solid: cube, point: [0, 0, 0.5]}
 )";
@@ -369,7 +371,13 @@ TEST_F(CommandLine, EndsWith4AtTheLastEquilibriumOfASolidThatCollapses) {
   EXPECT_GT(reached, 0.1);
   EXPECT_LT(reached, 0.2);  // E/(3 √3) is carried, were the sides guided
   EXPECT_EQ(value(result.out, "t"), value(result.out, "load_factor"));
+  // A frame, a row and a picture for every load step.
   EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n" + value(result.out, "t") + ","));
+  const int steps = std::stoi(value(result.out, "steps"));
+  EXPECT_GT(steps, 2);
+  EXPECT_EQ(std::stoi(value(result.out, "frames")), steps + 1);
+  EXPECT_TRUE(exists(format("cube.results/paraview/solids/{:06d}.vtu", steps)));
+  EXPECT_FALSE(exists(format("cube.results/paraview/solids/{:06d}.vtu", steps + 1)));
 }
 
 TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
@@ -425,7 +433,8 @@ TEST_F(CommandLine, TellsWhatAModelHoldsAndWhichKindsExist) {
                               HasSubstr("constraint rows  8")));
   EXPECT_THAT(run({"info", "--kinds", "joints"}).out,
               AllOf(HasSubstr("revolute"), HasSubstr("universal")));
-  EXPECT_THAT(run({"info", "--kinds", "loads"}).out, HasSubstr("spring_damper"));
+  EXPECT_THAT(run({"info", "--kinds", "loads"}).out,
+              AllOf(HasSubstr("spring_damper"), HasSubstr("nodal_force")));
   EXPECT_THAT(run({"info", "--kinds", "shapes"}).out, HasSubstr("capsule"));
   EXPECT_EQ(run({"info", "--kinds", "jonts"}).code, 2);
   EXPECT_EQ(run({"info"}).code, 2);

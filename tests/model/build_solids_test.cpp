@@ -72,6 +72,14 @@ std::string message(const Model& model) {
 
 }  // namespace
 
+TEST(BuildSolids, HandTheInstructionSetToTheKernelsOfElements) {
+  Model model = two_bodies_and_a_pad();
+  model.analysis.isa = "sse9";
+  EXPECT_NE(message(model).find("'sse9' is not available"), std::string::npos) << message(model);
+  model.analysis.isa = "baseline";
+  EXPECT_EQ(message(model), "");
+}
+
 TEST(BuildSolids, WeighsASolidAndFindsItsCentre) {
   SystemMap map;
   const Model model = two_bodies_and_a_pad();

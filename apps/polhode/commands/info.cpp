@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <polhode/fe/elements/registry.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/fe/mesh/generators.hpp>
+#include <polhode/io/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 
@@ -53,6 +55,12 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       if (!kind.vector.empty()) line.takes.push_back(kind.vector);
       for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
       lines.push_back(std::move(line));
+    }
+  if (kinds == "loads")  // those on solids are kinds of the model file only
+    for (const KindTable& kind : load_tables()) {
+      const auto same = [&](const KindLine& line) { return line.name == kind.name; };
+      if (std::any_of(lines.begin(), lines.end(), same)) continue;
+      lines.push_back({kind.name, kind.table.meaning, "", {}});
     }
   if (kinds == "materials")
     for (const MaterialKind& kind : material_kinds()) {
