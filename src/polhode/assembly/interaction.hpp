@@ -21,12 +21,14 @@ inline constexpr int kMaxRows = 6;
 ///
 /// Wrenches are (force [N], moment about the centre of mass [N m]), world components, at
 /// t_{n+αf}; increments are (Δr, Δθ), world. Without StepContext::tangents, D and G are not read. A
-/// constraint's force on body i is +λ times its column B_i, and belongs to the wrench. Everything
-/// about the ground stays zero and unread.
+/// constraint's force on body i is +λ times its column B_i, and belongs to the wrench; so does
+/// what else depends on λ, as friction does, with its derivative in the column. Everything about
+/// the ground stays zero and unread.
 struct PairTerms {
-  Vec6 wrench_a, wrench_b;               ///< Of everything, multipliers included.
-  Mat6 D_aa, D_ab, D_ba, D_bb;           ///< D_ij: wrench of i by the increment of j.
-  Eigen::Matrix<double, 6, 6> B_a, B_b;  ///< Column k: wrench per unit of multiplier k.
+  Vec6 wrench_a, wrench_b;      ///< Of everything, multipliers included.
+  Mat6 D_aa, D_ab, D_ba, D_bb;  ///< D_ij: wrench of i by the increment of j.
+  /// Column k: derivative of the wrench by multiplier k.
+  Eigen::Matrix<double, 6, 6> B_a, B_b;
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> G_a, G_b;  ///< Row k: derivative of g_k at t_{n+1}.
   Vec6 g;                                                 ///< Constraint values at t_{n+1}.
   Vec6 compliance;  ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
@@ -63,6 +65,12 @@ struct Work {
   }
 };
 
+/// A relative velocity J v that jumps at the end of a step: an impact that ended in it.
+struct Impact {
+  Vec6 on_a, on_b;      ///< J, by (v, ω) of a and b, world.
+  double wanted = 0.0;  ///< J v afterwards.
+};
+
 /// Which bodies an interaction acts on; kGround for none. Single-body loads use b alone.
 struct Participants {
   int a = kGround, b = kGround;
@@ -97,6 +105,14 @@ struct InteractionItem {
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
+  /// An item with rows has a work() of its own: friction, stops.
+  [[nodiscard]] bool works() const { return false; }
+  /// Has a configuration that no step may reach: clearance() and impacts() are asked.
+  [[nodiscard]] bool has_barrier() const { return false; }
+  /// How far t_{n+1} is from that configuration: 0 there, 1 where it begins to be felt.
+  [[nodiscard]] double clearance(const PairStep&) const { return 1.0; }
+  /// Velocities that jump at the end of the step, which is accepted but not yet committed.
+  void impacts(const PairStep&, std::vector<Impact>& /*list*/) const {}
   void initialize(const PairStep&, double* /*history*/) const {}  ///< History at the start.
   void commit(const PairStep&, double* /*history*/) const {}      ///< History at t_{n+1}.
   /// Mirror images: does the accepted configuration still have the assembled orientation?
@@ -149,6 +165,10 @@ class InteractionGroup {
   [[nodiscard]] virtual const char* refusal(int i) const = 0;
   virtual void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
                            double* history) const = 0;
+  [[nodiscard]] virtual bool works(int i) const = 0;
+  [[nodiscard]] virtual bool has_barrier(int i) const = 0;
+  [[nodiscard]] virtual double clearance(int i, const PairStep& step) const = 0;
+  virtual void impacts(int i, const PairStep& step, std::vector<Impact>& list) const = 0;
 };
 
 /// The group of an item type. Item derives from InteractionItem and has
@@ -184,6 +204,12 @@ class Group final : public InteractionGroup {
     at(i).acceleration_terms(step, gamma);
   }
   Work work(int i, const PairStep& step) const override { return at(i).work(step); }
+  bool works(int i) const override { return at(i).rows() == 0 || at(i).works(); }
+  bool has_barrier(int i) const override { return at(i).has_barrier(); }
+  double clearance(int i, const PairStep& step) const override { return at(i).clearance(step); }
+  void impacts(int i, const PairStep& step, std::vector<Impact>& list) const override {
+    at(i).impacts(step, list);
+  }
   void initialize(int i, const PairStep& step, double* history) const override {
     at(i).initialize(step, history);
   }

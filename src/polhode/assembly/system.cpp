@@ -30,6 +30,8 @@ void System::finish() {
             "Give two different bodies of this system, or one and the ground");
       const auto basis = groups_[g]->motion_basis(i);
       const int index = static_cast<int>(refs_.size());
+      if (groups_[g]->has_barrier(i)) barriers_.push_back(index);
+      stiff_ = stiff_ || (groups_[g]->rows(i) > 0 && groups_[g]->works(i));
       if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
       shapes.push_back(shape_code(basis));
       refs_.push_back({g, i, a, b, groups_[g]->rows(i), rows_, histories});

@@ -71,6 +71,10 @@ class System {
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const InteractionGroup& group(int i) const { return *groups_[i]; }
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
+  /// Friction or stops of joints: forces that change a lot over tiny ways.
+  [[nodiscard]] bool stiff() const { return stiff_; }
+  /// Interactions with a configuration that no step may reach.
+  [[nodiscard]] const std::vector<int>& barriers() const { return barriers_; }
   [[nodiscard]] const SpanningTree& tree() const { return tree_; }
   [[nodiscard]] int slot(int body) const { return tree_.slot_of_body[body]; }
   [[nodiscard]] double mean_mass() const { return mean_mass_; }  ///< m_ref of the scaling [kg].
@@ -108,7 +112,8 @@ class System {
   Vec3 gravity_ = Vec3::Zero();
   int rows_ = 0;
   double mean_mass_ = 1.0, length_ = 1.0;
-  bool conservative_ = true, dissipates_ = false;
+  bool conservative_ = true, dissipates_ = false, stiff_ = false;
+  std::vector<int> barriers_;
 };
 
 template <class Item>

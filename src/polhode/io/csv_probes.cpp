@@ -76,27 +76,45 @@ std::vector<std::string> body_header() {
   return header;
 }
 
-/// The free coordinates of a joint: x, y, z are displacements, rx, ry, rz angles.
-std::vector<std::string> coordinate_names(const Simulation& simulation, int joint) {
+/// The joint behind a JointSpec of the model.
+const Joint* joint_item(const Simulation& simulation, int joint) {
   const System& system = simulation.system();
   const JointSpec& spec = simulation.model().joints[static_cast<std::size_t>(joint)];
   const auto& interactions = system.interactions();
   for (std::size_t i = 0; i < interactions.size(); ++i)
     if (system.group(interactions[i].group).kind() == Joint::kKind &&
         system.name(interactions[i]) == spec.name)
-      return joint_at(system, static_cast<int>(i)).coordinate_names();
-  return {};
+      return &joint_at(system, static_cast<int>(i));
+  return nullptr;
+}
+
+/// Columns of friction and stops.
+void extend_by_resistance(std::vector<std::string>& header, const Joint& joint,
+                          const std::vector<std::string>& coordinates) {
+  const Resistance* resistance = joint.resistance();
+  if (!resistance) return;
+  const auto unit = [](const std::string& name) { return name[0] == 'r' ? "N m" : "N"; };
+  if (resistance->data().friction) {
+    for (const std::string& name : coordinates)
+      header.push_back(format("friction {} [{}]", name, unit(name)));
+    header.emplace_back("slips [-]");
+  }
+  if (resistance->data().slide) header.emplace_back("stop z [N]");
+  if (resistance->data().turn) header.emplace_back("stop rz [N m]");
 }
 
 std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
   std::vector<std::string> header{"t [s]"};
   extend(header, vector_header("f", "N"));
   extend(header, vector_header("m", "N m"));
-  const std::vector<std::string> names = coordinate_names(simulation, joint);
+  const Joint* item = joint_item(simulation, joint);
+  if (!item) return header;
+  const std::vector<std::string> names = item->coordinate_names();
   for (const char* quantity : {"", "rate "})
     for (const std::string& name : names)
       header.push_back(format("{}{} [{}{}]", quantity, name, name[0] == 'r' ? "rad" : "m",
                               *quantity == '\0' ? "" : "/s"));
+  extend_by_resistance(header, *item, names);
   return header;
 }
 
@@ -280,6 +298,9 @@ std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulat
     extend(row, joint.moment);
     row.insert(row.end(), joint.coordinates.begin(), joint.coordinates.end());
     row.insert(row.end(), joint.rates.begin(), joint.rates.end());
+    row.insert(row.end(), joint.friction.begin(), joint.friction.end());
+    if (!joint.friction.empty()) row.push_back(joint.slips ? 1.0 : 0.0);
+    row.insert(row.end(), joint.stops.begin(), joint.stops.end());
   }
   return row;
 }

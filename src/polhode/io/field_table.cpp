@@ -373,6 +373,9 @@ std::vector<const FieldTable*> all_field_tables() {
       &model_fields(),       &units_fields(), &body_fields(),  &inertia_fields(),
       &orientation_fields(), &euler_fields(), &shape_fields(), &mesh_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
+  for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);
+  tables.push_back(&angle_limit_fields());
+  tables.push_back(&stroke_limit_fields());
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());

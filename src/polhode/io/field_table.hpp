@@ -121,6 +121,10 @@ const FieldTable& output_fields();
 const FieldTable& probe_fields();
 const std::vector<KindTable>& joint_tables();
 const std::vector<KindTable>& load_tables();
+/// Friction by kind of joint, and the stops of joints.
+const std::vector<KindTable>& friction_tables();
+const FieldTable& angle_limit_fields();
+const FieldTable& stroke_limit_fields();
 /// Every table above, in the order of the reference page.
 std::vector<const FieldTable*> all_field_tables();
 

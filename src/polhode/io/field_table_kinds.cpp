@@ -76,6 +76,21 @@ Field type_field(const std::string& what, const std::string& name) {
           .choices = {name}};
 }
 
+/// Friction and stops of the kinds that take them.
+void add_resistance(const std::string& name, std::vector<Field>& fields) {
+  const auto section = [&](const char* key, const std::string& table, const char* meaning) {
+    fields.push_back({.name = key, .kind = kSection, .meaning = meaning, .table = table});
+  };
+  for (const KindTable& kind : friction_tables())
+    if (kind.name == name) section("friction", kind.table.title, "Dry friction in the joint.");
+  if (name == "revolute")
+    section("limits", angle_limit_fields().title, "Stops of the joint's angle.");
+  if (name == "prismatic" || name == "cylindrical")
+    section("limits", stroke_limit_fields().title, "Stops of the joint's displacement.");
+  if (name == "cylindrical")
+    section("angle_limits", angle_limit_fields().title, "Stops of the joint's angle.");
+}
+
 KindTable joint_table(const JointKind& kind) {
   KindTable result{kind.name, {"joint " + kind.name, sentence(kind.meaning), {}}};
   std::vector<Field>& fields = result.table.fields;
@@ -102,6 +117,7 @@ KindTable joint_table(const JointKind& kind) {
                       .required = true,
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
+  add_resistance(kind.name, fields);
   return result;
 }
 

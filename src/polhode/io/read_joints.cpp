@@ -65,6 +65,9 @@ class JointReader {
     read_points();
     read_axes();
     read_parameters();
+    read_friction();
+    joint_.limits = read_limits("limits");
+    joint_.angle_limits = read_limits("angle_limits");
     // What follows needs sound numbers, and bodies that stand where they should.
     const auto sound = [&](int body) {
       return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
@@ -73,6 +76,7 @@ class JointReader {
       return;
     if (joint_.type == "distance") complete_distance();
     check_recipe();
+    check_start();
   }
 
  private:
@@ -192,6 +196,66 @@ class JointReader {
       else if (parameter.standard)
         joint_.parameters[parameter.name] = *parameter.standard;
     }
+  }
+
+  void read_friction() {
+    const SourceNode* node = takes("friction") ? section_.find("friction") : nullptr;
+    if (!node) return;
+    const auto kind = std::find_if(friction_tables().begin(), friction_tables().end(),
+                                   [&](const KindTable& k) { return k.name == joint_.type; });
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("friction"),
+                    kind->table);
+    if (!node->is_map()) return;
+    const auto number = [&](const char* name) {
+      return kind->table.find(name) ? section.number(name).value_or(0.0) : 0.0;
+    };
+    JointFrictionSpec f{.mu = number("mu"),
+                        .radius = number("radius"),
+                        .face_radius = number("face_radius"),
+                        .length = number("length"),
+                        .constant = number("moment") + number("force"),
+                        .stiffness = section.number("stiffness"),
+                        .damping = section.number("damping")};
+    const bool by_arm = joint_.type == "revolute" || joint_.type == "spherical";
+    if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
+      section.fault("'radius' is missing", "mu acts on the radius of the pin or ball: give it.");
+    else if (f.mu == 0.0 && f.constant == 0.0 && section.misses("mu"))
+      section.fault("nothing rubs here",
+                    format("Give mu, or {}, or leave friction out.", by_arm ? "moment" : "force"));
+    joint_.friction = f;
+  }
+
+  std::optional<JointLimitsSpec> read_limits(const char* key) {
+    const SourceNode* node = takes(key) ? section_.find(key) : nullptr;
+    if (!node) return std::nullopt;
+    const bool turns = table_.at(key).table == angle_limit_fields().title;
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path(key),
+                    turns ? angle_limit_fields() : stroke_limit_fields());
+    if (!node->is_map()) return std::nullopt;
+    JointLimitsSpec l{.lower = section.number("lower"),
+                      .upper = section.number("upper"),
+                      .restitution = section.number("restitution").value_or(0.0),
+                      .band = section.number("band"),
+                      .stiffness = section.number("stiffness")};
+    if (section.misses("lower") && section.misses("upper"))
+      section.fault("no stop is given", "Give lower, upper, or both.");
+    if (l.lower && l.upper && !(*l.lower < *l.upper))
+      section.fault("upper", "is not above lower",
+                    "Exchange them, or use a joint without this freedom.");
+    else if (l.lower && l.upper && l.band && *l.upper - *l.lower <= *l.band)
+      section.fault("band", "is wider than the way between the stops", "Give a narrower band.");
+    return l;
+  }
+
+  /// Joints given with `at` stand at zero; others are looked at when the start is assembled.
+  void check_start() {
+    if (joint_.assembled_start) return;
+    for (const auto& [key, limits] :
+         {std::pair("limits", joint_.limits), std::pair("angle_limits", joint_.angle_limits)})
+      if (limits && (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))
+        section_.fault(key, "the joint starts at 0, which is outside",
+                       "Coordinates count from the start where the joint is given with at: shift "
+                       "the limits, or give at_body or axis_body.");
   }
 
   void complete_distance() {

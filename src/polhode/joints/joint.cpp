@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/so3/exp_map.hpp>
 
@@ -42,6 +46,34 @@ Joint::Joint(std::string item_name, std::string type, Participants pair, const J
   bodies = pair;
 }
 
+template <class What>
+auto Joint::with_view(const PairStep& step, What&& what) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const Carried z_a = a.vector(frames_.Z_a), z_b = b.vector(frames_.Z_b);
+  Configuration q_n, q_alpha, q_n1;
+  q_n.u = (b.r_n - a.r_n) + (z_b.at_n - z_a.at_n);
+  q_n.z_a = z_a.at_n;
+  q_n.z_b = z_b.at_n;
+  q_n.R_a = a.Lambda_n * frames_.R_a;
+  q_n1.u = (b.r_n1 - a.r_n1) + (z_b.at_n1 - z_a.at_n1);
+  q_n1.z_a = z_a.at_n1;
+  q_n1.z_b = z_b.at_n1;
+  q_n1.R_a = a.Lambda_n1 * frames_.R_a;
+  const double af = a.alpha_f;
+  q_alpha.u = (1.0 - af) * q_n.u + af * q_n1.u;
+  q_alpha.z_a = z_a.at_alpha;
+  q_alpha.z_b = z_b.at_alpha;
+  q_alpha.R_a = (1.0 - af) * q_n.R_a + af * q_n1.R_a;
+  const std::optional<FreeAngle> about = axis_angle();
+  return what(Resistance::View{.step = step,
+                               .q_n = q_n,
+                               .q_alpha = q_alpha,
+                               .q_n1 = q_n1,
+                               .angle = about ? &*about : nullptr,
+                               .angle_n = about ? step.history[0] : 0.0,
+                               .memory = step.history + angles()});
+}
+
 void Joint::evaluate(const PairStep& step, PairTerms& t) const {
   const BodyStep &a = step.a, &b = step.b;
   const Carried z_a = a.vector(frames_.Z_a), z_b = b.vector(frames_.Z_b);
@@ -74,7 +106,41 @@ void Joint::evaluate(const PairStep& step, PairTerms& t) const {
   });
   t.wrench_a = times(B.a, step.lambda, rows_);
   t.wrench_b = times(B.b, step.lambda, rows_);
+  if (resistance_)
+    with_view(step, [&](const Resistance::View& view) { resistance_->add(view, t); });
   clear_ground_sides(step, t);
+}
+
+void Joint::set_resistance(const JointResistance& data) {
+  const auto kind = Resistance::kind_of(type_);
+  if (!kind)
+    throw InputError(
+        format("joints.{}", name), format("{} joints have neither friction nor limits", type_),
+        "Use a revolute, prismatic, cylindrical or spherical joint, or leave them out");
+  resistance_ = data.any() ? std::make_shared<const Resistance>(*kind, data) : nullptr;
+}
+
+ResistanceReport Joint::resistance_report(const PairStep& step) const {
+  return with_view(step, [&](const Resistance::View& v) { return resistance_->report(v); });
+}
+
+double Joint::clearance(const PairStep& step) const {
+  return with_view(step, [&](const Resistance::View& v) { return resistance_->clearance(v); });
+}
+
+void Joint::impacts(const PairStep& step, std::vector<Impact>& list) const {
+  with_view(step, [&](const Resistance::View& v) { resistance_->impacts(v, list); });
+}
+
+Work Joint::work(const PairStep& step) const {
+  return with_view(step, [&](const Resistance::View& v) { return resistance_->work(v); });
+}
+
+/// As the arms of a joint that the tree holds: it has no MotionBasis to tell them.
+double Joint::reach() const {
+  if (!resistance_) return 0.0;
+  return std::max(bodies.a == kGround ? 0.0 : frames_.Z_a.norm(),
+                  bodies.b == kGround ? 0.0 : frames_.Z_b.norm());
 }
 
 Configuration Joint::at_n1(const PairStep& step) const {
@@ -115,7 +181,8 @@ bool Joint::acceptable(const PairStep& step) const {
 }
 
 std::optional<MotionBasis> Joint::motion_basis() const {
-  if (rows_ < 3 || parts_.distance) return std::nullopt;
+  // Friction depends on the multipliers: the tree, which eliminates them, leaves it to loops.
+  if (resistance_ || rows_ < 3 || parts_.distance) return std::nullopt;
   MotionBasis m;
   m.coincident = parts_.coincident;
   m.slides = parts_.planes;
@@ -182,9 +249,12 @@ bool Joint::translation_free(int user_axis) const {
 
 void Joint::initialize(const PairStep& step, double* history) const {
   for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(user_a(step), user_b(step), 0.0);
+  if (resistance_) resistance_->initialize(history + angles());
 }
 
 void Joint::commit(const PairStep& step, double* history) const {
+  if (resistance_)
+    with_view(step, [&](const Resistance::View& v) { resistance_->commit(v, history + angles()); });
   for (int i = 0; i < angles(); ++i)
     history[i] = angle(i).at_n1(user_a(step), user_b(step), step.history[i]);
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <polhode/assembly/free_coordinate.hpp>
 #include <polhode/assembly/interaction.hpp>
 #include <polhode/joints/recipe.hpp>
+#include <polhode/joints/resistance.hpp>
 
 namespace polhode {
 
@@ -42,10 +44,28 @@ class Joint : public InteractionItem {
   [[nodiscard]] const JointFrames& frames() const { return frames_; }  ///< Solver's order.
   [[nodiscard]] bool reversed() const { return reversed_; }  ///< Solver's a is the user's b.
 
+  /// Friction and stops of this joint, before the system is finished.
+  /// @throws InputError if a joint of its type takes none.
+  void set_resistance(const JointResistance& data);
+  /// Null if the joint moves freely.
+  [[nodiscard]] const Resistance* resistance() const { return resistance_.get(); }
+  /// How they stand. @param step  An instant with its history; the joint must have a resistance.
+  [[nodiscard]] ResistanceReport resistance_report(const PairStep& step) const;
+
   // The contract of an interaction.
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] int history_size() const { return angles(); }
-  [[nodiscard]] bool lazy_history() const { return true; }
+  [[nodiscard]] int history_size() const {
+    return angles() + (resistance_ ? resistance_->memory_size() : 0);
+  }
+  [[nodiscard]] bool lazy_history() const { return !resistance_; }
+  [[nodiscard]] bool conservative() const { return !resistance_; }
+  [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
+  [[nodiscard]] bool works() const { return resistance_ != nullptr; }
+  [[nodiscard]] bool has_barrier() const { return resistance_ && resistance_->has_limits(); }
+  [[nodiscard]] double clearance(const PairStep& step) const;
+  void impacts(const PairStep& step, std::vector<Impact>& list) const;
+  [[nodiscard]] Work work(const PairStep& step) const;
+  [[nodiscard]] double reach() const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   void initialize(const PairStep& step, double* history) const;
@@ -53,9 +73,9 @@ class Joint : public InteractionItem {
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
-    return parts_.planes > 0 || parts_.distance ? Coupling::all
-           : parts_.axes > 0                    ? Coupling::couple
-                                                : Coupling::none;
+    return resistance_ || parts_.planes > 0 || parts_.distance ? Coupling::all
+           : parts_.axes > 0                                   ? Coupling::couple
+                                                               : Coupling::none;
   }
   [[nodiscard]] bool reversible() const;
   void reverse();
@@ -82,6 +102,9 @@ class Joint : public InteractionItem {
   [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
   [[nodiscard]] bool translation_free(int user_axis) const;
   [[nodiscard]] Configuration at_n1(const PairStep& step) const;
+  /// Calls what(view) with what the resistance wants to know.
+  template <class What>
+  auto with_view(const PairStep& step, What&& what) const;
   [[nodiscard]] const BodyStep& user_a(const PairStep& s) const { return reversed_ ? s.b : s.a; }
   [[nodiscard]] const BodyStep& user_b(const PairStep& s) const { return reversed_ ? s.a : s.b; }
 
@@ -91,6 +114,7 @@ class Joint : public InteractionItem {
   bool reversed_ = false;
   JointFrames user_frames_;  ///< As frames_ before any reversal.
   std::string type_;
+  std::shared_ptr<const Resistance> resistance_;
 };
 
 }  // namespace polhode

@@ -10,6 +10,7 @@
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/beam_mesh.hpp>
 #include <polhode/model/build_system.hpp>
+#include <polhode/model/joint_resistance.hpp>
 
 namespace polhode {
 
@@ -136,6 +137,8 @@ class Builder {
       refuse_turning(where, joint.b);
     system_.group<Joint>().items.emplace_back(
         joint.name, joint.type, Participants{system_body(joint.a), system_body(joint.b)}, r);
+    if (joint.friction || joint.limits || joint.angle_limits)
+      system_.group<Joint>().items.back().set_resistance(joint_resistance(model_, joint));
   }
 
   void add_load(const LoadSpec& load) {

@@ -46,6 +46,23 @@ struct BodySpec {
   std::vector<ShapeSpec> shapes;         ///< In the user's body coordinates (subtract com for Z).
 };
 
+/// Dry friction of a joint as described; what is absent is chosen from the bodies' weights.
+struct JointFrictionSpec {
+  double mu = 0.0;           ///< [-]
+  double radius = 0.0;       ///< Of pin, sleeve or ball; of a slider: arm of its twist [m].
+  double face_radius = 0.0;  ///< Mean radius of the faces with the axial force [m].
+  double length = 0.0;       ///< Of the bearing [m]; 0: moments across the axis do not count.
+  double constant = 0.0;     ///< Slip force [N] or moment [N m] without load.
+  std::optional<double> stiffness{}, damping{};  ///< Of the bristle [N/m], [N s/m] or by angle.
+};
+
+/// Stops of a joint's angle [rad] or displacement [m].
+struct JointLimitsSpec {
+  std::optional<double> lower{}, upper{};
+  double restitution = 0.0;                   ///< [-]
+  std::optional<double> band{}, stiffness{};  ///< Width of the stop's barrier; [N/m] or [N m/rad].
+};
+
 /// One joint as described. Frames are body-fixed, measured from each centre of mass (ground: the
 /// world).
 struct JointSpec {
@@ -58,7 +75,10 @@ struct JointSpec {
        R_b = Mat3::Identity();  ///< Joint axes as columns, body components; z is the joint's axis.
   std::vector<std::string> free;             ///< Generic joint: subset of x, y, z, rx, ry, rz.
   std::map<std::string, double> parameters;  ///< Further values of the kind, e.g. distance.
-  bool assembled_start = false;              ///< Given with at_body: the start must be assembled.
+  std::optional<JointFrictionSpec> friction;
+  std::optional<JointLimitsSpec> limits;        ///< Of the angle; with a displacement, of that.
+  std::optional<JointLimitsSpec> angle_limits;  ///< Of the angle beside a displacement.
+  bool assembled_start = false;  ///< Given with at_body: the start must be assembled.
 };
 
 /// One load as described; which fields matter depends on the type (see loads/registry).

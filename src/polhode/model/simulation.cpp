@@ -131,6 +131,7 @@ struct Simulation::Impl {
                               format(" (largest residual {:.2g})", r.position_residual)),
                        "Check positions and axes of these joints; 'polhode check' lists residuals");
     }
+    for (std::size_t i = 0; i < model.joints.size(); ++i) refuse_outside_limits(i);
     bool to_assemble = false;
     for (const JointSpec& j : model.joints) to_assemble = to_assemble || j.assembled_start;
     const double given = model.analysis.assembly_tolerance;
@@ -168,6 +169,26 @@ struct Simulation::Impl {
       if (!text.empty()) list.push_back(text);
     }
     return list;
+  }
+
+  /// A joint that starts beyond its stops, or in the half of a stop's band behind the end.
+  void refuse_outside_limits(std::size_t index) const {
+    const Joint& joint = joint_at(system, map.joint[index]);
+    if (!joint.has_barrier()) return;
+    const PairView view = system.instant(state, system.interactions()[map.joint[index]], nullptr);
+    const JointCoordinates c = joint.coordinates(view.step());
+    const std::vector<std::string> names = joint.coordinate_names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto& limits =
+          names[k] == "z" ? joint.resistance()->data().slide : joint.resistance()->data().turn;
+      const double play = limits ? 0.5 * limits->law.tolerance : 0.0;
+      if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
+        continue;
+      throw InputError(format("joints.{}", joint.name),
+                       format("starts at {} = {:.6g}, outside its limits [{:g}, {:g}]", names[k],
+                              c.value[k], limits->lower, limits->upper),
+                       "Move the bodies, or widen the limits");
+    }
   }
 
   const InstantSolution& at_instant() {
@@ -339,6 +360,13 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   report.moment = reaction.moment;
   report.residual =
       item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
+  if (!item.resistance()) return report;
+  const ResistanceReport resistance = item.resistance_report(step);
+  report.friction.assign(resistance.friction.begin(),
+                         resistance.friction.begin() + resistance.count);
+  report.slips = resistance.slips;
+  if (item.resistance()->data().slide) report.stops.push_back(resistance.slide);
+  if (item.resistance()->data().turn) report.stops.push_back(resistance.turn);
   return report;
 }
 

@@ -33,6 +33,10 @@ struct JointReport {
   Vec3 force = Vec3::Zero();   ///< That a exerts on b, world axes [N].
   Vec3 moment = Vec3::Zero();  ///< At the joint's point on b [N m].
   double residual = 0.0;       ///< Largest |g| of its rows [m or -].
+  /// Of a joint with friction or limits: friction on b by free coordinate [N or N m], whether it
+  /// slipped in the last step, force of the stops by limited coordinate [N or N m].
+  std::vector<double> friction, stops;
+  bool slips = false;
 };
 
 /// The figures a run ends with; `run --json` prints them under these names.

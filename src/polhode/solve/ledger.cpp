@@ -9,10 +9,12 @@ namespace polhode {
 
 namespace {
 
-std::vector<int> without_rows(const System& system) {
+std::vector<int> with_work(const System& system) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
-    if (system.interactions()[i].rows == 0) list.push_back(i);
+    if (const InteractionRef& ref = system.interactions()[i];
+        system.group(ref.group).works(ref.item))
+      list.push_back(i);
   return list;
 }
 
@@ -35,7 +37,7 @@ LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
       kernels_(&kernels),
       engine_(&engine),
       mass_(mass_blocks(system)),
-      working_(without_rows(system)),
+      working_(with_work(system)),
       outside_(on_one_body(system, engine)),
       outside_sweep_(system, on_one_body(system, engine)),
       nodes_(system) {
@@ -115,7 +117,8 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
   potential_ = 0.0;
   for (int i : working_) {
     const InteractionRef& ref = system_->interactions()[i];
-    const PairStep step{step_of(ref.a), step_of(ref.b), trial.context, nullptr,
+    const PairStep step{step_of(ref.a), step_of(ref.b), trial.context,
+                        trial.lambda.data() + ref.first_row,
                         state.history.data() + ref.first_history};
     const Work w = system_->group(ref.group).work(ref.item, step);
     potential_ += w.stored;
@@ -154,6 +157,15 @@ void LedgerKeeper::add(State& state, const VelocityJump& jump) {
   for (int i = 0; i < 3; ++i) {
     state.ledger.impulse[i].add(jump.impulse[i]);
     state.ledger.angular_impulse[i].add(jump.turning[i]);
+  }
+}
+
+void LedgerKeeper::add_jump(State& state, const BodySums& before) {
+  const BodySums after = sums(state);
+  state.ledger.dissipated.add(before.kinetic - after.kinetic);
+  for (int i = 0; i < 3; ++i) {
+    state.ledger.impulse[i].add(after.p[i] - before.p[i]);
+    state.ledger.angular_impulse[i].add(after.l[i] - before.l[i]);
   }
 }
 

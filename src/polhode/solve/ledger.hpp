@@ -32,6 +32,9 @@ class LedgerKeeper {
   /// What the engine's own forces did over the step, between before_commit() and after_commit().
   void add(State& state, const Work& work);
   void add(State& state, const VelocityJump& jump);
+  /// Velocities have jumped: what they lost, and what stands still took, since `before`.
+  void add_jump(State& state, const BodySums& before);
+  [[nodiscard]] BodySums sums(const State& state) const;
   /// The next call is about another state than the last one.
   void forget() { sums_are_of_state_ = false; }
   /// Compares with the start; at the end of whole steps.
@@ -39,7 +42,6 @@ class LedgerKeeper {
   [[nodiscard]] Balance balance(const State& state) const;
 
  private:
-  [[nodiscard]] BodySums sums(const State& state) const;
   [[nodiscard]] double stored(const State& state) const;
 
   const System* system_;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/base/format.hpp>
+#include <polhode/solve/barrier_guard.hpp>
 #include <polhode/solve/kept_iterate.hpp>
 #include <polhode/solve/newton.hpp>
 
@@ -11,11 +12,14 @@ namespace polhode {
 
 namespace {
 
-/// An increment below this leaves a quadratic remainder below round-off: no polish is needed.
+/// An increment below this leaves a quadratic remainder below round-off: no polish is needed,
+/// unless friction depends on multipliers, whose increments are not looked at.
 constexpr double kNoPolishBelow = 1e-10;
 /// What may be left of the increments to come: the motion of the step is that close to the solution
 /// of its equations, which is what momenta and energy of the bodies hang on [-].
 constexpr double kLeft = 1e-13;
+/// The same where bristles and stops turn tiny ways into forces.
+constexpr double kLeftStiff = 1e-18;
 /// Close increments are round-off when they have not come below this part of the least one in so
 /// many iterations.
 constexpr double kGains = 0.7;
@@ -83,6 +87,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   NewtonReport report;
   report.t = trial.context.t_n;
   report.dt = trial.context.dt;
+  BarrierGuard guard(system, state, trial, engine);
+  guard.hold_prediction();
   engine.begin_step(state, trial);
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
 
@@ -102,6 +108,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       report.worst = format("body '{}'", system.bodies()[worst].name);
   };
   const bool kept = engine.keeps_factor();
+  const double left = system.stiff() ? kLeftStiff : kLeft;
   const auto most_iterations = [&] {
     return (polished && !kept ? kMoreWhenClose : 1) * options.max_iterations;
   };
@@ -112,7 +119,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
                           (options.jacobian == JacobianPolicy::automatic
                                ? !close || lame
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
-    const Iteration done = engine.iterate(state, trial, refactor, search.damping());
+    guard.before();
+    const Iteration done = guard.hold(engine.iterate(state, trial, refactor, search.damping()),
+                                      refactor, search.damping());
     ++report.iterations;
     if (!done.solved) {
       fail(done.reason.empty() ? "the linear system is singular, or a value is not finite"
@@ -122,7 +131,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       return report;
     }
     const double e = done.increment;
-    if (search.undid(e, last)) continue;
+    if (!guard.near() && search.undid(e, last)) continue;
     report.increments.push_back(e);
     report.rotation = done.rotation;
     if (done.applied < 1.0) {  // held back by what lies ahead: no measure of convergence
@@ -131,7 +140,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       continue;
     }
     if (e > kDiverged) return fail("diverges"), report;
-    slow = last > 0.0 && !close && !engine.may_grow() && e > 0.9 * last && e > options.tolerance
+    slow = last > 0.0 && !close && !engine.may_grow() && !guard.near() && e > 0.9 * last &&
+                   e > options.tolerance
                ? slow + 1
                : 0;
     if (slow >= 2) return fail("contracts too slowly"), report;
@@ -146,14 +156,14 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
         continue;
     }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
-    if (!polished && e > kNoPolishBelow && !kept) continue;
+    if (!polished && (e > kNoPolishBelow || system.stiff()) && !kept) continue;
     // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers come by
     // proximal repeats, contract by a constant factor: these go on.
     const double contraction = last > 0.0 ? e / last : 1.0;
     lame = polished && contraction > kLame;
     stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
-    if (polished && !kept && e * contraction * contraction > kLeft && stalled < kStalled) continue;
+    if (polished && !kept && e * contraction * contraction > left && stalled < kStalled) continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
       return fail("contracts too slowly"), report;
     if (done.rotation > options.max_rotation) {

@@ -56,6 +56,7 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
       engine_(std::move(engine)),
       kernels_(&kernels),
       ledger_(system, kernels, *engine_),
+      impacts_(system),
       mass_(mass_blocks(system)) {
   trial_.context.ga = ga;
   trial_.context.conserving = conserving;
@@ -114,6 +115,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   if (predictor.remember) estimate_error();
 
   ledger_.before_commit(state, trial_);
+  impacts_.find(state, trial_);
   ledger_.add(state, engine_->commit(state, trial_));
   commit_histories(state, report.rotation);
   std::copy(trial_.lambda.begin(), trial_.lambda.end(), state.lambda.begin());
@@ -132,6 +134,11 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
   ledger_.add(state, engine_->settle_impacts(state, trial_));
+  if (impacts_.any()) {
+    const BodySums before = ledger_.sums(state);
+    impacts_.settle(state);
+    ledger_.add_jump(state, before);
+  }
   state.t += dt;
   state.dt_last = dt;
   state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);

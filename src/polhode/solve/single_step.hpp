@@ -8,6 +8,7 @@
 
 #include <polhode/solve/ledger.hpp>
 #include <polhode/solve/newton.hpp>
+#include <polhode/solve/settle_impacts.hpp>
 
 namespace polhode {
 
@@ -45,6 +46,7 @@ class SingleStep {
   std::unique_ptr<NewtonEngine> engine_;
   const LaneKernels* kernels_;
   LedgerKeeper ledger_;
+  SettleImpacts impacts_;
   Trial trial_;
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;

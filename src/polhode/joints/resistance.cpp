@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/contact/bristle.hpp>
+#include <polhode/contact/stop_force.hpp>
+#include <polhode/joints/parts.hpp>
+#include <polhode/joints/resistance.hpp>
+
+namespace polhode {
+
+namespace {
+
+using contact::Cone;
+
+/// Part of the force of the end of the step in a stop that takes energy.
+constexpr double kEndShare = 0.5;
+/// A stop is plastic where it would throw the bodies back for less than this many steps.
+constexpr double kRestingSteps = 2.0;
+/// Force of a stop at t_{n+αf} and its slope by the gap at t_{n+1}.
+contact::ForceAndSlope stop_force(const JointLimits& limits, const PairStep& step, double gap_n,
+                                  double gap_n1, bool plastic) {
+  return contact::stop_force(limits.law, {.at_n = gap_n,
+                                          .at_n1 = gap_n1,
+                                          .alpha_f = step.a.alpha_f,
+                                          .conserving = step.context.conserving,
+                                          .end_share = plastic ? kEndShare : 0.0});
+}
+
+/// x/√y, or 0 where y is none: forces that press nothing have no direction.
+Vec3 over_root(const Vec3& x, double y) { return y > 0.0 ? Vec3(x / std::sqrt(y)) : Vec3::Zero(); }
+
+const Mat3& axes_at(const Configuration& q) { return q.R_a; }
+
+/// Slope of an angle at t_{n+1}: ∂φ = gradient·(∂θ_b − ∂θ_a).
+Vec3 angle_gradient(const FreeAngle& x, const PairStep& step) {
+  const Vec3 e = step.a.Lambda_n1 * x.E, f = step.a.Lambda_n1 * x.F, d = step.b.Lambda_n1 * x.D;
+  const double C = e.dot(d), S = f.dot(d);
+  return d.cross(C * f - S * e) / (C * C + S * S);
+}
+
+/// A body at t_n, as an instant.
+BodyStep start_of(const BodyStep& s) {
+  BodyStep start = BodyStep::at_instant(s.r_n, s.Lambda_n, s.v_n, s.W_n);
+  start.moves = s.moves;
+  return start;
+}
+
+/// d/dt of the slide z·u at an instant.
+double slide_rate(const Configuration& q, const BodyStep& a, const BodyStep& b) {
+  const Vec3 omega_a = a.Lambda_n1 * a.W_n1, omega_b = b.Lambda_n1 * b.W_n1;
+  const Vec3 u_dot = b.v_n1 + omega_b.cross(q.z_b) - a.v_n1 - omega_a.cross(q.z_a);
+  const Vec3 z = axes_at(q).col(kZ);
+  return z.dot(u_dot) + omega_a.cross(z).dot(q.u);
+}
+
+}  // namespace
+
+/// One free coordinate over the step.
+struct Resistance::Coordinate {
+  double at_n = 0.0, at_n1 = 0.0;
+  double lever = 1.0;  ///< Of the coordinate in the bristle: the sleeve's radius for its angle.
+  Vec6 on_a, on_b;     ///< Discrete gradient: wrench by generalised force.
+  Vec6 by_a, by_b;     ///< Derivative of at_n1.
+  double force = 0.0;  ///< Generalised, on b along +.
+  Vec6 D_a, D_b;       ///< Its derivative.
+  Vec6 by_lambda;      ///< Likewise, by the multipliers.
+};
+
+struct Resistance::Motion {
+  int count = 0;
+  Coordinate of[kMost];
+  AngleStep angle;
+  int slide = -1, turn = -1;  ///< Which coordinate is which.
+};
+
+/// R of the bristle times its stiffness: the slip force, with its derivatives.
+struct Resistance::Slip {
+  double force = 0.0;
+  Vec6 by_lambda = Vec6::Zero();
+  Vec3 by_theta_a = Vec3::Zero();
+};
+
+/// The bristle over the step.
+struct Resistance::Bristle {
+  Vec3 at_n = Vec3::Zero();   ///< Transported to this step.
+  Vec3 moved = Vec3::Zero();  ///< Increment of the coordinates, levers included.
+  Vec3 acting = Vec3::Zero(), at_n1 = Vec3::Zero();  ///< On the cone or in it.
+  Mat3 D_acting = Mat3::Zero();                      ///< By the increment.
+  Vec3 D_radius = Vec3::Zero();                      ///< By the cone's radius.
+  bool slips = false;
+};
+
+std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
+  if (type == "revolute") return Kind::revolute;
+  if (type == "prismatic") return Kind::prismatic;
+  if (type == "cylindrical") return Kind::cylindrical;
+  if (type == "spherical") return Kind::spherical;
+  return std::nullopt;
+}
+
+template <class What>
+void Resistance::for_limits(What&& what) const {
+  int memory = 4;
+  if (data_.slide) {
+    what(*data_.slide, true, memory);
+    memory += 3;
+  }
+  if (data_.turn) what(*data_.turn, false, memory);
+}
+
+Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
+  Motion m;
+  const PairStep& step = v.step;
+  const auto add = [&]() -> Coordinate& {
+    Coordinate& c = m.of[m.count++];
+    c.on_a.setZero();
+    c.on_b.setZero();
+    c.by_a.setZero();
+    c.by_b.setZero();
+    c.D_a.setZero();
+    c.D_b.setZero();
+    c.by_lambda.setZero();
+    return c;
+  };
+  if (kind_ == Kind::prismatic || kind_ == Kind::cylindrical) {
+    m.slide = m.count;
+    Coordinate& c = add();
+    const PointInPlane along{kZ};
+    c.at_n = axes_at(v.q_n).col(kZ).dot(v.q_n.u);
+    c.at_n1 = axes_at(v.q_n1).col(kZ).dot(v.q_n1.u);
+    along.gradient(v.q_alpha, 0, PairRows{c.on_a.data(), c.on_b.data()});
+    if (tangents) along.gradient(v.q_n1, 0, PairRows{c.by_a.data(), c.by_b.data()});
+  }
+  if (kind_ == Kind::revolute || kind_ == Kind::cylindrical) {
+    m.turn = m.count;
+    Coordinate& c = add();
+    m.angle = angle_step(*v.angle, step.a, step.b, v.angle_n, step.context.conserving);
+    c.at_n = m.angle.at_n;
+    c.at_n1 = m.angle.at_n1;
+    if (kind_ == Kind::cylindrical && data_.friction) c.lever = data_.friction->radius;
+    c.on_a.tail<3>() = -m.angle.mu;
+    c.on_b.tail<3>() = m.angle.mu;
+    const Vec3 gradient = angle_gradient(*v.angle, step);
+    c.by_a.tail<3>() = -gradient;
+    c.by_b.tail<3>() = gradient;
+  }
+  if (kind_ == Kind::spherical) {
+    const Mat3 T_a = cayley_tangent(step.a.theta), T_b = cayley_tangent(step.b.theta);
+    for (int i = 0; i < 3; ++i) {
+      Coordinate& c = add();
+      c.at_n1 = step.b.theta[i] - step.a.theta[i];
+      c.on_a.tail<3>() = -Vec3::Unit(i);
+      c.on_b.tail<3>() = Vec3::Unit(i);
+      c.by_a.tail<3>() = -T_a.col(i);
+      c.by_b.tail<3>() = T_b.col(i);
+    }
+  }
+  return m;
+}
+
+/// @eq{joint-friction-limit}
+Resistance::Slip Resistance::slip(const View& v) const {
+  const JointFriction& f = *data_.friction;
+  Slip s;
+  s.force = f.constant;
+  const double* l = v.step.lambda;
+  if (!l || f.mu == 0.0) return s;
+  const double across = f.length > 0.0 ? 2.0 / f.length : 0.0;
+  const auto add_pair = [&](int row, double factor) {  // factor √(λ² + λ'²)
+    const double size = std::hypot(l[row], l[row + 1]);
+    s.force += factor * size;
+    if (!(size > 0.0)) return;
+    s.by_lambda[row] += factor * l[row] / size;
+    s.by_lambda[row + 1] += factor * l[row + 1] / size;
+  };
+  const Vec3 F(l[0], l[1], l[2]);
+  switch (kind_) {
+    case Kind::revolute: {
+      const Vec3 d = v.q_alpha.R_a.col(kZ), d_n1 = v.q_n1.R_a.col(kZ);
+      const double along = d.dot(F), square = std::max(0.0, F.squaredNorm() - along * along);
+      const double sign = along < 0.0 ? -1.0 : 1.0;
+      const double radial = f.mu * f.radius, axial = f.mu * f.face_radius * sign;
+      s.force += radial * std::sqrt(square) + axial * along;
+      s.by_lambda.head<3>() += radial * over_root(F - along * d, square) + axial * d;
+      const Vec3 by_d = radial * over_root(-along * F, square) + axial * F;
+      s.by_theta_a = v.step.a.alpha_f * d_n1.cross(by_d);  // D d_α = −α ẑ_{n+1}
+      add_pair(3, f.mu * f.radius * across);
+      break;
+    }
+    case Kind::spherical:
+      s.force += f.mu * f.radius * F.norm();
+      s.by_lambda.head<3>() += f.mu * f.radius * over_root(F, F.squaredNorm());
+      break;
+    case Kind::prismatic:
+      if (f.radius > 0.0) {
+        s.force += f.mu / f.radius * std::abs(l[4]);
+        s.by_lambda[4] += f.mu / f.radius * (l[4] < 0.0 ? -1.0 : 1.0);
+      }
+      [[fallthrough]];
+    case Kind::cylindrical:
+      add_pair(0, f.mu);
+      add_pair(2, f.mu * across);
+      break;
+  }
+  return s;
+}
+
+/// @eq{contact-bristle}
+Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
+  const JointFriction& f = *data_.friction;
+  Bristle b;
+  const Vec3 kept(v.memory[0], v.memory[1], v.memory[2]);
+  b.at_n = kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n * kept) : kept;
+  if (v.step.context.dt == 0.0) {  // an instant: as the last step left it
+    b.acting = b.at_n1 = b.at_n;
+    b.slips = v.memory[3] != 0.0;
+    return b;
+  }
+  for (int i = 0; i < m.count; ++i) b.moved[i] = m.of[i].lever * (m.of[i].at_n1 - m.of[i].at_n);
+  const double radius = slip(v).force / f.stiffness;
+  const double weight = v.step.a.alpha_f + f.damping / (f.stiffness * std::abs(v.step.context.dt));
+  Cone<double> cone;
+  cone.radius = radius;
+  const auto nearest = [&](const Vec3& s) { return contact::value(cone.nearest(contact::v3(s))); };
+  const Vec3 start = nearest(b.at_n);  // the cone may have shrunk
+  const Vec3 D_start = cone.outside(b.at_n) ? Vec3(b.at_n.normalized()) : Vec3::Zero();
+  const Vec3 middle = start + weight * b.moved;
+  b.acting = nearest(middle);
+  b.at_n1 = nearest(start + b.moved);
+  b.slips = cone.outside(start + b.moved);
+  b.D_acting = weight * Mat3::Identity();
+  b.D_radius = D_start;
+  if (!cone.outside(middle)) return b;
+  const double size = middle.norm();
+  const Vec3 t = middle / size;
+  const Mat3 turned = radius / size * (Mat3::Identity() - t * t.transpose());
+  b.D_acting = weight * turned;
+  b.D_radius = t + turned * D_start;
+  return b;
+}
+
+void Resistance::add(const View& v, PairTerms& t) const {
+  const PairStep& step = v.step;
+  const bool tangents = step.context.tangents;
+  const double alpha_f = step.a.alpha_f;
+  Motion m = motion(v, tangents);
+  if (data_.friction) {
+    const JointFriction& f = *data_.friction;
+    const Bristle b = bristle(v, m);
+    const Slip s = slip(v);
+    for (int i = 0; i < m.count; ++i) {
+      Coordinate& c = m.of[i];
+      c.force -= f.stiffness * c.lever * b.acting[i];
+      if (!tangents) continue;
+      for (int j = 0; j < m.count; ++j) {
+        const double k = f.stiffness * c.lever * b.D_acting(i, j) * m.of[j].lever;
+        c.D_a -= k * m.of[j].by_a;
+        c.D_b -= k * m.of[j].by_b;
+      }
+      c.D_a.tail<3>() -= c.lever * b.D_radius[i] * s.by_theta_a;
+      c.by_lambda -= c.lever * b.D_radius[i] * s.by_lambda;
+    }
+  }
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    Coordinate& c = m.of[slides ? m.slide : m.turn];
+    const bool plastic = v.memory[memory + 1] != 0.0;
+    const auto low =
+        stop_force(limits, step, c.at_n - limits.lower, c.at_n1 - limits.lower, plastic);
+    const auto high =
+        stop_force(limits, step, limits.upper - c.at_n, limits.upper - c.at_n1, plastic);
+    c.force += low.value - high.value;
+    c.D_a += (low.slope + high.slope) * c.by_a;
+    c.D_b += (low.slope + high.slope) * c.by_b;
+  });
+  for (int i = 0; i < m.count; ++i) {
+    const Coordinate& c = m.of[i];
+    t.wrench_a += c.force * c.on_a;
+    t.wrench_b += c.force * c.on_b;
+    if (!tangents) continue;
+    t.D_aa += c.on_a * c.D_a.transpose();
+    t.D_ab += c.on_a * c.D_b.transpose();
+    t.D_ba += c.on_b * c.D_a.transpose();
+    t.D_bb += c.on_b * c.D_b.transpose();
+    t.B_a += c.on_a * c.by_lambda.transpose();
+    t.B_b += c.on_b * c.by_lambda.transpose();
+    if (i == m.slide) PointInPlane{kZ}.add_wrench_tangent(v.q_alpha, v.q_n1, alpha_f, &c.force, t);
+    if (i == m.turn) {
+      t.D_aa.bottomRightCorner<3, 3>() -= c.force * m.angle.D_mu_a;
+      t.D_ab.bottomRightCorner<3, 3>() -= c.force * m.angle.D_mu_b;
+      t.D_ba.bottomRightCorner<3, 3>() += c.force * m.angle.D_mu_a;
+      t.D_bb.bottomRightCorner<3, 3>() += c.force * m.angle.D_mu_b;
+    }
+  }
+}
+
+Work Resistance::work(const View& v) const {
+  Work w;
+  const Motion m = motion(v, false);
+  const StepContext& context = v.step.context;
+  if (data_.friction) {
+    const Bristle b = bristle(v, m);
+    const double k = data_.friction->stiffness;
+    w.stored += 0.5 * k * b.at_n1.squaredNorm();
+    if (context.dt != 0.0)
+      w.dissipated += std::max(0.0, k * b.acting.dot(b.moved) -
+                                        0.5 * k * (b.at_n1.squaredNorm() - b.at_n.squaredNorm()));
+  }
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    const Coordinate& c = m.of[slides ? m.slide : m.turn];
+    const bool plastic = v.memory[memory + 1] != 0.0;
+    for (const auto& [gap_n, gap_n1] : {std::pair(c.at_n - limits.lower, c.at_n1 - limits.lower),
+                                        std::pair(limits.upper - c.at_n, limits.upper - c.at_n1)}) {
+      w.stored += limits.law.energy(gap_n1);
+      if (context.dt == 0.0 || (!plastic && v.step.a.alpha_f == 0.5)) continue;
+      if (!std::isfinite(gap_n)) continue;  // no stop on this side
+      const double force = stop_force(limits, v.step, gap_n, gap_n1, plastic).value;
+      w.dissipated += std::max(
+          0.0, force * (gap_n - gap_n1) - (limits.law.energy(gap_n1) - limits.law.energy(gap_n)));
+    }
+  });
+  return w;
+}
+
+double Resistance::clearance(const View& v) const {
+  double least = std::numeric_limits<double>::infinity();
+  const Motion m = motion(v, false);
+  for_limits([&](const JointLimits& limits, bool slides, int) {
+    const double x = m.of[slides ? m.slide : m.turn].at_n1;
+    const double gap = std::min(x - limits.lower, limits.upper - x) - limits.law.floor();
+    least = std::min(least, gap / (2.0 * limits.law.tolerance));
+  });
+  return least;
+}
+
+void Resistance::initialize(double* memory) const {
+  std::fill(memory, memory + memory_size(), 0.0);
+  for_limits([&](const JointLimits& limits, bool, int at) {
+    memory[at + 1] = limits.restitution == 0.0 ? 1.0 : 0.0;
+    memory[at + 2] = 1.0;
+  });
+}
+
+namespace {
+
+/// How a stop stands at both ends of the step.
+struct StopStep {
+  double rate_n = 0.0, rate_n1 = 0.0;  ///< Of the coordinate.
+  double gap_n = 0.0, gap_n1 = 0.0;    ///< Of the nearer stop at t_n.
+  double sign = 1.0;                   ///< +1: the gap grows with the coordinate.
+  bool closed_n = false, closed_n1 = false;
+};
+
+}  // namespace
+
+void Resistance::commit(const View& v, double* memory) const {
+  const Motion m = motion(v, false);
+  if (data_.friction) {
+    const Bristle b = bristle(v, m);
+    const Vec3 kept =
+        kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n.transpose() * b.at_n1) : b.at_n1;
+    for (int i = 0; i < 3; ++i) memory[i] = kept[i];
+    memory[3] = b.slips ? 1.0 : 0.0;
+  }
+  if (!has_limits()) return;
+  const double dt = std::abs(v.step.context.dt);
+  const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
+  for_limits([&](const JointLimits& limits, bool slides, int at) {
+    const Coordinate& c = m.of[slides ? m.slide : m.turn];
+    const double rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle->rate_at_n1(a_n, b_n);
+    const double rate_n1 =
+        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle->rate_at_n1(v.step.a, v.step.b);
+    const double reach = limits.law.reach();
+    const auto closed = [&](double x) {
+      return std::min(x - limits.lower, limits.upper - x) < reach;
+    };
+    if (!closed(c.at_n1)) {
+      if (!closed(c.at_n) && dt > 0.0) memory[at] = (rate_n1 - rate_n) / dt;
+      const double thrown = limits.restitution * std::abs(rate_n1);
+      memory[at + 1] =
+          limits.restitution < 1.0 && thrown <= kRestingSteps * std::abs(memory[at]) * dt ? 1.0
+                                                                                          : 0.0;
+      memory[at + 2] = 1.0;
+      return;
+    }
+    const double sign = c.at_n1 - limits.lower < limits.upper - c.at_n1 ? 1.0 : -1.0;
+    if (sign * rate_n < 0.0 && sign * rate_n1 > 0.0) memory[at + 2] = 0.0;  // has turned
+  });
+}
+
+/// @eq{joint-stop-exit}
+void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
+  const Motion m = motion(v, true);
+  const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
+  for_limits([&](const JointLimits& limits, bool slides, int at) {
+    if (limits.restitution == 1.0) return;
+    const Coordinate& c = m.of[slides ? m.slide : m.turn];
+    const double reach = limits.law.reach();
+    const double sign =
+        std::min(c.at_n, c.at_n1) - limits.lower < limits.upper - std::max(c.at_n, c.at_n1) ? 1.0
+                                                                                            : -1.0;
+    const double end = sign > 0.0 ? limits.lower : limits.upper;
+    const double gap_n = sign * (c.at_n - end), gap_n1 = sign * (c.at_n1 - end);
+    const double w_n =
+        sign * (slides ? slide_rate(v.q_n, a_n, b_n) : v.angle->rate_at_n1(a_n, b_n));
+    const double w_n1 = sign * (slides ? slide_rate(v.q_n1, v.step.a, v.step.b)
+                                       : v.angle->rate_at_n1(v.step.a, v.step.b));
+    const bool plastic = v.memory[at + 1] != 0.0, fresh = v.memory[at + 2] != 0.0;
+    double wanted = w_n1;
+    if (!plastic && gap_n < reach && gap_n1 >= reach && w_n1 > 0.0) {
+      const double e = limits.restitution, h = gap_n1 - reach, a = -sign * v.memory[at];
+      const double w_exit = std::max(w_n1 * w_n1 + 2.0 * a * h, 0.0);
+      wanted = std::min(w_n1, std::sqrt(std::max(e * e * w_exit - 2.0 * a * h, 0.0)));
+    } else if (plastic && fresh && std::min(gap_n, gap_n1) < reach && w_n < 0.0 && w_n1 > 0.0) {
+      wanted = 0.0;
+    }
+    if (wanted == w_n1) return;
+    list.push_back({sign * c.by_a, sign * c.by_b, wanted});
+  });
+}
+
+ResistanceReport Resistance::report(const View& v) const {
+  ResistanceReport r;
+  if (data_.friction) {
+    const JointFriction& f = *data_.friction;
+    r.count = kind_ == Kind::revolute || kind_ == Kind::prismatic ? 1
+              : kind_ == Kind::cylindrical                        ? 2
+                                                                  : 3;
+    const Motion m = motion(v, false);
+    Vec3 kept(v.memory[0], v.memory[1], v.memory[2]);
+    if (kind_ == Kind::spherical)  // from the body's to the joint's axes
+      kept = v.q_n1.R_a.transpose() * (v.step.a.Lambda_n1 * kept);
+    for (int i = 0; i < r.count; ++i)
+      r.friction[static_cast<std::size_t>(i)] = -f.stiffness * m.of[i].lever * kept[i];
+    r.slips = v.memory[3] != 0.0;
+  }
+  const Motion m = motion(v, false);
+  for_limits([&](const JointLimits& limits, bool slides, int) {
+    const double x = m.of[slides ? m.slide : m.turn].at_n1;
+    (slides ? r.slide : r.turn) =
+        limits.law.force(x - limits.lower) - limits.law.force(limits.upper - x);
+  });
+  return r;
+}
+
+}  // namespace polhode

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <polhode/assembly/free_coordinate.hpp>
+#include <polhode/assembly/interaction.hpp>
+#include <polhode/contact/normal_law.hpp>
+#include <polhode/joints/parts/configuration.hpp>
+
+namespace polhode {
+
+/// Dry friction in a joint: what slips where the bodies of the joint rub on each other.
+///
+/// The slip force or moment is μ times what the joint's reaction presses together, and a constant
+/// part. Below it a bristle of this stiffness holds. @eq{joint-friction-limit}
+struct JointFriction {
+  double mu = 0.0;           ///< Coefficient [-].
+  double radius = 0.0;       ///< Of the pin, sleeve or ball; of a slider: arm of M about z [m].
+  double face_radius = 0.0;  ///< Mean radius of the faces that take the axial force [m].
+  double length = 0.0;  ///< Of the bearing [m]; 0: moments across the axis press nothing together.
+  double constant = 0.0;   ///< Slip force [N] or moment [N m] without load.
+  double stiffness = 1.0;  ///< Of the bristle [N/m]; of turns alone [N m/rad].
+  double damping = 0.0;    ///< Of the bristle while it holds [N s/m], [N m s/rad].
+};
+
+/// Stops of one free coordinate: barriers at both ends, with restitution by the exit law.
+struct JointLimits {
+  double lower = -std::numeric_limits<double>::infinity();  ///< [m] or [rad]
+  double upper = std::numeric_limits<double>::infinity();
+  contact::NormalLaw law;    ///< Of each stop; its tolerance is half the band [m] or [rad].
+  double restitution = 0.0;  ///< Speed after an impact over that before [-].
+
+  [[nodiscard]] bool within(double x) const { return x >= lower && x <= upper; }
+};
+
+/// What resists the free motion of a joint.
+struct JointResistance {
+  std::optional<JointFriction> friction;
+  std::optional<JointLimits> slide, turn;  ///< Of the displacement and the angle about z.
+
+  [[nodiscard]] bool any() const { return friction || slide || turn; }
+};
+
+/// How friction and stops of a joint stand at an instant.
+struct ResistanceReport {
+  /// On b, by free coordinate [N] or [N m]; of a ball in a's joint axes.
+  std::array<double, 3> friction{};
+  int count = 0;                   ///< Of them.
+  bool slips = false;              ///< Over the last step.
+  double slide = 0.0, turn = 0.0;  ///< Of the stops, along +z, on b [N], [N m].
+};
+
+/// Friction and stops over the free coordinates of a revolute, prismatic, cylindrical or spherical
+/// joint: evaluated beside the joint's parts, with the same multipliers.
+class Resistance {
+ public:
+  enum class Kind : unsigned char { revolute, prismatic, cylindrical, spherical };
+
+  /// The kind of the joint type of this name; nothing if it takes no resistance.
+  [[nodiscard]] static std::optional<Kind> kind_of(const std::string& type);
+
+  Resistance(Kind kind, const JointResistance& data) : kind_(kind), data_(data) {}
+
+  [[nodiscard]] const JointResistance& data() const { return data_; }
+  [[nodiscard]] bool has_limits() const { return data_.slide || data_.turn; }
+  /// Of `memory` below: the bristle, whether it slips, and three for each coordinate with stops.
+  [[nodiscard]] int memory_size() const {
+    return 4 + 3 * (data_.slide ? 1 : 0) + 3 * (data_.turn ? 1 : 0);
+  }
+
+  /// What all functions want to know of the joint in a step.
+  struct View {
+    const PairStep& step;
+    const Configuration &q_n, &q_alpha, &q_n1;
+    const FreeAngle* angle;  ///< About z; null if there is none.
+    double angle_n = 0.0;    ///< Its value at t_n [rad].
+    const double* memory = nullptr;
+  };
+
+  /// Adds forces, tangents and the derivatives by the multipliers (to the columns of B).
+  void add(const View& view, PairTerms& terms) const;
+  [[nodiscard]] Work work(const View& view) const;
+  void initialize(double* memory) const;
+  void commit(const View& view, double* memory) const;
+  /// Least of the gaps left at t_{n+1}: 1 where a stop begins to act, 0 where its force is
+  /// infinite.
+  [[nodiscard]] double clearance(const View& view) const;
+  /// Velocities that jump at the end of this step.
+  void impacts(const View& view, std::vector<Impact>& list) const;
+  [[nodiscard]] ResistanceReport report(const View& view) const;
+
+ private:
+  static constexpr int kMost = 3;
+  struct Coordinate;
+  struct Motion;
+  struct Bristle;
+  struct Slip;
+
+  [[nodiscard]] Motion motion(const View& view, bool tangents) const;
+  [[nodiscard]] Slip slip(const View& view) const;
+  [[nodiscard]] Bristle bristle(const View& view, const Motion& m) const;
+  /// Calls what(limits, coordinate's index in the motion, memory of it).
+  template <class What>
+  void for_limits(What&& what) const;
+
+  Kind kind_;
+  JointResistance data_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solve/barrier_guard.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <polhode/solve/node_motion.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// What is left in front of a barrier after an iteration, of what there was before it.
+constexpr double kLeave = 0.1;
+/// Parts are taken a little smaller, as the way to a barrier is not straight.
+constexpr double kShorter = 0.98;
+constexpr int kMostRepeats = 20;
+
+}  // namespace
+
+BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& trial,
+                           NewtonEngine& engine)
+    : system_(system), state_(state), trial_(trial), engine_(engine) {
+  const Nodes& nodes = system.nodes();
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* points = dynamic_cast<const BarrierPoints*>(&nodes.group(g)))
+      points_.push_back(points);
+  idle_ = system.barriers().empty() && points_.empty();
+}
+
+void BarrierGuard::measure(std::vector<double>& clearance) const {
+  clearance.clear();
+  for (int i : system_.barriers()) {
+    const InteractionRef& ref = system_.interactions()[i];
+    const PairView view = pair_view(system_, state_, trial_, ref);
+    clearance.push_back(system_.group(ref.group).clearance(ref.item, view.step()));
+  }
+  if (points_.empty()) return;
+  const NodeStep step = node_step(state_, trial_);
+  for (const BarrierPoints* points : points_) points->clearances(step, clearance);
+}
+
+double BarrierGuard::part(const std::vector<double>& from, const std::vector<double>& to) {
+  double most = 1.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double least = kLeave * std::min(from[i], 1.0);
+    if (to[i] >= least) continue;
+    const double way = from[i] - to[i];
+    most = std::min(most, way > 0.0 ? kShorter * (from[i] - least) / way : 0.0);
+  }
+  return most;
+}
+
+void BarrierGuard::hold_prediction() {
+  if (idle_) return;
+  const std::vector<TrialBlock> predicted = trial_.blocks;
+  const std::vector<double> node_u = trial_.node_u;
+  const auto go = [&](double part) {
+    for (int slot = 0; slot < system_.tree().slots; ++slot) {
+      const TrialBlock& p = predicted[static_cast<std::size_t>(slot / kLanes)];
+      const int l = slot % kLanes;
+      move_body(state_, trial_, slot, part * Vec3(p.u[0][l], p.u[1][l], p.u[2][l]),
+                part * Vec3(p.theta[0][l], p.theta[1][l], p.theta[2][l]));
+    }
+    if (system_.nodes().empty()) return;
+    for (std::size_t k = 0; k < node_u.size(); ++k) {
+      trial_.node_u[k] = part * node_u[k];
+      trial_.node_x[k] = state_.node_x[k] + trial_.node_u[k];
+    }
+    for (const PrescribedComponent& p : system_.nodes().prescribed()) {
+      const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+      trial_.node_u[k] = node_u[k];
+      trial_.node_x[k] = state_.node_x[k] + node_u[k];
+    }
+    follow_bodies(system_, state_, trial_);
+    update_node_velocities(system_, state_, trial_);
+  };
+  measure(to_);
+  near_ = *std::min_element(to_.begin(), to_.end()) < 1.0;
+  if (!near_) return;
+  go(0.0);
+  measure(from_);
+  double taken = 1.0;
+  for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
+    const double fits = part(from_, to_);
+    if (fits >= 1.0) break;
+    taken = repeat + 1 < kMostRepeats ? taken * fits : 0.0;
+    go(taken);
+    measure(to_);
+  }
+  if (taken == 1.0) go(1.0);
+}
+
+void BarrierGuard::before() {
+  if (idle_) return;
+  measure(from_);
+  engine_.end_step(state_, trial_);  // brings the multipliers into the trial
+  iterate_.keep(system_, trial_);
+}
+
+Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
+  if (idle_) return done;
+  double applied = 1.0;
+  for (int repeat = 0; done.solved && repeat < kMostRepeats; ++repeat) {
+    measure(to_);
+    const double fits = part(from_, to_);
+    if (fits >= 1.0) break;
+    applied *= fits;
+    iterate_.restore(system_, trial_);
+    engine_.begin_step(state_, trial_);
+    done = engine_.iterate(state_, trial_, refactor, damping * applied);
+  }
+  near_ = std::min(*std::min_element(from_.begin(), from_.end()),
+                   *std::min_element(to_.begin(), to_.end())) < 1.0;
+  done.applied *= applied;
+  return done;
+}
+
+}  // namespace polhode

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Friction and stops of joints over one step.
+#include <joints/joint_cases.hpp>
+#include <polhode/base/error.hpp>
+#include <polhode/so3/exp_map.hpp>
+#include <support/derivative.hpp>
+
+namespace polhode::test {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+struct Sample {
+  Joint joint;
+  PairMotion motion;
+};
+
+enum class State { sticks, slips };
+
+JointResistance friction_of(const std::string& type, State state) {
+  JointResistance r;
+  // Deflections are of size one: the cone is wide, or narrow.
+  r.friction = JointFriction{.mu = 0.3,
+                             .radius = 0.4,
+                             .face_radius = type == "revolute" ? 0.2 : 0.0,
+                             .length = type == "spherical" ? 0.0 : 1.5,
+                             .constant = 0.1,
+                             .stiffness = state == State::sticks ? 0.01 : 3.0,
+                             .damping = 0.02};
+  return r;
+}
+
+/// A joint whose angle and displacement are allowed, in a large step; histories of size one.
+Sample sample(const std::string& type, const JointResistance& resistance, unsigned seed,
+              const StepContext& context) {
+  Random random(seed);
+  const JointFrames f = random_frames(random);
+  Joint joint("j", type, Participants{0, 1}, joint_kind(type).recipe(f, {}));
+  joint.set_resistance(resistance);
+  PairMotion m(random, context);
+  const double start = random.number(2.0), turn = random.number(1.0);
+  if (type != "spherical") {
+    const auto b_of = [&](const Mat3& Lambda_a, double angle) -> Mat3 {
+      return Lambda_a * f.R_a * exp_map(angle * Vec3::UnitZ()) * f.R_b.transpose();
+    };
+    m.b_n.q = Quat(b_of(m.a_n.Lambda(), start)).normalized();
+    m.theta_b = cayley_vector(b_of(m.a().Lambda_n1, start + turn) * m.b_n.Lambda().transpose());
+  }
+  const bool has_angle = type == "revolute" || type == "cylindrical";
+  m.history[0] = start;
+  const int deflections = type == "spherical" ? 3 : type == "cylindrical" ? 2 : 1;
+  for (int i = 0; i < deflections; ++i) m.history[has_angle + i] = 0.02 * random.number();
+  return {joint, m};
+}
+
+JointLimits stops(double lower, double upper, double restitution) {
+  JointLimits l;
+  l.lower = lower;
+  l.upper = upper;
+  l.law.stiffness = 2.0;
+  l.law.tolerance = 2.0;
+  l.restitution = restitution;
+  return l;
+}
+
+class EveryResistance : public testing::TestWithParam<std::string> {};
+
+void expect_tangents(const Joint& joint, const PairMotion& m) {
+  expect_derivative(
+      wrench_tangent(evaluate(joint, m)),
+      [&](const Vec& d) -> Vec { return wrenches(evaluate(joint, m, d)); }, joint.type() + " D");
+  const PairTerms t = evaluate(joint, m);
+  Mat B(12, joint.rows());
+  B << t.B_a.leftCols(joint.rows()), t.B_b.leftCols(joint.rows());
+  PairMotion pulled = m;
+  expect_derivative(
+      B,
+      [&](const Vec& d) -> Vec {
+        for (int k = 0; k < joint.rows(); ++k) {
+          const auto row = static_cast<std::size_t>(k);
+          pulled.lambda[row] = m.lambda[row] + d[k];
+        }
+        return wrenches(evaluate(joint, pulled));
+      },
+      joint.type() + " B");
+}
+
+// @tests{joint-friction-limit}
+TEST_P(EveryResistance, HasTheTangentsOfItsFrictionByMotionAndReaction) {
+  for (const State state : {State::sticks, State::slips})
+    for (const double rho_inf : {1.0, 0.5, 0.0})
+      for (unsigned seed = 1; seed <= 4; ++seed) {
+        auto [joint, m] =
+            sample(GetParam(), friction_of(GetParam(), state), seed, context_of(rho_inf));
+        expect_tangents(joint, m);
+        m.a_moves = false;
+        m.a_n = BodyMotion{};
+        SCOPED_TRACE("a is the ground");
+        if (GetParam() == "spherical")
+          expect_derivative(
+              wrench_tangent(evaluate(joint, m)).rightCols(6),
+              [&](const Vec& d) -> Vec {
+                Displacement both = Displacement::Zero();
+                both.tail<6>() = d;
+                return wrenches(evaluate(joint, m, both));
+              },
+              "ground");
+      }
+}
+
+TEST_P(EveryResistance, HasTheTangentsOfItsStops) {
+  if (GetParam() == "spherical") return;
+  for (const double e : {1.0, 0.0})
+    for (const bool conserving : {true, false})
+      for (const double rho_inf : {1.0, 0.5, 0.0})
+        for (unsigned seed = 1; seed <= 4; ++seed) {
+          StepContext context = context_of(rho_inf);
+          context.conserving = conserving;
+          JointResistance r;
+          auto [joint, m] = sample(GetParam(), r, seed, context);
+          const JointCoordinates c =
+              m.at_start([&](const PairStep& s) { return joint.coordinates(s); });
+          const std::vector<std::string> names = joint.coordinate_names();
+          for (std::size_t k = 0; k < names.size(); ++k)
+            (names[k] == "z" ? r.slide : r.turn) = stops(c.value[k] - 1.0, kInf, e);
+          joint.set_resistance(r);
+          m.with(Displacement::Zero(), [&](const PairStep& s) {
+            joint.initialize(s, m.history.data());
+            return 0;
+          });
+          m.history[0] = names.back() == "rz" ? c.value[names.size() - 1] : 0.0;
+          if (names.back() != "rz") m.history[5] = e == 0.0 ? 1.0 : 0.0;
+          expect_tangents(joint, m);
+        }
+}
+
+// The wrench's work is what the bristle stores and takes; it never gives more than it had.
+// @tests{contact-bristle}
+TEST_P(EveryResistance, NeverGivesEnergyByFriction) {
+  for (const State state : {State::sticks, State::slips})
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      const auto [joint, m] =
+          sample(GetParam(), friction_of(GetParam(), state), seed, context_of(1.0));
+      Joint free("j", GetParam(), Participants{0, 1}, JointRecipe{joint.frames(), joint.parts()});
+      const double work =
+          (wrenches(evaluate(joint, m)) - wrenches(evaluate(free, m))).dot(step_motion(m));
+      const Work w = m.with(Displacement::Zero(), [&](const PairStep& s) { return joint.work(s); });
+      const bool has_angle = GetParam() == "revolute" || GetParam() == "cylindrical";
+      const Vec3 s_n(m.history[has_angle], m.history[has_angle + 1], m.history[has_angle + 2]);
+      const double k = joint.resistance()->data().friction->stiffness;
+      const int n = GetParam() == "spherical" ? 3 : GetParam() == "cylindrical" ? 2 : 1;
+      const double before = 0.5 * k * s_n.head(n).squaredNorm();
+      EXPECT_GE(w.dissipated, 0.0);
+      EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12) << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryResistance,
+                         testing::Values("revolute", "prismatic", "cylindrical", "spherical"),
+                         [](const auto& kind) { return kind.param; });
+
+// Radial force 5 N, axial 2 N, moment across the axis 1.3 N m.
+TEST(JointFriction, SlipsAtTheLimitOfItsKind) {
+  const auto slip_of = [](const std::string& type, const JointFriction& f,
+                          const std::vector<double>& lambda, double& stored) {
+    Joint joint("j", type, Participants{kGround, 0}, joint_kind(type).recipe(JointFrames{}, {}));
+    JointResistance r;
+    r.friction = f;
+    joint.set_resistance(r);
+    std::array<double, 24> history{};
+    BodyStep b = BodyStep::at_instant({}, Mat3::Identity(), {}, {});
+    b.alpha_f = 0.5;
+    b.theta = Vec3(0.0, 0.0, 0.2);
+    b.Lambda_n1 = cay(b.theta);
+    b.u = b.r_n1 = Vec3(0.0, 0.0, type == "prismatic" ? 0.2 : 0.0);
+    if (type == "prismatic") {
+      b.theta.setZero();
+      b.Lambda_n1.setIdentity();
+    }
+    const BodyStep a = BodyStep::ground(0.5);
+    const StepContext context = context_of(1.0, 0.1);
+    const PairStep step{a, b, context, lambda.data(), history.data()};
+    PairTerms t;
+    t.set_zero();
+    joint.evaluate(step, t);
+    stored = joint.work(step).stored;
+    Joint free("j", type, Participants{kGround, 0}, joint_kind(type).recipe(JointFrames{}, {}));
+    PairTerms of_rows;
+    of_rows.set_zero();
+    free.evaluate(step, of_rows);
+    return (t.wrench_b - of_rows.wrench_b).eval();
+  };
+  double stored = 0.0;
+  const double k = 1e4;
+  Vec6 w = Vec6::Zero();
+  w = slip_of("revolute",
+              {.mu = 0.3,
+               .radius = 0.05,
+               .face_radius = 0.1,
+               .length = 0.4,
+               .constant = 0.02,
+               .stiffness = k},
+              {3.0, 4.0, 2.0, 0.5, 1.2}, stored);
+  const double pin = 0.3 * (0.05 * (5.0 + 2.0 / 0.4 * 1.3) + 0.1 * 2.0) + 0.02;
+  EXPECT_NEAR(w[5] * 0.2, -pin * 2.0 * std::atan(0.1), 1e-12);  // θ = 2 tan(φ/2)
+  EXPECT_NEAR(stored, 0.5 * pin * pin / k, 1e-15);
+  w = slip_of("prismatic",
+              {.mu = 0.3, .radius = 0.2, .length = 0.4, .constant = 0.5, .stiffness = k},
+              {3.0, 4.0, 0.5, 1.2, -0.7}, stored);
+  EXPECT_NEAR(w[2], -(0.3 * (5.0 + 2.0 / 0.4 * 1.3 + 0.7 / 0.2) + 0.5), 1e-12);
+  w = slip_of("spherical", {.mu = 0.3, .radius = 0.05, .constant = 0.02, .stiffness = k},
+              {3.0, 4.0, 12.0}, stored);
+  EXPECT_NEAR(w[5], -(0.3 * 0.05 * 13.0 + 0.02), 1e-12);
+}
+
+TEST(JointFriction, IsRefusedWhereItHasNoMeaning) {
+  Joint joint("j", "fixed", Participants{0, 1}, joint_kind("fixed").recipe(JointFrames{}, {}));
+  EXPECT_THROW(joint.set_resistance({}), InputError);
+}
+
+}  // namespace
+}  // namespace polhode::test
