@@ -176,6 +176,37 @@ TEST(BeamInModel, RefusesWhatCannotBeMeshed) {
   refused([](BeamSpec& b) { b.arc = true, b.points[2] = {2, 0, 0}; });
 }
 
+// A mast that hangs from the ground at rest, and a rope beside it: the weight below a section.
+TEST(BeamSystem, ReportsSectionForcesAndTensions) {
+  Model m;
+  m.gravity = {0, 0, -10.0};
+  BeamSpec mast = beam_through({{0, 0, 0}, {0, 0, -2}}, 4, {1e9, 1e9, 1e9, 1e9, 3.0, {1, 1, 1}});
+  mast.bonds = {{kGround, false}};
+  add_beam(m, mast);
+  CableLineSpec rope;
+  rope.name = "rope";
+  rope.through = {{kGround, {0.5, 0, 0}}, {4, {0.5, 0, 0}}};
+  rope.stiffness = 1e3;
+  rope.free_length = 1.0;
+  add_cable(m, rope);
+  m.analysis.step = 1e-3;
+  m.analysis.duration = 1e-3;
+  Simulation s(m);
+  const std::vector<double> tension = s.cable(0);
+  ASSERT_EQ(tension.size(), 1u);
+  EXPECT_DOUBLE_EQ(tension[0], 1e3);  // twice as long as free
+  m.cables.clear();
+  m.analysis.rho_inf = 0.0;
+  m.analysis.step = 1.0;  // long against vibrations: rest
+  m.analysis.duration = 60.0;
+  Simulation hanging(m);
+  ASSERT_EQ(hanging.run().end, RunEnd::finished);
+  const std::vector<Vec6> forces = hanging.beam(0);
+  ASSERT_EQ(forces.size(), 4u);
+  for (int k = 0; k < 4; ++k)
+    EXPECT_NEAR(forces[static_cast<std::size_t>(k)][0], 30.0 * (1.75 - 0.5 * k), 1e-4) << k;
+}
+
 TEST(BeamSystem, HasTheTangentOfItsResidual) {
   for (const double rho_inf : {1.0, 0.25}) {
     Model m = flying_beam(6);

@@ -9,6 +9,7 @@
 #include <polhode/assembly/state_archive.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/beams/beam_element.hpp>
 #include <polhode/body/point_motion.hpp>
 #include <polhode/fe/solid_elements.hpp>
 #include <polhode/loads/registry.hpp>
@@ -376,6 +377,36 @@ std::vector<double> Simulation::load(int load) const {
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
   const PairView view = system.instant(impl_->projected, ref, nullptr);
   return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
+}
+
+namespace {
+
+/// What of each of the interactions listed, at a state; Item is their type.
+template <class Item, class What>
+auto of_each(const System& system, const State& state, const std::vector<int>& interactions,
+             What&& what) {
+  std::vector<decltype(what(std::declval<const Item&>(), std::declval<const PairStep&>()))> values;
+  for (int i : interactions) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+    const auto& group = dynamic_cast<const Group<Item>&>(system.group(ref.group));
+    const PairView view = system.instant(state, ref, nullptr);
+    values.push_back(what(group.items[static_cast<std::size_t>(ref.item)], view.step()));
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<Vec6> Simulation::beam(int beam) const {
+  return of_each<BeamElement>(
+      impl_->system, impl_->state, impl_->map.beam.at(static_cast<std::size_t>(beam)),
+      [](const BeamElement& item, const PairStep& step) { return item.section_forces(step); });
+}
+
+std::vector<double> Simulation::cable(int cable) const {
+  return of_each<Cable>(impl_->system, impl_->state,
+                        impl_->map.cable.at(static_cast<std::size_t>(cable)),
+                        [](const Cable& item, const PairStep& step) { return item.tension(step); });
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
