@@ -65,8 +65,17 @@ const FieldTable& model_fields() {
           {.name = "loads", .kind = kNamed, .meaning = "Loads by name.", .table = "load"},
           {.name = "materials",
            .kind = kNamed,
-           .meaning = "Materials of deformable solids by name.",
+           .meaning = "Materials of beams and deformable solids by name.",
            .table = "material"},
+          {.name = "sections",
+           .kind = kNamed,
+           .meaning = "Cross-sections of beams by name.",
+           .table = "section"},
+          {.name = "beams", .kind = kNamed, .meaning = "Beams by name.", .table = "beam"},
+          {.name = "cables",
+           .kind = kNamed,
+           .meaning = "Cables and rods by name.",
+           .table = "cable"},
           {.name = "solids",
            .kind = kNamed,
            .meaning = "Deformable solids by name.",
@@ -380,6 +389,9 @@ std::vector<const FieldTable*> all_field_tables() {
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());
   for (const KindTable& kind : fibre_tables()) tables.push_back(&kind.table);
+  for (const KindTable& kind : section_tables()) tables.push_back(&kind.table);
+  tables.push_back(&beam_fields());
+  tables.push_back(&cable_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());
   for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);

@@ -40,6 +40,9 @@ enum class FieldKind : unsigned char {
   kIndexSets,      ///< A map from names to such lists.
   kLevel,          ///< min, max or a number.
   kNumberList,     ///< A number, or a list of any length.
+  kMatrix6,        ///< Six rows of six numbers.
+  kBeamBonds,      ///< A map from bodies to ends of a beam.
+  kAttachments,    ///< A list of points on bodies.
   kSection,        ///< A map with a table of its own.
   kNamed,          ///< A map from names the user chooses to sections.
   kShapes,         ///< A shape or a list of shapes.
@@ -107,6 +110,9 @@ const FieldTable& mesh_fields();
 const std::vector<KindTable>& material_tables();
 const FieldTable& viscosity_fields();
 const std::vector<KindTable>& fibre_tables();
+const std::vector<KindTable>& section_tables();
+const FieldTable& beam_fields();
+const FieldTable& cable_fields();
 const FieldTable& solid_fields();
 const FieldTable& solid_mesh_fields();
 const std::vector<KindTable>& mesh_generator_tables();

@@ -24,6 +24,7 @@ struct ReadContext {
   Model model{};
   std::unordered_map<std::string, int> bodies{}, joints{}, loads{};  ///< Index by name.
   std::unordered_map<std::string, int> materials{}, solids{};        ///< Likewise.
+  std::unordered_map<std::string, SectionSpec> sections{};           ///< By name.
   std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
 
@@ -169,6 +170,10 @@ std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path);
 void read_joints(ReadContext& context, const SourceNode& node);
 void read_materials(ReadContext& context, const SourceNode& node);
+void read_sections(ReadContext& context, const SourceNode& node);
+/// Beams and cables become bodies and joints: read after the bodies and before what names them.
+void read_beams(ReadContext& context, const SourceNode& node);
+void read_cables(ReadContext& context, const SourceNode& node);
 void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::string& path,
                      MeshSpec& mesh);
 void read_solids(ReadContext& context, const SourceNode& node);

@@ -105,10 +105,15 @@ void read_root(ReadContext& context, const SourceNode& root) {
   if (const auto gravity = section.vector("gravity")) model.gravity = *gravity;
   if (const SourceNode* node = named_things(context, section, "bodies"))
     read_bodies(context, *node);
-  if (const SourceNode* node = named_things(context, section, "joints"))
-    read_joints(context, *node);
   if (const SourceNode* node = named_things(context, section, "materials"))
     read_materials(context, *node);
+  if (const SourceNode* node = named_things(context, section, "sections"))
+    read_sections(context, *node);
+  if (const SourceNode* node = named_things(context, section, "beams")) read_beams(context, *node);
+  if (const SourceNode* node = named_things(context, section, "cables"))
+    read_cables(context, *node);
+  if (const SourceNode* node = named_things(context, section, "joints"))
+    read_joints(context, *node);
   if (const SourceNode* node = named_things(context, section, "solids"))
     read_solids(context, *node);
   if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);

@@ -105,7 +105,10 @@ void ReadContext::fault(const SourceNode& node, const std::string& path, std::st
 
 std::vector<std::string> ReadContext::body_names() const {
   std::vector<std::string> names = {"ground"};
-  for (const BodySpec& body : model.bodies) names.push_back(body.name);
+  for (const BodySpec& body : model.bodies)  // nodes of beams: their ends stand for them
+    if (body.name.find('.') == std::string::npos) names.push_back(body.name);
+  for (const BeamSpec& beam : model.beams)
+    for (const char* end : {".start", ".end"}) names.push_back(beam.name + end);
   return names;
 }
 

@@ -134,6 +134,24 @@ json field_schema(const FieldTable& table, const Field& field) {
       return {{"type", json::array({"object", "null"})},
               {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]+$"}}},
               {"additionalProperties", reference("selections")}};
+    case kMatrix6:
+      return list_of(list_of(reference("number"), 6, 6), 6, 6);
+    case kBeamBonds: {
+      const json end = {{"enum", {"start", "end"}}};
+      return {{"type", "object"},
+              {"propertyNames", {{"pattern", "^[A-Za-z0-9_.-]+$"}}},
+              {"additionalProperties", {{"anyOf", json::array({end, list_of(end, 1, 2)})}}}};
+    }
+    case kAttachments: {
+      // [body], [body, point] or [beam, its node].
+      const json point = {
+          {"anyOf", json::array({reference("vector"), reference("name"), {{"type", "integer"}}})}};
+      return list_of({{"type", "array"},
+                      {"prefixItems", json::array({reference("name"), point})},
+                      {"minItems", 1},
+                      {"maxItems", 2}},
+                     2, 0);
+    }
     case kPoints:
       return list_of(reference("vector"), 1, 0);
     case kIndices:
@@ -215,6 +233,7 @@ json definitions() {
   defs["joint"] = kinds_schema(joint_tables());
   defs["load"] = kinds_schema(load_tables());
   defs["material"] = kinds_schema(material_tables());
+  defs["section"] = kinds_schema(section_tables());
   defs["fibre"] = kinds_schema(fibre_tables());
   const json selection = {{"anyOf", json::array({{{"type", "string"}}, reference("selection")})}};
   defs["selections"] = {{"anyOf", json::array({selection, list_of(selection, 1, 0)})}};

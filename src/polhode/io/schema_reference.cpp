@@ -57,6 +57,12 @@ std::string form(const Field& field) {
       return "selection";
     case kBonds:
       return "map from bodies to selections";
+    case kMatrix6:
+      return "6 rows of 6 numbers";
+    case kBeamBonds:
+      return "map from bodies to start, end or both";
+    case kAttachments:
+      return "list of [body, point]";
     case kPoints:
       return "list of vectors";
     case kIndices:
