@@ -28,13 +28,14 @@ plt.rcParams.update({"font.size": 9, "axes.edgecolor": PALE, "axes.labelcolor": 
 class Motion:
     """Bodies and probes of a run."""
 
-    def __init__(self, name, *settings):
-        self.run = support.Run(ROOT / "examples" / name / "model.yaml", *settings)
+    def __init__(self, name, *settings, model="model.yaml"):
+        self.run = support.Run(ROOT / "examples" / name / model, *settings)
         with h5py.File(self.run.folder / "results.h5") as file:
             self.t = file["time"][:]
             names = [n.decode() for n in file["packed/bodies/names"][:]]
             count = len(self.t)
             place, turn = file["packed/bodies/position"][:count], file["packed/bodies/orientation"][:count]
+            self.beams = {n: beam["nodes/position"][:count] for n, beam in file.get("beams", {}).items()}
         self.place = {n: place[:, i] for i, n in enumerate(names)}
         self.turn = {n: rotation(turn[:, i]) for i, n in enumerate(names)}
 
@@ -338,6 +339,51 @@ def door_on_two_hinges():
     return figure
 
 
+def beam_roll_up():
+    figure, scene, plot = sheet(wide=1.4, flat=True)
+    m = Motion("beam_roll_up", "analysis.load_steps=8")
+    for line, alpha in fades(list(m.beams["strip"])):
+        draw(scene, line, BLUE, alpha, 1.6, marker="o", ms=3)
+    angle = np.linspace(0, 2 * np.pi, 200)
+    radius = 1 / (2 * np.pi)
+    draw(scene, np.c_[radius * np.sin(angle), radius * (1 - np.cos(angle))], INK, 0.8, 0.7, linestyle="--")
+    draw(scene, [[0, -0.06], [0, 0.06]], INK, 1, 3)
+    label(scene, "eight parts of the moment; dashed: the circle", "x [m]", "y [m]")
+    load, x = m.probe("tip")["t"], m.probe("tip")
+    part = np.linspace(1e-3, 1, 200) * 2 * np.pi
+    plot.plot(part / (2 * np.pi), np.sin(part) / part, color=PALE, linewidth=3, label="closed form")
+    plot.plot(part / (2 * np.pi), (1 - np.cos(part)) / part, color=PALE, linewidth=3)
+    plot.plot(load, x["x"], "o", color=BLUE, ms=4, label="x")
+    plot.plot(load, x["y"], "o", color=RED, ms=4, label="y")
+    label(plot, "end of the strip [m]", "part of the moment")
+    plot.legend(frameon=False)
+    return figure
+
+
+def flexible_four_bar():
+    figure, scene, plot = sheet(wide=1.4, flat=True, size=(9.6, 3.9))
+    m, s = Motion("flexible_four_bar"), Motion("flexible_four_bar", model="model_solid.yaml")
+    picks = frames(m, 0.0, 0.42, 7)
+    for k, alpha in fades(picks):
+        draw(scene, m.beams["coupler"][k], BLUE, alpha, 2.2)
+        b, c = m.place["eye_B"][k], m.place["eye_C"][k]
+        draw(scene, [[0, 0, 0], b], INK, alpha, 1.6, marker="o", ms=3)
+        draw(scene, [[1.2, 0, 0], c], GREEN, alpha, 1.6, marker="o", ms=3)
+        draw(scene, [b, c], PALE, alpha, 0.6, zorder=0)
+    label(scene, "every 70 ms: crank, coupler, rocker", "x [m]", "y [m]")
+
+    def bending(run):
+        b, c, middle = (np.array(run.points(n))[:, :2] for n in ("B", "C", "middle"))
+        along, arm = c - b, middle - b
+        return (along[:, 0] * arm[:, 1] - along[:, 1] * arm[:, 0]) / np.linalg.norm(along, axis=1)
+
+    plot.plot(m.t, 1e3 * bending(m.run), color=BLUE, label="beam, 16 elements")
+    plot.plot(s.t, 1e3 * bending(s.run), color=RED, linestyle="--", label="solid, 12 hex20")
+    label(plot, "bending of the coupler's middle [mm]")
+    plot.legend(frameon=False)
+    return figure
+
+
 def hero():
     """Polhodes: paths of the angular velocity on the ellipsoid of constant momentum. Free bodies with principal moments
     1, 2, 3 kg m^2 and one amount of angular momentum, let go with different energies."""
@@ -406,7 +452,7 @@ def save(figure, path, dpi=110, trim="tight"):
 
 
 EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, n_four_bar, andrews_squeezer, bricard,
-            flyball_governor, gyroscope, door_on_two_hinges)
+            flyball_governor, gyroscope, door_on_two_hinges, beam_roll_up, flexible_four_bar)
 
 
 def main():

@@ -192,7 +192,7 @@ TEST(BeamSystem, ReportsSectionForcesAndTensions) {
   m.analysis.step = 1e-3;
   m.analysis.duration = 1e-3;
   Simulation s(m);
-  const std::vector<double> tension = s.cable(0);
+  const std::vector<double> tension = s.cable(0).tension;
   ASSERT_EQ(tension.size(), 1u);
   EXPECT_DOUBLE_EQ(tension[0], 1e3);  // twice as long as free
   m.cables.clear();
@@ -201,7 +201,7 @@ TEST(BeamSystem, ReportsSectionForcesAndTensions) {
   m.analysis.duration = 60.0;
   Simulation hanging(m);
   ASSERT_EQ(hanging.run().end, RunEnd::finished);
-  const std::vector<Vec6> forces = hanging.beam(0);
+  const std::vector<Vec6> forces = hanging.beam(0).forces;
   ASSERT_EQ(forces.size(), 4u);
   for (int k = 0; k < 4; ++k)
     EXPECT_NEAR(forces[static_cast<std::size_t>(k)][0], 30.0 * (1.75 - 0.5 * k), 1e-4) << k;

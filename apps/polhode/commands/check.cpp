@@ -86,6 +86,38 @@ nlohmann::ordered_json solids_json(const Simulation& simulation) {
   return list;
 }
 
+nlohmann::ordered_json beams_json(const Model& model) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const BeamSpec& beam : model.beams)
+    list.push_back({{"name", beam.name},
+                    {"nodes", beam.node_count()},
+                    {"elements", beam.mesh.size()},
+                    {"section", beam.section.name},
+                    {"length", beam.length()},
+                    {"mass", beam.mass()}});
+  return list;
+}
+
+nlohmann::ordered_json cables_json(const Model& model) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const CableLineSpec& cable : model.cables)
+    list.push_back({{"name", cable.name},
+                    {"pieces", cable.pieces.size()},
+                    {"free_length", cable.length()},
+                    {"mass", cable.mass()}});
+  return list;
+}
+
+void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& rows) {
+  for (const BeamSpec& beam : model.beams)
+    rows.push_back(
+        {format("beam {}", beam.name), counted(beam.mesh.size(), "element", "elements"),
+         format("section {}, {:.6g} m, {:.6g} kg", beam.section.name, beam.length(), beam.mass())});
+  for (const CableLineSpec& cable : model.cables)
+    rows.push_back({format("cable {}", cable.name), counted(cable.pieces.size(), "piece", "pieces"),
+                    format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
+}
+
 TangentReport tangents_of(const Simulation& simulation) {
   const AnalysisSpec& analysis = simulation.model().analysis;
   const double dt = analysis.step.value_or(1e-3 * analysis.duration);
@@ -111,6 +143,8 @@ int check(const Options& options) {
                                    {"joints", simulation.model().joints.size()},
                                    {"loads", simulation.model().loads.size()},
                                    {"solids", solids_json(simulation)},
+                                   {"beams", beams_json(simulation.model())},
+                                   {"cables", cables_json(simulation.model())},
                                    {"constraint_rows", rank.rows},
                                    {"rank", rank.rank},
                                    {"redundant_rows", rank.redundant},
@@ -156,6 +190,7 @@ int check(const Options& options) {
                              solid.mass, solid.plan.volume, interfaces_text(simulation, i),
                              solid.plan.least_jacobian, solid.plan.least_element)});
     }
+    add_line_rows(simulation.model(), rows);
     print(table(rows));
     for (const std::string& note : notes) say("warning: " + note);
   }

@@ -13,6 +13,7 @@
 #include <polhode/io/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/beam_mesh.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
@@ -141,8 +142,12 @@ std::string describe(const Simulation& simulation) {
              {"order", format("{}", summary.order)}},
             "", false);
   if (!summary.narration.empty()) text += "\n" + summary.narration + "\n";
+  std::vector<BodySpec> bodies;  // without the nodes of beams and cables
+  const std::vector<bool> nodes = are_nodes(model);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!nodes[i]) bodies.push_back(model.bodies[i]);
   text += section("Bodies", {"name", "mass [kg]", "inertia xx yy zz [kg m^2]", "position [m]"},
-                  model.bodies, [](const BodySpec& b) -> std::vector<std::string> {
+                  bodies, [](const BodySpec& b) -> std::vector<std::string> {
                     if (b.fixed) return {b.name, "fixed", "", numbers(b.position)};
                     return {b.name, format("{:.6g}", b.mass), numbers(b.inertia.diagonal()),
                             numbers(b.position)};
@@ -172,6 +177,17 @@ std::string describe(const Simulation& simulation) {
                 spec.material,
                 spec.stress};
       });
+  text += section("Beams", {"name", "elements", "section", "mass [kg]"}, model.beams,
+                  [](const BeamSpec& beam) -> std::vector<std::string> {
+                    return {beam.name, format("{}", beam.mesh.size()), beam.section.name,
+                            format("{:.6g}", beam.mass())};
+                  });
+  text += section("Cables", {"name", "pieces", "free length [m]", "stiffness [N]", "mass [kg]"},
+                  model.cables, [](const CableLineSpec& cable) -> std::vector<std::string> {
+                    return {cable.name, format("{}", cable.pieces.size()),
+                            format("{:.6g}", cable.length()), format("{:.6g}", cable.stiffness),
+                            format("{:.6g}", cable.mass())};
+                  });
   return text;
 }
 
@@ -200,6 +216,13 @@ std::string describe_json(const Simulation& simulation) {
                       {"nodes", solid.node_count()},
                       {"mass", solid.mass}});
   }
+  nlohmann::ordered_json beams = nlohmann::ordered_json::array();
+  for (const BeamSpec& beam : model.beams)
+    beams.push_back(
+        {{"name", beam.name}, {"section", beam.section.name}, {"elements", beam.mesh.size()}});
+  nlohmann::ordered_json cables = nlohmann::ordered_json::array();
+  for (const CableLineSpec& cable : model.cables)
+    cables.push_back({{"name", cable.name}, {"pieces", cable.pieces.size()}});
   const nlohmann::ordered_json json = {{"title", model.title},
                                        {"moving_bodies", simulation.system().body_count()},
                                        {"constraint_rows", simulation.system().rows()},
@@ -209,7 +232,9 @@ std::string describe_json(const Simulation& simulation) {
                                        {"bodies", bodies},
                                        {"joints", joints},
                                        {"loads", loads},
-                                       {"solids", solids}};
+                                       {"solids", solids},
+                                       {"beams", beams},
+                                       {"cables", cables}};
   return json.dump(2) + "\n";
 }
 

@@ -191,8 +191,9 @@ bool BeamElement::acceptable(const PairStep& step) const {
   return beam_angle(invariants_n1(step)) <= kLargestBeamAngle;
 }
 
-Vec6 BeamElement::section_forces(const PairStep& step) const {
-  return C_ * (beam_strain_values(invariants_n1(step), L_) - e_ref_);
+Vec6 BeamElement::section_forces(const PairStep& step) const { return C_ * strains(step); }
+Vec6 BeamElement::strains(const PairStep& step) const {
+  return beam_strain_values(invariants_n1(step), L_) - e_ref_;
 }
 
 /// ė at t_{n+1} as the bodies move.

@@ -70,6 +70,8 @@ class BeamElement : public InteractionItem {
 
   /// (N, V_y, V_z, M_x, M_y, M_z) of the elastic strains at t_{n+1}, section axes [N, N m].
   [[nodiscard]] Vec6 section_forces(const PairStep& step) const;
+  /// (Γ, K) less those free of stress, at t_{n+1} [-, 1/m].
+  [[nodiscard]] Vec6 strains(const PairStep& step) const;
   [[nodiscard]] double length() const { return L_; }
 
  private:

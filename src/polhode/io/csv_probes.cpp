@@ -143,6 +143,15 @@ std::vector<std::string> solid_header(bool interface) {
   return header;
 }
 
+std::vector<std::string> beam_header() {
+  std::vector<std::string> header{"t [s]"};
+  extend(header, vector_header("f", "N"));
+  extend(header, vector_header("m", "N m"));
+  extend(header, vector_header("strain ", "-"));
+  extend(header, vector_header("curvature ", "1/m"));
+  return header;
+}
+
 /// What a probe records, and the names of its columns.
 struct Target {
   int index = 0;
@@ -175,9 +184,25 @@ Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
   return target;
 }
 
+/// An element of a beam or a piece of a cable.
+Target find_line_target(const Model& model, const ProbeSpec& spec) {
+  const bool beam = spec.kind == "beam";
+  const int index = beam ? model.beam_index(spec.target) : model.cable_index(spec.target);
+  const auto k = static_cast<std::size_t>(index);
+  const std::size_t count = beam ? model.beams[k].mesh.size() : model.cables[k].pieces.size();
+  if (spec.element < 0 || static_cast<std::size_t>(spec.element) >= count)
+    throw InputError(
+        format("output.probes.{}.element", spec.name),
+        format("{} {} does not exist", beam ? "element" : "piece", spec.element),
+        format("'{}' has {} {}; the first is 0", spec.target, count, beam ? "elements" : "pieces"));
+  if (beam) return {.index = index, .header = beam_header()};
+  return {.index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
+}
+
 Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
   const Model& model = simulation.model();
   const std::string where = format("output.probes.{}", spec.name);
+  if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
   if (spec.kind == "solid") return find_solid_target(simulation, spec);
   if (spec.kind == "load") {
     const int load = model.load_index(spec.target);
@@ -189,7 +214,7 @@ Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
     throw InputError(where, format("records a '{}', which is not known", spec.kind),
-                     "Name a body, a joint, a load or a solid");
+                     "Name a body, a joint, a load, a solid, a beam or a cable");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which stands still", "Name a body");
@@ -290,6 +315,15 @@ std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulat
   } else if (probe.spec.kind == "load") {
     const std::vector<double> values = simulation.load(probe.index);
     row.insert(row.end(), values.begin(), values.end());
+  } else if (probe.spec.kind == "beam") {
+    const BeamReport beam = simulation.beam(probe.index);
+    const auto k = static_cast<std::size_t>(probe.spec.element);
+    row.insert(row.end(), beam.forces[k].begin(), beam.forces[k].end());
+    row.insert(row.end(), beam.strains[k].begin(), beam.strains[k].end());
+  } else if (probe.spec.kind == "cable") {
+    const CableReport cable = simulation.cable(probe.index);
+    const auto k = static_cast<std::size_t>(probe.spec.element);
+    row.insert(row.end(), {cable.tension[k], cable.length[k]});
   } else if (probe.spec.kind == "solid") {
     for (const Vec3& x : simulation.solid_point(probe.index, probe.point)) extend(row, x);
   } else {

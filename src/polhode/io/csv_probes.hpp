@@ -51,7 +51,7 @@ class CsvProbes {
  private:
   struct Probe {
     ProbeSpec spec;
-    int index;          ///< Of the body, joint, load or solid.
+    int index;          ///< Of the body, joint, load, solid, beam or cable.
     SolidPoint point;   ///< Of a solid.
     int interface;      ///< Of a solid; -1: none.
     double every;       ///< [s]; 0: every step.

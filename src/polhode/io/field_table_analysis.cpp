@@ -164,7 +164,7 @@ const FieldTable& output_fields() {
 const FieldTable& probe_fields() {
   static const FieldTable table{
       "probe",
-      "One of body, joint, load, solid.",
+      "One of body, joint, load, solid, beam, cable.",
       {
           {.name = "body",
            .kind = kBody,
@@ -198,6 +198,17 @@ const FieldTable& probe_fields() {
            .kind = kText,
            .meaning = "Of a solid: the bonded body, or the prescribed nodes, whose force and "
                       "moment are recorded."},
+          {.name = "beam",
+           .kind = kText,
+           .meaning = "Record section forces and strains of an element of this beam."},
+          {.name = "cable",
+           .kind = kText,
+           .meaning = "Record tension and length of a piece of this cable."},
+          {.name = "element",
+           .kind = kInteger,
+           .meaning = "The element of the beam, or piece of the cable; the first is 0.",
+           .standard = "0",
+           .range = kNotNegative},
           {.name = "every",
            .kind = kNumber,
            .dimension = kTime,

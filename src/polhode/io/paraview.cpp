@@ -10,6 +10,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/body/read_surface.hpp>
 #include <polhode/body/shapes.hpp>
+#include <polhode/model/beam_mesh.hpp>
 
 namespace polhode {
 
@@ -125,8 +126,11 @@ std::string vtp(const std::vector<BodyPicture>& pictures, const std::vector<Body
 
 std::vector<BodyPicture> body_pictures(const Model& model, double size) {
   std::vector<BodyPicture> pictures;
-  for (const BodySpec& body : model.bodies)
-    pictures.push_back({body.name, picture_of(body, model, size)});
+  const std::vector<bool> nodes = are_nodes(model);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodySpec& body = model.bodies[i];
+    pictures.push_back({body.name, nodes[i] ? TriangleSurface{} : picture_of(body, model, size)});
+  }
   return pictures;
 }
 

@@ -20,7 +20,8 @@ struct BodyPicture {
 };
 
 /// Pictures of the bodies of a model. A moving body without shapes is drawn as the box that has
-/// its mass and inertia, a point mass as a small cube. Of a plane, which has no
+/// its mass and inertia, a point mass as a small cube, nodes of beams and cables not at all
+/// (LinesWriter draws these). Of a plane, which has no
 /// end, a square about its point is drawn that reaches beyond all bodies at the start.
 /// @param size  Extent of the mechanism, which the cube's size follows [m].
 /// @throws InputError if a mesh file cannot be read.
@@ -72,6 +73,31 @@ class SolidsWriter {
   ParaviewSeries series_;
   std::vector<std::string> solids_;
   std::vector<const Mesh*> meshes_;
+};
+
+/// Beams and cables for ParaView, as a ParaviewSeries of .vtp files with a line for each element or
+/// piece. Point data: "velocity" [m/s], "radius" [m], of a circle of about the section's size, for
+/// the filter Tube, and "y_axis", that of the section. Cell data: "force" (N, V_y, V_z) [N],
+/// "moment" [N m], "strain" [-] and "curvature" [1/m] along section axes, of cables the tension as
+/// N, and "line" (index); the names of the beams, then the cables, are field data "line_names".
+class LinesWriter {
+ public:
+  /// @param size  Extent of the mechanism, that thickness follows where none is known [m].
+  /// @param keep  Continue existing files: times up to that one stay listed.
+  /// @throws FileError
+  LinesWriter(const std::string& folder, const std::string& name, const Model& model, double size,
+              std::optional<double> keep = std::nullopt);
+
+  /// @param beams, cables  All of the model. @throws FileError
+  void append(double t, const std::vector<BeamReport>& beams,
+              const std::vector<CableReport>& cables);
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> names_;
+  std::vector<double> radii_;  ///< Of the beams, then the cables [m].
 };
 
 }  // namespace polhode

@@ -95,20 +95,44 @@ void read_analysis(ReadContext& context, const SourceNode& node, const Place& pl
 
 namespace {
 
-/// The name of a joint or load that a probe records.
+/// The name of a thing that a probe records; known are those in `names`.
 std::string read_target(ReadContext& context, Section& section, const std::string& kind,
-                        const std::unordered_map<std::string, int>& known,
                         const std::vector<std::string>& names) {
   const auto name = section.text(kind);
   if (!name) return {};
-  if (!known.contains(*name)) {
-    const std::string list =
-        names.empty() ? format("The model has no {}s.", kind)
-                      : format("{}s: {}.", kind == "joint" ? "Joint" : "Load", name_list(names));
+  if (std::find(names.begin(), names.end(), *name) == names.end()) {
+    std::string title = kind;
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    const std::string list = names.empty() ? format("The model has no {}s.", kind)
+                                           : format("{}s: {}.", title, name_list(names));
     context.fault(*section.find(kind), section.path(kind),
                   format("unknown {} {}", kind, quote(*name)), did_you_mean(*name, names) + list);
   }
   return *name;
+}
+
+/// An element of a beam or a piece of a cable.
+void read_line_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  std::vector<std::string> names;
+  const Model& model = context.model;
+  std::size_t count = 0;
+  const bool beam = probe.kind == "beam";
+  const auto take = [&](const std::string& name, std::size_t pieces) {
+    names.push_back(name);
+    if (name == probe.target) count = pieces;
+  };
+  if (const SourceNode* node = section.find(probe.kind); node->is_text()) probe.target = node->text;
+  for (const BeamSpec& b : model.beams)
+    if (beam) take(b.name, b.mesh.size());
+  for (const CableLineSpec& c : model.cables)
+    if (!beam) take(c.name, c.pieces.size());
+  read_target(context, section, probe.kind, names);
+  probe.element = section.integer("element").value_or(0);
+  if (count > 0 && static_cast<std::size_t>(std::max(0, probe.element)) >= count)
+    section.fault(
+        "element",
+        format("is {}, but the last of {} is {}", probe.element, quote(probe.target), count - 1),
+        "The first is 0.");
 }
 
 /// A point, a node or an interface of a solid.
@@ -132,7 +156,9 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
   for (const BondSpec& bond : spec.bonded) names.push_back(context.model.body_name(bond.body));
   for (const PrescribedSpec& prescribed : spec.prescribed) names.push_back(prescribed.name);
   probe.reaction_of = *interface;
-  if (std::find(names.begin(), names.end(), *interface) == names.end())
+  if (const auto body = context.bodies.find(*interface); body != context.bodies.end())
+    probe.reaction_of = context.model.body_name(body->second);  // mast.end has a number, too
+  if (std::find(names.begin(), names.end(), probe.reaction_of) == names.end())
     section.fault(
         "interface",
         format("the solid {} has no interface {}", quote(spec.name), quote(*interface)),
@@ -144,14 +170,14 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
   Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
   if (!node.is_map()) return;
   int targets = 0;
-  for (const char* kind : {"body", "joint", "load", "solid"}) {
+  for (const char* kind : {"body", "joint", "load", "solid", "beam", "cable"}) {
     if (!section.has(kind)) continue;
     probe.kind = kind;
     ++targets;
   }
   if (targets != 1) {
     section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
-                  "Give one of: body, joint, load, solid.");
+                  "Give one of: body, joint, load, solid, beam, cable.");
     return;
   }
   probe.every = section.number("every");
@@ -161,6 +187,9 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
   for (const char* key : {"node", "interface"})
     if (section.has(key) && probe.kind != "solid")
       section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a solid.");
+  if (section.has("element") && probe.kind != "beam" && probe.kind != "cable")
+    section.fault("element", format("does not go with '{}'", probe.kind),
+                  "It belongs to a beam or a cable.");
   if (section.has("axes") && probe.kind != "joint")
     section.fault("axes", format("does not go with '{}'", probe.kind),
                   "Axes belong to a joint's reaction.");
@@ -178,10 +207,12 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
     if (point) probe.point = *point - spec.com;
   } else if (probe.kind == "solid") {
     read_solid_probe(context, section, probe);
+  } else if (probe.kind == "beam" || probe.kind == "cable") {
+    read_line_probe(context, section, probe);
   } else if (probe.kind == "joint") {
-    probe.target = read_target(context, section, "joint", context.joints, context.joint_names());
+    probe.target = read_target(context, section, "joint", context.joint_names());
   } else {
-    probe.target = read_target(context, section, "load", context.loads, context.load_names());
+    probe.target = read_target(context, section, "load", context.load_names());
   }
 }
 

@@ -160,6 +160,26 @@ class SectionReader {
   Section section_;
 };
 
+/// A fault found while a beam or cable was divided, at the key that it names.
+void tell(Section& section, const InputError& e) {
+  const std::string key = e.where().substr(std::min(e.where().size(), section.path("").size()));
+  if (section.has(key))
+    section.fault(key, e.what_is_wrong(), e.mend() + ".");
+  else
+    section.fault(e.what_is_wrong(), e.mend() + ".");
+}
+
+/// Makes the names of bodies and joints known that came with a beam or cable.
+void name_parts(ReadContext& context, std::size_t bodies, std::size_t joints, bool sound) {
+  const Model& model = context.model;
+  for (std::size_t k = bodies; k < model.bodies.size(); ++k) {
+    context.bodies.emplace(model.bodies[k].name, static_cast<int>(k));
+    context.body_is_sound.push_back(sound);
+  }
+  for (std::size_t k = joints; k < model.joints.size(); ++k)
+    context.joints.emplace(model.joints[k].name, static_cast<int>(k));
+}
+
 class BeamReader {
  public:
   BeamReader(ReadContext& context, const SourceNode& node, BeamSpec& beam)
@@ -179,15 +199,27 @@ class BeamReader {
     read_section();
     if (const auto up = section_.direction("up")) beam_.up = *up;
     if (const SourceNode* bonded = section_.find("bonded")) read_bonds(*bonded);
-    beam_.velocity = section_.vector("velocity").value_or(Vec3::Zero());
-    beam_.angular_velocity = section_.vector("angular_velocity").value_or(Vec3::Zero());
+    read_velocities();
     beam_.consistent_mass = section_.number("consistent_mass").value_or(0.5);
     beam_.residual_bending_flexibility =
         section_.boolean("residual_bending_flexibility").value_or(true);
-    if (context_.diagnostics.size() == before) mesh();
+    if (context_.diagnostics.size() != before || !section_is_sound_ || !mesh()) stand_in();
   }
 
  private:
+  void read_velocities() {
+    const auto v = section_.vector("velocity"), omega = section_.vector("angular_velocity");
+    if (v) beam_.velocity = *v;
+    if (omega) beam_.angular_velocity = *omega;
+    if (v || omega || beam_.bonds.empty() || beam_.points.empty()) return;
+    const int holder = beam_.bonds.front().body;
+    if (holder == kGround) return;
+    const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(holder)];
+    beam_.angular_velocity = body.angular_velocity;
+    beam_.velocity =
+        body.velocity + body.angular_velocity.cross(beam_.points.front() - body.position);
+  }
+
   std::optional<std::vector<Vec3>> read_points(const char* name) {
     const SourceNode* node = section_.find(name);
     if (!node) return std::nullopt;
@@ -219,7 +251,8 @@ class BeamReader {
                                                       : "Sections: " + name_list(names) + "."));
       return;
     }
-    beam_.section = found->second;
+    section_is_sound_ = found->second.has_value();
+    if (section_is_sound_) beam_.section = *found->second;
   }
 
   void read_bonds(const SourceNode& node) {
@@ -254,28 +287,44 @@ class BeamReader {
     }
   }
 
-  void mesh() {
-    Model& model = context_.model;
-    const std::size_t bodies = model.bodies.size(), joints = model.joints.size();
+  bool mesh() {
+    const std::size_t bodies = context_.model.bodies.size(), joints = context_.model.joints.size();
     try {
-      add_beam(model, beam_);
+      add_beam(context_.model, beam_);
     } catch (const InputError& e) {
-      section_.fault(e.what_is_wrong(), e.mend() + ".");
-      return;
+      tell(section_, e);
+      return false;
     }
-    for (std::size_t k = bodies; k < model.bodies.size(); ++k) {
-      context_.bodies.emplace(model.bodies[k].name, static_cast<int>(k));
-      context_.body_is_sound.push_back(true);
-    }
-    context_.bodies.emplace(beam_.name + ".start", static_cast<int>(bodies));
-    context_.bodies.emplace(beam_.name + ".end", static_cast<int>(model.bodies.size()) - 1);
-    for (std::size_t k = joints; k < model.joints.size(); ++k)
-      context_.joints.emplace(model.joints[k].name, static_cast<int>(k));
+    name_parts(context_, bodies, joints, true);
+    name_ends(bodies);
+    return true;
   }
 
+  /// Bodies with the names of the nodes, so that who names them hears of no second fault.
+  void stand_in() {
+    const std::size_t bodies = context_.model.bodies.size();
+    beam_.first_node = static_cast<int>(bodies);
+    beam_.mesh.resize(static_cast<std::size_t>(std::clamp(beam_.elements, 1, kMostStandIns)));
+    for (int k = 0; k < beam_.node_count(); ++k) {
+      context_.model.bodies.emplace_back();
+      context_.model.bodies.back().name = format("{}.{}", beam_.name, k);
+    }
+    context_.model.beams.push_back(beam_);
+    name_parts(context_, bodies, context_.model.joints.size(), false);
+    name_ends(bodies);
+  }
+
+  void name_ends(std::size_t first) {
+    context_.bodies.emplace(beam_.name + ".start", static_cast<int>(first));
+    context_.bodies.emplace(beam_.name + ".end",
+                            static_cast<int>(context_.model.bodies.size()) - 1);
+  }
+
+  static constexpr int kMostStandIns = 1000;
   ReadContext& context_;
   BeamSpec& beam_;
   Section section_;
+  bool section_is_sound_ = true;
 };
 
 class CableReader {
@@ -343,20 +392,14 @@ class CableReader {
   }
 
   void divide() {
-    Model& model = context_.model;
-    const std::size_t bodies = model.bodies.size(), joints = model.joints.size();
+    const std::size_t bodies = context_.model.bodies.size(), joints = context_.model.joints.size();
     try {
-      add_cable(model, cable_);
+      add_cable(context_.model, cable_);
     } catch (const InputError& e) {
-      section_.fault(e.what_is_wrong(), e.mend() + ".");
+      tell(section_, e);
       return;
     }
-    for (std::size_t k = bodies; k < model.bodies.size(); ++k) {
-      context_.bodies.emplace(model.bodies[k].name, static_cast<int>(k));
-      context_.body_is_sound.push_back(true);
-    }
-    for (std::size_t k = joints; k < model.joints.size(); ++k)
-      context_.joints.emplace(model.joints[k].name, static_cast<int>(k));
+    name_parts(context_, bodies, joints, true);
   }
 
   ReadContext& context_;
@@ -386,11 +429,15 @@ void read_sections(ReadContext& context, const SourceNode& node) {
     SectionSpec section;
     section.name = key.name;
     section.place = context.tree.place_of(key, node.children[k]);
+    const std::size_t before = context.diagnostics.size();
     std::string type;
     if (const FieldTable* table = read_kind(context, node.children[k], section.place,
                                             "sections." + key.name, section_tables(), type))
       SectionReader(context, node.children[k], section, type, *table).read();
-    context.sections.emplace(section.name, std::move(section));
+    // A fault of its material is told there, and leaves the section without mass.
+    const bool sound =
+        context.diagnostics.size() == before && section.section.mass_per_length > 0.0;
+    context.sections.emplace(key.name, sound ? std::optional(std::move(section)) : std::nullopt);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -24,7 +25,8 @@ struct ReadContext {
   Model model{};
   std::unordered_map<std::string, int> bodies{}, joints{}, loads{};  ///< Index by name.
   std::unordered_map<std::string, int> materials{}, solids{};        ///< Likewise.
-  std::unordered_map<std::string, SectionSpec> sections{};           ///< By name.
+  /// By name; nothing if a fault was found.
+  std::map<std::string, std::optional<SectionSpec>> sections{};
   std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
 

@@ -144,29 +144,37 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
   const int order = model.analysis.order.value_or(2);
-  if (order > 2) {
-    for (const SolidSpec& solid : model.solids) {
-      const auto material = context.materials.find(solid.material);
-      if (material == context.materials.end() ||
-          !model.materials[static_cast<std::size_t>(material->second)].viscosity.any())
-        continue;
-      context.fault(
-          *root.find("analysis")->find("order"), "analysis.order",
-          format("order {} stands beside the viscosity of {}", order, quote(solid.material)),
-          "Orders above 2 go back in time within a step, where viscosity would feed "
-          "energy in: use order 2.");
-      break;
-    }
-    for (const LoadSpec& load : model.loads) {
-      const auto damping = load.parameters.find("damping");
-      if (damping == load.parameters.end() || damping->second <= 0.0) continue;
-      const SourceNode& value = *root.find("analysis")->find("order");
-      context.fault(value, "analysis.order",
-                    format("order {} stands beside the damper in {}", order, quote(load.name)),
-                    "Orders above 2 go back in time within a step, where a damper would feed "
-                    "energy in: use order 2.");
-      break;
-    }
+  if (order <= 2) return;
+  const auto refuse = [&](const std::string& what, const char* named) {
+    context.fault(*root.find("analysis")->find("order"), "analysis.order",
+                  format("order {} stands beside {}", order, what),
+                  format("Orders above 2 go back in time within a step, where {} would feed "
+                         "energy in: use order 2.",
+                         named));
+  };
+  for (const SolidSpec& solid : model.solids) {
+    const auto material = context.materials.find(solid.material);
+    if (material == context.materials.end() ||
+        !model.materials[static_cast<std::size_t>(material->second)].viscosity.any())
+      continue;
+    refuse("the viscosity of " + quote(solid.material), "viscosity");
+    break;
+  }
+  for (const BeamSpec& beam : model.beams) {
+    if (!(beam.section.relaxation_time > 0.0)) continue;
+    refuse("the viscosity of the beam " + quote(beam.name), "viscosity");
+    break;
+  }
+  for (const CableLineSpec& cable : model.cables) {
+    if (!(cable.damping > 0.0)) continue;
+    refuse("the damping of the cable " + quote(cable.name), "a damper");
+    break;
+  }
+  for (const LoadSpec& load : model.loads) {
+    const auto damping = load.parameters.find("damping");
+    if (damping == load.parameters.end() || damping->second <= 0.0) continue;
+    refuse("the damper in " + quote(load.name), "a damper");
+    break;
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// Keys of the file format that later versions read.
 bool is_planned(const std::string& key) {
-  for (const char* planned : {"beams", "cables", "sections", "contacts"})
+  for (const char* planned : {"contacts"})
     if (key == planned) return true;
   return false;
 }
@@ -77,8 +77,10 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
     const std::string key_path = path_.empty() ? key.name : path_ + "." + key.name;
     const Place key_place = context.tree.place_of(key, node.children[k]);
     if (path_.empty() && is_planned(key.name)) {
-      context.diagnostics.add(key_place, key_path, "is not supported by this version",
-                              "Leave it out; this version reads bodies, joints, loads and solids.");
+      context.diagnostics.add(
+          key_place, key_path, "is not supported by this version",
+          "Leave it out; this version reads bodies, joints, loads, solids, beams "
+          "and cables.");
       continue;
     }
     if (table.find(key.name)) continue;

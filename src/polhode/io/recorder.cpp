@@ -16,6 +16,7 @@ struct Recorder::Impl {
   std::optional<ResultsFile> results;
   std::optional<ParaviewWriter> paraview;
   std::optional<SolidsWriter> solids;
+  std::optional<LinesWriter> lines;
   std::optional<CsvProbes> probes;
   double last_frame = -std::numeric_limits<double>::infinity();
   std::size_t frames = 0;
@@ -52,6 +53,10 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     impl_->solids.emplace(folder + "/paraview", "solids", std::move(names), std::move(meshes),
                           keep);
   }
+  const Model& model = simulation.model();
+  if (output.paraview && !(model.beams.empty() && model.cables.empty()))
+    impl_->lines.emplace(folder + "/paraview", "lines", model, simulation.system().length_scale(),
+                         keep);
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
 
@@ -73,6 +78,15 @@ void Recorder::frame(const Simulation& simulation) {
       reports.push_back(simulation.solid(i));
     impl_->solids->append(simulation.time(), reports);
   }
+  if (impl_->lines) {
+    std::vector<BeamReport> beams;
+    for (std::size_t i = 0; i < simulation.model().beams.size(); ++i)
+      beams.push_back(simulation.beam(static_cast<int>(i)));
+    std::vector<CableReport> cables;
+    for (std::size_t i = 0; i < simulation.model().cables.size(); ++i)
+      cables.push_back(simulation.cable(static_cast<int>(i)));
+    impl_->lines->append(simulation.time(), beams, cables);
+  }
   ++impl_->frames;
 }
 
@@ -84,6 +98,7 @@ void Recorder::close() {
   if (impl_->results) impl_->results->close();
   if (impl_->paraview) impl_->paraview->close();
   if (impl_->solids) impl_->solids->close();
+  if (impl_->lines) impl_->lines->close();
   if (impl_->probes) impl_->probes->flush();
 }
 

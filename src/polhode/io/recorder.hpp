@@ -10,7 +10,8 @@
 namespace polhode {
 
 /// Writes what a model's `output` asks for into one folder: results.h5, probes/<name>.csv,
-/// paraview/results.pvd and, of deformable solids, paraview/solids.pvd.
+/// paraview/results.pvd and, of deformable solids, paraview/solids.pvd, of beams and cables
+/// paraview/lines.pvd.
 class Recorder {
  public:
   /// @param simulation  Outlives the recorder.

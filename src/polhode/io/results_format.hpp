@@ -34,6 +34,11 @@ inline constexpr int kMostNamed = 200;
 /// solids/<name>/interfaces/<body>/force (frames, 3).
 inline constexpr const char* kSolids = "/solids";
 
+/// Beams and cables by name: beams/<name>/nodes/position is (frames, nodes, 3),
+/// beams/<name>/elements/force (frames, elements, 3), cables/<name>/tension (frames, pieces).
+inline constexpr const char* kBeams = "/beams";
+inline constexpr const char* kCables = "/cables";
+
 inline constexpr const char* kEnergy = "/energy";
 inline constexpr const char* kMomentum = "/momentum";
 inline constexpr const char* kSolver = "/solver";

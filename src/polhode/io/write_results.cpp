@@ -6,6 +6,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/io/results_format.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/model/beam_mesh.hpp>
 
 namespace polhode {
 
@@ -41,6 +42,12 @@ constexpr Quantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
                                            {"principal_stretches", 3, "-"},
                                            {"strain_energy_density", 1, "J/m^3"}};
 
+constexpr Quantity kBeamNodeQuantities[] = {
+    {"position", 3, "m"}, {"orientation", 4, "-"}, {"velocity", 3, "m/s"}};
+constexpr Quantity kBeamElementQuantities[] = {
+    {"force", 3, "N"}, {"moment", 3, "N m"}, {"strain", 3, "-"}, {"curvature", 3, "1/m"}};
+constexpr Quantity kPieceQuantities[] = {{"tension", 1, "N"}, {"length", 1, "m"}};
+
 struct FilePlan {
   std::vector<Channel> channels;
   std::vector<ChannelView> views;
@@ -48,6 +55,14 @@ struct FilePlan {
   void add(const std::string& group, const Quantity& q, std::vector<std::size_t> dims,
            bool integer = false) {
     channels.push_back({join(group, q.name), std::move(dims), q.unit, integer});
+  }
+  /// Quantities of `rows` things each.
+  void add_all(const std::string& group, std::span<const Quantity> quantities, std::size_t rows) {
+    for (const Quantity& q : quantities) {
+      std::vector<std::size_t> dims{rows};
+      if (q.size > 1) dims.push_back(q.size);
+      add(group, q, std::move(dims));
+    }
   }
   void view(const char* group, const std::string& owner, const Quantity& q, std::size_t first,
             std::size_t count, bool squeeze) {
@@ -80,21 +95,26 @@ std::string part(const std::string& solid, const std::string& name) {
 }
 
 void plan_solids(const ResultsLayout& layout, FilePlan& p) {
-  const auto add = [&](const std::string& group, std::span<const Quantity> quantities,
-                       std::size_t rows) {
-    for (const Quantity& q : quantities) {
-      std::vector<std::size_t> dims{rows};
-      if (q.size > 1) dims.push_back(q.size);
-      p.add(group, q, std::move(dims));
-    }
-  };
   for (const auto& solid : layout.solids) {
-    add(part(solid.name, "nodes"), kNodeQuantities, solid.mesh->nodes.size());
-    add(part(solid.name, "elements"), kElementQuantities,
-        static_cast<std::size_t>(solid.mesh->element_count()));
+    p.add_all(part(solid.name, "nodes"), kNodeQuantities, solid.mesh->nodes.size());
+    p.add_all(part(solid.name, "elements"), kElementQuantities,
+              static_cast<std::size_t>(solid.mesh->element_count()));
     for (const std::string& interface : solid.interfaces)
       for (const Quantity& q : kReactions)
         p.add(part(solid.name, "interfaces/" + interface), q, {q.size});
+  }
+}
+
+void plan_lines(const ResultsLayout& layout, FilePlan& p) {
+  for (const auto& beam : layout.beams) {
+    const std::string group = join(results::kBeams, beam.name);
+    p.add_all(join(group, "nodes"), kBeamNodeQuantities, beam.reference.size());
+    p.add_all(join(group, "elements"), kBeamElementQuantities, beam.reference.size() - 1);
+  }
+  for (const auto& cable : layout.cables) {
+    const std::string group = join(results::kCables, cable.name);
+    p.add(group, {"position", 3, "m"}, {cable.pieces + 1, 3});
+    p.add_all(group, kPieceQuantities, cable.pieces);
   }
 }
 
@@ -104,13 +124,15 @@ FilePlan plan(const ResultsLayout& layout) {
   FilePlan p;
   const std::size_t bodies = layout.bodies.size();
   const std::size_t joints = layout.joints.size();
-  const bool named = bodies + joints + layout.loads.size() <= r::kMostNamed;
+  std::size_t own_views = joints + layout.loads.size();
+  for (std::size_t i = 0; i < bodies; ++i) own_views += layout.is_node(i) ? 0 : 1;
+  const bool named = own_views <= r::kMostNamed;
   p.channels.push_back({r::kTime, {}, "s", false});
   for (const Quantity& q : kBodyQuantities) {
     if (bodies == 0) break;
     p.add(r::kPackedBodies, q, {bodies, q.size});
     for (std::size_t i = 0; named && i < bodies; ++i)
-      p.view(r::kBodies, layout.bodies[i], q, i, 1, true);
+      if (!layout.is_node(i)) p.view(r::kBodies, layout.bodies[i], q, i, 1, true);
   }
   for (const Quantity& q : kReactions) {
     if (joints == 0) break;
@@ -138,6 +160,7 @@ FilePlan plan(const ResultsLayout& layout) {
   p.add(r::kSolver, {"iterations", 1, "-"}, {}, true);
   p.add(r::kSolver, {"rejected", 1, "-"}, {}, true);
   plan_solids(layout, p);
+  plan_lines(layout, p);
   return p;
 }
 
@@ -158,6 +181,11 @@ void write_mesh(Hdf5File& file, const ResultsLayout::SolidEntry& solid) {
 Hdf5File create(const std::string& path, const ResultsLayout& layout) {
   FilePlan p = plan(layout);
   return {path, std::move(p.channels), p.views};
+}
+
+void add_quaternion(std::vector<double>& numbers, const Quat& q) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation.
+  for (double x : {q.w(), q.x(), q.y(), q.z()}) numbers.push_back(sign * x);
 }
 
 std::string lines(const std::vector<std::string>& list) {
@@ -196,6 +224,15 @@ ResultsLayout results_layout(const Simulation& simulation) {
     layout.solids.push_back(
         {model.solids[i].name, &plan.mesh, plan.start, simulation.interfaces(static_cast<int>(i))});
   }
+  layout.nodes = are_nodes(model);
+  for (const BeamSpec& beam : model.beams) {
+    layout.beams.push_back({beam.name, {}});
+    for (int k = 0; k < beam.node_count(); ++k)
+      layout.beams.back().reference.push_back(
+          model.bodies[static_cast<std::size_t>(beam.first_node + k)].position);
+  }
+  for (const CableLineSpec& cable : model.cables)
+    layout.cables.push_back({cable.name, cable.pieces.size()});
   return layout;
 }
 
@@ -228,6 +265,10 @@ ResultsFrame results_frame(const Simulation& simulation) {
     const auto count = static_cast<int>(simulation.interfaces(i).size());
     for (int k = 0; k < count; ++k) frame.interfaces.push_back(simulation.interface_reaction(i, k));
   }
+  for (int i = 0; i < static_cast<int>(model.beams.size()); ++i)
+    frame.beams.push_back(simulation.beam(i));
+  for (int i = 0; i < static_cast<int>(model.cables.size()); ++i)
+    frame.cables.push_back(simulation.cable(i));
   frame.balance = simulation.balance();
   const State& state = simulation.state();
   frame.dt = state.dt_last;
@@ -252,6 +293,8 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
     next += joint.coordinates;
   }
   for (const auto& solid : layout.solids) write_mesh(file_, solid);
+  for (const auto& beam : layout.beams)
+    file_.vectors(format("{}/{}/nodes/reference", r::kBeams, beam.name), beam.reference, "m");
   file_.names(join(r::kPackedBodies, "names"), layout.bodies);
   file_.names(join(r::kPackedJoints, "names"), joints);
   file_.names(join(r::kPackedJoints, "types"), types);
@@ -306,10 +349,7 @@ void ResultsFile::append(const ResultsFrame& frame) {
   };
   scalar(frame.t);
   vectors(frame.position);
-  for (const Quat& q : frame.orientation) {
-    const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation.
-    for (double x : {q.w(), q.x(), q.y(), q.z()}) scalar(sign * x);
-  }
+  for (const Quat& q : frame.orientation) add_quaternion(numbers_, q);
   vectors(frame.velocity);
   vectors(frame.angular_velocity);
   vectors(frame.force);
@@ -326,6 +366,7 @@ void ResultsFile::append(const ResultsFrame& frame) {
   for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
     scalar(static_cast<double>(x));
   add_solids(frame);
+  add_lines(frame);
   file_.append(numbers_);
 }
 
@@ -352,6 +393,29 @@ void ResultsFile::add_solids(const ResultsFrame& frame) {
       vector(frame.interfaces[next].force);
       vector(frame.interfaces[next++].moment);
     }
+  }
+}
+
+void ResultsFile::add_lines(const ResultsFrame& frame) {
+  const auto vectors = [&](const std::vector<Vec3>& list) {
+    for (const Vec3& x : list) numbers_.insert(numbers_.end(), x.begin(), x.end());
+  };
+  const auto halves = [&](const std::vector<Vec6>& list) {
+    for (const Eigen::Index first : {0, 3})
+      for (const Vec6& x : list)
+        numbers_.insert(numbers_.end(), x.data() + first, x.data() + first + 3);
+  };
+  for (const BeamReport& beam : frame.beams) {
+    vectors(beam.position);
+    for (const Quat& q : beam.orientation) add_quaternion(numbers_, q);
+    vectors(beam.velocity);
+    halves(beam.forces);
+    halves(beam.strains);
+  }
+  for (const CableReport& cable : frame.cables) {
+    vectors(cable.position);
+    numbers_.insert(numbers_.end(), cable.tension.begin(), cable.tension.end());
+    numbers_.insert(numbers_.end(), cable.length.begin(), cable.length.end());
   }
 }
 

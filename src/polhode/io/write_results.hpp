@@ -36,14 +36,26 @@ struct ResultsLayout {
     std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
     std::vector<std::string> interfaces;
   };
+  struct BeamEntry {
+    std::string name;
+    std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
+  };
+  struct CableEntry {
+    std::string name;
+    std::size_t pieces = 0;
+  };
   std::string title{};
   std::vector<std::string> bodies{};
+  std::vector<bool> nodes{};  ///< Of beams and cables: bodies without a view of their own.
   std::vector<JointEntry> joints{};
   std::vector<LoadEntry> loads{};
   std::vector<SolidEntry> solids{};
+  std::vector<BeamEntry> beams{};
+  std::vector<CableEntry> cables{};
 
   [[nodiscard]] int coordinates() const;   ///< Of all joints.
   [[nodiscard]] int load_numbers() const;  ///< That all loads report.
+  [[nodiscard]] bool is_node(std::size_t body) const { return body < nodes.size() && nodes[body]; }
 };
 
 /// What stands at one time. Lists hold one entry per body, joint, coordinate or number of a load of
@@ -57,6 +69,8 @@ struct ResultsFrame {
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
   std::vector<SolidReport> solids;
   std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.
+  std::vector<BeamReport> beams;
+  std::vector<CableReport> cables;
   Balance balance;
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
@@ -82,6 +96,7 @@ class ResultsFile {
   ResultsFile(Hdf5File file, const ResultsLayout& layout)
       : file_(std::move(file)), solids_(layout.solids) {}
   void add_solids(const ResultsFrame& frame);
+  void add_lines(const ResultsFrame& frame);
 
   Hdf5File file_;
   std::vector<ResultsLayout::SolidEntry> solids_;

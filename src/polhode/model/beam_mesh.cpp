@@ -271,4 +271,35 @@ int add_cable(Model& model, CableLineSpec cable) {
   return static_cast<int>(model.cables.size()) - 1;
 }
 
+double BeamSpec::length() const {
+  double sum = 0.0;
+  for (const Element& element : mesh) sum += element.length;
+  return sum;
+}
+
+double CableLineSpec::length() const {
+  double sum = 0.0;
+  for (const Piece& piece : pieces) sum += piece.free_length;
+  return sum;
+}
+
+double CableLineSpec::mass() const {
+  double sum = 0.0;
+  for (const Piece& piece : pieces) sum += piece.mass;
+  return sum;
+}
+
+std::vector<bool> are_nodes(const Model& model) {
+  std::vector<bool> nodes(model.bodies.size(), false);
+  for (const BeamSpec& beam : model.beams)
+    for (int k = 0; k < beam.node_count(); ++k)
+      nodes.at(static_cast<std::size_t>(beam.first_node + k)) = true;
+  for (const CableLineSpec& cable : model.cables)
+    for (const CableLineSpec::Piece& piece : cable.pieces)
+      if (piece.mass > 0.0)  // else its ends are bodies of others
+        for (const int body : {piece.a.body, piece.b.body})
+          nodes.at(static_cast<std::size_t>(body)) = true;
+  return nodes;
+}
+
 }  // namespace polhode

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <polhode/model/model.hpp>
 
 namespace polhode {
@@ -17,6 +19,10 @@ int add_beam(Model& model, BeamSpec beam);
 /// (`stay.0`, ...). @returns its index there.
 /// @throws InputError if points coincide or values are out of range.
 int add_cable(Model& model, CableLineSpec cable);
+
+/// For each body of the model: it is a node of a beam or of a cable with mass, not a body that the
+/// user named.
+[[nodiscard]] std::vector<bool> are_nodes(const Model& model);
 
 /// Part of m_ab of the translational mass of an element that is coupled: 1/6 of the mass if it is
 /// consistent, nothing if lumped. @param part  Consistent part [-].

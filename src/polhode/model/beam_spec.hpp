@@ -53,6 +53,10 @@ struct BeamSpec {
   std::vector<Element> mesh;  ///< Filled in by add_beam().
 
   [[nodiscard]] int node_count() const { return static_cast<int>(mesh.size()) + 1; }
+  [[nodiscard]] double length() const;  ///< Of all elements, undeformed [m].
+  [[nodiscard]] double mass() const {
+    return length() * section.section.mass_per_length;
+  }  ///< [kg]
 };
 
 /// Where a cable passes or ends.
@@ -82,6 +86,8 @@ struct CableLineSpec {
     double mass = 0.0;         ///< [kg]
   };
   std::vector<Piece> pieces;
+  [[nodiscard]] double length() const;  ///< Of all pieces without force [m].
+  [[nodiscard]] double mass() const;    ///< Of all pieces [kg].
 };
 
 }  // namespace polhode

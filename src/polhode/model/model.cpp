@@ -43,6 +43,14 @@ int Model::solid_index(const std::string& name) const {
   return index_of(solids, name, "solid", "solids", {});
 }
 
+int Model::beam_index(const std::string& name) const {
+  return index_of(beams, name, "beam", "beams", {});
+}
+
+int Model::cable_index(const std::string& name) const {
+  return index_of(cables, name, "cable", "cables", {});
+}
+
 int Model::load_index(const std::string& name) const {
   return index_of(loads, name, "load", "loads", {});
 }

@@ -105,11 +105,12 @@ struct LoadSpec {
 struct ProbeSpec {
   std::string name;
   Place place;
-  std::string kind;             ///< body, joint, load or solid.
-  std::string target;           ///< Name of the body, joint, load or solid.
+  std::string kind;             ///< body, joint, load, solid, beam or cable.
+  std::string target;           ///< Its name.
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
                                 ///< solid probe: in the mesh's own coordinates [m].
   std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
+  int element = 0;              ///< Of a beam, or piece of a cable: the first is 0.
   std::string reaction_of;      ///< Of a solid probe: the bonded body or prescribed nodes whose
                                 ///< reaction is recorded.
   std::optional<double> every;  ///< [s]; else output.every.
@@ -172,6 +173,8 @@ struct Model {
       const std::string& name) const;                            ///< Throws InputError if unknown.
   [[nodiscard]] int solid_index(const std::string& name) const;  ///< Throws InputError if unknown.
   [[nodiscard]] int load_index(const std::string& name) const;   ///< Likewise.
+  [[nodiscard]] int beam_index(const std::string& name) const;   ///< Likewise.
+  [[nodiscard]] int cable_index(const std::string& name) const;  ///< Likewise.
 };
 
 }  // namespace polhode

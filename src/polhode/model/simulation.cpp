@@ -397,16 +397,46 @@ auto of_each(const System& system, const State& state, const std::vector<int>& i
 
 }  // namespace
 
-std::vector<Vec6> Simulation::beam(int beam) const {
-  return of_each<BeamElement>(
-      impl_->system, impl_->state, impl_->map.beam.at(static_cast<std::size_t>(beam)),
+BeamReport Simulation::beam(int beam) const {
+  const BeamSpec& spec = impl_->model.beams.at(static_cast<std::size_t>(beam));
+  BeamReport report;
+  for (int k = 0; k < spec.node_count(); ++k) {
+    const BodyMotion node = body(spec.first_node + k);
+    report.position.push_back(node.r);
+    report.velocity.push_back(node.v);
+    report.orientation.push_back(node.q);
+  }
+  const std::vector<int>& elements = impl_->map.beam.at(static_cast<std::size_t>(beam));
+  report.forces = of_each<BeamElement>(
+      impl_->system, impl_->state, elements,
       [](const BeamElement& item, const PairStep& step) { return item.section_forces(step); });
+  report.strains = of_each<BeamElement>(
+      impl_->system, impl_->state, elements,
+      [](const BeamElement& item, const PairStep& step) { return item.strains(step); });
+  return report;
 }
 
-std::vector<double> Simulation::cable(int cable) const {
-  return of_each<Cable>(impl_->system, impl_->state,
-                        impl_->map.cable.at(static_cast<std::size_t>(cable)),
-                        [](const Cable& item, const PairStep& step) { return item.tension(step); });
+CableReport Simulation::cable(int cable) const {
+  const CableLineSpec& spec = impl_->model.cables.at(static_cast<std::size_t>(cable));
+  CableReport report;
+  const auto add = [&](const AttachmentSpec& at) {
+    PointMotion end{at.Z, Vec3::Zero(), Vec3::Zero()};
+    if (at.body != kGround) end = point(at.body, at.Z);
+    report.position.push_back(end.position);
+    report.velocity.push_back(end.velocity);
+  };
+  add(spec.pieces.front().a);
+  for (const CableLineSpec::Piece& piece : spec.pieces) add(piece.b);
+  const std::vector<int>& pieces = impl_->map.cable.at(static_cast<std::size_t>(cable));
+  report.tension =
+      of_each<Cable>(impl_->system, impl_->state, pieces,
+                     [](const Cable& item, const PairStep& step) { return item.tension(step); });
+  report.length =
+      of_each<Cable>(impl_->system, impl_->state, pieces,
+                     [](const Cable& item, const PairStep& step) { return item.length(step); });
+  for (std::size_t k = 0; k < spec.pieces.size(); ++k)
+    report.strain.push_back(report.length[k] / spec.pieces[k].free_length - 1.0);
+  return report;
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }

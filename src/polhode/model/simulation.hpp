@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
+#include <polhode/model/beam_report.hpp>
 #include <polhode/model/build_solids.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/model/solid_point.hpp>
@@ -99,11 +100,8 @@ class Simulation {
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
   /// The numbers of the channels of its kind, see LoadKind::channels.
   [[nodiscard]] std::vector<double> load(int load) const;
-  /// Section forces (N, V_y, V_z, M_x, M_y, M_z) of the elements of a beam, elastic, along the axes
-  /// of their sections [N, N m].
-  [[nodiscard]] std::vector<Vec6> beam(int beam) const;
-  /// Elastic tensions of the pieces of a cable [N].
-  [[nodiscard]] std::vector<double> cable(int cable) const;
+  [[nodiscard]] BeamReport beam(int beam) const;     ///< By index in the Model.
+  [[nodiscard]] CableReport cable(int cable) const;  ///< Likewise.
   [[nodiscard]] Balance balance() const;
 
   // Deformable solids, by index in the Model.
