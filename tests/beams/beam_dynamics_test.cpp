@@ -185,7 +185,7 @@ TEST(BeamSystem, ReportsSectionForcesAndTensions) {
   add_beam(m, mast);
   CableLineSpec rope;
   rope.name = "rope";
-  rope.through = {{kGround, {0.5, 0, 0}}, {4, {0.5, 0, 0}}};
+  rope.through = {{kGround, {0.5, 0, 0}}, {4, {0, 0.5, 0}}};  // y of the section is along x
   rope.stiffness = 1e3;
   rope.free_length = 1.0;
   add_cable(m, rope);
