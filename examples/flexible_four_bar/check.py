@@ -26,15 +26,15 @@ def main():
         report.below(name + ": energy drift", run.figures["energy_drift"], ROUND_OFF)
         report.below(name + ": joints", run.figures["constraint_residual_max"], ROUND_OFF)
     first, second = bending(beam)[:101], bending(solid)
-    size = max(map(abs, first))
-    report.near("largest bending of the middle [m]", size, 0.035, 0.03)
-    # Each mesh is off by half a percent in its first frequency, of which five periods pass.
-    report.below("beam and solid, of that bending", largest(first, second) / size, 0.1)
-    # A coupler a million times stiffer: what bends then bends by less than a millionth.
+    size = max(map(abs, second))
+    report.near("largest bending of the middle [m]", max(map(abs, first)), size, 0.01 * size)
+    # Each mesh is off by half a percent in its first frequency, of which three periods pass.
+    report.below("difference of beam and solid, of that bending", largest(first, second) / size, 0.03)
+    # A coupler a million times stiffer. Steps do not resolve its vibrations; they stay below 1e-4 of the bending above.
     stiff = Run(HERE / "model.yaml", "materials.polyamide.youngs_modulus=1.2e15", HALF)
     length = [distance(b, c) for b, c in zip(stiff.points("B"), stiff.points("C"))]
-    report.near("stiff coupler: distance of the eyes [m]", max(length, key=lambda x: abs(x - 1.3)), 1.3, 1e-6)
-    report.below("stiff coupler: bending [m]", max(map(abs, bending(stiff))), 1e-6)
+    report.near("stiff coupler: distance of the eyes [m]", max(length, key=lambda x: abs(x - 1.3)), 1.3, 1e-4 * size)
+    report.below("stiff coupler: bending [m]", max(map(abs, bending(stiff))), 1e-4 * size)
     report.end()
 
 

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include <polhode/base/types.hpp>
+#include <polhode/model/beam_spec.hpp>
 
 namespace polhode {
+
+class Simulation;
 
 /// What a beam is like at an instant.
 struct BeamReport {
@@ -26,5 +29,12 @@ struct CableReport {
   std::vector<double> length;   ///< Of the pieces [m].
   std::vector<double> strain;   ///< Of the pieces, elongation over free length [-].
 };
+
+/// At the present state of a simulation. @param elements  Interactions of the beam's elements.
+[[nodiscard]] BeamReport beam_report(const Simulation& simulation, const BeamSpec& spec,
+                                     const std::vector<int>& elements);
+/// Likewise, of a cable's pieces.
+[[nodiscard]] CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
+                                       const std::vector<int>& pieces);
 
 }  // namespace polhode

@@ -9,7 +9,6 @@
 #include <polhode/assembly/state_archive.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
-#include <polhode/beams/beam_element.hpp>
 #include <polhode/body/point_motion.hpp>
 #include <polhode/fe/solid_elements.hpp>
 #include <polhode/loads/registry.hpp>
@@ -379,64 +378,14 @@ std::vector<double> Simulation::load(int load) const {
   return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
 }
 
-namespace {
-
-/// What of each of the interactions listed, at a state; Item is their type.
-template <class Item, class What>
-auto of_each(const System& system, const State& state, const std::vector<int>& interactions,
-             What&& what) {
-  std::vector<decltype(what(std::declval<const Item&>(), std::declval<const PairStep&>()))> values;
-  for (int i : interactions) {
-    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
-    const auto& group = dynamic_cast<const Group<Item>&>(system.group(ref.group));
-    const PairView view = system.instant(state, ref, nullptr);
-    values.push_back(what(group.items[static_cast<std::size_t>(ref.item)], view.step()));
-  }
-  return values;
-}
-
-}  // namespace
-
 BeamReport Simulation::beam(int beam) const {
-  const BeamSpec& spec = impl_->model.beams.at(static_cast<std::size_t>(beam));
-  BeamReport report;
-  for (int k = 0; k < spec.node_count(); ++k) {
-    const BodyMotion node = body(spec.first_node + k);
-    report.position.push_back(node.r);
-    report.velocity.push_back(node.v);
-    report.orientation.push_back(node.q);
-  }
-  const std::vector<int>& elements = impl_->map.beam.at(static_cast<std::size_t>(beam));
-  report.forces = of_each<BeamElement>(
-      impl_->system, impl_->state, elements,
-      [](const BeamElement& item, const PairStep& step) { return item.section_forces(step); });
-  report.strains = of_each<BeamElement>(
-      impl_->system, impl_->state, elements,
-      [](const BeamElement& item, const PairStep& step) { return item.strains(step); });
-  return report;
+  const auto k = static_cast<std::size_t>(beam);
+  return beam_report(*this, impl_->model.beams.at(k), impl_->map.beam.at(k));
 }
 
 CableReport Simulation::cable(int cable) const {
-  const CableLineSpec& spec = impl_->model.cables.at(static_cast<std::size_t>(cable));
-  CableReport report;
-  const auto add = [&](const AttachmentSpec& at) {
-    PointMotion end{at.Z, Vec3::Zero(), Vec3::Zero()};
-    if (at.body != kGround) end = point(at.body, at.Z);
-    report.position.push_back(end.position);
-    report.velocity.push_back(end.velocity);
-  };
-  add(spec.pieces.front().a);
-  for (const CableLineSpec::Piece& piece : spec.pieces) add(piece.b);
-  const std::vector<int>& pieces = impl_->map.cable.at(static_cast<std::size_t>(cable));
-  report.tension =
-      of_each<Cable>(impl_->system, impl_->state, pieces,
-                     [](const Cable& item, const PairStep& step) { return item.tension(step); });
-  report.length =
-      of_each<Cable>(impl_->system, impl_->state, pieces,
-                     [](const Cable& item, const PairStep& step) { return item.length(step); });
-  for (std::size_t k = 0; k < spec.pieces.size(); ++k)
-    report.strain.push_back(report.length[k] / spec.pieces[k].free_length - 1.0);
-  return report;
+  const auto k = static_cast<std::size_t>(cable);
+  return cable_report(*this, impl_->model.cables.at(k), impl_->map.cable.at(k));
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
