@@ -10,6 +10,7 @@
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/solve/contact_engine.hpp>
+#include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
 #include <polhode/solve/single_step.hpp>
 
@@ -22,6 +23,7 @@ class Scene {
   std::shared_ptr<contact::ContactSet> contacts = std::make_shared<contact::ContactSet>();
   State state;
   int iterations = 0, steps = 0, cuts = 0;
+  double crowd_residual = 0.0;  ///< Above 0: the engine for crowds.
 
   explicit Scene(const Vec3& gravity = {0.0, 0.0, -9.81}) { system.set_gravity(gravity); }
 
@@ -83,9 +85,14 @@ class Scene {
   }
   /// A fresh engine, as after reading the state from a file.
   void restart() {
-    single_ = std::make_unique<SingleStep>(
-        system, std::make_unique<ContactEngine>(system, "block_lu"),
-        GeneralizedAlpha::from_spectral_radius(1.0), lane_kernels("automatic"), true);
+    std::unique_ptr<NewtonEngine> engine;
+    if (crowd_residual > 0.0)
+      engine = std::make_unique<CrowdEngine>(system, crowd_residual);
+    else
+      engine = std::make_unique<ContactEngine>(system, "block_lu");
+    single_ = std::make_unique<SingleStep>(system, std::move(engine),
+                                           GeneralizedAlpha::from_spectral_radius(1.0),
+                                           lane_kernels("automatic"), true);
   }
   /// One step, halved as often as needed. @returns false if that does not help.
   bool step() {

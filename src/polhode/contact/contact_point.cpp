@@ -281,7 +281,7 @@ class Evaluation {
     const double k = f.stiffness * (0.5 + f.damping / (f.stiffness * context_.dt));
     Mat3 C = Mat3::Identity() - n * n.transpose();
     const double length = s.norm(), part = value(F).norm() / std::max(f.stiffness * length, 1e-300);
-    if (!(part < 1.0 - 1e-12)) return k * C;
+    if (length == 0.0 || !(part < 1.0 - 1e-12)) return k * C;
     C -= s * s.transpose() / (length * length);
     return (k * part) * C;
   }

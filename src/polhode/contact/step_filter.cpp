@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/plain_point.hpp>
 
 namespace polhode::contact {
 
@@ -57,6 +58,23 @@ int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec
   return 0;
 }
 
+/// Part of the increment that a ball may move towards another, or towards a plane that stands.
+double ball_part(const PointData& data, const BodyStep& a, const BodyStep& b, const Vec3& change,
+                 double least_gap) {
+  const double room = plain_gap_n1(data, a, b) - least_gap;
+  const double keep = kKept * std::min(room, data.normal.reach() - least_gap);
+  if (data.b->solid != Solid::ball) {
+    const double closing = -change.dot(data.b->axes.col(2));
+    return closing > 0.0 ? std::min(1.0, (room - keep) / closing) : 1.0;
+  }
+  const Vec3 w = a.r_n1 - b.r_n1;
+  const double along = w.dot(change), square = change.squaredNorm();
+  if (along >= 0.0) return 1.0;
+  const double r = data.a->rounding + data.b->rounding + least_gap + keep;
+  const double rest = w.squaredNorm() - r * r, root = along * along - square * rest;
+  return root > 0.0 ? std::min(1.0, rest / (-along + std::sqrt(root))) : 1.0;
+}
+
 }  // namespace
 
 /// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
@@ -86,6 +104,15 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     const Vec3 relative = x_a.head<3>() - x_b.head<3>();
     const Shape &A = *p.data.a, &B = *p.data.b;
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    if (p.plain && A.solid == Solid::ball && A.centre.isZero(0.0) &&
+        (B.solid == Solid::ball ? B.centre.isZero(0.0) : !b.moves)) {  // turns do not matter
+      const double part = ball_part(p.data, a, b, relative, p.least_gap);
+      if (part < most) {
+        most = part;
+        tightest_ = i;
+      }
+      continue;
+    }
     double speed = x_a.tail<3>().norm() * lever(A, p.data.pair, true);
     if (B.bounded()) {
       speed += relative.norm() + x_b.tail<3>().norm() * lever(B, p.data.pair, false);

@@ -15,6 +15,7 @@ namespace {
 constexpr double kCoarse = 1e-4, kFine = 1e-6;
 constexpr int kCoarseIterations = 2, kMostInner = 400;
 constexpr int kMostCuts = 8;
+constexpr double kRoundOff = 4.4e-16;
 /// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
 constexpr double kPartOfSpeed = 1e-3;
 
@@ -119,7 +120,16 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
   }
   double weight = system_->gravity().norm();
   if (weight == 0.0) weight = kPartOfSpeed * std::sqrt(fastest) / std::abs(context.dt);
-  residual_ = std::sqrt(worst) / std::max(weight, std::numeric_limits<double>::min());
+  weight = std::max(weight, std::numeric_limits<double>::min());
+  residual_ = std::sqrt(worst) / weight;
+  // What rounding of positions leaves of stiff contacts: no residual can be smaller.
+  double noise = 0.0;
+  for (const ContactSpring& s : springs_) {
+    const int b = s.a != kGround ? s.a : s.b;
+    noise = std::max(
+        noise, s.C.trace() * steps_[b].r_n1.cwiseAbs().maxCoeff() / system_->bodies()[b].mass);
+  }
+  enough_ = std::max(tolerance_, kRoundOff * noise / weight);
   evaluated_ = true;
 }
 
@@ -127,7 +137,7 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   Iteration done;
   if (!evaluated_) evaluate(state, trial);
   done.solved = std::isfinite(merit_);
-  if (!done.solved || residual_ < tolerance_) return done;
+  if (!done.solved || residual_ < enough_) return done;
   if (!cg_.set(blocks_, springs_)) {
     done.solved = false;
     return done;
@@ -151,13 +161,13 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
     }
     take_steps(state, trial, false);
     evaluate(state, trial);
-    if (cut == kMostCuts || merit_ <= (1.0 - 1e-4 * part) * before || residual_ < tolerance_) break;
+    if (cut == kMostCuts || merit_ <= (1.0 - 1e-4 * part) * before || residual_ < enough_) break;
     const double best = before / (merit_ - (1.0 - 2.0 * part) * before) * part;  // of a parabola
     part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
   }
   done.applied = part;
   // What the residual says is final: the increment is no measure of the next one.
-  if (residual_ < tolerance_) {
+  if (residual_ < enough_) {
     done.increment = 0.0;
     done.applied = 1.0;
   } else {

@@ -50,7 +50,7 @@ class CrowdEngine final : public NewtonEngine {
   MovingContacts* contacts_;
   PointwiseContacts* pointwise_;
   InteractionSweep loads_;
-  double tolerance_;
+  double tolerance_, enough_ = 0.0;
   BlockCg cg_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<BodyMotion> at_n_;

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <polhode/assembly/state_archive.hpp>
+#include <polhode/base/error.hpp>
+
+#include "scene.hpp"
+
+namespace polhode {
+namespace {
+
+using namespace test;
+
+/// Balls and a few boxes that fall into a corner of two walls and a floor.
+struct Heap : Scene {
+  explicit Heap(double residual) {
+    crowd_residual = residual;
+    for (int i = 0; i < 24; ++i) {
+      const Vec3 r(0.25 * (i % 3) + 0.13 + 0.004 * std::sin(13.0 * i),
+                   0.25 * ((i / 3) % 2) + 0.13 + 0.004 * std::sin(78.0 * i), 0.14 + 0.26 * (i / 6));
+      if (i % 5 == 4)
+        add_box("box " + std::to_string(i), {0.16, 0.18, 0.2}, 1.2, at(r));
+      else
+        add_ball("ball " + std::to_string(i), 0.1, 1.0, at(r));
+    }
+    add_floor();
+    add_floor(Vec3::UnitX());
+    add_floor(Vec3::UnitY());
+    law(0.4, 0.0);
+    begin(2e-3);
+  }
+};
+
+TEST(CrowdEngine, MovesAHeapAsTheDirectEngineDoes) {
+  Heap crowd(1e-9), direct(0.0);
+  ASSERT_TRUE(crowd.run(0.16)) << crowd.last.text();
+  ASSERT_TRUE(direct.run(0.16)) << direct.last.text();
+  for (int b = 0; b < 24; ++b)
+    EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
+}
+
+TEST(CrowdEngine, NeverGainsEnergyAndBalancesMomentum) {
+  Heap s(1e-8);
+  double energy = s.energy(), rise = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    ASSERT_TRUE(s.step()) << s.last.text();
+    rise = std::max(rise, s.energy() - energy);
+    energy = s.energy();
+  }
+  const Ledger& l = s.state.ledger;
+  EXPECT_LT(rise, 1e-12 * l.energy_scale);
+  // Residuals of 1e-8 of the weight act for 0.6 s, on momenta of some 2 N s a body.
+  EXPECT_LT(l.p_drift, 1e-6 * l.p_scale);
+  for (const auto& r : s.contacts->reports()) EXPECT_GT(r.gap, -2e-4);
+}
+
+TEST(CrowdEngine, GoesOnBitForBitFromAnArchive) {
+  Heap s(1e-6);
+  ASSERT_TRUE(s.run(0.2));
+  const std::string middle = state_bytes(s.system, s.state);
+  ASSERT_TRUE(s.run(0.1));
+  const std::string end = state_hash(s.system, s.state);
+  s.state = state_from_bytes(s.system, middle, "test");
+  s.restart();
+  ASSERT_TRUE(s.run(0.1));
+  EXPECT_EQ(state_hash(s.system, s.state), end);
+}
+
+TEST(CrowdEngine, RefusesJoints) {
+  Scene s;
+  s.crowd_residual = 1e-6;
+  const int ball = s.add_ball("ball", 0.1, 1.0, at({0.0, 0.0, 0.5}));
+  s.add_joint("spherical", kGround, ball, {0.0, 0.0, 1.0});
+  EXPECT_THROW(s.begin(1e-3), InputError);
+}
+
+}  // namespace
+}  // namespace polhode

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <polhode/loads/registry.hpp>
+
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
+
+namespace polhode {
+namespace {
+
+using namespace test;
+
+/// Two bodies that a spring pulls together collide again and again; nothing else acts. Without
+/// friction and with e = 1 energy and both momenta stay.
+struct Tie {
+  int first, second, steps;
+  double energy;  ///< Tolerance: rounding of the gap where an impact is stopped within a step.
+};
+class Tied : public testing::TestWithParam<Tie> {};
+
+TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
+  const auto all = every_shape();
+  const NamedShape &first = all[GetParam().first], &second = all[GetParam().second];
+  Random random(11);
+  Scene s(Vec3::Zero());
+  BodyMotion m = at({-0.7, 0.0, 0.0}, {0.1, 0.2, 0.0});
+  m.W = {0.5, -0.3, 0.4};
+  const int a = s.add("a", first.shape, 1.0, {0.05, 0.06, 0.08}, m);
+  m = at({0.8, 0.05, -0.05}, {-0.05, -0.1, 0.1});
+  m.W = {-0.2, 0.4, 0.6};
+  const int b = s.add("b", second.shape, 1.5, {0.08, 0.09, 0.1}, m);
+  LoadDescription spring;
+  spring.name = "spring";
+  spring.bodies = {a, b};
+  spring.values = {{"stiffness", 4.0}, {"free_length", 0.1}};
+  load_kind("spring_damper").add(s.system, spring);
+  s.law(0.0, 1.0);
+  s.begin(2.5e-3);
+  int hits = 0;
+  bool touched = false;
+  for (int k = 0; k < GetParam().steps; ++k) {
+    ASSERT_TRUE(s.step()) << s.last.text();
+    double force = 0.0;
+    for (const auto& r : s.contacts->reports()) force += r.normal_force;
+    if (force > 0.0 && !touched) ++hits;
+    touched = force > 0.0;
+  }
+  const Ledger& l = s.state.ledger;
+  EXPECT_GT(hits, GetParam().steps / 1000);
+  EXPECT_LT(s.drift(), GetParam().energy * l.energy_scale);
+  EXPECT_LT(l.p_drift, 1e-10 * l.p_scale);
+  EXPECT_LT(l.l_drift, 1e-10 * l.l_scale);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Tied,
+                         testing::Values(Tie{0, 0, 10000, 1e-9}, Tie{2, 2, 10000, 1e-10},
+                                         Tie{6, 6, 1500, 1e-10}, Tie{0, 7, 10000, 1e-9},
+                                         Tie{2, 1, 10000, 1e-10}),
+                         [](const auto& tied) {
+                           const auto all = every_shape();
+                           return all[tied.param.first].name + "_" + all[tied.param.second].name;
+                         });
+
+}  // namespace
+}  // namespace polhode
