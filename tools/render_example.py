@@ -17,6 +17,7 @@ import numpy as np  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "examples"))
+import render_contact  # noqa: E402
 import support  # noqa: E402
 
 INK, BLUE, RED, GOLD, GREEN, PALE = "#22303c", "#2f6db3", "#c8452f", "#d99a1c", "#3d8a55", "#b9c4cd"
@@ -454,12 +455,19 @@ def save(figure, path, dpi=110, trim="tight"):
 EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, n_four_bar, andrews_squeezer, bricard,
             flyball_governor, gyroscope, door_on_two_hinges, beam_roll_up, flexible_four_bar)
 
+CONTACT = ("bouncing_ball", "incline", "newtons_cradle", "tippe_top", "rattleback", "stack", "card_house", "rolling_coin",
+           "spheres_in_a_bin", "gear_pair")
+
 
 def main():
     wanted = sys.argv[1:] or [f.__name__ for f in EXAMPLES] + ["hero"]
     for example in EXAMPLES:
         if example.__name__ in wanted:
             save(example(), ROOT / "examples" / example.__name__ / "picture.png")
+    for name in CONTACT:
+        if name in wanted or not sys.argv[1:]:
+            picture = getattr(render_contact.Pictures(sys.modules[__name__]), name)()
+            save(picture, ROOT / "examples" / name / "picture.png")
     if "hero" in wanted:
         save(hero(), ROOT / "docs/images/hero.png", 105, None)
 

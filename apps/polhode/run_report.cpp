@@ -2,6 +2,7 @@
 #include "run_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -68,6 +69,17 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
     json["free_motions"] = s.statics->free_motions;
     json["limit_points"] = s.statics->limit_points;
   }
+  if (s.contacts) {
+    const RunSummary::Contacts& c = *s.contacts;
+    json["contacts"] = {
+        {"shapes", c.shapes},
+        {"touching", c.touching},
+        {"least_gap", std::isfinite(c.least_gap) ? nlohmann::ordered_json(c.least_gap)
+                                                 : nlohmann::ordered_json(nullptr)},
+        {"lost_in_impacts", c.lost_in_impacts},
+        {"lost_by_friction", c.lost_by_friction},
+        {"numerical", c.numerical}};
+  }
   return json.dump(2);
 }
 
@@ -110,10 +122,22 @@ std::string summary_table(const RunSummary& s) {
       {"constraint residual", small(s.constraint_residual_max), "largest of the run"},
       {"velocity constraint residual", small(s.velocity_constraint_residual_max),
        "largest of the run"},
-      {"time", seconds(s.wall_time_s),
-       format("{} of one processor, {} a step", seconds(s.cpu_time_s),
-              seconds(s.cpu_time_s / steps))},
   };
+  if (s.contacts) {
+    const RunSummary::Contacts& c = *s.contacts;
+    rows.push_back({"contact", counted(static_cast<std::size_t>(c.touching), "pair", "pairs"),
+                    std::isfinite(c.least_gap)
+                        ? format("touch now, of {} shapes; smallest gap of the run {:.2e} m",
+                                 c.shapes, c.least_gap)
+                        : format("touch now, of {} shapes", c.shapes)});
+    rows.push_back({"  lost in impacts", format("{:.6g} J", c.lost_in_impacts)});
+    rows.push_back({"  lost by friction", format("{:.6g} J", c.lost_by_friction)});
+    rows.push_back({"  numerical", format("{:.1e} J", c.numerical),
+                    "what is left of the energy balance at the end"});
+  }
+  rows.push_back({"time", seconds(s.wall_time_s),
+                  format("{} of one processor, {} a step", seconds(s.cpu_time_s),
+                         seconds(s.cpu_time_s / steps))});
   for (const auto& [name, value] : s.phases) rows.push_back({"  " + name, seconds(value)});
   rows.push_back({"solver", s.solver, s.instruction_set});
   rows.push_back({"result hash", s.result_hash.substr(0, 16)});

@@ -44,6 +44,11 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
   }
   if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
     list.emplace_back("The mobility is 0: nothing can move.");
+  if (simulation.contact_set() && simulation.model().analysis.rho_inf < 1.0)
+    list.push_back(
+        format("rho_inf is {:g}: numerical damping takes energy from every contact; "
+               "restitution and rebound are not those asked for.",
+               simulation.model().analysis.rho_inf));
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
   return list;
@@ -118,6 +123,13 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
                     format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
 }
 
+nlohmann::ordered_json contacts_json(const Simulation& simulation) {
+  if (!simulation.contact_set()) return nullptr;
+  return {{"shapes", simulation.contact_map().body.size()},
+          {"pairs_kept", simulation.contact_map().pairs.size()},
+          {"every_pair_kept", simulation.contact_map().all_pairs}};
+}
+
 TangentReport tangents_of(const Simulation& simulation) {
   const AnalysisSpec& analysis = simulation.model().analysis;
   const double dt = analysis.step.value_or(1e-3 * analysis.duration);
@@ -145,6 +157,7 @@ int check(const Options& options) {
                                    {"solids", solids_json(simulation)},
                                    {"beams", beams_json(simulation.model())},
                                    {"cables", cables_json(simulation.model())},
+                                   {"contacts", contacts_json(simulation)},
                                    {"constraint_rows", rank.rows},
                                    {"rank", rank.rank},
                                    {"redundant_rows", rank.redundant},
@@ -191,6 +204,11 @@ int check(const Options& options) {
                              solid.plan.least_jacobian, solid.plan.least_element)});
     }
     add_line_rows(simulation.model(), rows);
+    if (simulation.contact_set())
+      rows.push_back({"contact", counted(simulation.contact_map().body.size(), "shape", "shapes"),
+                      format("none overlap at the start; results are kept of {}",
+                             counted(simulation.contact_map().pairs.size(), "pair of bodies",
+                                     "pairs of bodies"))});
     print(table(rows));
     for (const std::string& note : notes) say("warning: " + note);
   }

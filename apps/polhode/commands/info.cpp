@@ -126,6 +126,22 @@ std::string section(const std::string& heading, const std::vector<std::string>& 
   return text;
 }
 
+std::string contact_text(const Simulation& simulation) {
+  if (!simulation.contact_set()) return "none";
+  const ContactsSpec& contacts = simulation.model().contacts;
+  const auto sensors = static_cast<std::size_t>(
+      std::count_if(contacts.pairs.begin(), contacts.pairs.end(),
+                    [](const ContactPairSpec& pair) { return pair.sensor; }));
+  std::string text = format("{} shapes, law {}, friction {:g}, restitution {:g}",
+                            simulation.contact_map().body.size(), contacts.standard.potential,
+                            contacts.standard.friction, contacts.standard.restitution);
+  if (contacts.pairs.size() > sensors)
+    text += ", " + counted(contacts.pairs.size() - sensors, "pair", "pairs") +
+            " with a law of their own";
+  if (sensors > 0) text += ", " + counted(sensors, "sensor", "sensors");
+  return text;
+}
+
 std::string describe(const Simulation& simulation) {
   const Model& model = simulation.model();
   double mass = 0.0;
@@ -137,6 +153,7 @@ std::string describe(const Simulation& simulation) {
              {"moving bodies", format("{}", simulation.system().body_count()),
               format("{:.6g} kg together", mass)},
              {"constraint rows", format("{}", simulation.system().rows())},
+             {"contact", contact_text(simulation)},
              {"analysis", model.analysis.type, format("{:.6g} s", model.analysis.duration)},
              {"solver", summary.solver, summary.instruction_set},
              {"order", format("{}", summary.order)}},
@@ -234,7 +251,8 @@ std::string describe_json(const Simulation& simulation) {
                                        {"loads", loads},
                                        {"solids", solids},
                                        {"beams", beams},
-                                       {"cables", cables}};
+                                       {"cables", cables},
+                                       {"contact_shapes", simulation.contact_map().body.size()}};
   return json.dump(2) + "\n";
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What contacts remember from step to step, to and from State::contacts.
+#include <algorithm>
+
 #include <polhode/contact/contact_set.hpp>
 
 namespace polhode::contact {
@@ -14,7 +16,8 @@ constexpr std::size_t kReferenceNumbers = 13;
 
 void ContactSet::save(State& state) const {
   std::vector<double>& out = state.contacts;
-  out.clear();
+  out.assign(1, static_cast<double>(totals_.size()));
+  out.insert(out.end(), totals_.begin(), totals_.end());
   const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
   for (const Reference& r : references_) {
     put(r.r);
@@ -47,11 +50,14 @@ void ContactSet::load(const State& state) {
   pairs_.clear();
   loaded_ = true;
   saved_ = in;
-  const std::size_t references = kReferenceNumbers * references_.size();
   for (Reference& r : references_) r.margin = -1.0;
+  if (in.empty()) return;
+  totals_ = totals_in(state);
+  const std::size_t head = 1 + totals_.size();
+  const std::size_t references = head + kReferenceNumbers * references_.size();
   if (in.size() < references) return;
   for (std::size_t k = 0; k < references_.size(); ++k) {
-    const double* x = in.data() + kReferenceNumbers * k;
+    const double* x = in.data() + head + kReferenceNumbers * k;
     references_[k].r = Eigen::Map<const Vec3>(x);
     references_[k].Lambda = Eigen::Map<const Mat3>(x + 3);
     references_[k].margin = x[12];
@@ -79,6 +85,20 @@ void ContactSet::load(const State& state) {
     h.gap = x[22];
     points_.push_back(p);
   }
+}
+
+void ContactSet::keep_totals(State& state, const std::vector<double>& totals) {
+  totals_ = totals;
+  if (state.contacts.size() <= totals.size()) return;  // nothing was saved yet
+  state.contacts[0] = static_cast<double>(totals.size());
+  std::copy(totals.begin(), totals.end(), state.contacts.begin() + 1);
+  saved_ = state.contacts;
+}
+
+std::vector<double> ContactSet::totals_in(const State& state) {
+  if (state.contacts.empty()) return {};
+  const double count = std::min(state.contacts[0], static_cast<double>(state.contacts.size() - 1));
+  return {state.contacts.begin() + 1, state.contacts.begin() + 1 + static_cast<int>(count)};
 }
 
 }  // namespace polhode::contact

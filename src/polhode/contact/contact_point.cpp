@@ -328,6 +328,7 @@ class Evaluation {
     // What the normal force took beyond the change of the potential.
     const double elastic = 0.5 * (m_0 + m_1) * data_.normal.quotient(r.gap_n, r.gap_n1);
     r.work.dissipated = (r.normal_force - elastic) * (r.gap_n - r.gap_n1);
+    r.normal_loss = r.work.dissipated;
   }
   double weight_at(const Placement<double>& at_a, const Placement<double>& at_b) const {
     if (data_.pair.fade == Fade::none) return data_.pair.weight;

@@ -60,8 +60,9 @@ struct PointReport {
   Vec3 normal = Vec3::Zero();        ///< From b to a, middle of the step.
   Vec3 point = Vec3::Zero();         ///< World [m].
   Vec3 friction_force = Vec3::Zero();
-  Work work;           ///< stored at t_{n+1}, dissipated over the step.
-  PointHistory after;  ///< Bristles at t_{n+1}; flags as they were.
+  Work work;                 ///< stored at t_{n+1}, dissipated over the step.
+  double normal_loss = 0.0;  ///< The part of it that the normal force took [J].
+  PointHistory after;        ///< Bristles at t_{n+1}; flags as they were.
 };
 
 /// Share of the force that plastic points take from the end of the step. @eq{contact-plastic}

@@ -2,6 +2,7 @@
 // What contacts tell about the last step, and about a state before a run.
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include <polhode/base/format.hpp>
 #include <polhode/contact/contact_set.hpp>
@@ -9,17 +10,21 @@
 namespace polhode::contact {
 
 std::vector<ShapePairReport> ContactSet::reports() const {
-  std::map<std::pair<int, int>, ShapePairReport> by_pair;
+  // The points of a pair of shapes follow one another.
+  std::vector<ShapePairReport> list;
+  std::uint64_t last = 0;
   for (const Point& p : points_) {
     const bool turned = p.a > p.b;
-    const std::pair<int, int> key = std::minmax(p.a, p.b);
-    const auto [at, fresh] = by_pair.try_emplace(key);
-    ShapePairReport& r = at->second;
-    if (fresh) {
-      r.a = key.first, r.b = key.second;
-      r.gap = std::numeric_limits<double>::infinity();
+    if (list.empty() || p.key[0] != last) {
+      list.emplace_back();
+      std::tie(list.back().a, list.back().b) = std::minmax(p.a, p.b);
+      list.back().gap = std::numeric_limits<double>::infinity();
+      last = p.key[0];
     }
-    r.gap = std::min(r.gap, p.report.gap_n1);
+    ShapePairReport& r = list.back();
+    // Points that only correct the sum of others are not where surfaces are.
+    if (p.data.pair.weight > 0.0)
+      r.gap = std::min(r.gap, p.touched || p.report.gap_n1 != 0.0 ? p.report.gap_n1 : p.gap_n);
     if (!p.touched) continue;
     const double sign = turned ? -1.0 : 1.0;
     r.force += sign * p.report.force;
@@ -27,35 +32,61 @@ std::vector<ShapePairReport> ContactSet::reports() const {
     r.normal_force += p.report.normal_force;
     r.point += p.report.normal_force * p.report.point;
     r.dissipated += p.report.work.dissipated + p.impact_loss;
-    ++r.points;
+    r.impact_loss += p.report.normal_loss + p.impact_loss;
+    r.impact_impulse += p.impact_impulse;
+    if (p.report.normal_force == 0.0) continue;
+    r.points += p.data.pair.weight > 0.0 ? 1 : -1;
     if (p.report.after.slips)
       r.status = ContactStatus::slip;
     else if (r.status == ContactStatus::open)
       r.status = ContactStatus::stick;
   }
-  std::vector<ShapePairReport> list;
-  for (auto& [key, r] : by_pair) {
+  for (ShapePairReport& r : list)
     if (r.normal_force > 0.0) r.point /= r.normal_force;
-    list.push_back(r);
-  }
   return list;
 }
 
-std::vector<std::string> ContactSet::overlaps(std::span<const BodyStep> instants) {
+std::vector<TouchingPoint> ContactSet::touching() const {
+  std::vector<TouchingPoint> list;
+  for (const Point& p : points_)
+    if (p.touched && p.report.normal_force != 0.0)
+      list.push_back({p.a, p.b, p.report.point, p.report.normal, p.report.force,
+                      p.report.friction_force, p.report.gap_n1});
+  return list;
+}
+
+std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep> instants) {
   StepContext context;
   context.dt = 1e-2;
   State none;
   begin_step(none, instants, context);
-  std::map<std::pair<int, int>, double> deepest;
-  for (const Point& p : points_)
-    if (p.gap_n <= -p.data.normal.tolerance) {
-      double& depth = deepest[std::minmax(p.a, p.b)];
-      depth = std::max(depth, -p.gap_n);
-    }
+  std::map<std::pair<int, int>, ShapeOverlap> deepest;
+  for (const Point& p : points_) {
+    if (p.sensor || p.data.pair.weight < 0.0 || p.gap_n > -p.data.normal.tolerance) continue;
+    ShapeOverlap& found = deepest[std::minmax(p.a, p.b)];
+    if (found.depth >= -p.gap_n) continue;
+    const BodyStep &a = step_of(p.a, instants), &b = step_of(p.b, instants);
+    const Gap<double> g =
+        gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
+            Placement<double>(b.r_n, b.Lambda_n, 6));
+    const double sign = p.a < p.b ? 1.0 : -1.0;
+    found = {std::min(p.a, p.b), std::max(p.a, p.b), -p.gap_n, sign * value(g.normal)};
+  }
+  std::vector<ShapeOverlap> list;
+  for (const auto& [key, overlap] : deepest) list.push_back(overlap);
+  // Nothing of this may be left when steps begin: stiffnesses are frozen while points are closed.
+  points_.clear();
+  pairs_.clear();
+  for (Reference& r : references_) r.margin = -1.0;
+  loaded_ = false;
+  return list;
+}
+
+std::vector<std::string> ContactSet::overlaps(std::span<const BodyStep> instants) {
   std::vector<std::string> list;
-  for (const auto& [key, depth] : deepest)
-    list.push_back(format("'{}' in '{}' by {:.3g} m", shapes_[key.first].name,
-                          shapes_[key.second].name, depth));
+  for (const ShapeOverlap& o : deepest_overlaps(instants))
+    list.push_back(
+        format("'{}' in '{}' by {:.3g} m", shapes_[o.a].name, shapes_[o.b].name, o.depth));
   return list;
 }
 

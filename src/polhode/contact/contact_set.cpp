@@ -70,7 +70,9 @@ void ContactSet::set_law(int material_a, int material_b, const ContactLaw& law) 
   laws_[std::minmax(material_a, material_b)] = law;
 }
 
-void ContactSet::exclude(int body_a, int body_b) { excluded_.insert(std::minmax(body_a, body_b)); }
+void ContactSet::exclude(int owner_a, int owner_b) {
+  excluded_.insert(std::minmax(owner_a, owner_b));
+}
 
 /// What no pair states is combined: √(μ_a μ_b), the smaller restitution.
 const ContactLaw& ContactSet::law(int shape_a, int shape_b) const {
@@ -90,7 +92,9 @@ bool ContactSet::may_meet(const PlacedShape& a, const PlacedShape& b) const {
   if (a.body == b.body) return false;
   if (!(a.groups & b.meets) || !(b.groups & a.meets)) return false;
   if (!a.shape.bounded() && !b.shape.bounded()) return false;
-  return !excluded_.contains(std::minmax(a.body, b.body));
+  if (excluded_.empty()) return true;
+  const auto owner = [](const PlacedShape& s) { return s.owner == -2 ? s.body : s.owner; };
+  return !excluded_.contains(std::minmax(owner(a), owner(b)));
 }
 
 void ContactSet::prepare(const System& system) {
@@ -107,6 +111,7 @@ void ContactSet::prepare(const System& system) {
     size_of_body_[s.body] = std::min(size_of_body_[s.body], s.shape.bound_radius);
   }
   references_.assign(n, {});
+  wrenches_.assign(n, Vec6::Zero());
 }
 
 /// @eq{contact-stiffness}
@@ -125,7 +130,8 @@ void ContactSet::complete_law(Point& p, double dt) const {
   d.normal.potential = law.potential;
   d.normal.tolerance = law.tolerance > 0.0 ? law.tolerance : 1e-3 * length;
   if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, rounding);
-  const double weight = mass * system_->gravity().norm();
+  const double weight =
+      law.reference_load > 0.0 ? law.reference_load : mass * system_->gravity().norm();
   double k = law.stiffness;
   if (k == 0.0) {
     const double band = 2.0 * d.normal.tolerance;
@@ -296,6 +302,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
   values.tangents = false;
   PairTerms unused;
   unused.set_zero();
+  for (Vec6& w : wrenches_) w.setZero();
   for (Point& p : points_) {
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
     const double gap_1 = gap_at_end(p, a, b);
@@ -303,8 +310,9 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     p.active = p.gap_n < reach || gap_1 < reach;
     PointHistory& h = p.data.history;
     p.impact_loss = 0.0;
-    p.touched = p.active;
-    if (!p.active) {
+    p.impact_impulse = 0.0;
+    p.touched = p.active && !p.sensor;
+    if (!p.touched) {
       p.report = {};
       p.report.gap_n = p.gap_n;
       p.report.gap_n1 = gap_1;
@@ -312,17 +320,22 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       h.closed = false;
       continue;
     }
-    if (p.plain && pointwise_)
-      (void)plain_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
-    else
+    unused.wrench_a.setZero();
+    unused.wrench_b.setZero();
+    if (p.plain && pointwise_) {
+      const PointForce f = plain_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
+      unused.wrench_a << f.force, f.moment_a;
+      unused.wrench_b << -f.force, f.moment_b;
+    } else {
       add_contact(p.data, a, b, values, unused, &p.report);
+    }
     if (gap_1 >= reach) release_bristles(p.data.friction, p.report);
     const PointReport& r = p.report;
-    if (!p.sensor) {
-      work.stored += r.work.stored;
-      work.dissipated += r.work.dissipated;
-      lost_by_friction_ += r.work.dissipated;
-    }
+    if (shapes_[p.a].body != kGround) wrenches_[shapes_[p.a].body] += unused.wrench_a;
+    if (shapes_[p.b].body != kGround) wrenches_[shapes_[p.b].body] += unused.wrench_b;
+    work.stored += r.work.stored;
+    work.dissipated += r.work.dissipated;
+    lost_by_friction_ += r.work.dissipated;
     const auto speed = [&](const Vec3& v, const Vec3& W, const Mat3& Lambda, const BodyStep& s) {
       return Vec3(v + (Lambda * W).cross(r.point - s.r_n - 0.5 * s.u));
     };

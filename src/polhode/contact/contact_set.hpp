@@ -11,6 +11,7 @@
 #include <polhode/assembly/system.hpp>
 #include <polhode/contact/broad_phase.hpp>
 #include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/contact_reports.hpp>
 #include <polhode/contact/feature_pairs.hpp>
 
 namespace polhode::contact {
@@ -18,9 +19,10 @@ namespace polhode::contact {
 /// How two materials meet. Zero means: chosen from the bodies (see docs/theory/contact.md).
 struct ContactLaw {
   NormalPotential potential = NormalPotential::barrier;
-  double stiffness = 0.0;    ///< k [N/m]; Hertz [N/m^{3/2}].
-  double tolerance = 0.0;    ///< g_tol of the barrier [m].
-  double restitution = 0.0;  ///< e, 0 to 1, by the exit law.
+  double stiffness = 0.0;       ///< k [N/m]; Hertz [N/m^{3/2}].
+  double tolerance = 0.0;       ///< g_tol of the barrier [m].
+  double reference_load = 0.0;  ///< That a point carries at gap 0 [N]; chooses the stiffness.
+  double restitution = 0.0;     ///< e, 0 to 1, by the exit law.
   /// Hertz and linear: speed of rebound by a damper instead (Gonthier, Carvalho and Martins);
   /// needs some twenty steps per contact.
   bool damped = false;
@@ -40,26 +42,12 @@ struct ContactMaterial {
 /// A shape on a body.
 struct PlacedShape {
   int body = kGround;
+  int owner = -2;  ///< Whose it is, for exclude(): a number of the caller's; −2: the body.
   std::string name;
   Shape shape;
   int material = -1;                  ///< Of add_material(); −1: the default law.
   std::uint32_t groups = 1;           ///< Belongs to these.
   std::uint32_t meets = 0xffffffffu;  ///< Meets shapes of these; both have to agree.
-};
-
-enum class ContactStatus { open, stick, slip };
-
-/// What two shapes did to each other over the last step.
-struct ShapePairReport {
-  int a = 0, b = 0;              ///< Shapes.
-  double gap = 0.0;              ///< Smallest, at t_{n+1} [m].
-  Vec3 force = Vec3::Zero();     ///< On a, friction included [N].
-  double normal_force = 0.0;     ///< Sum of all points [N].
-  Vec3 friction = Vec3::Zero();  ///< On a [N].
-  Vec3 point = Vec3::Zero();     ///< Mean of the points, by normal force [m].
-  int points = 0;
-  ContactStatus status = ContactStatus::open;
-  double dissipated = 0.0;  ///< In the step, impacts included [J].
 };
 
 /// Contact between the shapes of bodies.
@@ -75,17 +63,29 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   void set_default(const ContactLaw& law);
   /// Law of two materials. @throws InputError for values out of range.
   void set_law(int material_a, int material_b, const ContactLaw& law);
-  /// Shapes of these bodies do not meet.
-  void exclude(int body_a, int body_b);
+  /// Shapes of these owners (bodies, if none is stated) do not meet.
+  void exclude(int owner_a, int owner_b);
+  /// Whether two shapes touch when they are near: bodies, groups and exclusions allow it.
+  [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
 
   [[nodiscard]] const std::vector<PlacedShape>& shapes() const { return shapes_; }
   [[nodiscard]] const ContactLaw& law(int shape_a, int shape_b) const;
+  /// What the last step did, by pairs of shapes that are near each other; after stored() or at the
+  /// start gaps only.
   [[nodiscard]] std::vector<ShapePairReport> reports() const;
+  [[nodiscard]] std::vector<TouchingPoint> touching() const;
+  /// Forces and moments about the centres of mass, over the last step, by body, world [N, N m].
+  [[nodiscard]] const std::vector<Vec6>& wrenches() const { return wrenches_; }
   /// Energy lost in impacts and by friction and other dissipation since prepare() [J].
   [[nodiscard]] double lost_in_impacts() const { return lost_in_impacts_; }
   [[nodiscard]] double lost_by_friction() const { return lost_by_friction_; }
-  /// Shapes that overlap by more than the tolerance at an instant: "a in b by 0.01 m".
+  /// Shapes that overlap by more than the tolerance at an instant, each pair by its deepest point.
+  [[nodiscard]] std::vector<ShapeOverlap> deepest_overlaps(std::span<const BodyStep> instants);
+  /// The same in words: "a in b by 0.01 m".
   [[nodiscard]] std::vector<std::string> overlaps(std::span<const BodyStep> instants);
+  /// Numbers of the caller's that go with the state: sums over the run, for instance.
+  void keep_totals(State& state, const std::vector<double>& totals);
+  [[nodiscard]] static std::vector<double> totals_in(const State& state);
   [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
 
   void prepare(const System& system) override;
@@ -123,7 +123,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
     bool active = false;
     double elastic_force = 0.0;
     double speed_n = 0.0, speed_n1 = 0.0;  ///< Along the normal [m/s].
-    double impact_loss = 0.0;
+    double impact_loss = 0.0, impact_impulse = 0.0;
   };
   /// Where a body was when candidates were found, and how far it may go from there.
   struct Reference {
@@ -139,7 +139,6 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
                       std::map<int, BodyMotion>& motions, VelocityJump& jump);
   void load(const State& state);
   void save(State& state) const;
-  [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
   void refer(std::span<const BodyStep> steps, const StepContext& context);
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
@@ -165,10 +164,11 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
 
   const System* system_ = nullptr;
   std::vector<double> reach_of_body_, size_of_body_;
+  std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
   std::vector<Participants> pairs_;
-  std::vector<double> saved_;
+  std::vector<double> saved_, totals_;
   bool loaded_ = false;
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
   BroadPhase broad_;

@@ -118,6 +118,7 @@ void ContactSet::settle_in_turn(std::span<const ImpactRow> rows, const std::vect
       const double lost = -0.5 * p * (row.wanted + speed);
       jump.energy_lost += lost;
       points_[row.point].impact_loss += lost;
+      points_[row.point].impact_impulse += p;
     }
 }
 
@@ -215,14 +216,32 @@ VelocityJump ContactSet::settle_impacts(State& state, std::span<const VelocityRo
       if (r.row.b != kGround) J.row(k).segment<6>(6 * place[r.row.b]) += r.row.G_b.transpose();
       wanted[k] = r.point < 0 ? -J.row(k).dot(velocity) : r.wanted - r.before;
     }
-    const Eigen::SelfAdjointEigenSolver<Mat> A(J * inverse_mass * J.transpose());
+    Vec impulses(m);
+    // Contacts only take speed away: rows that would have to push are left out, one round after the
+    // other.
     const auto solve = [&](const Vec& change) {
-      Vec p = A.eigenvectors().transpose() * change;
-      for (Eigen::Index k = 0; k < m; ++k)
-        p[k] = A.eigenvalues()[k] > kPseudoInverse * A.eigenvalues()[m - 1]
-                   ? p[k] / A.eigenvalues()[k]
-                   : 0.0;
-      return Vec(inverse_mass * (J.transpose() * (A.eigenvectors() * p)));
+      std::vector<Eigen::Index> acting;
+      for (Eigen::Index k = 0; k < m; ++k) acting.push_back(k);
+      for (;;) {
+        const Mat some = J(acting, Eigen::all);
+        const Eigen::SelfAdjointEigenSolver<Mat> A(some * inverse_mass * some.transpose());
+        Vec p = A.eigenvectors().transpose() * change(acting);
+        const double least = kPseudoInverse * A.eigenvalues()[A.eigenvalues().size() - 1];
+        for (Eigen::Index k = 0; k < p.size(); ++k)
+          p[k] = A.eigenvalues()[k] > least ? p[k] / A.eigenvalues()[k] : 0.0;
+        p = A.eigenvectors() * p;
+        impulses.setZero();
+        impulses(acting) = p;
+        const double most = p.lpNorm<Eigen::Infinity>();
+        const auto pushes = [&](Eigen::Index k) {
+          return rows[island[k]].point >= 0 && impulses[k] > kPseudoInverse * most;
+        };
+        if (std::erase_if(acting, pushes) == 0) break;
+        if (!acting.empty()) continue;
+        impulses.setZero();
+        break;
+      }
+      return Vec(inverse_mass * (J.transpose() * impulses));
     };
     const auto loss = [&](const Vec& change) {
       double lost = 0.0;
@@ -258,8 +277,12 @@ VelocityJump ContactSet::settle_impacts(State& state, std::span<const VelocityRo
     jump.energy_lost += lost;
     double share = 0.0;
     for (int k : island) share += rows[k].point >= 0 ? 1.0 : 0.0;
-    for (int k : island)
-      if (rows[k].point >= 0) points_[rows[k].point].impact_loss += lost / share;
+    for (Eigen::Index k = 0; k < m; ++k) {
+      if (rows[island[k]].point < 0) continue;
+      Point& p = points_[rows[island[k]].point];
+      p.impact_loss += lost / share;
+      p.impact_impulse += impulses[k];
+    }
   }
   for (const auto& [body, m] : motions) state.set_motion(system_->slot(body), m);
   lost_in_impacts_ += jump.energy_lost;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/nearest.hpp>
@@ -21,7 +25,9 @@ class Finder {
         at_b_(at_b),
         distance_(distance),
         swapped_(swapped),
-        found_(found) {}
+        found_(found) {
+    find_region();
+  }
 
   void points() {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
@@ -45,8 +51,8 @@ class Finder {
     for (int i = 0; i < static_cast<int>(a_.edges.size()); ++i) {
       if (!a_.edges[i].convex) continue;
       const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
-      if (out_of_ball(p + 0.5 * u, 0.5 * u.norm())) continue;
-      for (int j = 0; j < static_cast<int>(b_.edges.size()); ++j) {
+      if (out_of_ball(p + 0.5 * u, 0.5 * u.norm()) || !in_region({p, p + u})) continue;
+      for (int j : edges_) {
         if (!b_.edges[j].convex) continue;
         const Vec3 &q = b_.corners[b_.edges[j].i], v = b_.corners[b_.edges[j].j] - q;
         const SegmentsRegion r = nearest_on_segments(p, u, q, v);
@@ -80,11 +86,43 @@ class Finder {
       for (int i = 0; i < extremes; ++i) add({GapKind::extreme_solid, i, j, 1.0, fade});
     }
     const Fade along = a_.solid == Solid::cylinder ? Fade::parallel : Fade::none;
-    for (int j = 0; j < static_cast<int>(b_.edges.size()); ++j)
+    for (int j : edges_)
       if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, along});
   }
 
  private:
+  /// Where the boxes around both shapes overlap, in coordinates of b, and what of b lies there.
+  void find_region() {
+    Eigen::AlignedBox3d a, b;
+    for (const Vec3& X : a_.corners) a.extend(in_b(X));
+    if (a_.round() || a_.corners.empty()) {
+      const Vec3 middle = in_b(a_.bound_centre), half = Vec3::Constant(a_.bound_radius);
+      if (a_.bounded()) a.extend(Vec3(middle - half)).extend(Vec3(middle + half));
+    }
+    for (const Vec3& X : b_.corners) b.extend(X);
+    const Vec3 more = Vec3::Constant(reach());
+    const Vec3 far = Vec3::Constant(std::numeric_limits<double>::max());
+    region_ = Eigen::AlignedBox3d(Vec3(-far), far);
+    if (!a.isEmpty()) region_.clamp({Vec3(a.min() - more), Vec3(a.max() + more)});
+    if (!b.isEmpty() && !b_.round()) region_.clamp({Vec3(b.min() - more), Vec3(b.max() + more)});
+    const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
+    for (int k = 0; k < size(b_.corners); ++k)
+      if (in_region({b_.corners[k]})) corners_.push_back(k);
+    for (int e = 0; e < size(b_.edges); ++e)
+      if (in_region({b_.corners[b_.edges[e].i], b_.corners[b_.edges[e].j]})) edges_.push_back(e);
+    for (int t = 0; t < size(b_.triangles); ++t) {
+      const auto& c = b_.triangles[t];
+      if (in_region({b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]}))
+        triangles_.push_back(t);
+    }
+  }
+  /// Whether the box around points meets the region.
+  [[nodiscard]] bool in_region(std::initializer_list<Vec3> points) const {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : points) box.extend(x);
+    return region_.intersects(box);
+  }
+
   [[nodiscard]] int cone_apex() const { return static_cast<int>(a_.corners.size()) - 1; }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
@@ -113,22 +151,22 @@ class Finder {
 
   /// Triangles, less the edges that two of them share, plus the corners those had in common.
   void point_over_surface(int i, const Vec3& x) {
-    if (out_of_ball(x, 0.0)) return;
+    if (out_of_ball(x, 0.0) || !in_region({x})) return;
     const double r = reach();
-    for (int t = 0; t < static_cast<int>(b_.triangles.size()); ++t) {
+    for (int t : triangles_) {
       const auto& c = b_.triangles[t];
       if (std::abs(b_.planes[t].normal.dot(x) - b_.planes[t].offset) > r) continue;
       const TriangleRegion n =
           nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]);
       if ((x - n.nearest).norm() < r) push({GapKind::point_triangle, i, t, 1.0, Fade::none});
     }
-    for (int e = 0; e < static_cast<int>(b_.edges.size()); ++e) {
+    for (int e : edges_) {
       if (b_.edges[e].open) continue;
       const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
       const double along = std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
       if ((x - p - along * v).norm() < r) push({GapKind::point_edge, i, e, -1.0, Fade::none});
     }
-    for (int k = 0; k < static_cast<int>(b_.corners.size()); ++k)
+    for (int k : corners_)
       if (!b_.border_corner[k] && (x - b_.corners[k]).norm() < r)
         push({GapKind::point_corner, i, k, 1.0, Fade::none});
   }
@@ -144,6 +182,8 @@ class Finder {
   double distance_;
   bool swapped_;
   std::vector<OrderedPair>& found_;
+  Eigen::AlignedBox3d region_;
+  std::vector<int> corners_, edges_, triangles_;  ///< Of b, in the region.
 };
 
 }  // namespace

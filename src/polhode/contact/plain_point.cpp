@@ -119,6 +119,7 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
     report->after.slips = false;
     report->work.stored = data.pair.weight * law.energy(gap_n1);
     report->work.dissipated = (lambda - data.pair.weight * quotient) * (gap_n - gap_n1);
+    report->normal_loss = report->work.dissipated;
   }
 
   const FrictionLaw& f = data.friction;

@@ -24,32 +24,6 @@ std::vector<std::string> parts_of(std::string_view path) {
   return parts;
 }
 
-/// The place of the deepest value of a path that the file has.
-Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path) {
-  const SourceNode* node = &root;
-  Place place = context.tree.place_of(root);
-  for (const std::string& part : parts_of(path)) {
-    if (node->is_map()) {
-      const auto key = std::find_if(node->keys.begin(), node->keys.end(),
-                                    [&](const auto& k) { return k.name == part; });
-      if (key == node->keys.end()) break;
-      node = &node->children[static_cast<std::size_t>(key - node->keys.begin())];
-      // A map is meant by its name, a value by itself.
-      place = node->is_map() ? context.tree.place_of(*key, *node) : context.tree.place_of(*node);
-    } else if (node->is_list()) {
-      std::size_t index = 0;
-      const auto end = part.data() + part.size();
-      if (std::from_chars(part.data(), end, index).ptr != end || index >= node->children.size())
-        break;
-      node = &node->children[index];
-      place = context.tree.place_of(*node);
-    } else {
-      break;
-    }
-  }
-  return place;
-}
-
 /// Whether a load's nodes or faces exist.
 void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
   const std::string where = format("loads.{}", load.name);
@@ -79,6 +53,31 @@ void check_probe(const ProbeSpec& probe, const SolidPlan& plan, std::vector<Inpu
 }
 
 }  // namespace
+
+Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path) {
+  const SourceNode* node = &root;
+  Place place = context.tree.place_of(root);
+  for (const std::string& part : parts_of(path)) {
+    if (node->is_map()) {
+      const auto key = std::find_if(node->keys.begin(), node->keys.end(),
+                                    [&](const auto& k) { return k.name == part; });
+      if (key == node->keys.end()) break;
+      node = &node->children[static_cast<std::size_t>(key - node->keys.begin())];
+      // A map is meant by its name, a value by itself.
+      place = node->is_map() ? context.tree.place_of(*key, *node) : context.tree.place_of(*node);
+    } else if (node->is_list()) {
+      std::size_t index = 0;
+      const auto end = part.data() + part.size();
+      if (std::from_chars(part.data(), end, index).ptr != end || index >= node->children.size())
+        break;
+      node = &node->children[index];
+      place = context.tree.place_of(*node);
+    } else {
+      break;
+    }
+  }
+  return place;
+}
 
 void check_solids(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;

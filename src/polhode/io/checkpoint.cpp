@@ -92,6 +92,47 @@ void add(Fingerprint& f, const LoadSpec& l) {
   f.map(l.parameters);
 }
 
+void add(Fingerprint& f, const ContactLawSpec& law) {
+  f.text(law.potential);
+  f.text(law.rebound);
+  for (const double x : {law.gap_tolerance, law.stiffness, law.reference_load, law.restitution,
+                         law.friction, law.static_friction, law.friction_across, law.rolling,
+                         law.torsion, law.friction_stiffness, law.friction_damping})
+    f.number(x);
+  f.numbers(law.direction);
+}
+
+/// Laws and what they belong to; what is recorded of contacts may differ.
+void add(Fingerprint& f, const ContactsSpec& contacts, const std::vector<BodySpec>& bodies) {
+  f.number(contacts.present);
+  if (!contacts.present) return;
+  add(f, contacts.standard);
+  f.number(static_cast<double>(contacts.friction));
+  f.number(static_cast<double>(contacts.restitution));
+  f.number(contacts.joint_neighbours);
+  for (const ContactMaterialSpec& m : contacts.materials) {
+    f.text(m.name);
+    f.number(m.friction);
+    f.number(m.restitution);
+  }
+  for (const ContactPairSpec& pair : contacts.pairs) {
+    for (const int x : {pair.of_materials ? 1 : 0, pair.sensor ? 1 : 0, pair.a, pair.b})
+      f.number(x);
+    add(f, pair.law);
+  }
+  for (const auto& [a, b] : contacts.excluded) {
+    f.number(a);
+    f.number(b);
+  }
+  for (const BodySpec& body : bodies)
+    for (const ShapeSpec& shape : body.shapes) {
+      f.text(shape.type);
+      for (const double x : shape.sizes) f.number(x);
+      f.numbers(shape.position);
+      f.numbers(shape.orientation.coeffs());
+    }
+}
+
 }  // namespace
 
 std::string model_fingerprint(const Model& model) {
@@ -100,6 +141,7 @@ std::string model_fingerprint(const Model& model) {
   for (const auto& body : model.bodies) add(f, body);
   for (const auto& joint : model.joints) add(f, joint);
   for (const auto& load : model.loads) add(f, load);
+  add(f, model.contacts, model.bodies);
   const AnalysisSpec& a = model.analysis;
   f.text(a.type);
   f.number(a.rho_inf);

@@ -152,6 +152,15 @@ std::vector<std::string> beam_header() {
   return header;
 }
 
+std::vector<std::string> contact_header() {
+  std::vector<std::string> header{"t [s]", "gap [m]", "normal [N]"};
+  extend(header, vector_header("f", "N"));
+  extend(header, vector_header("ft", "N"));
+  extend(header, vector_header("p", "m"));
+  extend(header, std::vector<std::string>{"points [-]", "status [-]", "impulse [N s]", "lost [J]"});
+  return header;
+}
+
 /// What a probe records, and the names of its columns.
 struct Target {
   int index = 0;
@@ -204,6 +213,9 @@ Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
   const std::string where = format("output.probes.{}", spec.name);
   if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
   if (spec.kind == "solid") return find_solid_target(simulation, spec);
+  if (spec.kind == "contact")
+    return {.index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
+            .header = contact_header()};
   if (spec.kind == "load") {
     const int load = model.load_index(spec.target);
     if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
@@ -214,7 +226,7 @@ Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
     throw InputError(where, format("records a '{}', which is not known", spec.kind),
-                     "Name a body, a joint, a load, a solid, a beam or a cable");
+                     "Name a body, a joint, a load, a solid, a beam, a cable or a contact");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which stands still", "Name a body");
@@ -303,6 +315,19 @@ void CsvProbes::record(const Simulation& simulation) {
   }
 }
 
+/// Forces are those on the first body the probe names.
+void CsvProbes::add_contact(std::vector<double>& row, const Simulation& simulation,
+                            const Probe& probe) {
+  const ContactReport c = simulation.contact(probe.index);
+  const ContactMap::Pair& pair =
+      simulation.contact_map().pairs[static_cast<std::size_t>(probe.index)];
+  const double sign = pair.a == probe.spec.pair[0] ? 1.0 : -1.0;
+  row.insert(row.end(), {c.gap, c.normal_force});
+  for (const Vec3& x : {Vec3(sign * c.force), Vec3(sign * c.friction), c.point}) extend(row, x);
+  row.insert(row.end(), {static_cast<double>(c.points), static_cast<double>(c.status), c.impulse,
+                         c.energy_lost});
+}
+
 std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulation) {
   std::vector<double> row{simulation.time()};
   if (probe.spec.kind == "body") {
@@ -312,6 +337,8 @@ std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulat
     const InterfaceReport reaction = simulation.interface_reaction(probe.index, probe.interface);
     extend(row, reaction.force);
     extend(row, reaction.moment);
+  } else if (probe.spec.kind == "contact") {
+    add_contact(row, simulation, probe);
   } else if (probe.spec.kind == "load") {
     const std::vector<double> values = simulation.load(probe.index);
     row.insert(row.end(), values.begin(), values.end());

@@ -51,13 +51,15 @@ class CsvProbes {
  private:
   struct Probe {
     ProbeSpec spec;
-    int index;          ///< Of the body, joint, load, solid, beam or cable.
+    int index;          ///< Of the body, joint, load, solid, beam or cable, or of the pair.
     SolidPoint point;   ///< Of a solid.
     int interface;      ///< Of a solid; -1: none.
     double every;       ///< [s]; 0: every step.
     std::int64_t next;  ///< The next row is due at next·every.
     CsvTable table;
   };
+  static void add_contact(std::vector<double>& row, const Simulation& simulation,
+                          const Probe& probe);
   [[nodiscard]] static std::vector<double> row(const Probe& probe, const Simulation& simulation);
 
   std::vector<Probe> probes_;

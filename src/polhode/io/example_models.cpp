@@ -2,6 +2,7 @@
 #include <polhode/io/example_models.hpp>
 
 #include <charconv>
+#include <cmath>
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
@@ -126,6 +127,31 @@ std::string binary_tree(const Values& values) {
   return m.end("duration: 1 s, step: 5 ms", "50 ms");
 }
 
+/// Balls of 1 kg and 0.1 m radius over a bin that is four layers of them high, slightly out of
+/// their lattice; all at rest at the start.
+std::string spheres_in_a_bin(const Values& values) {
+  const int n = count(values, "n", 1'000'000);
+  const double side = 0.25 * std::ceil(std::sqrt(n / 4.0));
+  const int row = static_cast<int>((side - 0.21) / 0.22) + 1;
+  const double x0 = -0.11 * (row - 1), half = 0.5 * side;
+  std::string text = format(
+      "format: 1\ntitle: {} spheres in a bin\ngravity: [0, 0, -9.81]\n\nbodies:\n"
+      "  bin:\n    fixed: true\n    shape:\n      - {{plane: z}}\n"
+      "      - {{plane: x, position: [{}, 0, 0]}}\n      - {{plane: -x, position: [{}, 0, 0]}}\n"
+      "      - {{plane: y, position: [0, {}, 0]}}\n      - {{plane: -y, position: [0, {}, 0]}}\n",
+      n, -half, half, -half, half);
+  for (int i = 0; i < n; ++i) {
+    const Vec3 x(x0 + 0.22 * (i % row) + 0.005 * std::sin(12.9898 * i),
+                 x0 + 0.22 * (i / row % row) + 0.005 * std::sin(78.233 * i),
+                 0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i));
+    text += format("  b{}: {{shape: {{sphere: 0.2}}, mass: 1, position: {}}}\n", i, list(x));
+  }
+  return text +
+         "\ncontacts:\n  default: {friction: 0.5}\n\n"
+         "analysis: {type: dynamics, duration: 3 s, step: 2 ms}\n"
+         "output: {every: 50 ms, probes: {b0: {body: b0, every: 50 ms}}}\n";
+}
+
 }  // namespace
 
 const std::vector<ModelGenerator>& model_generators() {
@@ -142,6 +168,10 @@ const std::vector<ModelGenerator>& model_generators() {
        "rods that branch in two at every end",
        {{"N", "63", "number of rods"}},
        binary_tree},
+      {"spheres_in_a_bin",
+       "balls that fall into a bin and come to rest",
+       {{"n", "100", "number of balls"}},
+       spheres_in_a_bin},
   };
   return generators;
 }

@@ -80,6 +80,11 @@ const FieldTable& model_fields() {
            .kind = kNamed,
            .meaning = "Deformable solids by name.",
            .table = "solid"},
+          {.name = "contacts",
+           .kind = kSection,
+           .meaning = "Contact between the shapes of bodies.",
+           .standard = "no contact",
+           .table = "contacts"},
           {.name = "analysis",
            .kind = kSection,
            .meaning = "What to compute and how.",
@@ -157,7 +162,7 @@ const FieldTable& body_fields() {
            .kind = kChoice,
            .meaning =
                "What position places: the centre of mass, or the origin of the body's coordinates.",
-           .standard = "com; origin for a mesh or several shapes",
+           .standard = "com; origin for a mesh, a hull or several shapes",
            .choices = {"com", "origin"}},
           {.name = "com",
            .kind = kVector,
@@ -191,6 +196,10 @@ const FieldTable& body_fields() {
            .kind = kBoolean,
            .meaning = "Never moves and costs nothing; needs no mass.",
            .standard = "false"},
+          {.name = "contact",
+           .kind = kSection,
+           .meaning = "How its shapes take part in contact, beside 'contacts'.",
+           .table = "contact side"},
           {.name = "hold",
            .kind = kChoices,
            .meaning = "Freedoms held at their start values: a generic joint to ground at the "
@@ -310,6 +319,14 @@ const FieldTable& shape_fields() {
          .meaning =
              "A closed triangle surface from a file, with its own coordinates: a path, or a map.",
          .table = "mesh"});
+    t.fields.push_back({.name = "hull",
+                        .kind = kSection,
+                        .meaning = "The convex hull of points.",
+                        .table = "hull"});
+    t.fields.push_back({.name = "height_field",
+                        .kind = kSection,
+                        .meaning = "Heights over a grid, for fixed bodies; it weighs nothing.",
+                        .table = "height field"});
     t.fields.push_back({.name = "plane",
                         .kind = kDirection,
                         .meaning = "A plane through the shape's position with this normal, for "
@@ -330,6 +347,11 @@ const FieldTable& shape_fields() {
                         .meaning = "Of this shape.",
                         .standard = "the body's",
                         .range = kPositive});
+    t.fields.push_back({.name = "contact",
+                        .kind = kSection,
+                        .meaning = "How it takes part in contact.",
+                        .standard = "as the body",
+                        .table = "contact side"});
     return t;
   }();
   return table;
@@ -379,8 +401,9 @@ const FieldTable& time_table_fields() {
 
 std::vector<const FieldTable*> all_field_tables() {
   std::vector<const FieldTable*> tables = {
-      &model_fields(),       &units_fields(), &body_fields(),  &inertia_fields(),
-      &orientation_fields(), &euler_fields(), &shape_fields(), &mesh_fields()};
+      &model_fields(),       &units_fields(),        &body_fields(),        &inertia_fields(),
+      &orientation_fields(), &euler_fields(),        &shape_fields(),       &mesh_fields(),
+      &hull_fields(),        &height_field_fields(), &contact_side_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);
   tables.push_back(&angle_limit_fields());
@@ -397,6 +420,8 @@ std::vector<const FieldTable*> all_field_tables() {
   for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);
   for (const FieldTable* table :
        {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),
+        &contacts_fields(), &contact_law_fields(), &contact_material_fields(),
+        &contact_combination_fields(), &contact_pair_fields(), &contact_sensor_fields(),
         &time_table_fields(), &analysis_fields(), &output_fields(), &probe_fields()})
     tables.push_back(table);
   return tables;

@@ -49,6 +49,9 @@ enum class FieldKind : unsigned char {
   kInertiaTensor,  ///< Three principal moments, or a map of the tensor's entries.
   kStep,           ///< A time, or auto.
   kVariables,      ///< A map from names to numbers.
+  kNames,          ///< A list of names.
+  kBodyPairs,      ///< A list of pairs of bodies.
+  kRows,           ///< Rows of numbers, all of one length.
 };
 
 /// Where a number must lie, in SI.
@@ -121,6 +124,15 @@ const FieldTable& selection_fields();
 const FieldTable& plane_fields();
 const FieldTable& box_fields();
 const FieldTable& sphere_fields();
+const FieldTable& contacts_fields();
+const FieldTable& contact_law_fields();
+const FieldTable& contact_pair_fields();
+const FieldTable& contact_sensor_fields();
+const FieldTable& contact_material_fields();
+const FieldTable& contact_combination_fields();
+const FieldTable& contact_side_fields();
+const FieldTable& hull_fields();
+const FieldTable& height_field_fields();
 const FieldTable& time_table_fields();
 const FieldTable& analysis_fields();
 const FieldTable& output_fields();

@@ -164,7 +164,7 @@ const FieldTable& output_fields() {
 const FieldTable& probe_fields() {
   static const FieldTable table{
       "probe",
-      "One of body, joint, load, solid, beam, cable.",
+      "One of body, joint, load, solid, beam, cable, contact.",
       {
           {.name = "body",
            .kind = kBody,
@@ -209,6 +209,10 @@ const FieldTable& probe_fields() {
            .meaning = "The element of the beam, or piece of the cable; the first is 0.",
            .standard = "0",
            .range = kNotNegative},
+          {.name = "contact",
+           .kind = kBodyPair,
+           .meaning = "Record gap, forces, point, status, impulse and energy lost between these "
+                      "two bodies."},
           {.name = "every",
            .kind = kNumber,
            .dimension = kTime,

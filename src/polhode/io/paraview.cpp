@@ -8,9 +8,9 @@
 #include <Eigen/Eigenvalues>
 
 #include <polhode/base/format.hpp>
-#include <polhode/body/read_surface.hpp>
 #include <polhode/body/shapes.hpp>
 #include <polhode/model/beam_mesh.hpp>
+#include <polhode/model/shape_surface.hpp>
 
 namespace polhode {
 
@@ -71,10 +71,8 @@ TriangleSurface picture_of(const BodySpec& body, const Model& model, double size
       surface = plane_patch(
           shape.sizes,
           reach_from(body.position + body.orientation * (shape.position - body.com), model, size));
-    else if (const ShapeKind* kind = find_shape_kind(shape.type))
-      surface = shape_surface(*kind, shape.sizes, kSegments);
-    else if (!shape.file.empty())
-      surface = scaled(read_surface(shape.file), shape.scale);
+    else
+      surface = shape_surface(format("bodies.{}.shape", body.name), shape, kSegments);
     append(sum, surface, shape.orientation.toRotationMatrix(), shape.position - body.com);
   }
   if (body.shapes.empty() && !body.fixed) sum = inertia_box(body, size);

@@ -100,4 +100,27 @@ class LinesWriter {
   std::vector<double> radii_;  ///< Of the beams, then the cables [m].
 };
 
+/// Forces of contact for ParaView, as a ParaviewSeries of .vtp files: a point where each force
+/// acts, with point data "force" and "friction" [N] on the first of its two bodies, "normal_force"
+/// [N], "gap" [m] and "bodies" (two indices); draw them with the filter Glyph. The names of the
+/// bodies are field data "body_names".
+class ContactsWriter {
+ public:
+  /// @param keep  Continue existing files: times up to that one stay listed. @throws FileError
+  ContactsWriter(const std::string& folder, const std::string& name,
+                 std::vector<std::string> bodies, std::vector<int> body_of_shape,
+                 std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtp", keep),
+        bodies_(std::move(bodies)),
+        body_of_shape_(std::move(body_of_shape)) {}
+
+  void append(double t, const std::vector<contact::TouchingPoint>& points);  ///< @throws FileError
+  void close() { series_.close(); }                                          ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> bodies_;
+  std::vector<int> body_of_shape_;
+};
+
 }  // namespace polhode

@@ -166,18 +166,40 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
             (names.empty() ? "It is bonded to nothing." : "Interfaces: " + name_list(names) + "."));
 }
 
+/// Two bodies with shapes, in a model with contact.
+void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  const auto pair = section.body_pair("contact");
+  if (!pair) return;
+  if (!context.model.contacts.present) {
+    section.fault("contact", "the model has no contacts", "Add 'contacts: {}'.");
+    return;
+  }
+  for (const int body : *pair) {
+    const bool ground = body == kGround;
+    if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
+    section.fault("contact",
+                  ground ? std::string("the ground has no shapes")
+                         : format("the body {} has no shape",
+                                  quote(context.model.bodies[static_cast<std::size_t>(body)].name)),
+                  ground ? "Name the fixed body whose shape is meant."
+                         : "Give it a shape, or leave the probe out.");
+    return;
+  }
+  probe.pair = *pair;
+}
+
 void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) {
   Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
   if (!node.is_map()) return;
   int targets = 0;
-  for (const char* kind : {"body", "joint", "load", "solid", "beam", "cable"}) {
+  for (const char* kind : {"body", "joint", "load", "solid", "beam", "cable", "contact"}) {
     if (!section.has(kind)) continue;
     probe.kind = kind;
     ++targets;
   }
   if (targets != 1) {
     section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
-                  "Give one of: body, joint, load, solid, beam, cable.");
+                  "Give one of: body, joint, load, solid, beam, cable, contact.");
     return;
   }
   probe.every = section.number("every");
@@ -209,6 +231,8 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
     read_solid_probe(context, section, probe);
   } else if (probe.kind == "beam" || probe.kind == "cable") {
     read_line_probe(context, section, probe);
+  } else if (probe.kind == "contact") {
+    read_contact_probe(context, section, probe);
   } else if (probe.kind == "joint") {
     probe.target = read_target(context, section, "joint", context.joint_names());
   } else {

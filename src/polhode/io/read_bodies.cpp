@@ -3,9 +3,9 @@
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
-#include <polhode/body/read_surface.hpp>
 #include <polhode/body/shapes.hpp>
 #include <polhode/io/read_context.hpp>
+#include <polhode/model/shape_surface.hpp>
 
 namespace polhode {
 namespace {
@@ -28,6 +28,8 @@ class BodyReader {
     const std::size_t before = context_.diagnostics.size();
     if (const SourceNode* shapes = section_.find("shape"))
       body_.shapes = read_shapes(context_, *shapes, section_.path("shape"));
+    if (const SourceNode* value = section_.find("contact"))
+      body_.contact = read_contact_side(context_, *value, section_.path("contact"));
     check_planes();
     read_mass(context_.diagnostics.size() == before);
     read_place();
@@ -36,11 +38,17 @@ class BodyReader {
   }
 
  private:
-  [[nodiscard]] static bool weighs(const ShapeSpec& shape) { return shape.type != "plane"; }
+  [[nodiscard]] static bool weighs(const ShapeSpec& shape) {
+    return shape.type != "plane" && shape.type != "height_field";
+  }
 
   void check_planes() {
     if (body_.fixed || std::all_of(body_.shapes.begin(), body_.shapes.end(), weighs)) return;
-    section_.fault("shape", "a plane belongs to a body that is fixed", "Add 'fixed: true'.");
+    const bool field = std::any_of(body_.shapes.begin(), body_.shapes.end(),
+                                   [](const auto& s) { return s.type == "height_field"; });
+    section_.fault("shape",
+                   format("a {} belongs to a body that is fixed", field ? "height field" : "plane"),
+                   "Add 'fixed: true'.");
   }
 
   void read_mass(bool shapes_are_sound) {
@@ -139,14 +147,9 @@ class BodyReader {
     const std::string path = section_.path("shape");
     try {
       const Mat3 R = shape.orientation.toRotationMatrix();
-      if (shape.type != "mesh") {
-        const ShapeKind& kind = *find_shape_kind(shape.type);
-        return placed(shape_mass_properties(path, kind, shape.sizes, density), shape.position, R);
-      }
-      TriangleSurface surface = scaled(read_surface(shape.file), shape.scale);
-      check_closed(shape.file, surface);
-      orient_outward(surface);
-      return placed(mass_properties(surface, density), shape.position, R);
+      if (const ShapeKind* kind = find_shape_kind(shape.type))
+        return placed(shape_mass_properties(path, *kind, shape.sizes, density), shape.position, R);
+      return placed(mass_properties(shape_surface(path, shape, 0), density), shape.position, R);
     } catch (const InputError& error) {
       const bool of_mesh = error.where() != path;
       context_.diagnostics.add(shape.place, path,
@@ -163,8 +166,9 @@ class BodyReader {
       if (const auto q = read_orientation(context_, *value, section_.path("orientation")))
         body_.orientation = *q;
     if (const auto position = section_.vector("position")) body_.position = *position;
-    const bool by_origin =
-        body_.shapes.size() > 1 || (body_.shapes.size() == 1 && body_.shapes[0].type == "mesh");
+    const bool by_origin = body_.shapes.size() > 1 ||
+                           (body_.shapes.size() == 1 &&
+                            (body_.shapes[0].type == "mesh" || body_.shapes[0].type == "hull"));
     const auto position_of = section_.choice("position_of");
     if (position_of.value_or(by_origin ? "origin" : "com") == "origin")
       body_.position += body_.orientation * body_.com;

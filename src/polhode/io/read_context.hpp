@@ -78,6 +78,9 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node, const
 std::optional<std::array<int, 2>> read_body_pair(ReadContext& context, const SourceNode& node,
                                                  const std::string& path);
 
+/// A list of names that is not empty, each once.
+std::optional<std::vector<std::string>> read_names(ReadContext& context, const SourceNode& node,
+                                                   const std::string& path);
 /// A number, or a list of them that is not empty.
 std::optional<std::vector<double>> read_number_list(ReadContext& context, const SourceNode& node,
                                                     const std::string& path, const Field& field);
@@ -136,6 +139,7 @@ class Section {
   std::optional<std::array<Vec3, 2>> direction_pair(const std::string& name);
   std::optional<int> body(const std::string& name);
   std::optional<std::array<int, 2>> body_pair(const std::string& name);
+  std::optional<std::vector<std::string>> names(const std::string& name);
 
   /// A fault of one key, or of the whole thing where the key is absent.
   void fault(const std::string& name, std::string what, std::string mend);
@@ -170,7 +174,10 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
 void read_bodies(ReadContext& context, const SourceNode& node);
 std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path);
+ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
+                                  const std::string& path);
 void read_joints(ReadContext& context, const SourceNode& node);
+void read_contacts(ReadContext& context, const SourceNode& node);
 void read_materials(ReadContext& context, const SourceNode& node);
 void read_sections(ReadContext& context, const SourceNode& node);
 /// Beams and cables become bodies and joints: read after the bodies and before what names them.
@@ -184,6 +191,10 @@ void read_analysis(ReadContext& context, const SourceNode& node, const Place& pl
 void read_output(ReadContext& context, const SourceNode& node, const Place& place);
 /// What only the mesh of a solid shows: sets that match nothing, nodes held twice, and the like.
 void check_solids(ReadContext& context, const SourceNode& root);
+/// What only the shapes show: hulls without volume, open meshes, names of materials.
+void check_contacts(ReadContext& context, const SourceNode& root);
+/// The place of the deepest value of a path such as solids.pad.mesh.elements[3] that the file has.
+Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path);
 /// What only the whole model shows: orders against loads, and the like.
 void check_model(ReadContext& context, const SourceNode& root);
 

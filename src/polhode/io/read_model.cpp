@@ -117,6 +117,7 @@ void read_root(ReadContext& context, const SourceNode& root) {
   if (const SourceNode* node = named_things(context, section, "solids"))
     read_solids(context, *node);
   if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);
+  if (const SourceNode* node = section.find("contacts")) read_contacts(context, *node);
   if (const SourceNode* node = section.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));
   if (const SourceNode* node = section.find("output"))
@@ -124,6 +125,7 @@ void read_root(ReadContext& context, const SourceNode& root) {
   if (model.bodies.empty() && model.solids.empty() && context.diagnostics.empty())
     section.fault("bodies", "the model has no bodies", "Add 'bodies: {name: {...}}'.");
   check_solids(context, root);
+  check_contacts(context, root);
   check_model(context, root);
 }
 
@@ -144,6 +146,15 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
   const int order = model.analysis.order.value_or(2);
+  if (model.contacts.present && model.analysis.type != "dynamics")
+    context.fault(*root.find("contacts"), "contacts",
+                  format("stands beside an analysis of type {}", model.analysis.type),
+                  "Contact exists in dynamics only: let the model come to rest there.");
+  if (order > 2 && model.contacts.present)
+    context.fault(*root.find("analysis")->find("order"), "analysis.order",
+                  format("order {} stands beside contacts", order),
+                  "Orders above 2 go back in time within a step, where friction and impacts would "
+                  "feed energy in: use order 2.");
   if (order <= 2) return;
   const auto refuse = [&](const std::string& what, const char* named) {
     context.fault(*root.find("analysis")->find("order"), "analysis.order",

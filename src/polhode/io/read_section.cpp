@@ -7,17 +7,6 @@
 
 namespace polhode {
 
-namespace {
-
-/// Keys of the file format that later versions read.
-bool is_planned(const std::string& key) {
-  for (const char* planned : {"contacts"})
-    if (key == planned) return true;
-  return false;
-}
-
-}  // namespace
-
 bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                 const std::string& collection) {
   const Place place = context.tree.place_of(key, value);
@@ -76,13 +65,6 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
     const SourceNode::Key& key = node.keys[k];
     const std::string key_path = path_.empty() ? key.name : path_ + "." + key.name;
     const Place key_place = context.tree.place_of(key, node.children[k]);
-    if (path_.empty() && is_planned(key.name)) {
-      context.diagnostics.add(
-          key_place, key_path, "is not supported by this version",
-          "Leave it out; this version reads bodies, joints, loads, solids, beams "
-          "and cables.");
-      continue;
-    }
     if (table.find(key.name)) continue;
     has_unknown_key_ = true;
     likely_meant_.push_back(closest(key.name, table.names()));
@@ -197,6 +179,12 @@ std::optional<std::array<Vec3, 2>> Section::direction_pair(const std::string& na
   const SourceNode* node = find(name);
   if (!node) return std::nullopt;
   return read_direction_pair(context_, *node, path(name));
+}
+
+std::optional<std::vector<std::string>> Section::names(const std::string& name) {
+  const SourceNode* node = find(name);
+  if (!node) return std::nullopt;
+  return read_names(context_, *node, path(name));
 }
 
 std::optional<int> Section::body(const std::string& name) {

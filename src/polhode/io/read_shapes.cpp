@@ -14,8 +14,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> shape_names() {
   std::vector<std::string> names;
   for (const ShapeKind& kind : shape_kinds()) names.push_back(kind.name);
-  names.emplace_back("mesh");
-  names.emplace_back("plane");
+  for (const char* name : {"mesh", "hull", "height_field", "plane"}) names.emplace_back(name);
   return names;
 }
 
@@ -80,6 +79,79 @@ bool read_mesh(ReadContext& context, const SourceNode& node, const std::string& 
   return true;
 }
 
+bool read_hull(ReadContext& context, const SourceNode& node, const std::string& path,
+               ShapeSpec& shape) {
+  Section section(context, node, context.tree.place_of(node), path, hull_fields());
+  if (!node.is_map()) return false;
+  if (section.refuse_both("points", "file", "Give one of them.")) return false;
+  if (section.has("scale") && section.misses("file"))
+    section.fault("scale", "stands without 'file'", "Leave it out; points carry their own units.");
+  shape.scale = section.number("scale").value_or(context.units.length);
+  if (const SourceNode* file = section.find("file")) {
+    const auto full = read_file_name(context, *file, section.path("file"));
+    if (full) shape.file = *full;
+    return full.has_value();
+  }
+  const SourceNode* points = section.find("points");
+  if (!points) {
+    if (!section.has_unknown_key())
+      section.fault("has no points", "Give 'points', or 'file' with a surface.");
+    return false;
+  }
+  if (!points->is_list()) {
+    context.fault(*points, section.path("points"),
+                  "expects a list of points, but is " + points->description(),
+                  "Write [[0, 0, 0], [1, 0, 0], ...].");
+    return false;
+  }
+  bool sound = true;
+  for (const SourceNode& child : points->children) {
+    const auto X = read_vector(context, child, section.path("points"), hull_fields().at("points"));
+    sound = sound && X;
+    if (X) shape.points.push_back(*X);
+  }
+  return sound;
+}
+
+bool read_height_field(ReadContext& context, const SourceNode& node, const std::string& path,
+                       ShapeSpec& shape) {
+  Section section(context, node, context.tree.place_of(node), path, height_field_fields());
+  if (!node.is_map()) return false;
+  const auto spacing = section.number("spacing");
+  const SourceNode* rows = section.find("heights");
+  if (!rows) return false;
+  const std::string where = section.path("heights");
+  const char* mend = "Write [[0, 0.1, 0], [0, 0.2, 0]], for example.";
+  if (!rows->is_list() || rows->children.size() < 2) {
+    context.fault(*rows, where,
+                  "expects a list of at least two rows, but is " + rows->description(), mend);
+    return false;
+  }
+  for (const SourceNode& row : rows->children) {
+    if (!row.is_list() || row.children.size() < 2) {
+      context.fault(row, where,
+                    "expects rows of at least two heights, but has " + row.description(), mend);
+      return false;
+    }
+    if (row.children.size() != rows->children.front().children.size()) {
+      context.fault(row, where,
+                    format("the first row has {} heights, but this one {}",
+                           rows->children.front().children.size(), row.children.size()),
+                    "Give all rows the same length.");
+      return false;
+    }
+    for (const SourceNode& height : row.children) {
+      const auto z = read_number(context, height, where, height_field_fields().at("heights"));
+      if (!z) return false;
+      shape.heights.push_back(*z);
+    }
+  }
+  if (!spacing) return false;
+  shape.columns = static_cast<int>(rows->children.front().children.size());
+  shape.spacing = *spacing;
+  return true;
+}
+
 std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node,
                                     const std::string& path) {
   const FieldTable& table = shape_fields();
@@ -110,8 +182,15 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     if (const auto q = read_orientation(context, *value, section.path("orientation")))
       shape.orientation = *q;
   shape.density = section.number("density");
+  if (const SourceNode* value = section.find("contact"))
+    shape.contact = read_contact_side(context, *value, section.path("contact"));
   if (shape.type == "mesh") {
     if (!read_mesh(context, *sizes, section.path("mesh"), shape)) return std::nullopt;
+  } else if (shape.type == "hull") {
+    if (!read_hull(context, *sizes, section.path("hull"), shape)) return std::nullopt;
+  } else if (shape.type == "height_field") {
+    if (!read_height_field(context, *sizes, section.path("height_field"), shape))
+      return std::nullopt;
   } else if (shape.type == "plane") {
     const auto normal = read_direction(context, *sizes, section.path("plane"));
     if (!normal) return std::nullopt;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/recorder.hpp>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <sstream>
 
+#include <polhode/base/format.hpp>
 #include <polhode/io/csv_probes.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/paraview.hpp>
@@ -12,11 +16,49 @@
 
 namespace polhode {
 
+namespace {
+
+/// The file events.csv: a line whenever a sensor's bodies begin or cease to overlap.
+class SensorFile {
+ public:
+  SensorFile(std::string path, std::optional<double> keep) : path_(std::move(path)) {
+    text_ = "t [s],sensor,event\n";
+    if (keep && std::filesystem::exists(path_)) {
+      std::istringstream lines(read_file(path_));
+      std::string line;
+      std::getline(lines, line);
+      while (std::getline(lines, line))
+        if (std::strtod(line.c_str(), nullptr) <= *keep * (1.0 + 1e-14)) text_ += line + "\n";
+    }
+    write_file_atomically(path_, text_, false);
+  }
+  void record(const std::vector<SensorEvent>& events) {
+    if (done_ == events.size()) return;
+    for (; done_ < events.size(); ++done_)
+      text_ += format("{},{},{}\n", events[done_].t, events[done_].sensor,
+                      events[done_].began ? "began" : "ended");
+    write_file_atomically(path_, text_, false);
+  }
+
+ private:
+  std::string path_, text_;
+  std::size_t done_ = 0;
+};
+
+bool has_sensors(const Simulation& simulation) {
+  const std::vector<ContactMap::Pair>& pairs = simulation.contact_map().pairs;
+  return std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.sensor.empty(); });
+}
+
+}  // namespace
+
 struct Recorder::Impl {
   std::optional<ResultsFile> results;
   std::optional<ParaviewWriter> paraview;
   std::optional<SolidsWriter> solids;
   std::optional<LinesWriter> lines;
+  std::optional<ContactsWriter> contacts;
+  std::optional<SensorFile> sensors;
   std::optional<CsvProbes> probes;
   double last_frame = -std::numeric_limits<double>::infinity();
   std::size_t frames = 0;
@@ -57,6 +99,13 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
   if (output.paraview && !(model.beams.empty() && model.cables.empty()))
     impl_->lines.emplace(folder + "/paraview", "lines", model, simulation.system().length_scale(),
                          keep);
+  if (output.paraview && simulation.contact_set()) {
+    std::vector<std::string> names;
+    for (const BodySpec& body : simulation.model().bodies) names.push_back(body.name);
+    impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names),
+                            simulation.contact_map().body, keep);
+  }
+  if (has_sensors(simulation)) impl_->sensors.emplace(folder + "/events.csv", keep);
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
 }
 
@@ -87,11 +136,13 @@ void Recorder::frame(const Simulation& simulation) {
       cables.push_back(simulation.cable(static_cast<int>(i)));
     impl_->lines->append(simulation.time(), beams, cables);
   }
+  if (impl_->contacts) impl_->contacts->append(simulation.time(), simulation.contact_points());
   ++impl_->frames;
 }
 
 void Recorder::step(const Simulation& simulation) {
   if (impl_->probes) impl_->probes->record(simulation);
+  if (impl_->sensors) impl_->sensors->record(simulation.sensor_events());
 }
 
 void Recorder::close() {
@@ -99,6 +150,7 @@ void Recorder::close() {
   if (impl_->paraview) impl_->paraview->close();
   if (impl_->solids) impl_->solids->close();
   if (impl_->lines) impl_->lines->close();
+  if (impl_->contacts) impl_->contacts->close();
   if (impl_->probes) impl_->probes->flush();
 }
 

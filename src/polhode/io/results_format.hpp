@@ -38,6 +38,9 @@ inline constexpr const char* kSolids = "/solids";
 /// beams/<name>/elements/force (frames, elements, 3), cables/<name>/tension (frames, pieces).
 inline constexpr const char* kBeams = "/beams";
 inline constexpr const char* kCables = "/cables";
+/// Contact of pairs of bodies, side by side and by name: contacts/<a>+<b>/gap is (frames).
+inline constexpr const char* kPackedContacts = "/packed/contacts";
+inline constexpr const char* kContacts = "/contacts";
 
 inline constexpr const char* kEnergy = "/energy";
 inline constexpr const char* kMomentum = "/momentum";

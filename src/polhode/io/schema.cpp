@@ -122,6 +122,12 @@ json field_schema(const FieldTable& table, const Field& field) {
       return reference("name");
     case kBodyPair:
       return list_of(reference("name"), 2, 2);
+    case kNames:
+      return list_of(reference("name"), 1, 0);
+    case kBodyPairs:
+      return list_of(list_of(reference("name"), 2, 2), 0, 0);
+    case kRows:
+      return list_of(list_of(reference("number"), 2, 0), 2, 0);
     case kInertiaTensor:
       return {{"anyOf", json::array({reference("vector"), reference("inertia")})}};
     case kShapes: {

@@ -45,6 +45,12 @@ std::string form(const Field& field) {
       return "body";
     case kBodyPair:
       return "2 bodies";
+    case kNames:
+      return "list of names";
+    case kBodyPairs:
+      return "list of pairs of bodies";
+    case kRows:
+      return "list of rows of numbers";
     case kJoint:
       return "joint";
     case kLoad:

@@ -32,6 +32,11 @@ constexpr Quantity kEnergies[] = {{"kinetic", 1, "J"},
                                   {"dissipated", 1, "J"},
                                   {"total", 1, "J"}};
 
+constexpr Quantity kContactNumbers[] = {
+    {"gap", 1, "m"}, {"normal_force", 1, "N"}, {"impulse", 1, "N s"}, {"energy_lost", 1, "J"}};
+constexpr Quantity kContactCounts[] = {{"points", 1, "-"}, {"status", 1, "-"}};
+constexpr Quantity kContactVectors[] = {{"force", 3, "N"}, {"friction", 3, "N"}, {"point", 3, "m"}};
+
 constexpr Quantity kNodeQuantities[] = {{"displacement", 3, "m"},
                                         {"velocity", 3, "m/s"},
                                         {"cauchy", 6, "Pa"},
@@ -87,6 +92,24 @@ void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
       }
       first += size;
     }
+}
+
+/// What impacts and friction took, and the pairs, in the order of add_contacts().
+void plan_contacts(const ResultsLayout& layout, FilePlan& p) {
+  namespace r = results;
+  if (!layout.has_contacts) return;
+  p.add(r::kEnergy, {"lost_in_impacts", 1, "J"}, {});
+  p.add(r::kEnergy, {"lost_by_friction", 1, "J"}, {});
+  const std::size_t pairs = layout.contacts.size();
+  if (pairs == 0) return;
+  const auto add = [&](const Quantity& q, std::vector<std::size_t> dims, bool integer) {
+    p.add(r::kPackedContacts, q, std::move(dims), integer);
+    for (std::size_t i = 0; i < pairs && pairs <= static_cast<std::size_t>(r::kMostNamed); ++i)
+      p.view(r::kContacts, layout.contacts[i], q, i, 1, true);
+  };
+  for (const Quantity& q : kContactNumbers) add(q, {pairs}, false);
+  for (const Quantity& q : kContactCounts) add(q, {pairs}, true);
+  for (const Quantity& q : kContactVectors) add(q, {pairs, q.size}, false);
 }
 
 /// Path of a part of a solid in the file.
@@ -159,6 +182,7 @@ FilePlan plan(const ResultsLayout& layout) {
   p.add(r::kSolver, {"steps", 1, "-"}, {}, true);
   p.add(r::kSolver, {"iterations", 1, "-"}, {}, true);
   p.add(r::kSolver, {"rejected", 1, "-"}, {}, true);
+  plan_contacts(layout, p);
   plan_solids(layout, p);
   plan_lines(layout, p);
   return p;
@@ -233,6 +257,9 @@ ResultsLayout results_layout(const Simulation& simulation) {
   }
   for (const CableLineSpec& cable : model.cables)
     layout.cables.push_back({cable.name, cable.pieces.size()});
+  layout.has_contacts = simulation.contact_set() != nullptr;
+  for (const ContactMap::Pair& pair : simulation.contact_map().pairs)
+    layout.contacts.push_back(format("{}+{}", model.body_name(pair.a), model.body_name(pair.b)));
   return layout;
 }
 
@@ -269,6 +296,9 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.beams.push_back(simulation.beam(i));
   for (int i = 0; i < static_cast<int>(model.cables.size()); ++i)
     frame.cables.push_back(simulation.cable(i));
+  for (int i = 0; i < static_cast<int>(simulation.contact_map().pairs.size()); ++i)
+    frame.contacts.push_back(simulation.contact(i));
+  frame.losses = simulation.contact_losses();
   frame.balance = simulation.balance();
   const State& state = simulation.state();
   frame.dt = state.dt_last;
@@ -280,7 +310,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
 
 ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
                          const Provenance& provenance)
-    : file_(create(path, layout)), solids_(layout.solids) {
+    : file_(create(path, layout)), solids_(layout.solids), has_contacts_(layout.has_contacts) {
   namespace r = results;
   std::vector<std::string> joints, types;
   std::vector<std::int64_t> first, count;
@@ -302,6 +332,7 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.numbers(join(r::kPackedJoints, "count"), count);
 
   if (layout.load_numbers() > 0) name_loads(layout);
+  if (!layout.contacts.empty()) file_.names(join(r::kPackedContacts, "names"), layout.contacts);
 
   file_.attribute("/", "format", "polhode results");
   file_.attribute("/", "format_version", r::kFormatVersion);
@@ -365,9 +396,27 @@ void ResultsFile::append(const ResultsFrame& frame) {
   scalar(frame.dt);
   for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
     scalar(static_cast<double>(x));
+  if (has_contacts_) add_contacts(frame);
   add_solids(frame);
   add_lines(frame);
   file_.append(numbers_);
+}
+
+void ResultsFile::add_contacts(const ResultsFrame& frame) {
+  numbers_.push_back(frame.losses.impacts);
+  numbers_.push_back(frame.losses.friction);
+  const auto each = [&](auto&& value) {
+    for (const ContactReport& c : frame.contacts) numbers_.push_back(value(c));
+  };
+  each([](const ContactReport& c) { return c.gap; });
+  each([](const ContactReport& c) { return c.normal_force; });
+  each([](const ContactReport& c) { return c.impulse; });
+  each([](const ContactReport& c) { return c.energy_lost; });
+  each([](const ContactReport& c) { return static_cast<double>(c.points); });
+  each([](const ContactReport& c) { return static_cast<double>(c.status); });
+  for (const auto member : {&ContactReport::force, &ContactReport::friction, &ContactReport::point})
+    for (const ContactReport& c : frame.contacts)
+      numbers_.insert(numbers_.end(), (c.*member).begin(), (c.*member).end());
 }
 
 void ResultsFile::add_solids(const ResultsFrame& frame) {

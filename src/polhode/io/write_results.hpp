@@ -52,6 +52,8 @@ struct ResultsLayout {
   std::vector<SolidEntry> solids{};
   std::vector<BeamEntry> beams{};
   std::vector<CableEntry> cables{};
+  bool has_contacts = false;
+  std::vector<std::string> contacts{};  ///< Pairs of bodies that are kept: "a+b".
 
   [[nodiscard]] int coordinates() const;   ///< Of all joints.
   [[nodiscard]] int load_numbers() const;  ///< That all loads report.
@@ -71,6 +73,8 @@ struct ResultsFrame {
   std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.
   std::vector<BeamReport> beams;
   std::vector<CableReport> cables;
+  std::vector<ContactReport> contacts;
+  ContactLosses losses;
   Balance balance;
   double dt = 0.0;                                       ///< Length of the last step [s].
   std::int64_t steps = 0, iterations = 0, rejected = 0;  ///< Since the start.
@@ -94,12 +98,14 @@ class ResultsFile {
  private:
   void name_loads(const ResultsLayout& layout);
   ResultsFile(Hdf5File file, const ResultsLayout& layout)
-      : file_(std::move(file)), solids_(layout.solids) {}
+      : file_(std::move(file)), solids_(layout.solids), has_contacts_(layout.has_contacts) {}
   void add_solids(const ResultsFrame& frame);
   void add_lines(const ResultsFrame& frame);
+  void add_contacts(const ResultsFrame& frame);
 
   Hdf5File file_;
   std::vector<ResultsLayout::SolidEntry> solids_;
+  bool has_contacts_ = false;
   std::vector<double> numbers_;
 };
 

@@ -6,6 +6,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/beams/beam_element.hpp>
+#include <polhode/contact/contact_set.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/beam_mesh.hpp>
@@ -30,6 +31,8 @@ class Builder {
     for (const LoadSpec& load : model_.loads) add_load(load);
     for (const BeamSpec& beam : model_.beams) add_beam(beam);
     for (const CableLineSpec& cable : model_.cables) add_cable(cable);
+    map_.contacts = build_contacts(model_, map_.body, map_.contact);
+    system_.set_contacts(map_.contacts);
     system_.finish();
     if (map) fill(*map);
     return std::move(system_);

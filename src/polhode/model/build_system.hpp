@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
 #include <polhode/joints/joint.hpp>
+#include <polhode/model/build_contacts.hpp>
 #include <polhode/model/build_solids.hpp>
 #include <polhode/model/model.hpp>
 
@@ -16,9 +18,11 @@ struct SystemMap {
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
   /// By Model::loads: likewise; of a load on a solid -1.
   std::vector<int> load;
-  std::vector<SolidMap> solids;         ///< By Model::solids.
-  std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
-  std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
+  std::vector<SolidMap> solids;                   ///< By Model::solids.
+  std::vector<std::vector<int>> beam;             ///< By Model::beams and element: likewise.
+  std::vector<std::vector<int>> cable;            ///< By Model::cables and piece: likewise.
+  std::shared_ptr<contact::ContactSet> contacts;  ///< Null if nothing touches.
+  ContactMap contact;
 };
 
 /// Compiles a model: numbers its bodies, joints and loads and chooses the tree.

@@ -2,7 +2,9 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/model/method.hpp>
+#include <polhode/solve/contact_engine.hpp>
 #include <polhode/solve/coupled_engine.hpp>
+#include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/sparse_engine.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
@@ -15,6 +17,11 @@ namespace {
 constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 /// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
+/// Of contact, whose stiffness turns a gap that is off by little into a force that is off by much.
+constexpr double kToleranceContact = 1e-12;
+constexpr int kIterationsContact = 40;
+/// So many bodies that only contact couples are solved by conjugate gradients.
+constexpr int kCrowd = 50;
 /// Error of automatic steps if the user gives none.
 constexpr double kDefaultError = 1e-6;
 /// Below this many loops open at one body the tree is ahead whatever the rest.
@@ -34,8 +41,14 @@ JacobianPolicy jacobian_policy(const std::string& word) {
 /// Order of accuracy, with what speaks against it.
 int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
   const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
+  if (system.contacts() && a.order.value_or(2) != 2)
+    throw InputError("analysis.order",
+                     format("is {}, but the model has contacts, which orders above 2 cannot step "
+                            "back and forth through",
+                            *a.order),
+                     "Use order: 2 for this model");
   if (!a.order) {
-    if (!a.tolerance || a.step) return 2;
+    if (!a.tolerance || a.step || system.contacts()) return 2;
     const int order = composable ? 6 : 2;
     narration += format("The tolerance of {:g} chose order {} with automatic steps: {}.\n",
                         *a.tolerance, order,
@@ -83,6 +96,28 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     throw InputError("analysis.solver",
                      "'tree' has the momentum form of the rate and factors in every iteration only",
                      "Use solver: block_lu with this momentum_rate or jacobian");
+  if (system.contacts()) {
+    if (a.solver == "tree")
+      throw InputError("analysis.solver", "'tree' has no contacts",
+                       "Use solver: automatic, block_lu, klu or sparse_lu");
+    if (!system.nodes().empty())
+      throw InputError("contacts", "the model has deformable solids, which do not touch yet",
+                       "Leave out the solids or the contacts");
+    if (a.rho_inf < 1.0)
+      narration += format(
+          "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, up to nine "
+          "tenths of that of an impact shorter than the step; restitution and rebound heights are "
+          "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
+          a.rho_inf);
+    if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
+        system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
+      narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
+                          system.body_count());
+      return std::make_unique<CrowdEngine>(system);
+    }
+    return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
+                                           rate);
+  }
   if (!system.nodes().empty()) {
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' has no deformable solids",
@@ -134,6 +169,12 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.newton.jacobian = policy;
   c.newton.line_search = a.line_search;
   c.newton.max_rotation = a.max_step_rotation;
+  if (system.contacts()) {
+    if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceContact;
+    c.newton.max_iterations = a.max_iterations.value_or(kIterationsContact);
+    if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
+    c.newton.line_search = false;  // the engine has one of its own
+  }
   m.engine = choose_engine(system, a, momentum_rate(a.momentum_rate), policy, m.narration);
   return m;
 }

@@ -12,6 +12,7 @@
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
 #include <polhode/model/beam_spec.hpp>
+#include <polhode/model/contact_spec.hpp>
 #include <polhode/model/material_spec.hpp>
 #include <polhode/model/place.hpp>
 #include <polhode/model/solid_spec.hpp>
@@ -20,13 +21,19 @@ namespace polhode {
 
 /// A drawable and weighable shape of a body, in body axes.
 struct ShapeSpec {
-  std::string type;  ///< box, sphere, cylinder, capsule, cone, ellipsoid, tube, mesh, plane.
-  std::vector<double> sizes;     ///< As in the file, full lengths [m].
+  /// box, sphere, cylinder, capsule, cone, ellipsoid, tube, mesh, hull, height_field, plane.
+  std::string type;
+  std::vector<double> sizes;     ///< As in the file, full lengths [m]; plane: its normal.
   std::string file;              ///< Mesh file, resolved against the model file's folder.
   double scale = 1.0;            ///< Of a mesh file: metres per unit.
+  std::vector<Vec3> points;      ///< Of a hull [m].
+  std::vector<double> heights;   ///< Of a height field, row by row [m].
+  int columns = 0;               ///< Of a height field.
+  double spacing = 0.0;          ///< Of a height field [m].
   Vec3 position = Vec3::Zero();  ///< Of the shape in body coordinates [m].
   Quat orientation = Quat::Identity();
   std::optional<double> density;  ///< [kg/m^3]; else the body's.
+  ContactSideSpec contact;
   Place place;
 };
 
@@ -44,6 +51,7 @@ struct BodySpec {
   Vec3 velocity = Vec3::Zero();  ///< Of the centre of mass, world [m/s].
   Vec3 angular_velocity = Vec3::Zero();  ///< World [rad/s].
   std::vector<ShapeSpec> shapes;         ///< In the user's body coordinates (subtract com for Z).
+  ContactSideSpec contact;               ///< Of all its shapes.
 };
 
 /// Dry friction of a joint as described; what is absent is chosen from the bodies' weights.
@@ -105,8 +113,9 @@ struct LoadSpec {
 struct ProbeSpec {
   std::string name;
   Place place;
-  std::string kind;             ///< body, joint, load, solid, beam or cable.
+  std::string kind;             ///< body, joint, load, solid, beam, cable or contact.
   std::string target;           ///< Its name.
+  std::array<int, 2> pair{};    ///< Of a contact probe: indices into Model::bodies.
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
                                 ///< solid probe: in the mesh's own coordinates [m].
   std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
@@ -162,6 +171,7 @@ struct Model {
   std::vector<SolidSpec> solids;
   std::vector<BeamSpec> beams;        ///< Meshed: their nodes are among the bodies.
   std::vector<CableLineSpec> cables;  ///< Divided into pieces.
+  ContactsSpec contacts;
   AnalysisSpec analysis;
   OutputSpec output;
 

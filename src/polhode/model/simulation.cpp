@@ -9,11 +9,13 @@
 #include <polhode/assembly/state_archive.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
 #include <polhode/body/point_motion.hpp>
 #include <polhode/fe/solid_elements.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/method.hpp>
+#include <polhode/model/separate_overlaps.hpp>
 #include <polhode/model/simulation.hpp>
 #include <polhode/solve/node_motion.hpp>
 
@@ -44,6 +46,7 @@ struct Simulation::Impl {
   Method method;
   std::unique_ptr<Stepper> stepper;
   std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
+  ContactKeeper contacts;
   State state;
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; the rest is in the state.
@@ -56,7 +59,10 @@ struct Simulation::Impl {
   std::int64_t instant_step = -1;
   std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
 
-  explicit Impl(Model m) : model(std::move(m)), system(build_system(model, &map)) {
+  explicit Impl(Model m)
+      : model(std::move(m)),
+        system(build_system(model, &map)),
+        contacts(map.contacts, map.contact) {
     method = choose_method(system, model.analysis);
     narration = method.narration;
     if (model.analysis.type == "statics") choose_statics();
@@ -85,7 +91,11 @@ struct Simulation::Impl {
   [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
 
   StepReport advance(double t_limit) {
-    if (!statics) return stepper->advance(state, t_limit);
+    if (!statics) {
+      StepReport report = stepper->advance(state, t_limit);
+      if (report.accepted) contacts.after_step(state);
+      return report;
+    }
     const double before = state.t;
     const std::size_t tried = statics->report().steps.size();
     const int iterations = statics->report().iterations;
@@ -112,10 +122,14 @@ struct Simulation::Impl {
     options.multipliers = small;
     options.smooth_multipliers =
         a.smooth_multipliers && small && a.step && method.control.order == 2;
+    if (model.contacts.resolve_overlaps) move_apart();
     start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
     refuse_bad_start();
+    refuse_overlaps();
+    if (map.contacts && a.step) state.dt_next = *a.step;  // stiffness follows it
     if (statics) statics->begin(state);
     stepper->begin(state);
+    contacts.begin(state);
     state.ledger.constraint_max = 0.0;
     start_seconds = wall_clock() - t0;
   }
@@ -191,6 +205,26 @@ struct Simulation::Impl {
     }
   }
 
+  void move_apart() {
+    if (!map.contacts) return;
+    const SeparationReport moved = separate_overlaps(system, *map.contacts, state);
+    for (const auto& [body, distance] : moved.moves)
+      narration += format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n",
+                          system.bodies()[static_cast<std::size_t>(body)].name, distance);
+  }
+
+  void refuse_overlaps() const {
+    if (!map.contacts) return;
+    const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
+    if (list.empty()) return;
+    throw InputError(
+        "contacts", "shapes overlap at the start: " + name_list(list, 12),
+        model.contacts.resolve_overlaps
+            ? "They could not be moved apart: correct positions or sizes"
+            : "Correct positions or sizes, exclude pairs that are meant to overlap, or "
+              "set contacts.overlaps: resolve");
+  }
+
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
     if (statics) {
@@ -207,7 +241,7 @@ struct Simulation::Impl {
     const VelocityReport v = instant_solver->project_velocities(projected);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
-    instant = instant_solver->accelerations(projected);
+    instant = instant_solver->accelerations(projected, contacts.wrenches());
     instant_step = state.ledger.steps;
     return instant;
   }
@@ -224,6 +258,7 @@ Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(
     throw InputError("restart", "the state belongs to another model",
                      "Restart with the model it was saved from");
   impl_->state = std::move(state);
+  impl_->contacts.resume(impl_->state);
 }
 
 Simulation::~Simulation() = default;
@@ -315,6 +350,17 @@ RunSummary Simulation::summary() const {
   if (s.statics) {
     r.statics = s.statics->report();
     r.strain_energy = s.statics->strain_energy(s.state);
+  }
+  if (s.map.contacts) {
+    const ContactLosses lost = s.contacts.losses();
+    const Balance b = balance();
+    r.contacts = RunSummary::Contacts{
+        .shapes = static_cast<int>(s.map.contact.body.size()),
+        .touching = s.contacts.touching(),
+        .least_gap = s.contacts.least_gap(),
+        .lost_in_impacts = lost.impacts,
+        .lost_by_friction = lost.friction,
+        .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated};
   }
   return r;
 }
@@ -477,6 +523,33 @@ InterfaceReport Simulation::interface_reaction(int solid, int k) const {
     report.moment += arm.cross(force);
   }
   return report;
+}
+
+const contact::ContactSet* Simulation::contact_set() const { return impl_->map.contacts.get(); }
+
+const ContactMap& Simulation::contact_map() const { return impl_->map.contact; }
+
+ContactReport Simulation::contact(int pair) const { return impl_->contacts.report(pair); }
+
+int Simulation::contact_pair(int body_a, int body_b) const {
+  const std::vector<ContactMap::Pair>& pairs = contact_map().pairs;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(body_a, body_b))
+      return static_cast<int>(k);
+  throw InputError("contacts",
+                   format("results of '{}' and '{}' are not kept", model().body_name(body_a),
+                          model().body_name(body_b)),
+                   "Name the pair in contacts.pairs or a probe, or set contacts.record: true");
+}
+
+ContactLosses Simulation::contact_losses() const { return impl_->contacts.losses(); }
+
+const std::vector<contact::TouchingPoint>& Simulation::contact_points() const {
+  return impl_->contacts.points();
+}
+
+const std::vector<SensorEvent>& Simulation::sensor_events() const {
+  return impl_->contacts.events();
 }
 
 std::string Simulation::state_hash() const {

@@ -13,6 +13,7 @@
 #include <polhode/assembly/system.hpp>
 #include <polhode/model/beam_report.hpp>
 #include <polhode/model/build_solids.hpp>
+#include <polhode/model/contact_keeper.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/model/solid_point.hpp>
 #include <polhode/model/solid_report.hpp>
@@ -56,6 +57,16 @@ struct RunSummary {
   double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
   std::string narration;                ///< What was chosen and why, a few lines.
   std::vector<std::string> warnings;    ///< What was seen at output times and deserves a look.
+  /// Of models with contact.
+  struct Contacts {
+    int shapes = 0;          ///< That take part.
+    int touching = 0;        ///< Pairs of shapes that press on each other now.
+    double least_gap = 0.0;  ///< After any step since the start or restart [m]; NaN: none was near.
+    double lost_in_impacts = 0.0, lost_by_friction = 0.0;  ///< Since the start [J].
+    /// What the energy changed by beyond loads and losses [J]; below zero: lost.
+    double numerical = 0.0;
+  };
+  std::optional<Contacts> contacts;
 };
 
 /// A compiled model with its state and method: what steps, runs and is looked at.
@@ -113,6 +124,19 @@ class Simulation {
   [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
   /// What interfaces(solid)[k] exerts on the solid.
   [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
+  // Contact between bodies.
+  /// Null without contact.
+  [[nodiscard]] const contact::ContactSet* contact_set() const;
+  [[nodiscard]] const ContactMap& contact_map() const;
+  /// Of contact_map().pairs[pair]: over the last step.
+  [[nodiscard]] ContactReport contact(int pair) const;
+  /// Index into contact_map().pairs of two bodies of the model. @throws InputError if not kept.
+  [[nodiscard]] int contact_pair(int body_a, int body_b) const;
+  [[nodiscard]] ContactLosses contact_losses() const;
+  /// Points that carried force in the last step; shapes as in contact_map().body.
+  [[nodiscard]] const std::vector<contact::TouchingPoint>& contact_points() const;
+  /// What sensors told since the start or restart.
+  [[nodiscard]] const std::vector<SensorEvent>& sensor_events() const;
   /// SHA-256 over the whole state, moving bodies in the model's order.
   [[nodiscard]] std::string state_hash() const;
 

@@ -78,7 +78,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
 }
 
 /// @eq{eq:rbm-linear-momentum-balance} @eq{eq:rbm-angular-momentum-balance}
-InstantSolution InstantSolver::accelerations(const State& state) {
+InstantSolution InstantSolver::accelerations(const State& state, std::span<const Vec6> more) {
   Impl& s = *impl_;
   const System& system = s.system;
   const int bodies = system.body_count();
@@ -94,6 +94,7 @@ InstantSolution InstantSolver::accelerations(const State& state) {
     const Vec3 h = step.Lambda_n1 * (system.bodies()[b].inertia * step.W_n1);
     s.rhs.segment<3>(6 * b) = per_mass * system.bodies()[b].mass * system.gravity();
     s.rhs.segment<3>(6 * b + 3) = -per_mass * (step.Lambda_n1 * step.W_n1).cross(h);
+    if (!more.empty()) s.rhs.segment<6>(6 * b) += per_mass * more[b];
   }
   s.run(state, [&](int i, const PairStep& step, const PairTerms& terms) {
     const InteractionRef& ref = system.interactions()[i];

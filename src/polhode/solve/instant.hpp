@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,9 @@ class InstantSolver {
   /// Changes velocities onto G v = 0 by the least mass-weighted amount.
   VelocityReport project_velocities(State& state);
   /// Accelerations and multipliers of the state as it is.
-  [[nodiscard]] InstantSolution accelerations(const State& state);
+  /// @param more  Wrenches by body that act beside those of the system, such as contacts'; may be
+  ///              empty. World, about the centres of mass [N, N m].
+  [[nodiscard]] InstantSolution accelerations(const State& state, std::span<const Vec6> more = {});
   /// The part of a field of velocities that the constraints allow, in the mass metric. In and out:
   /// by body (linear, angular), world.
   void keep_admissible(const State& state, std::vector<Vec6>& field);

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing gets through, the energy never rises, the pile comes to rest and stands on the floor with its weight."""
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from support import Report, Run  # noqa: E402
+
+
+def main():
+    report, run = Report(), Run(HERE / "model.yaml")
+    contacts = run.figures["contacts"]
+    # A gap is the distance of surfaces; what is closer than touching is within gap_tolerance, 1e-3 of a radius.
+    report.below("deepest overlap of the run [m]", max(0, -contacts["least_gap"]), 1e-4)
+    floor = run.probe("b0")
+    report.below("speed of ball 0 at the end [m/s]", max(abs(floor[c][-1]) for c in ("vx", "vy", "vz")), 1e-2)
+    report.below("energy balance with what impacts and friction took", run.figures["energy_drift"], 1e-6)
+    report.near("energy lost in impacts is positive", float(contacts["lost_in_impacts"] > 0), 1, 0)
+    report.near("energy lost by friction is positive", float(contacts["lost_by_friction"] > 0), 1, 0)
+    report.end()
+
+
+main()

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_context.hpp>
+#include <polhode/model/build_contacts.hpp>
+
+namespace polhode {
+namespace {
+
+template <class T>
+void assign(T& target, const std::optional<T>& value) {
+  if (value) target = *value;
+}
+
+/// The smallest restitution that a damper can bring about.
+constexpr double kLeastDamped = 0.05;
+
+void read_law(Section& section, ContactLawSpec& law) {
+  const auto potential = section.choice("law");
+  const bool sound_law = potential || !section.has("law");
+  assign(law.potential, potential);
+  assign(law.gap_tolerance, section.number("gap_tolerance"));
+  const bool hertz = law.potential == "hertz";
+  for (const char* key : {"stiffness", "hertz_stiffness"}) {
+    const auto value = section.number(key);
+    if (!value || !sound_law) continue;
+    if (hertz == (key == std::string("hertz_stiffness")))
+      law.stiffness = *value;
+    else
+      section.fault(key, format("does not go with the law {}", law.potential),
+                    hertz ? "Use hertz_stiffness." : "Use stiffness, or law: hertz.");
+  }
+  assign(law.reference_load, section.number("reference_load"));
+  if (section.has("reference_load"))
+    section.refuse_both("stiffness", "reference_load", "Give one of them.");
+  assign(law.restitution, section.number("restitution"));
+  assign(law.rebound, section.choice("rebound"));
+  if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
+    section.fault("rebound", "damped stands beside the barrier law",
+                  "Use law: linear or hertz with it, or leave it out.");
+  else if (law.rebound == "damped" && law.restitution < kLeastDamped)
+    section.fault("restitution", format("a damper cannot bring about {}", shown(law.restitution)),
+                  format("Give at least {}, or leave out 'rebound'.", shown(kLeastDamped)));
+  assign(law.friction, section.number("friction"));
+  assign(law.static_friction, section.number("static_friction"));
+  if (section.has("static_friction") && law.static_friction < law.friction)
+    section.fault(
+        "static_friction",
+        format("{} is below friction, {}", shown(law.static_friction), shown(law.friction)),
+        "What sticks holds at least as much as what slides.");
+  assign(law.friction_across, section.number("friction_across"));
+  assign(law.direction, section.direction("direction"));
+  if (section.has("direction") && law.friction_across == 0.0)
+    section.fault("direction", "stands without 'friction_across'", "Give both, or neither.");
+  if (section.has("friction_across") && law.friction == 0.0)
+    section.fault("friction_across", "stands without 'friction'", "Give friction along direction.");
+  assign(law.rolling, section.number("rolling_friction"));
+  assign(law.torsion, section.number("torsional_friction"));
+  assign(law.friction_stiffness, section.number("friction_stiffness"));
+  assign(law.friction_damping, section.number("friction_damping"));
+}
+
+Combination combination(const std::string& word) {
+  if (word == "mean") return Combination::mean;
+  if (word == "minimum") return Combination::minimum;
+  if (word == "maximum") return Combination::maximum;
+  if (word == "product") return Combination::product;
+  return Combination::geometric_mean;
+}
+
+/// Reads the section; faults go to the context.
+class ContactsReader {
+ public:
+  ContactsReader(ReadContext& context, const SourceNode& node)
+      : context_(context),
+        node_(node),
+        contacts_(context.model.contacts),
+        section_(context, node, context.tree.place_of(node), "contacts", contacts_fields()) {}
+
+  void read() {
+    contacts_.present = true;
+    contacts_.place = section_.place();
+    if (!node_.is_map()) return;
+    if (const SourceNode* node = section_.find("default")) {
+      Section law(context_, *node, context_.tree.place_of(*node), section_.path("default"),
+                  contact_law_fields());
+      if (node->is_map()) read_law(law, contacts_.standard);
+    }
+    if (const SourceNode* node = section_.find("combine")) read_combination(*node);
+    each("materials", contact_material_fields(), "{friction: 0.5}",
+         [&](Section& section, const std::string& name) {
+           ContactMaterialSpec material{name, section.place(), contacts_.standard.friction,
+                                        contacts_.standard.restitution};
+           assign(material.friction, section.number("friction"));
+           assign(material.restitution, section.number("restitution"));
+           contacts_.materials.push_back(std::move(material));
+         });
+    each("pairs", contact_pair_fields(), "{between: [a, b], friction: 0.5}",
+         [&](Section& section, const std::string& name) { read_pair(section, name); });
+    if (const SourceNode* node = section_.find("exclude")) read_excluded(*node);
+    assign(contacts_.joint_neighbours, section_.boolean("joint_neighbours"));
+    each("sensors", contact_sensor_fields(), "{between: [a, b]}",
+         [&](Section& section, const std::string& name) { read_sensor(section, name); });
+    contacts_.resolve_overlaps = section_.choice("overlaps").value_or("error") == "resolve";
+    contacts_.record = section_.boolean("record");
+  }
+
+ private:
+  /// Every entry of a map from names to sections.
+  template <class F>
+  void each(const std::string& key, const FieldTable& table, const char* example, F&& read_one) {
+    const SourceNode* node = section_.find(key);
+    if (!node || node->kind == SourceNode::Kind::kEmpty) return;
+    if (!node->is_map()) {
+      context_.fault(*node, section_.path(key),
+                     format("expects a map from names to {}, but is {}", key, node->description()),
+                     format("Write name: {}.", example));
+      return;
+    }
+    for (std::size_t k = 0; k < node->keys.size(); ++k) {
+      const std::string& name = node->keys[k].name;
+      if (!check_name(context_, node->keys[k], node->children[k], section_.path(key))) continue;
+      Section section(context_, node->children[k],
+                      context_.tree.place_of(node->keys[k], node->children[k]),
+                      section_.path(key) + "." + name, table);
+      if (node->children[k].is_map()) read_one(section, name);
+    }
+  }
+
+  void read_combination(const SourceNode& node) {
+    Section section(context_, node, context_.tree.place_of(node), section_.path("combine"),
+                    contact_combination_fields());
+    if (!node.is_map()) return;
+    if (const auto way = section.choice("friction")) contacts_.friction = combination(*way);
+    if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
+  }
+
+  /// Two bodies that have shapes; ground itself has none.
+  std::optional<std::array<int, 2>> read_bodies(Section& section) {
+    const auto pair = section.body_pair("between");
+    if (!pair || !check_bodies(*pair, *section.find("between"), section.path("between")))
+      return std::nullopt;
+    return pair;
+  }
+
+  bool check_bodies(const std::array<int, 2>& pair, const SourceNode& node,
+                    const std::string& path) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (pair[k] == kGround) {
+        context_.fault(node.children[k], path, "the ground has no shapes",
+                       "Name the fixed body whose shape is meant.");
+        return false;
+      }
+      const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(pair[k])];
+      if (!body.shapes.empty()) continue;
+      if (context_.body_is_sound[static_cast<std::size_t>(pair[k])])
+        context_.fault(node.children[k], path, format("the body {} has no shape", quote(body.name)),
+                       "Give it a shape, or leave the pair out.");
+      return false;
+    }
+    const auto fixed = [&](int b) {
+      return context_.model.bodies[static_cast<std::size_t>(b)].fixed;
+    };
+    if (!fixed(pair[0]) || !fixed(pair[1])) return true;
+    context_.fault(node, path, "both bodies are fixed", "Name at least one that moves.");
+    return false;
+  }
+
+  void read_pair(Section& section, const std::string& name) {
+    ContactPairSpec pair;
+    pair.name = name;
+    pair.place = section.place();
+    pair.law = contacts_.standard;
+    if (section.refuse_both("between", "materials", "Give one of them.")) return;
+    if (!section.has("between") && !section.has("materials")) {
+      if (!section.has_unknown_key())
+        section.fault("names no pair", "Give 'between' with two bodies, or 'materials' with two.");
+      return;
+    }
+    std::optional<std::array<int, 2>> ends;
+    if (section.has("materials")) {
+      pair.of_materials = true;
+      ends = read_materials(section);
+      if (ends) {
+        const auto combined = combined_surface(contacts_, (*ends)[0], (*ends)[1]);
+        pair.law.friction = combined.friction;
+        pair.law.restitution = combined.restitution;
+      }
+    } else {
+      ends = read_bodies(section);
+    }
+    read_law(section, pair.law);
+    if (!ends) return;
+    pair.a = (*ends)[0];
+    pair.b = (*ends)[1];
+    for (const ContactPairSpec& other : contacts_.pairs)
+      if (other.of_materials == pair.of_materials &&
+          std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b))
+        section.fault(pair.of_materials ? "materials" : "between",
+                      format("{} states this pair already", quote(other.name)),
+                      "Keep one of them.");
+    contacts_.pairs.push_back(std::move(pair));
+  }
+
+  std::optional<std::array<int, 2>> read_materials(Section& section) {
+    const SourceNode& node = *section.find("materials");
+    const std::string path = section.path("materials");
+    if (!node.is_list() || node.children.size() != 2) {
+      context_.fault(node, path,
+                     format("expects two contact materials, but is {}",
+                            node.is_list() ? format("a list of {}", node.children.size())
+                                           : node.description()),
+                     "Write [rubber, steel]; a material against itself stands twice.");
+      return std::nullopt;
+    }
+    std::array<int, 2> ends{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto name = read_text(context_, node.children[k], path);
+      if (!name) return std::nullopt;
+      const auto index = find_material(*name);
+      if (!index) {
+        unknown_material(context_.tree.place_of(node.children[k]), path, *name);
+        return std::nullopt;
+      }
+      ends[k] = *index;
+    }
+    return ends;
+  }
+
+  std::optional<int> find_material(const std::string& name) const {
+    for (std::size_t k = 0; k < contacts_.materials.size(); ++k)
+      if (contacts_.materials[k].name == name) return static_cast<int>(k);
+    return std::nullopt;
+  }
+
+  void unknown_material(const Place& place, const std::string& path, const std::string& name) {
+    std::vector<std::string> names;
+    for (const ContactMaterialSpec& m : contacts_.materials) names.push_back(m.name);
+    context_.diagnostics.add(
+        place, path, "unknown contact material " + quote(name),
+        did_you_mean(name, names) + (names.empty() ? "contacts.materials lists none."
+                                                   : sentence("Materials: " + name_list(names))));
+  }
+
+  void read_sensor(Section& section, const std::string& name) {
+    if (!section.has("between")) return;
+    const auto ends = read_bodies(section);
+    if (!ends) return;
+    for (const ContactPairSpec& other : contacts_.pairs)
+      if (!other.of_materials &&
+          std::minmax(other.a, other.b) == std::minmax((*ends)[0], (*ends)[1]))
+        section.fault("between", format("{} states this pair already", quote(other.name)),
+                      "A sensor exerts no force: keep one of them. What touches is reported too, "
+                      "see output.probes.");
+    ContactPairSpec pair;
+    pair.name = name;
+    pair.place = section.place();
+    pair.a = (*ends)[0];
+    pair.b = (*ends)[1];
+    pair.sensor = true;
+    contacts_.pairs.push_back(std::move(pair));
+  }
+
+  void read_excluded(const SourceNode& node) {
+    const std::string path = section_.path("exclude");
+    if (node.kind == SourceNode::Kind::kEmpty) return;
+    if (!node.is_list()) {
+      context_.fault(node, path, "expects a list of pairs, but is " + node.description(),
+                     "Write [[a, b], [a, c]].");
+      return;
+    }
+    for (const SourceNode& child : node.children) {
+      const auto pair = read_body_pair(context_, child, path);
+      if (pair && check_bodies(*pair, child, path)) contacts_.excluded.push_back(*pair);
+    }
+  }
+
+  ReadContext& context_;
+  const SourceNode& node_;
+  ContactsSpec& contacts_;
+  Section section_;
+};
+
+}  // namespace
+
+std::optional<std::vector<std::string>> read_names(ReadContext& context, const SourceNode& node,
+                                                   const std::string& path) {
+  if (!node.is_list() || node.children.empty()) {
+    context.fault(node, path, "expects a list of names, but is " + node.description(),
+                  "Write [a, b], for example.");
+    return std::nullopt;
+  }
+  std::vector<std::string> names;
+  for (const SourceNode& child : node.children) {
+    const auto name = read_text(context, child, path);
+    if (!name) return std::nullopt;
+    if (name->empty() || std::find(names.begin(), names.end(), *name) != names.end()) {
+      context.fault(child, path, name->empty() ? "a name is empty" : quote(*name) + " stands twice",
+                    "Give each name once.");
+      return std::nullopt;
+    }
+    names.push_back(*name);
+  }
+  return names;
+}
+
+ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
+                                  const std::string& path) {
+  ContactSideSpec side;
+  side.place = context.tree.place_of(node);
+  Section section(context, node, side.place, path, contact_side_fields());
+  if (!node.is_map()) return side;
+  side.touches = section.boolean("touches");
+  side.material = section.text("material");
+  side.groups = section.names("groups");
+  side.meets = section.names("meets");
+  return side;
+}
+
+void read_contacts(ReadContext& context, const SourceNode& node) {
+  ContactsReader(context, node).read();
+}
+
+void check_contacts(ReadContext& context, const SourceNode& root) {
+  Model& model = context.model;
+  if (!model.contacts.present) return;
+  if (std::find(context.body_is_sound.begin(), context.body_is_sound.end(), false) !=
+      context.body_is_sound.end())
+    return;
+  std::vector<InputError> faults;
+  check_contact_shapes(model, faults);
+  for (const InputError& e : faults)
+    context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
+                            sentence(e.mend()));
+}
+
+}  // namespace polhode

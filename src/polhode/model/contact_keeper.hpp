@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/state.hpp>
+#include <polhode/contact/contact_reports.hpp>
+#include <polhode/model/build_contacts.hpp>
+
+namespace polhode {
+
+/// What two bodies do to each other.
+struct ContactReport {
+  double gap = 0.0;              ///< Smallest [m]; NaN while they are too far apart to know.
+  double normal_force = 0.0;     ///< Sum of all points, over the last step [N].
+  Vec3 force = Vec3::Zero();     ///< On the first body, friction included, world [N].
+  Vec3 friction = Vec3::Zero();  ///< On the first body, world [N].
+  Vec3 point = Vec3::Zero();     ///< Mean of the points, by normal force [m]; zero if none.
+  int points = 0;                ///< That carry force.
+  int status = 0;                ///< 0 open, 1 sticks, 2 slips; of a sensor 1 overlaps.
+  double impulse = 0.0;          ///< Of the normal force since the start [N s].
+  double energy_lost = 0.0;      ///< Since the start, in impacts and by friction [J].
+};
+
+/// Where energy went since the start [J].
+struct ContactLosses {
+  double impacts = 0.0, friction = 0.0;
+};
+
+/// A sensor's bodies began or ceased to overlap in the step that ended at t.
+struct SensorEvent {
+  double t = 0.0;
+  std::string sensor;
+  bool began = false;
+};
+
+/// Sums up what contacts do, step by step; the sums go with the state.
+class ContactKeeper {
+ public:
+  /// @param contacts  May be null: there is nothing to keep. @param map  Outlives this.
+  ContactKeeper(std::shared_ptr<contact::ContactSet> contacts, const ContactMap& map)
+      : contacts_(std::move(contacts)), map_(&map) {}
+
+  /// Looks at the start; sensors that overlap there begin.
+  void begin(State& state);
+  /// Goes on from a saved state.
+  void resume(const State& state);
+  /// After every accepted step, before anything else is asked of the contacts.
+  void after_step(State& state);
+
+  [[nodiscard]] ContactReport report(int pair) const;
+  [[nodiscard]] const std::vector<contact::TouchingPoint>& points() const { return points_; }
+  [[nodiscard]] ContactLosses losses() const;
+  /// Pairs of shapes that pressed on each other in the last step.
+  [[nodiscard]] int touching() const { return touching_; }
+  /// The smallest gap there was after any step of this run [m]; NaN if none was small.
+  [[nodiscard]] double least_gap() const { return least_gap_; }
+  /// Since the start or restart.
+  [[nodiscard]] const std::vector<SensorEvent>& events() const { return events_; }
+  /// By body of the system, over the last step; empty without contact.
+  [[nodiscard]] const std::vector<Vec6>& wrenches() const { return wrenches_; }
+
+ private:
+  void look(State& state, bool sum);
+
+  std::shared_ptr<contact::ContactSet> contacts_;
+  const ContactMap* map_;
+  std::vector<ContactReport> reports_;  ///< By pair of the map; totals are in the state.
+  std::vector<double> totals_;
+  std::vector<contact::TouchingPoint> points_;
+  std::vector<Vec6> wrenches_;
+  std::vector<SensorEvent> events_;
+  int touching_ = 0;
+  double least_gap_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace polhode

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/base/types.hpp>
+#include <polhode/model/place.hpp>
+
+namespace polhode {
+
+/// How a shape takes part in contact; what is absent is as the body's, then as the model's.
+struct ContactSideSpec {
+  std::optional<bool> touches;                     ///< False: the shape meets nothing.
+  std::optional<std::string> material;             ///< Name of a contact material.
+  std::optional<std::vector<std::string>> groups;  ///< Belongs to these; none: to 'default'.
+  std::optional<std::vector<std::string>> meets;   ///< Meets shapes of these; none: of all.
+  Place place;
+};
+
+/// What two surfaces do to each other. Zero, where no other meaning is told: chosen from the
+/// bodies.
+struct ContactLawSpec {
+  std::string potential = "barrier";    ///< barrier, linear, hertz.
+  double gap_tolerance = 0.0;           ///< Half the band of the barrier [m].
+  double stiffness = 0.0;               ///< [N/m]; hertz [N/m^1.5].
+  double reference_load = 0.0;          ///< At which the gap of the barrier is zero [N].
+  double restitution = 0.0;             ///< 0 to 1.
+  std::string rebound = "exit";         ///< exit | damped.
+  double friction = 0.0;                ///< Coefficient.
+  double static_friction = 0.0;         ///< While it sticks; 0: as friction.
+  double friction_across = 0.0;         ///< Across `direction`; 0: as friction.
+  Vec3 direction = Vec3::UnitX();       ///< Of `friction`, in coordinates of the first body.
+  double rolling = 0.0, torsion = 0.0;  ///< Moment over normal force [m].
+  double friction_stiffness = 0.0;      ///< Of the bristle [N/m].
+  double friction_damping = 0.0;        ///< Of the bristle while it sticks [N s/m].
+};
+
+/// A surface that pairs are made of.
+struct ContactMaterialSpec {
+  std::string name;
+  Place place;
+  double friction = 0.0, restitution = 0.0;
+};
+
+/// A pair of bodies or of materials with a law of its own, or a sensor between two bodies.
+struct ContactPairSpec {
+  std::string name;
+  Place place;
+  bool of_materials = false;
+  int a = 0, b = 0;  ///< Indices into Model::bodies, or ContactsSpec::materials.
+  bool sensor = false;
+  ContactLawSpec law;
+};
+
+/// How a property of a pair follows from its two materials.
+enum class Combination { geometric_mean, mean, minimum, maximum, product };
+
+/// Contact between the shapes of bodies, as described.
+struct ContactsSpec {
+  bool present = false;
+  Place place;
+  ContactLawSpec standard;
+  std::vector<ContactMaterialSpec> materials;
+  Combination friction = Combination::geometric_mean;
+  Combination restitution = Combination::minimum;
+  std::vector<ContactPairSpec> pairs;        ///< Sensors too.
+  std::vector<std::array<int, 2>> excluded;  ///< Bodies that do not meet.
+  bool joint_neighbours = false;             ///< Bodies with a common joint meet.
+  bool resolve_overlaps = false;             ///< Move bodies that overlap at the start.
+  std::optional<bool> record;  ///< Results of every pair of bodies; absent: if there are few.
+};
+
+}  // namespace polhode
