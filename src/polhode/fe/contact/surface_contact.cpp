@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <polhode/base/error.hpp>
+#include <polhode/contact/bristle.hpp>
+#include <polhode/contact/stop_force.hpp>
+#include <polhode/fe/contact/surface_contact.hpp>
+#include <polhode/fe/elements/quadrature.hpp>
+#include <polhode/fe/elements/reference_data.hpp>
+#include <polhode/fe/mesh/shapes.hpp>
+
+namespace polhode {
+
+namespace {
+
+using contact::Dual;
+using contact::V3;
+
+/// Displacements below this part of the band leave no direction to correct.
+constexpr double kNoDirection = 1e-6;
+
+Vec3 at(const double* x, int node) { return NodeStep::at(x, node); }
+
+double area_of(const Mat3& J) { return J.col(0).cross(J.col(1)).norm(); }
+
+}  // namespace
+
+/// Per unit of area: force conjugate to y, its derivative by y_{n+1}.
+struct SurfaceContact::Action {
+  Vec3 h = Vec3::Zero();
+  Mat3 D = Mat3::Zero();
+  Vec3 friction = Vec3::Zero();  ///< Part of h.
+  Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
+  Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
+  double pressure = 0.0;
+  double gap_n = 0.0, gap_n1 = 0.0;
+  bool acts = false, slips = false;
+};
+
+SurfaceContact::SurfaceContact(std::string name, const LoadedFaces& faces,
+                               const std::vector<Vec3>& X, const RigidSurface& surface,
+                               const SurfacePlace& place, const SurfaceLaw& law)
+    : name_(std::move(name)),
+      surface_(surface),
+      place_(place),
+      law_(law),
+      frame_(place.moves() ? 4 : 0) {
+  const bool nodal = faces.shape == "tri3" || faces.shape == "quad4";
+  n_ = nodal ? 1 : cell_shape(faces.shape).size();
+  nodal ? add_nodal_points(faces, X) : add_gauss_points(faces, X);
+  if (points_.empty())
+    throw InputError(name_, "there are no faces to touch", "Choose faces of the solid's boundary");
+}
+
+void SurfaceContact::add_nodal_points(const LoadedFaces& faces, const std::vector<Vec3>& X) {
+  const CellShape& shape = cell_shape(faces.shape);
+  const auto n = static_cast<std::size_t>(shape.size());
+  std::map<int, double> area;
+  for (const QuadraturePoint& q : face_rule(faces.shape)) {
+    const Vec N = shape_functions(shape, q.xi);
+    const Mat D = shape_gradients(shape, q.xi);
+    for (std::size_t first = 0; first < faces.nodes.size(); first += n) {
+      const std::span<const int> own = std::span(faces.nodes).subspan(first, n);
+      const double dA = q.weight * area_of(reference_jacobian(D, own, X));
+      for (std::size_t a = 0; a < n; ++a) area[own[a]] += N[static_cast<Eigen::Index>(a)] * dA;
+    }
+  }
+  for (const auto& [node, share] : area) {
+    Point p;
+    p.area = share;
+    p.N[0] = 1.0;
+    points_.push_back(p);
+    nodes_.push_back(node);
+    if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
+  }
+}
+
+void SurfaceContact::add_gauss_points(const LoadedFaces& faces, const std::vector<Vec3>& X) {
+  const CellShape& shape = cell_shape(faces.shape);
+  const auto n = static_cast<std::size_t>(n_);
+  for (std::size_t first = 0; first < faces.nodes.size(); first += n) {
+    const std::span<const int> own = std::span(faces.nodes).subspan(first, n);
+    for (const QuadraturePoint& q : face_rule(faces.shape)) {
+      const Vec N = shape_functions(shape, q.xi);
+      Point p;
+      p.area = q.weight * area_of(reference_jacobian(shape_gradients(shape, q.xi), own, X));
+      for (int a = 0; a < n_; ++a) p.N[a] = N[a];
+      points_.push_back(p);
+      nodes_.insert(nodes_.end(), own.begin(), own.end());
+      if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
+    }
+  }
+}
+
+Vec3 SurfaceContact::position(const double* x, int point) const {
+  const std::span<const int> own = nodes(point);
+  Vec3 p = Vec3::Zero();
+  for (int a = 0; a < n_; ++a)
+    p += points_[static_cast<std::size_t>(point)].N[a] * at(x, own[static_cast<std::size_t>(a)]);
+  return p;
+}
+
+Vec3 SurfaceContact::local(const double* x, int point) const {
+  const Vec3 p = position(x, point);
+  if (frame_ == 0) return place_.axes.transpose() * (p - place_.origin);
+  const Vec3 x_0 = at(x, place_.nodes[0]);
+  Vec3 y;
+  for (std::size_t k = 0; k < 3; ++k)
+    y[static_cast<int>(k)] = (p - x_0).dot(at(x, place_.nodes[k + 1]) - x_0) / place_.size;
+  return y;
+}
+
+namespace {
+
+/// A vector at t_{n+1} with its derivative by y_{n+1}.
+template <class T>
+V3<T> with_derivative(const Vec3& value, const Mat3& D) {
+  if constexpr (std::is_same_v<T, double>) {
+    return contact::v3(value);
+  } else {
+    V3<T> x{T(value[0]), T(value[1]), T(value[2])};
+    for (int j = 0; j < 3; ++j) x.x.d[j] = D(0, j), x.y.d[j] = D(1, j), x.z.d[j] = D(2, j);
+    return x;
+  }
+}
+template <class T>
+T with_derivative(double value, const Vec3& D) {
+  T x(value);
+  if constexpr (!std::is_same_v<T, double>)
+    for (int j = 0; j < 3; ++j) x.d[j] = D[j];
+  return x;
+}
+
+}  // namespace
+
+/// Everything that depends on y_{n+1}, with or without its derivatives.
+template <class T>
+struct SurfaceContact::Terms {
+  V3<T> h, friction, bristle, slid;
+  T pressure{};
+
+  Terms(const RigidSurface& surface, const SurfaceLaw& law, const NodeStep& step,
+        const Place& place, const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1,
+        const double* memory, bool& slips) {
+    const StepContext& context = step.context;
+    const double alpha = step.alpha_f;
+    const Vec3 dy = place.at_n1 - place.at_n;
+    const auto force = contact::stop_force(law.normal, {.at_n = g_n.value,
+                                                        .at_n1 = g_n1.value,
+                                                        .alpha_f = alpha,
+                                                        .conserving = context.conserving,
+                                                        .end_share = law.end_share});
+    pressure = with_derivative<T>(force.value, force.slope * g_n1.normal);
+    // Where the normal is taken: the middle, where the correction makes it a
+    // discrete gradient.
+    const double weight = context.conserving ? 0.5 : alpha;
+    const RigidSurface::Gap g_m = surface.gap(Vec3(place.at_n + weight * dy));
+    const V3<T> n = with_derivative<T>(g_m.normal, Mat3(weight * g_m.curvature));
+    const V3<T> u = with_derivative<T>(dy, Mat3::Identity());
+    V3<T> N = n;
+    if (context.conserving && dy.norm() > kNoDirection * law.normal.tolerance) {
+      const T change = with_derivative<T>(g_n1.value - g_n.value, g_n1.normal);
+      N = N + ((change - dot(n, u)) / dot(u, u)) * u;
+    }
+    if (context.conserving && alpha != 0.5)
+      N = N + (alpha - 0.5) *
+                  (with_derivative<T>(g_n1.normal, g_n1.curvature) - contact::v3(g_n.normal));
+    h = pressure * N;
+    if (law.mu == 0.0 || context.dt == 0.0) return;
+    const V3<double> kept{memory[0], memory[1], memory[2]};
+    contact::Cone<T> cone;
+    cone.radius = (law.mu / law.bristle) * pressure;
+    const V3<T> start = cone.nearest(kept - dot(n, kept) * n);
+    slid = u - dot(n, u) * n;
+    slips = cone.outside(contact::value(start + slid));
+    bristle = cone.nearest(start + slid);
+    friction = -law.bristle * cone.nearest(start + alpha * slid);
+    h = h + friction;
+  }
+};
+
+/// @eq{surface-action} @eq{contact-bristle}
+SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& place,
+                                           const double* memory, bool tangent) const {
+  Action a;
+  const RigidSurface::Gap g_n = surface_.gap(place.at_n), g_n1 = surface_.gap(place.at_n1);
+  a.gap_n = g_n.value;
+  a.gap_n1 = g_n1.value;
+  const double reach = law_.normal.reach();
+  if (g_n.value >= reach && g_n1.value >= reach) return a;
+  a.acts = true;
+  if (step.context.dt == 0.0) {  // an instant
+    a.pressure = law_.normal.force(g_n1.value);
+    if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory[0], memory[1], memory[2]);
+    a.h = a.pressure * g_n1.normal + a.friction;
+    a.slips = memory[3] != 0.0;
+    return a;
+  }
+  if (!tangent) {
+    const Terms<double> t(surface_, law_, step, place, g_n, g_n1, memory, a.slips);
+    a.h = contact::value(t.h);
+    a.friction = contact::value(t.friction);
+    a.bristle = contact::value(t.bristle);
+    a.slid = contact::value(t.slid);
+    a.pressure = t.pressure;
+    return a;
+  }
+  const Terms<Dual> t(surface_, law_, step, place, g_n, g_n1, memory, a.slips);
+  a.h = contact::value(t.h);
+  for (int j = 0; j < 3; ++j) a.D.col(j) << t.h.x.d[j], t.h.y.d[j], t.h.z.d[j];
+  a.pressure = t.pressure.v;
+  return a;
+}
+
+void SurfaceContact::clearances(const NodeStep& step, std::vector<double>& list) const {
+  if (law_.normal.potential != contact::NormalPotential::barrier) return;
+  for (int i = 0; i < size(); ++i) {
+    const double gap = surface_.distance(local(step.x_n1, i)) - law_.normal.floor();
+    list.push_back(gap / (2.0 * law_.normal.tolerance));
+  }
+}
+
+namespace {
+
+/// Forces and stiffness between the point p and the four nodes of the frame: p
+/// first.
+struct Central {
+  Eigen::Matrix<double, 15, 1> f = Eigen::Matrix<double, 15, 1>::Zero();
+  Eigen::Matrix<double, 15, 15> K = Eigen::Matrix<double, 15, 15>::Zero();
+};
+
+/// y_k = (|p − x_0|² − |p − x_k|² + ℓ²)/(2ℓ): force Σ h_k ∂y_k at averaged
+/// distances.
+/// @eq{surface-squared-distances}
+Central central_forces(const Vec3& h, const Mat3* D, const Vec3 (&d_alpha)[4],
+                       const Vec3 (&d_n1)[4], double size, double alpha_f) {
+  using Columns = Eigen::Matrix<double, 15, 3>;
+  const auto gradients = [&](const Vec3(&d)[4]) {
+    Columns B = Columns::Zero();
+    for (int k = 0; k < 3; ++k) {
+      B.col(k).segment<3>(0) = (d[0] - d[k + 1]) / size;
+      B.col(k).segment<3>(3) = -d[0] / size;
+      B.col(k).segment<3>(6 + 3 * k) = d[k + 1] / size;
+    }
+    return B;
+  };
+  Central c;
+  const Columns B = gradients(d_alpha);
+  c.f = B * h;
+  if (!D) return c;
+  c.K = B * *D * gradients(d_n1).transpose();
+  const auto add = [&](int row, int column, double value) {
+    for (int i = 0; i < 3; ++i) c.K(3 * row + i, 3 * column + i) += alpha_f / size * value;
+  };
+  for (int k = 0; k < 3; ++k) {
+    add(0, 1, -h[k]);  // p: δd_0 − δd_k
+    add(0, 2 + k, h[k]);
+    add(1, 0, -h[k]);  // x_0: −δd_0
+    add(1, 1, h[k]);
+    add(2 + k, 0, h[k]);  // x_k: δd_k
+    add(2 + k, 2 + k, -h[k]);
+  }
+  return c;
+}
+
+}  // namespace
+
+ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* history,
+                                       double* /*scratch*/, const Mat3& /*turn*/,
+                                       const ElementSink& sink) const {
+  const bool tangent = sink.tangent != nullptr;
+  const int width = 3 * (n_ + frame_);
+  std::vector<double> f(static_cast<std::size_t>(width)),
+      K(static_cast<std::size_t>(width * width));
+  for (int i = 0; i < size(); ++i) {
+    const Point& point = points_[static_cast<std::size_t>(i)];
+    const Place place{local(step.x_n, i), local(step.x_n1, i)};
+    const Action a = act(step, place, history + kMemory * static_cast<std::size_t>(i), tangent);
+    if (!a.acts) continue;
+    Central c;
+    if (frame_ == 0) {
+      const Mat3& R = place_.axes;
+      c.f.head<3>() = R * a.h;
+      if (tangent) c.K.topLeftCorner<3, 3>() = R * a.D * R.transpose();
+    } else {
+      Vec3 d_alpha[4], d_n1[4];
+      for (std::size_t k = 0; k < 4; ++k) {
+        d_n1[k] = position(step.x_n1, i) - at(step.x_n1, place_.nodes[k]);
+        d_alpha[k] =
+            (1.0 - step.alpha_f) * (position(step.x_n, i) - at(step.x_n, place_.nodes[k])) +
+            step.alpha_f * d_n1[k];
+      }
+      c = central_forces(a.h, tangent ? &a.D : nullptr, d_alpha, d_n1, place_.size, step.alpha_f);
+    }
+    // From (p, frame) to (nodes of the face, frame): p = Σ N_a x_a.
+    const auto spread = [&](int node) -> std::pair<int, double> {
+      return node < n_ ? std::pair(0, point.N[node]) : std::pair(node - n_ + 1, 1.0);
+    };
+    for (int p = 0; p < n_ + frame_; ++p) {
+      const auto [from, N] = spread(p);
+      for (int r = 0; r < 3; ++r)
+        f[static_cast<std::size_t>(3 * p + r)] = point.area * N * c.f[3 * from + r];
+      if (!tangent) continue;
+      for (int q = 0; q < n_ + frame_; ++q) {
+        const auto [by, M] = spread(q);
+        for (int r = 0; r < 3; ++r)
+          for (int s = 0; s < 3; ++s)
+            K[static_cast<std::size_t>((3 * p + r) * width + 3 * q + s)] =
+                point.area * N * M * c.K(3 * from + r, 3 * by + s);
+      }
+    }
+    sink.add_force(nodes(i), f.data());
+    if (tangent) sink.add_tangent(i, n_ + frame_, K.data());
+  }
+  return {};
+}
+
+void SurfaceContact::commit(const NodeStep& step, double* history,
+                            const double* /*scratch*/) const {
+  for (int i = 0; i < size(); ++i) {
+    double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const Action a = act(step, {local(step.x_n, i), local(step.x_n1, i)}, memory, false);
+    const bool stays = a.gap_n1 < law_.normal.reach();
+    for (int k = 0; k < 3; ++k) memory[k] = stays ? a.bristle[k] : 0.0;
+    memory[3] = stays && a.slips ? 1.0 : 0.0;
+  }
+}
+
+Work SurfaceContact::work(const NodeStep& step, const double* history,
+                          const double* /*scratch*/) const {
+  Work w;
+  const bool instant = step.x_n == step.x_n1;
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const double area = points_[static_cast<std::size_t>(i)].area;
+    const Vec3 kept(memory[0], memory[1], memory[2]);
+    if (instant) {
+      w.stored += area * (law_.normal.energy(surface_.distance(local(step.x_n1, i))) +
+                          0.5 * law_.bristle * kept.squaredNorm());
+      continue;
+    }
+    const Action a = act(step, {local(step.x_n, i), local(step.x_n1, i)}, memory, false);
+    if (!a.acts) continue;
+    const bool stays = a.gap_n1 < law_.normal.reach();
+    const double bristle_n1 = stays ? 0.5 * law_.bristle * a.bristle.squaredNorm() : 0.0;
+    const double e_n1 = law_.normal.energy(a.gap_n1);
+    w.stored += area * (e_n1 + bristle_n1);
+    w.dissipated += area * std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 +
+                                             0.5 * law_.bristle * kept.squaredNorm());
+    if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+      w.dissipated += area * std::max(0.0, -a.pressure * (a.gap_n1 - a.gap_n) - e_n1 +
+                                               law_.normal.energy(a.gap_n));
+  }
+  return w;
+}
+
+SurfaceReport SurfaceContact::report(const NodeStep& instant, const double* history) const {
+  SurfaceReport r;
+  r.least_gap = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const Vec3 y = local(instant.x_n1, i);
+    const Action a = act(instant, {y, y}, memory, false);
+    r.least_gap = std::min(r.least_gap, a.gap_n1);
+    if (!a.acts) continue;
+    Mat3 R = place_.axes;
+    if (frame_ > 0)
+      for (std::size_t k = 0; k < 3; ++k)
+        R.col(static_cast<int>(k)) =
+            (at(instant.x_n1, place_.nodes[k + 1]) - at(instant.x_n1, place_.nodes[0])) /
+            place_.size;
+    const double area = points_[static_cast<std::size_t>(i)].area;
+    r.force += area * (R * a.h);
+    r.friction += area * (R * a.friction);
+    r.area += area;
+    r.largest_pressure = std::max(r.largest_pressure, a.pressure);
+    ++(a.slips ? r.slipping : r.sticking);
+  }
+  return r;
+}
+
+}  // namespace polhode
