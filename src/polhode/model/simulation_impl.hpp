@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Simulation holds; for simulation.cpp and simulation_reports.cpp only.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
+#include <polhode/fe/solid_elements.hpp>
+#include <polhode/model/build_system.hpp>
+#include <polhode/model/method.hpp>
+#include <polhode/model/separate_overlaps.hpp>
+#include <polhode/model/simulation.hpp>
+#include <polhode/solve/node_motion.hpp>
+
+namespace polhode {
+
+/// [s]
+inline double wall_clock() {
+  using namespace std::chrono;
+  return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// Above this many bodies the start does not solve for multipliers that the method does not need.
+inline constexpr int kSmallSystem = 2000;
+/// How far assembling the start may move a body that was said to be in place, and one that was not.
+inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
+
+struct Simulation::Impl {
+  Model model;
+  SystemMap map;
+  System system;
+  Method method;
+  std::unique_ptr<Stepper> stepper;
+  std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
+  ContactKeeper contacts;
+  State state;
+  StartReport start_report;
+  RunSummary figures;  ///< Times, end and message; the rest is in the state.
+  std::string narration, engine_name;
+  double start_seconds = 0.0, output_seconds = 0.0;
+  // What stands at t_n is solved for once per state.
+  std::unique_ptr<InstantSolver> instant_solver;
+  InstantSolution instant;
+  State projected;  ///< The state with velocities on G v = 0: what is reported.
+  std::int64_t instant_step = -1;
+  std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
+
+  explicit Impl(Model m)
+      : model(std::move(m)),
+        system(build_system(model, &map)),
+        contacts(map.contacts, map.contact) {
+    method = choose_method(system, model.analysis);
+    narration = method.narration;
+    if (model.analysis.type == "statics") choose_statics();
+    for (const SolidMap& solid : map.solids)
+      for (const std::string& warning : solid.plan.warnings)
+        narration += format("Warning: {}\n", warning);
+    engine_name = statics ? "mumps" : method.engine->name();
+    stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
+                                        *method.kernels);
+  }
+
+  void choose_statics() {
+    for (const BodySpec& body : model.bodies)
+      if (!body.velocity.isZero(0.0) || !body.angular_velocity.isZero(0.0))
+        throw InputError(format("bodies.{}", body.name),
+                         "has a velocity, but in statics and modes nothing moves",
+                         "Leave velocity and angular_velocity out, or use type: dynamics");
+    StaticOptions options;
+    options.load_steps = model.analysis.load_steps.value_or(0);
+    options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
+    statics = std::make_unique<LoadStepper>(system, options);
+    narration.clear();  // it was about steps in time
+  }
+
+  /// Time that the run ends at; in statics the full load.
+  [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
+
+  StepReport advance(double t_limit) {
+    if (!statics) {
+      StepReport report = stepper->advance(state, t_limit);
+      if (report.accepted) contacts.after_step(state);
+      return report;
+    }
+    const double before = state.t;
+    const std::size_t tried = statics->report().steps.size();
+    const int iterations = statics->report().iterations;
+    StepReport report;
+    report.accepted = statics->advance(state, std::min(t_limit, 1.0));
+    const StaticReport& r = statics->report();
+    report.t = state.t;
+    report.dt = state.t - before;
+    report.rejected = static_cast<int>(r.steps.size() - tried) - (report.accepted ? 1 : 0);
+    report.message = r.message;
+    state.dt_last = report.dt;
+    state.ledger.steps += report.accepted ? 1 : 0;
+    state.ledger.rejected += report.rejected;
+    state.ledger.iterations += r.iterations - iterations;
+    return report;
+  }
+
+  void start_consistently() {
+    const double t0 = wall_clock();
+    state = system.initial_state();
+    const bool small = system.body_count() <= kSmallSystem;
+    const AnalysisSpec& a = model.analysis;
+    StartOptions options;
+    options.multipliers = small;
+    options.smooth_multipliers =
+        a.smooth_multipliers && small && a.step && method.control.order == 2;
+    if (model.contacts.resolve_overlaps) move_apart();
+    start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
+    refuse_bad_start();
+    refuse_overlaps();
+    if (map.contacts && a.step) state.dt_next = *a.step;  // stiffness follows it
+    if (statics) statics->begin(state);
+    stepper->begin(state);
+    contacts.begin(state);
+    state.ledger.constraint_max = 0.0;
+    start_seconds = wall_clock() - t0;
+  }
+
+  void refuse_bad_start() const {
+    const StartReport& r = start_report;
+    if (!r.assembled) {
+      std::string names;
+      for (const std::string& n : r.unsatisfied) names += (names.empty() ? "" : ", ") + n;
+      throw InputError("the start",
+                       format("cannot be assembled: {} contradict one another{}",
+                              names.empty() ? "the joints" : names,
+                              format(" (largest residual {:.2g})", r.position_residual)),
+                       "Check positions and axes of these joints; 'polhode check' lists residuals");
+    }
+    for (std::size_t i = 0; i < model.joints.size(); ++i) refuse_outside_limits(i);
+    bool to_assemble = false;
+    for (const JointSpec& j : model.joints) to_assemble = to_assemble || j.assembled_start;
+    const double given = model.analysis.assembly_tolerance;
+    const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
+    if (r.largest_move > allowed)
+      throw InputError("the start",
+                       format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
+                              "radians), more than analysis.assembly_tolerance = {:.2g}",
+                              r.moved_body, r.largest_move, allowed),
+                       "Give the body's position closer to where its joints want it, or raise "
+                       "assembly_tolerance");
+  }
+
+  /// Elements that are compressed more than their kind stands: the worst of each group is kept.
+  void watch_stretches() {
+    StepContext still;
+    still.t_n = state.t;
+    const Nodes& nodes = system.nodes();
+    for (int g = 0; g < nodes.group_count(); ++g) {
+      const auto* solid = dynamic_cast<const SolidElements*>(&nodes.group(g));
+      if (!solid || solid->element().least_stretch == 0.0) continue;
+      const LeastStretch now = solid->least_stretch(
+          node_instant(state, still), state.element_history.data() + nodes.first_history(g));
+      LeastStretch& least = least_stretches[g];
+      if (now.value < least.value) least = now;
+    }
+  }
+
+  /// What watch_stretches() has seen.
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    std::vector<std::string> list;
+    for (const auto& [g, least] : least_stretches) {
+      const auto& solid = dynamic_cast<const SolidElements&>(system.nodes().group(g));
+      const std::string text = solid.stretch_warning(least);
+      if (!text.empty()) list.push_back(text);
+    }
+    return list;
+  }
+
+  /// A joint that starts beyond its stops, or in the half of a stop's band behind the end.
+  void refuse_outside_limits(std::size_t index) const {
+    const Joint& joint = joint_at(system, map.joint[index]);
+    if (!joint.has_barrier()) return;
+    const PairView view = system.instant(state, system.interactions()[map.joint[index]], nullptr);
+    const JointCoordinates c = joint.coordinates(view.step());
+    const std::vector<std::string> names = joint.coordinate_names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto& limits =
+          names[k] == "z" ? joint.resistance()->data().slide : joint.resistance()->data().turn;
+      const double play = limits ? 0.5 * limits->law.tolerance : 0.0;
+      if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
+        continue;
+      throw InputError(format("joints.{}", joint.name),
+                       format("starts at {} = {:.6g}, outside its limits [{:g}, {:g}]", names[k],
+                              c.value[k], limits->lower, limits->upper),
+                       "Move the bodies, or widen the limits");
+    }
+  }
+
+  void move_apart() {
+    if (!map.contacts) return;
+    const SeparationReport moved = separate_overlaps(system, *map.contacts, state);
+    for (const auto& [body, distance] : moved.moves)
+      narration += format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n",
+                          system.bodies()[static_cast<std::size_t>(body)].name, distance);
+  }
+
+  void refuse_overlaps() const {
+    if (!map.contacts) return;
+    const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
+    if (list.empty()) return;
+    throw InputError(
+        "contacts", "shapes overlap at the start: " + name_list(list, 12),
+        model.contacts.resolve_overlaps
+            ? "They could not be moved apart: correct positions or sizes"
+            : "Correct positions or sizes, exclude pairs that are meant to overlap, or "
+              "set contacts.overlaps: resolve");
+  }
+
+  const InstantSolution& at_instant() {
+    if (instant_step == state.ledger.steps) return instant;
+    if (statics) {
+      projected = state;
+      instant.r_ddot.assign(system.body_count(), Vec3::Zero());
+      instant.alpha.assign(system.body_count(), Vec3::Zero());
+      instant.lambda = state.lambda;
+      instant.node_force = statics->newton().node_residual();
+      instant_step = state.ledger.steps;
+      return instant;
+    }
+    if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
+    projected = state;
+    const VelocityReport v = instant_solver->project_velocities(projected);
+    figures.velocity_constraint_residual_max =
+        std::max(figures.velocity_constraint_residual_max, v.residual_before);
+    instant = instant_solver->accelerations(projected, contacts.wrenches());
+    instant_step = state.ledger.steps;
+    return instant;
+  }
+};
+
+}  // namespace polhode
