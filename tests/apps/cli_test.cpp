@@ -78,9 +78,10 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, HelpsWithAMistypedCommand) {
   const auto result = run({"rum", "model.yaml"});
   EXPECT_EQ(result.code, 2);
-  EXPECT_EQ(result.err,
-            "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, check, info, "
-            "schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
+  EXPECT_EQ(
+      result.err,
+      "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, modes, check, info, "
+      "schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
 }
 
 TEST_F(CommandLine, HelpsWithAMistypedOption) {

@@ -42,12 +42,12 @@ struct ContactMaterial {
 /// A shape on a body.
 struct PlacedShape {
   int body = kGround;
-  int owner = -2;  ///< Whose it is, for exclude(): a number of the caller's; −2: the body.
   std::string name;
   Shape shape;
   int material = -1;                  ///< Of add_material(); −1: the default law.
   std::uint32_t groups = 1;           ///< Belongs to these.
   std::uint32_t meets = 0xffffffffu;  ///< Meets shapes of these; both have to agree.
+  int owner = -2;  ///< Whose it is, for exclude(): a number of the caller's; −2: the body.
 };
 
 /// Contact between the shapes of bodies.

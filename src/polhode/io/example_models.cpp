@@ -130,7 +130,7 @@ std::string binary_tree(const Values& values) {
 /// Balls of 1 kg and 0.1 m radius over a bin that is four layers of them high, slightly out of
 /// their lattice; all at rest at the start.
 std::string spheres_in_a_bin(const Values& values) {
-  const int n = count(values, "n", 1'000'000);
+  const int n = count(values, "N", 1'000'000);
   const double side = 0.25 * std::ceil(std::sqrt(n / 4.0));
   const int row = static_cast<int>((side - 0.21) / 0.22) + 1;
   const double x0 = -0.11 * (row - 1), half = 0.5 * side;
@@ -170,7 +170,7 @@ const std::vector<ModelGenerator>& model_generators() {
        binary_tree},
       {"spheres_in_a_bin",
        "balls that fall into a bin and come to rest",
-       {{"n", "100", "number of balls"}},
+       {{"N", "100", "number of balls"}},
        spheres_in_a_bin},
   };
   return generators;
