@@ -133,6 +133,37 @@ TEST(BuildContacts, KeepsNamedPairsFirstAndAllIfTheyAreFew) {
   EXPECT_EQ(few.map.pairs.size(), 1U);
 }
 
+const char* kRope = R"(
+materials:
+  rubber: {type: elastic, youngs_modulus: 50 MPa, poisson_ratio: 0.4, density: 1000}
+sections:
+  round: {type: circle, diameter: 0.1, material: rubber}
+beams:
+  rope: {points: [[-0.5, 0, 2], [0.5, 0, 2], [0.5, 0.4, 2]], elements: 14, section: round, contact: {},
+         bonded: {a: start}}
+contacts: {}
+)";
+
+TEST(BuildContacts, BeamsMeetBodiesAndFarPartsOfThemselves) {
+  const Built built(model_of(kRope,
+                             "\n  floor: {fixed: true, shape: {plane: z}}\n"
+                             "  a: {shape: {sphere: 0.2}, mass: 1, position: [-0.5, 0, 2]}\n"
+                             "  b: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 3]}\n"));
+  EXPECT_TRUE(built.meet("rope.5", "floor"));
+  EXPECT_TRUE(built.meet("rope.5", "b"));
+  // Elements of 0.1 m, a radius of 0.05 m: what is nearer than half a turn around the bar is apart.
+  EXPECT_FALSE(built.meet("rope.5", "rope.6"));
+  EXPECT_FALSE(built.meet("rope.5", "rope.7"));
+  EXPECT_TRUE(built.meet("rope.5", "rope.8"));
+  // Likewise what holds its end.
+  EXPECT_FALSE(built.meet("rope.0", "a"));
+  EXPECT_FALSE(built.meet("rope.1", "a"));
+  EXPECT_TRUE(built.meet("rope.4", "a"));
+  // The node in the corner carries two bars, the others one.
+  EXPECT_EQ(built.model.bodies[3 + 10].shapes.size(), 2U);
+  EXPECT_EQ(built.model.bodies[3 + 9].shapes.size(), 1U);
+}
+
 const char* kOverlapping = R"(
   floor: {fixed: true, shape: {plane: z}}
   a: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 0.3]}

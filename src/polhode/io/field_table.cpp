@@ -414,6 +414,7 @@ std::vector<const FieldTable*> all_field_tables() {
   for (const KindTable& kind : fibre_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : section_tables()) tables.push_back(&kind.table);
   tables.push_back(&beam_fields());
+  tables.push_back(&beam_contact_fields());
   tables.push_back(&cable_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());

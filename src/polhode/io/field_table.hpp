@@ -115,6 +115,7 @@ const FieldTable& viscosity_fields();
 const std::vector<KindTable>& fibre_tables();
 const std::vector<KindTable>& section_tables();
 const FieldTable& beam_fields();
+const FieldTable& beam_contact_fields();
 const FieldTable& cable_fields();
 const FieldTable& solid_fields();
 const FieldTable& solid_mesh_fields();

@@ -72,7 +72,7 @@ const FieldTable& analysis_fields() {
           {.name = "newton_tolerance",
            .kind = kNumber,
            .meaning = "Largest scaled increment that counts as converged.",
-           .standard = "1e-5; 1e-7 at orders 6 and 8",
+           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids; 1e-12 with contacts",
            .range = {0.0, 1e-2, true}},
           {.name = "max_iterations",
            .kind = kInteger,

@@ -152,14 +152,38 @@ const FieldTable& beam_fields() {
           {.name = "consistent_mass",
            .kind = kNumber,
            .meaning = "Part of the translational mass that is consistent, not lumped at nodes.",
-           .standard = "0.5",
+           .standard = "0.5; 0 with contact",
            .range = {0.0, 1.0}},
+          {.name = "contact",
+           .kind = kSection,
+           .meaning = "The beam touches bodies, other beams and itself as a round bar, beside "
+                      "'contacts'.",
+           .standard = "it touches nothing",
+           .table = "beam contact"},
           {.name = "residual_bending_flexibility",
            .kind = kBoolean,
            .meaning = "Adds the bending that an element's constant strains miss to its shear "
                       "flexibility.",
            .standard = "true"},
       }};
+  return table;
+}
+
+const FieldTable& beam_contact_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"beam contact",
+                 "How a beam takes part in contact: every node carries the halves of its elements "
+                 "as round bars.",
+                 {{.name = "radius",
+                   .kind = kNumber,
+                   .dimension = kLength,
+                   .meaning = "Of the bar, about the centre line.",
+                   .standard = "half the section's height or width, whichever is less",
+                   .range = kPositive}}};
+    const std::vector<Field>& side = contact_side_fields().fields;
+    t.fields.insert(t.fields.end(), side.begin(), side.end());
+    return t;
+  }();
   return table;
 }
 

@@ -200,13 +200,25 @@ class BeamReader {
     if (const auto up = section_.direction("up")) beam_.up = *up;
     if (const SourceNode* bonded = section_.find("bonded")) read_bonds(*bonded);
     read_velocities();
-    beam_.consistent_mass = section_.number("consistent_mass").value_or(0.5);
+    if (const SourceNode* node = section_.find("contact")) read_contact(*node);
+    // Contact strikes single nodes.
+    beam_.consistent_mass = section_.number("consistent_mass").value_or(beam_.contact ? 0.0 : 0.5);
     beam_.residual_bending_flexibility =
         section_.boolean("residual_bending_flexibility").value_or(true);
     if (context_.diagnostics.size() != before || !section_is_sound_ || !mesh()) stand_in();
   }
 
  private:
+  void read_contact(const SourceNode& node) {
+    Section section(context_, node, context_.tree.place_of(node), section_.path("contact"),
+                    beam_contact_fields());
+    if (!node.is_map()) return;
+    BeamContactSpec contact;
+    contact.radius = section.number("radius").value_or(0.0);
+    read_contact_side(section, contact.side);
+    if (contact.side.touches.value_or(true)) beam_.contact = contact;
+  }
+
   void read_velocities() {
     const auto v = section_.vector("velocity"), omega = section_.vector("angular_velocity");
     if (v) beam_.velocity = *v;

@@ -312,12 +312,16 @@ ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
   ContactSideSpec side;
   side.place = context.tree.place_of(node);
   Section section(context, node, side.place, path, contact_side_fields());
-  if (!node.is_map()) return side;
+  if (node.is_map()) read_contact_side(section, side);
+  return side;
+}
+
+void read_contact_side(Section& section, ContactSideSpec& side) {
+  side.place = section.place();
   side.touches = section.boolean("touches");
   side.material = section.text("material");
   side.groups = section.names("groups");
   side.meets = section.names("meets");
-  return side;
 }
 
 void read_contacts(ReadContext& context, const SourceNode& node) {

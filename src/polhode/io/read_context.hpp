@@ -176,6 +176,8 @@ std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path);
 ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
                                   const std::string& path);
+/// The keys of a side among those of another section.
+void read_contact_side(Section& section, ContactSideSpec& side);
 void read_joints(ReadContext& context, const SourceNode& node);
 void read_contacts(ReadContext& context, const SourceNode& node);
 void read_materials(ReadContext& context, const SourceNode& node);

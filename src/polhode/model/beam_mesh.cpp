@@ -7,6 +7,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/beams/beam_element.hpp>
+#include <polhode/model/beam_contact.hpp>
 #include <polhode/model/beam_mesh.hpp>
 #include <polhode/so3/exp_map.hpp>
 
@@ -182,6 +183,7 @@ int add_beam(Model& model, BeamSpec beam) {
     if (k + 1 < count) add_half(node, section, beam.mesh[k].length, beam.mesh[k].frame_1);
     model.bodies.push_back(std::move(node));
   }
+  if (beam.contact) add_beam_shapes(model, beam);
   for (const BeamBondSpec& b : beam.bonds)
     model.joints.push_back(
         bond(format("{}.{}", beam.name, b.at_end ? "end" : "start"), beam.place, "fixed", model,

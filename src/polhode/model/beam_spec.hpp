@@ -8,6 +8,7 @@
 #include <polhode/base/types.hpp>
 #include <polhode/beams/cable.hpp>
 #include <polhode/beams/section.hpp>
+#include <polhode/model/contact_spec.hpp>
 #include <polhode/model/place.hpp>
 
 namespace polhode {
@@ -27,6 +28,12 @@ struct BeamBondSpec {
   bool at_end = false;
 };
 
+/// How a beam touches: as a round bar about its centre line.
+struct BeamContactSpec {
+  double radius = 0.0;   ///< [m]; 0: half the section's height or width, whichever is less.
+  ContactSideSpec side;  ///< Of all its nodes.
+};
+
 /// One beam as described. add_beam() turns it into nodes, which are bodies, and elements.
 struct BeamSpec {
   std::string name;
@@ -43,6 +50,7 @@ struct BeamSpec {
   Vec3 velocity = Vec3::Zero();  ///< Of the first point at the start, world [m/s].
   Vec3 angular_velocity = Vec3::Zero();  ///< Of the whole, as a rigid body [rad/s].
   std::vector<BeamBondSpec> bonds;
+  std::optional<BeamContactSpec> contact;  ///< None: bodies pass through the beam.
 
   /// A straight or circular element between nodes k and k + 1.
   struct Element {

@@ -8,6 +8,7 @@
 #include <polhode/base/names.hpp>
 #include <polhode/body/shapes.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/model/beam_contact.hpp>
 #include <polhode/model/build_contacts.hpp>
 #include <polhode/model/shape_surface.hpp>
 
@@ -38,9 +39,15 @@ bool touches(const BodySpec& body, const ShapeSpec& shape) {
   return !stated_touches || *stated_touches;
 }
 
+/// A node has its beam's name and a number.
+std::string owner_path(const BodySpec& body) {
+  const std::size_t dot = body.name.find('.');
+  return dot == std::string::npos ? "bodies." + body.name : "beams." + body.name.substr(0, dot);
+}
+
 std::string side_path(const BodySpec& body, std::size_t s, bool of_shape, const char* key) {
   return of_shape ? format("{}.contact.{}", path_of(body, s), key)
-                  : format("bodies.{}.contact.{}", body.name, key);
+                  : format("{}.contact.{}", owner_path(body), key);
 }
 
 /// Where a shape stands in the coordinates of contact: from the centre of mass in body axes, or the
@@ -264,6 +271,7 @@ class ContactsBuilder {
       for (const JointSpec& joint : model_.joints)
         if (joint.a != kGround && joint.b != kGround)
           excluded_.insert(std::minmax(joint.a, joint.b));
+    for (const auto& [a, b] : beam_neighbours(model_)) excluded_.insert(std::minmax(a, b));
     // A pair that is named is meant.
     for (const ContactPairSpec& pair : spec_.pairs)
       if (!pair.of_materials) excluded_.erase(std::minmax(pair.a, pair.b));

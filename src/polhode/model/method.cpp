@@ -12,8 +12,8 @@ namespace polhode {
 
 namespace {
 
-/// Newton tolerances; the higher orders resolve smaller errors.
-/// solids, of which a step may leave no more than round-off in many vibrations, too.
+/// Newton tolerances. The higher orders resolve smaller errors; in solids what is left of a step
+/// goes into many vibrations.
 constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 /// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;

@@ -200,11 +200,13 @@ void LedgerKeeper::close_step(State& state) {
                                                      l.dissipated.value()));
   double p = 0.0, angular = 0.0;
   for (int i = 0; i < 3; ++i) {
-    p = std::hypot(p, s.p[i] - l.initial_p[i] - l.impulse[i].value());
-    angular = std::hypot(angular, s.l[i] - l.initial_l[i] - l.angular_impulse[i].value());
+    const double dp = s.p[i] - l.initial_p[i] - l.impulse[i].value();
+    const double dl = s.l[i] - l.initial_l[i] - l.angular_impulse[i].value();
+    p += dp * dp;
+    angular += dl * dl;
   }
-  l.p_drift = std::max(l.p_drift, p);
-  l.l_drift = std::max(l.l_drift, angular);
+  l.p_drift = std::max(l.p_drift, std::sqrt(p));
+  l.l_drift = std::max(l.l_drift, std::sqrt(angular));
 }
 
 Balance LedgerKeeper::balance(const State& state) const {

@@ -31,6 +31,8 @@ constexpr double kLame = 0.05;
 /// Iterations that a step may take for one that is allowed to come close: beside a singular
 /// position multipliers of redundant rows come by slow, but sure, proximal repeats.
 constexpr int kMoreWhenClose = 3;
+/// Room made for increments at once.
+constexpr std::size_t kUsualIterations = 8;
 /// An increment above this is no Newton iteration any more.
 constexpr double kDiverged = 1e3;
 /// With a factorisation kept from earlier steps: what later increments would add up to, as part of
@@ -87,6 +89,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   NewtonReport report;
   report.t = trial.context.t_n;
   report.dt = trial.context.dt;
+  report.increments.reserve(kUsualIterations);
   BarrierGuard guard(system, state, trial, engine);
   guard.hold_prediction();
   engine.begin_step(state, trial);

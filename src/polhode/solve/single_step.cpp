@@ -35,14 +35,14 @@ PredictWeights extrapolation(const State& state, double middle, int degree) {
   int used[kPast];
   for (int k = 0; k < count; ++k) used[k] = (state.past_next - 1 - k + 2 * kPast) % kPast;
   for (int k = 0; k < count; ++k) {
-    double weight = 1.0;
+    double way = 1.0, spread = 1.0;
     for (int j = 0; j < count; ++j) {
       if (j == k) continue;
-      const double spread = state.past_time[used[k]] - state.past_time[used[j]];
-      if (spread == 0.0) return {};  // two stages about the same middle: start from v_n
-      weight *= (middle - state.past_time[used[j]]) / spread;
+      way *= middle - state.past_time[used[j]];
+      spread *= state.past_time[used[k]] - state.past_time[used[j]];
     }
-    w.weight[used[k]] = weight;
+    if (spread == 0.0) return {};  // two stages about the same middle: start from v_n
+    w.weight[used[k]] = way / spread;
   }
   w.count = count;
   return w;

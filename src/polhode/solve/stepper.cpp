@@ -68,9 +68,8 @@ struct Stepper::Impl {
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
     if (!automatic()) {
       const double H = *control.step;
-      double to_grid = H - std::fmod(state.t, H);
-      if (to_grid < kSameTime * H) to_grid += H;
-      dt = part_of(to_grid, dt);
+      const double steps_done = std::floor(state.t / H + kSameTime);
+      dt = part_of((steps_done + 1.0) * H - state.t, dt);
     }
     return part_of(t_limit - state.t, dt);
   }

@@ -204,6 +204,8 @@ void TreeEngine::fill_joint_constants() {
     if (body >= 0) {
       const InteractionRef& ref = system_->interactions()[tree.link[body].interaction];
       basis = *system_->group(ref.group).motion_basis(ref.item);
+      tree_joints_.push_back(
+          {joint_[s / kLanes] + 8 * l.lambda() + s % kLanes, ref.first_row, ref.rows});
     }
     put_joint_constants(basis, l, view_.joint_data + joint_[s / kLanes] + s % kLanes);
   }
@@ -211,16 +213,9 @@ void TreeEngine::fill_joint_constants() {
 
 template <class Move>
 void TreeEngine::for_each_tree_joint(Move&& move) {
-  const SpanningTree& tree = system_->tree();
-  for (int body : tree.order) {
-    const int joint = tree.link[body].interaction;
-    if (joint < 0) continue;
-    const InteractionRef& ref = system_->interactions()[joint];
-    const int s = tree.slot_of_body[body];
-    double* lanes = view_.joint_data + joint_[s / kLanes] +
-                    8 * JointLayout::of_code(shape_[s]).lambda() + s % kLanes;
-    for (int i = 0; i < ref.rows; ++i) move(lanes[8 * i], ref.first_row + i);
-  }
+  for (const TreeJoint& joint : tree_joints_)
+    for (int i = 0; i < joint.rows; ++i)
+      move(view_.joint_data[joint.lambda + 8 * i], joint.first_row + i);
 }
 
 void TreeEngine::set_step(const State& state, Trial& trial) {
@@ -349,8 +344,8 @@ std::size_t TreeEngine::memory() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(mass_) + bytes(joint_data_) + bytes(loop_data_) + bytes(loop_joints_) + bytes(Y_) +
          bytes(pair_) + bytes(kept_) + bytes(S_) + bytes(body_) + bytes(extra_rows_) +
-         bytes(edge_rows_) + bytes(slot_in_order_) + bytes(parent_) + bytes(gather_) +
-         bytes(shape_) + bytes(y_row_) + bytes(joint_) + bytes(has_children_) +
+         bytes(edge_rows_) + bytes(tree_joints_) + bytes(slot_in_order_) + bytes(parent_) +
+         bytes(gather_) + bytes(shape_) + bytes(y_row_) + bytes(joint_) + bytes(has_children_) +
          bytes(first_child_) + bytes(steps_) + bytes(extra_index_) + bytes(plan_.extra_of_slot) +
          bytes(plan_.edge_of_slot) + bytes(plan_.first_open) + bytes(plan_.first_update) +
          bytes(plan_.first_common);

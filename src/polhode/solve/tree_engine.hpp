@@ -76,6 +76,11 @@ class TreeEngine final : public NewtonEngine {
   // Storage behind the view.
   std::vector<int> slot_in_order_, parent_, gather_, shape_, y_row_, joint_;
   std::vector<unsigned char> has_children_, first_child_;
+  /// Where a tree joint's multipliers are: in joint_data_, in doubles, and in the trial.
+  struct TreeJoint {
+    int lambda, first_row, rows;
+  };
+  std::vector<TreeJoint> tree_joints_;
   std::vector<MassBlock> mass_;
   struct alignas(64) LaneData {
     double x[8];
