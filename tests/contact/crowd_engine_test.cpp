@@ -54,6 +54,27 @@ TEST(CrowdEngine, NeverGainsEnergyAndBalancesMomentum) {
   for (const auto& r : s.contacts->reports()) EXPECT_GT(r.gap, -2e-4);
 }
 
+/// Two balls far apart from the others meet so fast that in one step they would change places: they
+/// start where their impact will stop them. @tests{contact-impact-guess}
+TEST(CrowdEngine, FindsTheEndOfAnImpactInFewIterations) {
+  for (const double speed : {0.1, 1.0, 10.0, 200.0}) {
+    Scene s(Vec3::Zero());
+    s.crowd_residual = 1e-6;
+    const int a = s.add_ball("a", 0.1, 1.0, at({-0.1003, 0.0, 0.0}, {speed, 0.0, 0.0}));
+    s.add_ball("b", 0.1, 3.0, at({0.1003, 0.0, 0.0}, {-speed, 0.0, 0.0}));
+    s.add_ball("c", 0.1, 1.0, at({5.0, 0.0, 0.0}, {0.0, speed, 0.0}));
+    s.law(0.0, 0.0);
+    s.begin(2e-3);
+    ASSERT_TRUE(s.step()) << s.last.text();
+    EXPECT_EQ(s.cuts, 0);
+    EXPECT_LE(s.last.iterations, 10) << speed;
+    EXPECT_NEAR(s.motion(2).v.y(), speed, 1e-12 * speed);
+    ASSERT_TRUE(s.run(4e-3));
+    EXPECT_LT(s.motion(a).v.x(), 0.0);  // thrown back
+    EXPECT_NEAR(s.motion(a).v.x() + 3.0 * s.motion(1).v.x(), -2.0 * speed, 1e-8 * speed);
+  }
+}
+
 TEST(CrowdEngine, GoesOnBitForBitFromAnArchive) {
   Heap s(1e-6);
   ASSERT_TRUE(s.run(0.2));

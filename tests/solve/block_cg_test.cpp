@@ -40,6 +40,11 @@ Crowd crowd(int bodies, double stiffness, unsigned seed) {
   return c;
 }
 
+void set(BlockCg& cg, const Crowd& c) {
+  ASSERT_TRUE(cg.set_bodies(c.blocks));
+  cg.set_springs(c.springs);
+}
+
 /// The matrix that BlockCg never writes down.
 Eigen::MatrixXd assembled(const Crowd& c) {
   const auto n = 6 * static_cast<Eigen::Index>(c.blocks.size());
@@ -67,28 +72,54 @@ Vec flat(const std::vector<Vec6>& x) {
   return Eigen::Map<const Vec>(x.data()->data(), 6 * static_cast<Eigen::Index>(x.size()));
 }
 
+/// Single precision: some seven digits, less what the condition of the matrix takes.
 TEST(BlockCg, AgreesWithADirectSolver) {
   for (const double stiffness : {0.0, 1.0, 100.0}) {
     const Crowd c = crowd(40, stiffness, 3);
     BlockCg cg;
-    ASSERT_TRUE(cg.set(c.blocks, c.springs));
+    set(cg, c);
     const std::vector<Vec6> rhs = numbers(40, 5);
     std::vector<Vec6> x;
-    cg.solve(rhs, x, 1e-26, 2000);
+    cg.solve(rhs, x, 1e-14, 2000);
     const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
-    EXPECT_LT((flat(x) - reference).norm(), 1e-10 * reference.norm()) << stiffness;
+    EXPECT_LT((flat(x) - reference).norm(), 2e-5 * reference.norm()) << stiffness;
+  }
+}
+
+/// What Newton iterations do: the rest of one solution is what the next one is asked for.
+TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
+  for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness
+    Crowd c = crowd(40, 100.0, 3);
+    for (Mat6& B : c.blocks) B *= unit;
+    for (ContactSpring& s : c.springs) s.C *= unit;
+    const Eigen::MatrixXd A = assembled(c);
+    BlockCg cg;
+    set(cg, c);
+    std::vector<Vec6> rhs = numbers(40, 5), x;
+    for (Vec6& f : rhs) f *= unit;
+    const Vec f = flat(rhs);
+    Vec sum = Vec::Zero(f.size());
+    for (int k = 0; k < 6; ++k) {
+      const Vec rest = f - A * sum;
+      for (std::size_t b = 0; b < rhs.size(); ++b)
+        rhs[b] = rest.segment<6>(6 * static_cast<int>(b));
+      cg.solve(rhs, x, 1e-10, 2000);
+      sum += flat(x);
+    }
+    const Vec reference = A.partialPivLu().solve(f);
+    EXPECT_LT((sum - reference).norm(), 1e-12 * reference.norm()) << unit;
   }
 }
 
 TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
   const Crowd c = crowd(60, 50.0, 9);
   BlockCg cg;
-  ASSERT_TRUE(cg.set(c.blocks, c.springs));
+  set(cg, c);
   const std::vector<Vec6> rhs = numbers(60, 6);
   const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
   int before = 0;
   double error = 1e30;
-  for (const double part : {1e-2, 1e-6, 1e-12}) {
+  for (const double part : {1e-1, 1e-4, 1e-8}) {
     std::vector<Vec6> x;
     const int iterations = cg.solve(rhs, x, part, 2000);
     EXPECT_GT(iterations, before);
@@ -99,23 +130,33 @@ TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
   }
 }
 
+/// Springs that leave nothing of the bodies in single precision.
+TEST(BlockCg, StandsSpringsOfAnyStiffness) {
+  const Crowd c = crowd(12, 1e12, 7);
+  BlockCg cg;
+  set(cg, c);
+  std::vector<Vec6> x;
+  cg.solve(numbers(12, 5), x, 1e-4, 200);
+  EXPECT_TRUE(flat(x).allFinite());
+}
+
 TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
   Crowd c = crowd(7, 0.0, 1);
   c.springs.clear();
   c.blocks[3] *= 5.0;
   BlockCg cg;
-  ASSERT_TRUE(cg.set(c.blocks, c.springs));
+  set(cg, c);
   const std::vector<Vec6> rhs = numbers(7, 2);
   std::vector<Vec6> x;
-  EXPECT_EQ(cg.solve(rhs, x, 1e-24, 100), 1);
-  EXPECT_LT((x[3] - rhs[3] / 5.0).norm(), 1e-15);
+  EXPECT_EQ(cg.solve(rhs, x, 1e-10, 100), 1);
+  EXPECT_LT((x[3] - rhs[3] / 5.0).norm(), 1e-7);
 }
 
 TEST(BlockCg, RefusesABlockThatIsNotPositive) {
   Crowd c = crowd(3, 1.0, 4);
   c.blocks[1] -= 50.0 * Mat6::Identity();
   BlockCg cg;
-  EXPECT_FALSE(cg.set(c.blocks, c.springs));
+  EXPECT_FALSE(cg.set_bodies(c.blocks));
 }
 
 }  // namespace

@@ -12,11 +12,14 @@ namespace {
 using namespace test;
 
 /// Two bodies that a spring pulls together collide again and again; nothing else acts. Without
-/// friction and with e = 1 energy and both momenta stay.
+/// friction and with e = 1 energy and both momenta stay. What is left is the rounding of gaps where
+/// an impact is stopped within a step: the fewer steps it has, the deeper it ends in the barrier. A
+/// ball against a mesh needs shorter steps for that: its distance is that of its centre.
 struct Tie {
-  int first, second, steps;
-  double energy;  ///< Tolerance: rounding of the gap where an impact is stopped within a step.
+  int first, second;
+  double step;  ///< [s]
 };
+constexpr int kSteps = 10000;
 class Tied : public testing::TestWithParam<Tie> {};
 
 TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
@@ -36,10 +39,10 @@ TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
   spring.values = {{"stiffness", 4.0}, {"free_length", 0.1}};
   load_kind("spring_damper").add(s.system, spring);
   s.law(0.0, 1.0);
-  s.begin(2.5e-3);
+  s.begin(GetParam().step);
   int hits = 0;
   bool touched = false;
-  for (int k = 0; k < GetParam().steps; ++k) {
+  for (int k = 0; k < kSteps; ++k) {
     ASSERT_TRUE(s.step()) << s.last.text();
     double force = 0.0;
     for (const auto& r : s.contacts->reports()) force += r.normal_force;
@@ -47,16 +50,15 @@ TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
     touched = force > 0.0;
   }
   const Ledger& l = s.state.ledger;
-  EXPECT_GT(hits, GetParam().steps / 1000);
-  EXPECT_LT(s.drift(), GetParam().energy * l.energy_scale);
+  EXPECT_GT(hits, 5);
+  EXPECT_LT(s.drift(), 1e-10 * l.energy_scale);
   EXPECT_LT(l.p_drift, 1e-10 * l.p_scale);
   EXPECT_LT(l.l_drift, 1e-10 * l.l_scale);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Tied,
-                         testing::Values(Tie{0, 0, 10000, 1e-9}, Tie{2, 2, 10000, 1e-10},
-                                         Tie{6, 6, 1500, 1e-10}, Tie{0, 7, 10000, 1e-9},
-                                         Tie{2, 1, 10000, 1e-10}),
+                         testing::Values(Tie{0, 0, 5e-3}, Tie{2, 2, 2.5e-3}, Tie{6, 6, 2.5e-3},
+                                         Tie{0, 7, 1e-3}, Tie{2, 1, 2.5e-3}),
                          [](const auto& tied) {
                            const auto all = every_shape();
                            return all[tied.param.first].name + "_" + all[tied.param.second].name;

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <polhode/io/checkpoint.hpp>
+#include <polhode/io/read_model.hpp>
+#include <support/paths.hpp>
 #include <support/published_cases.hpp>
 #include <support/scratch.hpp>
 
@@ -26,6 +28,13 @@ Model with(Model model, double duration, std::optional<double> step,
   return model;
 }
 
+/// An example with contact, whose points remember bristles, gaps and approach speeds.
+Model touching(const std::string& name, double duration) {
+  Model model = read_model(source_dir() + "/examples/" + name + "/model.yaml");
+  model.analysis.duration = duration;
+  return model;
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -36,6 +45,11 @@ std::vector<RestartCase> cases() {
       {"SqueezerAutomatic", with(andrews_squeezer(), 0.01, {}, 1e-6)},
       {"BricardFixedSteps", with(bricard(), 2.0, 0.01, {})},
       {"FreeTopHalvedSteps", with(free_symmetric_top({3.0, 0.0, 12.0}), 2.0, 0.25, {})},
+      {"CardHouse", touching("card_house", 0.3)},
+      {"RollingCoin", touching("rolling_coin", 0.05)},
+      {"Rattleback", touching("rattleback", 0.2)},
+      {"GearPair", touching("gear_pair", 0.05)},
+      {"SpheresInABin", touching("spheres_in_a_bin", 0.3)},
   };
 }
 

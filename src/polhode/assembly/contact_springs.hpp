@@ -25,6 +25,10 @@ class PointwiseContacts {
   virtual void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
                                   std::span<Vec6> wrenches,
                                   std::vector<ContactSpring>& springs) = 0;
+  /// Holds back predicted increments, pair by pair, about where impacts in the step will stop them.
+  /// @param steps  Nobody has moved yet.
+  virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
+                             std::span<Vec6> increments) const = 0;
 };
 
 }  // namespace polhode

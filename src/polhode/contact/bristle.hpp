@@ -8,6 +8,24 @@
 
 namespace polhode::contact {
 
+/// The bristle of t_n in the tangent plane of the step: turned with the normal by the smallest
+/// rotation, and about it with the bodies. Zero if `before`, the normal that left it, is.
+template <class T>
+[[nodiscard]] V3<T> transported(const Vec3& bristle, const Vec3& before, const V3<T>& n,
+                                const T& spin) {
+  if (before.isZero(0.0)) return constant<T>(Vec3::Zero());
+  const V3<double> s = v3(bristle), from = v3(before);
+  const T cosine = dot(from, n);
+  V3<T> turned = constant<T>(bristle);
+  if (value(cosine) > -0.5) {
+    const V3<T> axis = cross(from, n), once = cross(axis, s);
+    turned = s + once + (1.0 / (1.0 + cosine)) * cross(axis, once);
+  }
+  turned = turned - dot(n, turned) * n;
+  const T square = 0.25 * spin * spin, scale = 1.0 / (1.0 + square);
+  return scale * ((1.0 - square) * turned + spin * cross(n, turned));
+}
+
 /// The set of bristle deflections that stick: |s| ≤ R, or in the tangent plane an ellipse with the
 /// half axes R along e and R·ratio along f.
 template <class T>

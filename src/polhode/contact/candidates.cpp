@@ -62,6 +62,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
     p.key = {(static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b), f.key()};
     p.data.history = {};
     p.data.history.stiffness = p.data.normal.stiffness;
+    p.may_be_plain = is_plain(p.data);
     points.push_back(p);
   }
 }
@@ -187,7 +188,7 @@ bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& conte
     references_[body].margin = std::max(references_[body].margin, 1.5 * span);
   }
   find_candidates(context.dt);
-  for (Point& p : points_) open_or_close(p, steps, context);
+  open_or_close(steps, context);
   return !std::equal(
       before.begin(), before.end(), pairs_.begin(), pairs_.end(),
       [](const Participants& x, const Participants& y) { return x.a == y.a && x.b == y.b; });

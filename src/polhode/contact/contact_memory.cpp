@@ -14,7 +14,7 @@ constexpr std::size_t kReferenceNumbers = 13;
 
 }  // namespace
 
-void ContactSet::save(State& state) const {
+void ContactSet::save(State& state) {
   std::vector<double>& out = state.contacts;
   out.assign(1, static_cast<double>(totals_.size()));
   out.insert(out.end(), totals_.begin(), totals_.end());
@@ -40,8 +40,8 @@ void ContactSet::save(State& state) const {
           h.fresh ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, p.data.rate_damping, h.gap})
       out.push_back(x);
   }
-  const_cast<ContactSet*>(this)->saved_ = out;
-  const_cast<ContactSet*>(this)->loaded_ = true;
+  saved_ = out;
+  loaded_ = true;
 }
 
 void ContactSet::load(const State& state) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/contact/bristle.hpp>
 #include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/plain_point.hpp>
 
 namespace polhode::contact {
 
@@ -38,21 +39,25 @@ T fading_quotient(Fade fade, double y_0, const T& y_1) {
   return (fading(fade, y_1) - fading(fade, y_0)) / change;
 }
 
-/// The bristle of t_n in the tangent plane of the step: turned with the normal by the smallest
-/// rotation, and about it with the bodies.
-template <class T>
-V3<T> transported(const Vec3& bristle, const Vec3& before, const V3<T>& n, const T& spin) {
-  if (before.isZero()) return constant<T>(Vec3::Zero());
-  const V3<double> s = v3(bristle), from = v3(before);
-  const T cosine = dot(from, n);
-  V3<T> turned = constant<T>(bristle);
-  if (value(cosine) > -0.5) {
-    const V3<T> axis = cross(from, n), once = cross(axis, s);
-    turned = s + once + (1.0 / (1.0 + cosine)) * cross(axis, once);
+/// A point near the contact at t_n, cheap to find: gaps are formed as seen from there.
+Vec3 near_contact(const PointData& data, const BodyStep& a) {
+  const Shape& A = *data.a;
+  switch (data.pair.kind) {
+    case GapKind::point_solid:
+    case GapKind::point_triangle:
+    case GapKind::point_edge:
+    case GapKind::point_corner:
+      return a.r_n + a.Lambda_n * A.corners[data.pair.i];
+    case GapKind::edge_edge: {
+      const Shape::Edge& e = A.edges[data.pair.i];
+      return a.r_n + a.Lambda_n * (0.5 * (A.corners[e.i] + A.corners[e.j]));
+    }
+    case GapKind::extreme_solid:
+    case GapKind::round_edge:
+    case GapKind::round_round:
+      break;
   }
-  turned = turned - dot(n, turned) * n;
-  const T square = 0.25 * spin * spin, scale = 1.0 / (1.0 + square);
-  return scale * ((1.0 - square) * turned + spin * cross(n, turned));
+  return a.r_n;
 }
 
 template <class T>
@@ -75,10 +80,11 @@ class Evaluation {
         a_(a),
         b_(b),
         context_(context),
-        n_a_(a.r_n, a.Lambda_n, 0),
-        n_b_(b.r_n, b.Lambda_n, 6),
-        e_a_(a.r_n1, a.Lambda_n1, 0),
-        e_b_(b.r_n1, b.Lambda_n1, 6),
+        from_(near_contact(data, a)),
+        n_a_(a.r_n - from_, a.Lambda_n, 0),
+        n_b_(b.r_n - from_, b.Lambda_n, 6),
+        e_a_(a, from_, 0),
+        e_b_(b, from_, 6),
         move_a_(a, 0),
         move_b_(b, 6) {}
 
@@ -86,10 +92,11 @@ class Evaluation {
     Gap<double> g_0 = gap(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
     // To the last bit what the last step ended with: deep in the barrier rounding would count.
     if (data_.history.closed) g_0.distance = data_.history.gap;
-    const Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
+    Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
+    if (has_closed_form(data_)) g_1.distance = g_0.distance + closed_form_change();
     kinematics(g_0, g_1);
     forces(g_0, g_1);
-    closed_forms(g_1);
+    closed_forms();
     alpha_corrections(g_0, g_1);
 
     Wrenches<T> w;
@@ -124,8 +131,8 @@ class Evaluation {
     change_ = g_1.distance - g_0.distance;
     c_ = 0.5 * (g_0.point + g_1.point);
     n_ = unit(g_0.normal + g_1.normal);
-    r_a_ = average(v3(a_.r_n), e_a_.position(), 0.5);
-    r_b_ = average(v3(b_.r_n), e_b_.position(), 0.5);
+    r_a_ = average(n_a_.position(), e_a_.position(), 0.5);
+    r_b_ = average(n_b_.position(), e_b_.position(), 0.5);
     u_ = move_a_.u + cross(move_a_.theta, c_ - r_a_) - move_b_.u - cross(move_b_.theta, c_ - r_b_);
     const V3<T> turn = move_a_.theta - move_b_.theta;
     const V3<T> w = cross(n_, turn);
@@ -148,7 +155,7 @@ class Evaluation {
   void forces(const Gap<double>& g_0, const Gap<T>& g_1) {
     const NormalLaw& law = data_.normal;
     if constexpr (std::is_same_v<T, double>)
-      stiffness_ = normal_stiffness(data_, g_0.distance, g_1.distance, context_.dt);
+      stiffness_ = normal_force(data_, g_0.distance, g_1.distance, context_.dt).stiffness;
     lambda_ = law.quotient(g_0.distance, g_1.distance);
     if (data_.rate_damping > 0.0) {
       const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;
@@ -179,10 +186,9 @@ class Evaluation {
 
   /// A point against a plane or a ball: N and arms for which N·u = Δg needs no correction.
   /// @eq{contact-point-plane} @eq{contact-sphere-sphere}
-  void closed_forms(const Gap<T>&) {
-    if (data_.pair.kind != GapKind::point_solid) return;
+  void closed_forms() {
+    if (!has_closed_form(data_)) return;
     const Shape &A = *data_.a, &B = *data_.b;
-    if (B.solid != Solid::half_space && B.solid != Solid::ball) return;
     const Vec3& Z = A.corners[data_.pair.i];
     const V3<double> p_0 = n_a_.point(Z);
     const V3<T> p_1 = e_a_.point(Z);
@@ -197,6 +203,24 @@ class Evaluation {
     }
   }
 
+  /// Δg of the same, from how far points and normal move. @eq{contact-gap-change}
+  [[nodiscard]] T closed_form_change() const {
+    const Shape &A = *data_.a, &B = *data_.b;
+    const auto moved = [](const Motion<T>& m, const V3<double>& z_0, const V3<T>& z_1) {
+      return cross(m.theta, average(z_0, z_1, 0.5));
+    };
+    const Vec3 &Z = A.corners[data_.pair.i], &Y = B.centre;
+    const V3<T> u = move_a_.u + moved(move_a_, n_a_.vector(Z), e_a_.vector(Z)) - move_b_.u -
+                    moved(move_b_, n_b_.vector(Y), e_b_.vector(Y));
+    const V3<double> w_0 = n_a_.point(Z) - n_b_.point(Y);
+    const V3<T> w_1 = e_a_.point(Z) - e_b_.point(Y);
+    if (B.solid == Solid::ball) return dot(w_0 + w_1, u) / (norm(w_0) + norm(w_1));
+    const Vec3 normal = B.axes.col(2);
+    const V3<double> n_0 = n_b_.vector(normal);
+    const V3<T> n_1 = e_b_.vector(normal);
+    return dot(average(n_0, n_1, 0.5), u) + dot(moved(move_b_, n_0, n_1), average(w_0, w_1, 0.5));
+  }
+
   /// ρ∞ < 1: force, normal and arms of t_{n+αf}.
   void alpha_corrections(const Gap<double>& g_0, const Gap<T>& g_1) {
     const double e = context_.ga.alpha_f - 0.5;
@@ -207,8 +231,8 @@ class Evaluation {
     c_ = c_ + moved;
     lambda_ = lambda_ + (e * data_.pair.weight) *
                             (data_.normal.force(g_1.distance) - data_.normal.force(g_0.distance));
-    r_a_ = average(v3(a_.r_n), e_a_.position(), context_.ga.alpha_f);
-    r_b_ = average(v3(b_.r_n), e_b_.position(), context_.ga.alpha_f);
+    r_a_ = average(n_a_.position(), e_a_.position(), context_.ga.alpha_f);
+    r_b_ = average(n_b_.position(), e_b_.position(), context_.ga.alpha_f);
   }
 
   void add_friction(Wrenches<T>& w, PointReport* report) {
@@ -314,14 +338,9 @@ class Evaluation {
     r.gap_n1 = value(g_1.distance);
     r.normal_force = value(lambda_);
     r.normal = value(n_);
-    r.point = value(c_);
-    r.after = data_.history;
-    r.after.bristle.setZero();
-    r.after.rolling.setZero();
-    r.after.torsion = 0.0;
-    r.after.normal.setZero();
-    r.after.slips = false;
-    const Placement<double> end_a(a_.r_n1, a_.Lambda_n1, 0), end_b(b_.r_n1, b_.Lambda_n1, 6);
+    r.point = from_ + value(c_);
+    r.after = data_.history.without_bristles();
+    const Placement<double> end_a(a_, from_, 0), end_b(b_, from_, 6);
     const double m_0 = weight_at(n_a_, n_b_), m_1 = weight_at(end_a, end_b);
     r.work = {};
     r.work.stored = m_1 * data_.normal.energy(r.gap_n1);
@@ -339,6 +358,7 @@ class Evaluation {
   const PointData& data_;
   const BodyStep &a_, &b_;
   const StepContext& context_;
+  Vec3 from_;                    ///< Places are seen from here.
   Placement<double> n_a_, n_b_;  ///< At t_n.
   Placement<T> e_a_, e_b_;       ///< At t_{n+1}.
   Motion<T> move_a_, move_b_;
@@ -366,12 +386,6 @@ void add_values(const Wrenches<T>& w, PairTerms& terms) {
   terms.wrench_b.tail<3>() += value(w.moment_b);
 }
 
-double gap_at(const PointData& d, const Vec3& r_a, const Mat3& L_a, const Vec3& r_b,
-              const Mat3& L_b) {
-  return gap(d.pair, *d.a, *d.b, Placement<double>(r_a, L_a, 0), Placement<double>(r_b, L_b, 6))
-      .distance;
-}
-
 }  // namespace
 
 void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
@@ -394,25 +408,34 @@ PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep&
   return evaluation.spring(evaluation.run(nullptr));
 }
 
-double normal_stiffness(const PointData& data, double gap_n, double gap_n1, double dt) {
-  NormalLaw::WithSlope quotient = data.normal.quotient_and_slope(gap_n, gap_n1);
+NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
+  NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
+  const double quotient = f.value;
   if (data.rate_damping > 0.0) {
-    const double factor = 1.0 - data.rate_damping / dt * (gap_n1 - gap_n);
-    if (factor <= 0.0) return 0.0;
-    quotient.slope = factor * quotient.slope - data.rate_damping / dt * quotient.value;
+    const double factor = std::max(0.0, 1.0 - data.rate_damping / dt * (gap_n1 - gap_n));
+    f.slope = factor > 0.0 ? factor * f.slope - data.rate_damping / dt * f.value : 0.0;
+    f.value *= factor;
   }
-  double k = -quotient.slope;
-  if (data.history.plastic && data.pair.weight > 0.0)
-    k = (1.0 - kPlasticShare) * k - kPlasticShare * data.normal.force_and_slope(gap_n1).slope;
-  return data.pair.weight * k;
+  if (data.history.plastic && data.pair.weight > 0.0) {
+    const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);
+    f.value = (1.0 - kPlasticShare) * f.value + kPlasticShare * end.value;
+    f.slope = (1.0 - kPlasticShare) * f.slope + kPlasticShare * end.slope;
+  }
+  const double weight = data.pair.weight;
+  return {weight * f.value, -weight * f.slope, weight * quotient};
 }
 
-double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b) {
-  return gap_at(data, a.r_n, a.Lambda_n, b.r_n, b.Lambda_n);
+bool has_closed_form(const PointData& data) {
+  return data.pair.kind == GapKind::point_solid &&
+         (data.b->solid == Solid::half_space || data.b->solid == Solid::ball);
 }
 
-double gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {
-  return gap_at(data, a.r_n1, a.Lambda_n1, b.r_n1, b.Lambda_n1);
+double gap_n1(const PointData& data, double gap_n, const BodyStep& a, const BodyStep& b) {
+  if (has_closed_form(data)) return plain_gap_n1(data, gap_n, a, b);
+  const Vec3 from = near_contact(data, a);
+  return gap(data.pair, *data.a, *data.b, Placement<double>(a, from, 0),
+             Placement<double>(b, from, 6))
+      .distance;
 }
 
 double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {

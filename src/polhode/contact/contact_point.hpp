@@ -37,6 +37,15 @@ struct PointHistory {
   bool plastic = false;         ///< No rebound: part of the force is that of the end of the step.
   bool fresh = true;            ///< Has not turned since it closed.
   bool slips = false;
+
+  /// The same with bristles that hold nothing.
+  [[nodiscard]] PointHistory without_bristles() const {
+    PointHistory h = *this;
+    h.bristle = h.normal = h.rolling = Vec3::Zero();
+    h.torsion = 0.0;
+    h.slips = false;
+    return h;
+  }
 };
 
 /// A contact point in a step: features, laws, history.
@@ -88,13 +97,22 @@ struct PointForce {
 [[nodiscard]] PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep& b,
                                      const StepContext& context);
 
-/// −dλ/dg_{n+1} of a point: its law with damper and plastic share, weights included [N/m].
-[[nodiscard]] double normal_stiffness(const PointData& data, double gap_n, double gap_n1,
-                                      double dt);
+/// Normal force of a point whose potential does not fade: law, damper, plastic share and weight.
+struct NormalForce {
+  double lambda = 0.0;     ///< [N]
+  double stiffness = 0.0;  ///< −dλ/dg_{n+1} [N/m].
+  double elastic = 0.0;    ///< What the potential alone gives [N].
+};
+/// @eq{contact-quotient} @eq{contact-plastic} @eq{contact-damped}
+[[nodiscard]] NormalForce normal_force(const PointData& data, double gap_n, double gap_n1,
+                                       double dt);
 
-/// Gap at the start and at the end of the step, without derivatives.
-[[nodiscard]] double gap_n(const PointData& data, const BodyStep& a, const BodyStep& b);
-[[nodiscard]] double gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b);
+/// A point against a ball or a half space: force and change of the gap have closed forms.
+[[nodiscard]] bool has_closed_form(const PointData& data);
+
+/// Gap at the end of the step, without derivatives. @param gap_n  At its start [m].
+[[nodiscard]] double gap_n1(const PointData& data, double gap_n, const BodyStep& a,
+                            const BodyStep& b);
 
 /// Potential of the point at t_{n+1}, fading included [J].
 [[nodiscard]] double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b);

@@ -150,39 +150,65 @@ void ContactSet::complete_law(Point& p, double dt) const {
   if (f.turning_damping == 0.0)
     f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * length * length);
   p.restitution = law.damped ? 1.0 : law.restitution;
+  p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
+  p.may_be_plain = d.a && is_plain(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
   p.least_gap =
       plane || law.potential == NormalPotential::barrier ? d.normal.floor() : -0.9 * rounding;
 }
 
+void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContext& context) {
+  balls_.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    open_or_close(points_[i], balls_[i], steps, context);
+    if (context.ga.alpha_f != 0.5) balls_[i].holds = false;
+  }
+}
+
 /// A point that is open gets its approach speed, and with it the decision whether it will rebound:
 /// not if the flight would be shorter than the step. @eq{exit-law}
-void ContactSet::open_or_close(Point& p, std::span<const BodyStep> steps,
+void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                                const StepContext& context) const {
   PointHistory& h = p.data.history;
-  p.plain = is_plain(p.data) && context.ga.alpha_f == 0.5;
-  p.active = false;
+  p.plain = p.may_be_plain && context.ga.alpha_f == 0.5;
+  const auto index = [&](int shape) {
+    const int body = shapes_[shape].body;
+    return body == kGround ? static_cast<int>(steps.size()) - 1 : body;
+  };
+  const int at_a = index(p.a), at_b = index(p.b);
+  const BodyStep &a = steps[at_a], &b = steps[at_b];
+  balls = p.plain ? approach_of_balls(p.data, a, b) : ApproachOfBalls{};
+  balls.a = at_a;
+  balls.b = at_b;
+  balls.reach = p.data.normal.reach();
+  balls.least_gap = p.least_gap;
   if (h.closed) {
-    p.gap_n = h.gap;
+    p.gap_n = balls.gap_n = h.gap;
     return;
   }
-  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-  const Gap<double> g =
-      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
-          Placement<double>(b.r_n, b.Lambda_n, 6));
-  p.gap_n = g.distance;
-  const Vec3 c = value(g.point), n = value(g.normal);
+  Vec3 c, n;
+  if (balls.holds) {
+    p.gap_n = balls.gap_n;
+    n = balls.distance > 0.0 ? Vec3(balls.offset / balls.distance) : balls.offset;
+    c = a.r_n - (p.data.a->rounding + 0.5 * p.gap_n) * n;
+  } else {
+    const Gap<double> g =
+        gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
+            Placement<double>(b.r_n, b.Lambda_n, 6));
+    p.gap_n = balls.gap_n = g.distance;
+    c = value(g.point);
+    n = value(g.normal);
+  }
   const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
   const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
   h.approach = std::min(0.0, n.dot(v_a - v_b));
   const double slow = 2.0 * system_->gravity().norm() * context.dt;
-  const ContactLaw& law = this->law(p.a, p.b);
-  h.plastic = !law.damped &&
+  h.plastic = !p.damped &&
               (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
   h.fresh = true;
-  if (law.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
+  if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
   if (p.gap_n >= p.data.normal.reach()) return;
   h.closed = true;
   h.gap = p.gap_n;
@@ -208,14 +234,21 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
     refer(steps, context);
     find_candidates(context.dt);
   }
-  for (Point& p : points_) {
+  for (Point& p : points_)
     if (p.law_dt != context.dt) complete_law(p, context.dt);
-    open_or_close(p, steps, context);
-  }
+  open_or_close(steps, context);
   tightest_ = -1;
   return !std::equal(
       before.begin(), before.end(), pairs_.begin(), pairs_.end(),
       [](const Participants& x, const Participants& y) { return x.a == y.a && x.b == y.b; });
+}
+
+bool ContactSet::acts(int point, double gap_1, double& least) {
+  const Point& p = points_[point];
+  const double reach = p.data.normal.reach();
+  if (p.sensor || !(p.gap_n < reach || gap_1 < reach)) return false;
+  if (const double room = gap_1 - p.least_gap; room < least) least = room, tightest_ = point;
+  return true;
 }
 
 void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& context,
@@ -224,14 +257,9 @@ void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& co
   pointwise_ = false;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    Point& p = points_[i];
-    if (p.sensor) continue;
+    const Point& p = points_[i];
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    const double reach = p.data.normal.reach();
-    const double gap_1 = gap_n1(p.data, a, b);
-    p.active = p.gap_n < reach || gap_1 < reach;
-    if (!p.active) continue;
-    if (const double room = gap_1 - p.least_gap; room < least) least = room, tightest_ = i;
+    if (!acts(i, gap_at_end(i, a, b), least)) continue;
     PairTerms& t = terms[p.pair];
     if (!p.swapped) {
       add_contact(p.data, a, b, context, t);
@@ -263,8 +291,9 @@ void release_bristles(const FrictionLaw& f, PointReport& r) {
 
 }  // namespace
 
-double ContactSet::gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const {
-  return p.plain && pointwise_ ? plain_gap_n1(p.data, a, b) : gap_n1(p.data, a, b);
+double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) const {
+  const Point& p = points_[point];
+  return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
 }
 
 void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
@@ -273,17 +302,21 @@ void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepC
   pointwise_ = true;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    Point& p = points_[i];
-    if (p.sensor) continue;
-    const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    const double reach = p.data.normal.reach();
-    const double gap_1 = gap_at_end(p, a, b);
-    p.active = p.gap_n < reach || gap_1 < reach;
-    if (!p.active) continue;
-    if (const double room = gap_1 - p.least_gap; room < least) least = room, tightest_ = i;
+    const ApproachOfBalls& balls = balls_[i];
+    const BodyStep &a = steps[balls.a], &b = steps[balls.b];
+    double gap_1 = 0.0;
+    if (balls.holds) {  // most are only near: nothing but what lies side by side is read for them
+      gap_1 = balls.gap_n1(a, b);
+      if (balls.gap_n >= balls.reach && gap_1 >= balls.reach) continue;
+    } else {
+      gap_1 = gap_at_end(i, a, b);
+    }
+    if (!acts(i, gap_1, least)) continue;
+    const Point& p = points_[i];
     const PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
                                  : point_force(p.data, a, b, context);
-    ContactSpring s{shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C};
+    springs.push_back({shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C});
+    const ContactSpring& s = springs.back();
     if (s.a != kGround) {
       wrenches[s.a].head<3>() += f.force;
       wrenches[s.a].tail<3>() += f.moment_a;
@@ -292,7 +325,6 @@ void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepC
       wrenches[s.b].head<3>() -= f.force;
       wrenches[s.b].tail<3>() += f.moment_b;
     }
-    springs.push_back(s);
   }
 }
 
@@ -303,17 +335,19 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
   PairTerms unused;
   unused.set_zero();
   for (Vec6& w : wrenches_) w.setZero();
-  for (Point& p : points_) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    const double gap_1 = gap_at_end(p, a, b);
+    const double gap_1 = gap_at_end(i, a, b);
     const double reach = p.data.normal.reach();
-    p.active = p.gap_n < reach || gap_1 < reach;
     PointHistory& h = p.data.history;
     p.impact_loss = 0.0;
     p.impact_impulse = 0.0;
-    p.touched = p.active && !p.sensor;
+    const bool touched_before = p.touched;
+    p.touched = acts(i, gap_1, least);
     if (!p.touched) {
-      p.report = {};
+      if (touched_before) p.report = {};
       p.report.gap_n = p.gap_n;
       p.report.gap_n1 = gap_1;
       h.bristle.setZero();
@@ -351,19 +385,24 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     h.plastic = kept.plastic;
     h.fresh = kept.fresh;
     h.closed = gap_1 < reach;
-    h.gap = gap_1;
+    h.gap = r.gap_n1;
   }
   save(state);
   return work;
 }
 
+/// Leaves no trace: a run ends in the same bits however often it is asked for its energy. What a
+/// state that is not the last one has closed is found again when its next step begins.
 double ContactSet::stored(const State& state, std::span<const BodyStep> instants) {
-  StepContext still;
-  still.dt = state.dt_next > 0.0 ? state.dt_next : 1e-2;
-  begin_step(state, instants, still);
+  if (!loaded_ || saved_ != state.contacts) {
+    StepContext still;
+    still.dt = state.dt_next > 0.0 ? state.dt_next : 1e-2;
+    begin_step(state, instants, still);
+    loaded_ = false;
+  }
   double energy = 0.0;
   for (const Point& p : points_) {
-    if (p.sensor || p.gap_n >= p.data.normal.reach()) continue;
+    if (p.sensor || !p.data.history.closed) continue;
     energy += stored_n1(p.data, step_of(p.a, instants), step_of(p.b, instants)) +
               0.5 * p.data.friction.stiffness * p.data.history.bristle.squaredNorm() +
               0.5 * p.data.friction.turning_stiffness *

@@ -13,6 +13,7 @@
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/contact_reports.hpp>
 #include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/plain_point.hpp>
 
 namespace polhode::contact {
 
@@ -98,6 +99,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
                 std::span<PairTerms> terms) override;
   void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
                           std::span<Vec6> wrenches, std::vector<ContactSpring>& springs) override;
+  void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
+                     std::span<Vec6> increments) const override;
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
@@ -113,14 +116,15 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
     PointData data;
     double restitution = 0.0;
     double least_gap = 0.0;       ///< No step may go below [m].
+    bool damped = false;          ///< Rebounds by a damper.
     double damping_number = 0.0;  ///< c |w_pre| of a damped rebound [-].
+    bool may_be_plain = false;    ///< Closed forms hold at ρ∞ = 1.
     bool sensor = false;
-    bool plain = false;   ///< Closed forms hold.
+    bool plain = false;   ///< They hold in this step.
     double law_dt = 0.0;  ///< Step the constants of the law were chosen for [s].
     double gap_n = 0.0;
     PointReport report;    ///< Of the last accepted step.
     bool touched = false;  ///< It acted in that step.
-    bool active = false;
     double elastic_force = 0.0;
     double speed_n = 0.0, speed_n1 = 0.0;  ///< Along the normal [m/s].
     double impact_loss = 0.0, impact_impulse = 0.0;
@@ -138,13 +142,18 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   void settle_in_turn(std::span<const ImpactRow> rows, const std::vector<int>& island,
                       std::map<int, BodyMotion>& motions, VelocityJump& jump);
   void load(const State& state);
-  void save(State& state) const;
+  void save(State& state);
   void refer(std::span<const BodyStep> steps, const StepContext& context);
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
   void complete_law(Point& p, double dt) const;
-  [[nodiscard]] double gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
-  void open_or_close(Point& p, std::span<const BodyStep> steps, const StepContext& context) const;
+  [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
+  /// Whether a point acts in a step that ends with this gap. @param least  Room of the tightest
+  /// point so far, renewed with tightest_ [m].
+  [[nodiscard]] bool acts(int point, double gap_1, double& least);
+  void open_or_close(std::span<const BodyStep> steps, const StepContext& context);
+  void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
+                     const StepContext& context) const;
   [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
   [[nodiscard]] const Reference& reference_of(int shape, const Reference& ground) const {
     const int body = shapes_[shape].body;
@@ -167,6 +176,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
+  std::vector<ApproachOfBalls> balls_;  ///< By point.
   std::vector<Participants> pairs_;
   std::vector<double> saved_, totals_;
   bool loaded_ = false;

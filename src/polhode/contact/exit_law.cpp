@@ -130,7 +130,7 @@ VelocityJump ContactSet::settle_impacts(State& state, std::span<const VelocityRo
   std::vector<ImpactRow> rows;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
-    if (!p.active || p.sensor || p.data.pair.weight < 0.0 || p.restitution >= 1.0) continue;
+    if (!p.touched || p.data.pair.weight < 0.0 || p.restitution >= 1.0) continue;
     if (!(p.elastic_force > 0.0) || !(p.speed_n1 > 0.0)) continue;
     PointHistory& h = p.data.history;
     double wanted = 0.0;

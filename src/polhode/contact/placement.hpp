@@ -15,6 +15,16 @@ class Placement {
   Placement(const Vec3& r, const Mat3& Lambda, int first)
       : r_(r), Lambda_(&Lambda), first_(first) {}
 
+  /// The end of a step, seen from a point near the contact. Points come from where they were and
+  /// how far they moved, so that what rounding does to positions in the world does not reach gaps:
+  /// deep in the barrier it would count. @eq{contact-gap-change}
+  Placement(const BodyStep& step, const Vec3& from, int first)
+      : r_(step.r_n - from + step.u),
+        Lambda_(&step.Lambda_n1),
+        first_(first),
+        step_(&step),
+        start_(step.r_n - from) {}
+
   /// Λ Z: the vector Z fixed in the body.
   [[nodiscard]] V3<T> vector(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
@@ -25,7 +35,7 @@ class Placement {
   /// r + Λ Z: the point Z fixed in the body.
   [[nodiscard]] V3<T> point(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
-    V3<T> result = constant<T>(r_ + z);
+    V3<T> result = constant<T>(step_ ? at_end(Z, z) : Vec3(r_ + z));
     turn(result, z);
     move(result);
     return result;
@@ -39,6 +49,11 @@ class Placement {
   [[nodiscard]] Vec3 to_body(const Vec3& x) const { return Lambda_->transpose() * (x - r_); }
 
  private:
+  /// r_n + z_n + u + θ × z̄, the turn of a step by its Cayley vector.
+  [[nodiscard]] Vec3 at_end(const Vec3& Z, const Vec3& z) const {
+    const Vec3 z_n = step_->Lambda_n * Z;
+    return (start_ + z_n) + (step_->u + step_->theta.cross(0.5 * (z_n + z)));
+  }
   void turn(V3<T>& result, const Vec3& z) const {
     if constexpr (std::is_same_v<T, Dual>) {
       const int k = first_ + 3;  // e_j × z
@@ -56,6 +71,8 @@ class Placement {
   Vec3 r_;
   const Mat3* Lambda_;
   int first_;
+  const BodyStep* step_ = nullptr;  ///< Of the end of a step.
+  Vec3 start_ = Vec3::Zero();
 };
 
 /// Displacement u and Cayley vector θ of a body's step, with their derivatives.

@@ -2,68 +2,85 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/contact/bristle.hpp>
 #include <polhode/contact/plain_point.hpp>
 
 namespace polhode::contact {
 
 namespace {
 
-/// A point carried by a body at both ends of the step.
+/// A point carried by a body at both ends of the step, and how far it moves.
 struct Ends {
-  Vec3 at_n, at_n1;
+  Vec3 at_n, at_n1, moved;
 };
 
 Ends carried(const BodyStep& s, const Vec3& Z) {
-  if (Z.isZero(0.0)) return {s.r_n, s.r_n1};
-  return {s.r_n + s.Lambda_n * Z, s.r_n1 + s.Lambda_n1 * Z};
+  if (Z.isZero(0.0)) return {s.r_n, s.r_n1, s.u};
+  const Vec3 z_n = s.Lambda_n * Z, z_n1 = s.Lambda_n1 * Z;
+  return {s.r_n + z_n, s.r_n1 + z_n1, s.u + s.theta.cross(0.5 * (z_n + z_n1))};
 }
 
 Ends turned(const BodyStep& s, const Vec3& Z) {
-  if (!s.moves) return {Z, Z};
-  return {s.Lambda_n * Z, s.Lambda_n1 * Z};
+  if (!s.moves) return {Z, Z, Vec3::Zero()};
+  const Vec3 z_n = s.Lambda_n * Z, z_n1 = s.Lambda_n1 * Z;
+  return {z_n, z_n1, s.theta.cross(0.5 * (z_n + z_n1))};
 }
 
-Vec3 in_disc(const Vec3& s, double radius) {
-  const double square = s.squaredNorm();
-  return square <= radius * radius ? s : Vec3(radius / std::sqrt(square) * s);
-}
-
-/// The bristle of t_n in the tangent plane of the step, as the general formula has it.
-Vec3 transported(const Vec3& bristle, const Vec3& before, const Vec3& n, double spin) {
-  if (before.isZero(0.0)) return Vec3::Zero();
-  const double cosine = before.dot(n);
-  Vec3 turned = bristle;
-  if (cosine > -0.5) {
-    const Vec3 axis = before.cross(n), once = axis.cross(bristle);
-    turned += once + axis.cross(once) / (1.0 + cosine);
-  }
-  turned -= n.dot(turned) * n;
-  const double square = 0.25 * spin * spin, scale = 1.0 / (1.0 + square);
-  return scale * ((1.0 - square) * turned + spin * n.cross(turned));
+V3<double> in_disc(const V3<double>& s, double radius) {
+  return Cone<double>{radius, 1.0, {}, {}}.nearest(s);
 }
 
 }  // namespace
 
 bool is_plain(const PointData& data) {
   const FrictionLaw& f = data.friction;
-  return data.pair.kind == GapKind::point_solid && data.pair.fade == Fade::none &&
-         (data.b->solid == Solid::ball || data.b->solid == Solid::half_space) && f.rolling == 0.0 &&
+  return has_closed_form(data) && data.pair.fade == Fade::none && f.rolling == 0.0 &&
          f.torsion == 0.0 && (f.mu_across <= 0.0 || f.mu_across == f.mu);
 }
 
-double plain_gap_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {
+ApproachOfBalls approach_of_balls(const PointData& data, const BodyStep& a, const BodyStep& b) {
   const Shape &A = *data.a, &B = *data.b;
-  const Vec3& Z = A.corners[data.pair.i];
-  const Vec3 p = Z.isZero(0.0) ? a.r_n1 : Vec3(a.r_n1 + a.Lambda_n1 * Z);
-  const Vec3 q = B.centre.isZero(0.0) ? b.r_n1 : Vec3(b.r_n1 + b.Lambda_n1 * B.centre);
+  ApproachOfBalls s;
+  const bool plane = B.solid == Solid::half_space;
+  s.holds = A.corners[data.pair.i].isZero(0.0) && (plane ? !b.moves : B.centre.isZero(0.0));
+  if (!s.holds) return s;
   const double rho = A.rounding + B.rounding;
-  if (B.solid == Solid::ball) return (p - q).norm() - rho;
-  const Vec3 n = b.moves ? Vec3(b.Lambda_n1 * B.axes.col(2)) : Vec3(B.axes.col(2));
-  return n.dot(p - q) - rho;
+  if (plane) {
+    s.offset = B.axes.col(2);
+    s.gap_n = s.offset.dot(a.r_n - B.centre) - rho;
+  } else {
+    s.offset = a.r_n - b.r_n;
+    s.distance = s.offset.norm();
+    s.gap_n = s.distance - rho;
+  }
+  return s;
 }
 
-/// @eq{contact-point-plane} @eq{contact-sphere-sphere} @eq{contact-plastic} @eq{contact-bristle}
-/// @eq{contact-spring}
+double ApproachOfBalls::part(const BodyStep& on_a, const BodyStep& on_b, const Vec3& change,
+                             double kept) const {
+  if (!std::isfinite(least_gap)) return 1.0;
+  const Vec3 w = distance == 0.0 ? offset : Vec3(offset + (on_a.u - on_b.u));
+  const double along = w.dot(change);
+  if (along >= 0.0) return 1.0;
+  const double gap = gap_n1(on_a, on_b), room = gap - least_gap;
+  const double use = room - kept * std::min(room, reach - least_gap);
+  if (distance == 0.0) return std::min(1.0, use / -along);
+  // |w + part·change| = |w| − use
+  const double length = w.norm(), square = change.squaredNorm(), rest = use * (2.0 * length - use);
+  const double root = along * along - square * rest;
+  return root > 0.0 ? std::min(1.0, rest / (-along + std::sqrt(root))) : 1.0;
+}
+
+double plain_gap_n1(const PointData& data, double gap_n, const BodyStep& a, const BodyStep& b) {
+  const Shape &A = *data.a, &B = *data.b;
+  const Ends p = carried(a, A.corners[data.pair.i]), q = carried(b, B.centre);
+  const Vec3 w_n = p.at_n - q.at_n, w_n1 = p.at_n1 - q.at_n1, moved = p.moved - q.moved;
+  if (B.solid == Solid::ball) return gap_n + (w_n + w_n1).dot(moved) / (w_n.norm() + w_n1.norm());
+  const Ends normal = turned(b, B.axes.col(2));
+  return gap_n + 0.5 * ((normal.at_n + normal.at_n1).dot(moved) + normal.moved.dot(w_n + w_n1));
+}
+
+/// @eq{contact-point-plane} @eq{contact-sphere-sphere} @eq{contact-bristle} @eq{contact-spring}
 PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const BodyStep& a,
                        const BodyStep& b, const StepContext& context, PointReport* report) {
   const Shape &A = *data.a, &B = *data.b;
@@ -87,51 +104,37 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
     c = 0.5 * (point + 0.5 * (q.at_n + q.at_n1)) + 0.25 * (B.rounding - A.rounding) * sum;
   }
 
-  const NormalLaw& law = data.normal;
-  const double quotient = law.quotient(gap_n, gap_n1);
-  double lambda = quotient;
-  if (data.rate_damping > 0.0)
-    lambda *= std::max(0.0, 1.0 - data.rate_damping / context.dt * (gap_n1 - gap_n));
-  if (data.history.plastic)
-    lambda = (1.0 - kPlasticShare) * lambda + kPlasticShare * law.force(gap_n1);
-  lambda *= data.pair.weight;
-
+  const NormalForce normal = normal_force(data, gap_n, gap_n1, context.dt);
   PointForce out;
   out.arm_a = c - r_a;
   out.arm_b = c - r_b;
-  out.force = lambda * N;
+  out.force = normal.lambda * N;
   out.moment_a = (point - r_a).cross(out.force);
   out.moment_b = -(point - r_b).cross(out.force);
-  const double k = std::max(0.0, normal_stiffness(data, gap_n, gap_n1, context.dt));
-  out.C = k * n * n.transpose();
+  const double k = std::max(0.0, normal.stiffness);
   if (report) {
     *report = {};
     report->gap_n = gap_n;
     report->gap_n1 = gap_n1;
-    report->normal_force = lambda;
+    report->normal_force = normal.lambda;
     report->normal = n;
     report->point = c;
-    report->after = data.history;
-    report->after.bristle.setZero();
-    report->after.normal.setZero();
-    report->after.rolling.setZero();
-    report->after.torsion = 0.0;
-    report->after.slips = false;
-    report->work.stored = data.pair.weight * law.energy(gap_n1);
-    report->work.dissipated = (lambda - data.pair.weight * quotient) * (gap_n - gap_n1);
+    report->after = data.history.without_bristles();
+    report->work.stored = data.pair.weight * data.normal.energy(gap_n1);
+    report->work.dissipated = (normal.lambda - normal.elastic) * (gap_n - gap_n1);
     report->normal_loss = report->work.dissipated;
   }
 
   const FrictionLaw& f = data.friction;
-  const double normal_force = data.friction_share * lambda;
+  const double normal_force = data.friction_share * normal.lambda;
   if (f.mu > 0.0 && normal_force > 0.0) {
     const Vec3 u = a.u + a.theta.cross(out.arm_a) - b.u - b.theta.cross(out.arm_b);
     const Vec3 u_T = u - n.dot(u) * n;
     const double spin = 0.5 * n.dot(a.theta + b.theta);
     const double mu = !data.history.slips && f.mu_static > 0.0 ? f.mu_static : f.mu;
     const double radius = mu / f.stiffness * normal_force;
-    const Vec3 s_0 =
-        in_disc(transported(data.history.bristle, data.history.normal, n, spin), radius);
+    const Vec3 s_0 = value(in_disc(
+        transported<double>(data.history.bristle, data.history.normal, v3(n), spin), radius));
     const double factor = 0.5 + f.damping / (f.stiffness * context.dt);
     const Vec3 middle = s_0 + factor * u_T;
     const double square = middle.squaredNorm();
@@ -142,12 +145,12 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
     out.moment_a += out.arm_a.cross(F);
     out.moment_b -= out.arm_b.cross(F);
     const double k_T = f.stiffness * factor * part;
+    out.C = (k - k_T) * n * n.transpose();
     out.C.diagonal().array() += k_T;
-    out.C -= k_T * n * n.transpose();
     if (slides) out.C -= (k_T / square) * middle * middle.transpose();
     if (report) {
       report->friction_force = F;
-      const Vec3 after = in_disc(s_0 + u_T, radius);
+      const Vec3 after = value(in_disc(v3(s_0 + u_T), radius));
       report->after.bristle = after;
       report->after.slips = (s_0 + u_T).squaredNorm() > radius * radius;
       report->after.normal = n;
@@ -156,9 +159,12 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
           -F.dot(u_T) -
           0.5 * f.stiffness * (after.squaredNorm() - data.history.bristle.squaredNorm());
     }
-  } else if (report && f.mu > 0.0) {
-    report->after.normal = n;
-    report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
+  } else {
+    out.C = k * n * n.transpose();
+    if (report && f.mu > 0.0) {
+      report->after.normal = n;
+      report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
+    }
   }
   if (report) report->force = out.force;
   return out;

@@ -12,6 +12,8 @@ namespace {
 
 /// Of the room a point has, this part is kept in one iteration.
 constexpr double kKept = 0.1;
+/// The same between balls, which are many, and all wait for the tightest two.
+constexpr double kKeptByBalls = 0.35;
 /// Points that cannot use more than this part of their room are not followed.
 constexpr double kHarmless = 0.9;
 /// An advance below this part of the increment ends the search.
@@ -58,23 +60,6 @@ int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec
   return 0;
 }
 
-/// Part of the increment that a ball may move towards another, or towards a plane that stands.
-double ball_part(const PointData& data, const BodyStep& a, const BodyStep& b, const Vec3& change,
-                 double least_gap) {
-  const double room = plain_gap_n1(data, a, b) - least_gap;
-  const double keep = kKept * std::min(room, data.normal.reach() - least_gap);
-  if (data.b->solid != Solid::ball) {
-    const double closing = -change.dot(data.b->axes.col(2));
-    return closing > 0.0 ? std::min(1.0, (room - keep) / closing) : 1.0;
-  }
-  const Vec3 w = a.r_n1 - b.r_n1;
-  const double along = w.dot(change), square = change.squaredNorm();
-  if (along >= 0.0) return 1.0;
-  const double r = data.a->rounding + data.b->rounding + least_gap + keep;
-  const double rest = w.squaredNorm() - r * r, root = along * along - square * rest;
-  return root > 0.0 ? std::min(1.0, rest / (-along + std::sqrt(root))) : 1.0;
-}
-
 }  // namespace
 
 /// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
@@ -97,22 +82,25 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     if (turn > 0.6) most = std::min(most, 0.6 / turn);
   }
   std::vector<Closing> closing;
+  const auto ground = static_cast<int>(steps.size()) - 1;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    if (const ApproachOfBalls& balls = balls_[i]; balls.holds) {
+      const Vec6 &x_a = balls.a == ground ? still : increments[balls.a],
+                 &x_b = balls.b == ground ? still : increments[balls.b];
+      const double part =
+          balls.part(steps[balls.a], steps[balls.b], x_a.head<3>() - x_b.head<3>(), kKeptByBalls);
+      if (part < most && !points_[i].sensor) {
+        most = part;
+        tightest_ = i;
+      }
+      continue;
+    }
     const Point& p = points_[i];
     if (p.sensor || p.data.pair.weight < 0.0 || !std::isfinite(p.least_gap)) continue;
     const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
     const Vec3 relative = x_a.head<3>() - x_b.head<3>();
     const Shape &A = *p.data.a, &B = *p.data.b;
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-    if (p.plain && A.solid == Solid::ball && A.centre.isZero(0.0) &&
-        (B.solid == Solid::ball ? B.centre.isZero(0.0) : !b.moves)) {  // turns do not matter
-      const double part = ball_part(p.data, a, b, relative, p.least_gap);
-      if (part < most) {
-        most = part;
-        tightest_ = i;
-      }
-      continue;
-    }
     double speed = x_a.tail<3>().norm() * lever(A, p.data.pair, true);
     if (B.bounded()) {
       speed += relative.norm() + x_b.tail<3>().norm() * lever(B, p.data.pair, false);
@@ -121,7 +109,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
       speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + A.reach + B.centre.norm());
     }
     if (speed == 0.0) continue;
-    const double room = gap_n1(p.data, a, b) - p.least_gap;
+    const double room = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
     if (most * speed <= kHarmless * room) continue;
     const double band = p.data.normal.reach() - p.least_gap;
     closing.push_back({i, kKept * std::min(room, band)});

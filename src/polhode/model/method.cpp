@@ -113,7 +113,8 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
         system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
                           system.body_count());
-      return std::make_unique<CrowdEngine>(system);
+      return std::make_unique<CrowdEngine>(
+          system, a.newton_tolerance > 0.0 ? a.newton_tolerance : CrowdEngine::kResidual);
     }
     return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
                                            rate);

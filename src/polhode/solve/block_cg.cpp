@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <cmath>
 
 #include <polhode/solve/block_cg.hpp>
 
@@ -7,104 +7,209 @@ namespace polhode {
 
 namespace {
 
-/// Adds Pᵀ C P with P = [I, −arm^].
-void add_spring(const Mat3& C, const Vec3& arm, Mat6& block) {
-  Mat3 turned, turned_twice;  // arm^ C, and arm^ C arm^ᵀ
-  for (int j = 0; j < 3; ++j) turned.col(j) = arm.cross(C.col(j));
-  for (int j = 0; j < 3; ++j) turned_twice.col(j) = arm.cross(Vec3(turned.row(j)));
-  block.topLeftCorner<3, 3>() += C;
-  block.topRightCorner<3, 3>() += turned.transpose();
-  block.bottomLeftCorner<3, 3>() += turned;
-  block.bottomRightCorner<3, 3>() += turned_twice;
-}
-
-/// In place, by elimination without exchange of rows. @returns false if not positive.
-bool invert(Mat6& B) {
-  double* a = B.data();
-  for (int k = 0; k < 6; ++k) {
-    const double pivot = a[7 * k];
-    if (!(pivot > 0.0)) return false;
-    const double inverse = 1.0 / pivot;
-    double column[6];
-    for (int i = 0; i < 6; ++i) column[i] = a[6 * k + i] * inverse;
-    for (int j = 0; j < 6; ++j) {
-      if (j == k) continue;
-      const double f = a[6 * j + k];
-      for (int i = 0; i < 6; ++i) a[6 * j + i] -= f * column[i];
-      a[6 * j + k] = f * inverse;
-    }
-    for (int i = 0; i < 6; ++i) a[6 * k + i] = -column[i];
-    a[7 * k] = inverse;
-  }
+/// Of a symmetric matrix, by cofactors. @returns false if it is not positive.
+bool invert(const Mat3& M, Mat3& inverse) {
+  const double a = M(0, 0), b = M(1, 0), c = M(2, 0), d = M(1, 1), e = M(2, 1), f = M(2, 2);
+  const double A = d * f - e * e, B = c * e - b * f, C = b * e - c * d, minor = a * d - b * b;
+  const double det = a * A + b * B + c * C;
+  if (!(a > 0.0 && minor > 0.0 && det > 0.0)) return false;
+  const double s = 1.0 / det;
+  const double D = a * f - c * c, E = b * c - a * e;
+  inverse << s * A, s * B, s * C, s * B, s * D, s * E, s * C, s * E, s * minor;
   return true;
 }
 
 }  // namespace
 
-bool BlockCg::set(std::span<const Mat6> blocks, std::span<const ContactSpring> springs) {
-  springs_ = springs;
-  own_.resize(blocks.size());
-  inverse_.resize(blocks.size());
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    inverse_[b] = own_[b] = 0.5 * (blocks[b] + blocks[b].transpose());
-  for (const ContactSpring& s : springs) {
-    if (s.a != kGround) add_spring(s.C, s.arm_a, inverse_[s.a]);
-    if (s.b != kGround) add_spring(s.C, s.arm_b, inverse_[s.b]);
-  }
-  return std::all_of(inverse_.begin(), inverse_.end(), [](Mat6& B) { return invert(B); });
+inline BlockCg::Four BlockCg::cross(Four a, Four b) {
+  const Four turned =
+      a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
 }
 
-void BlockCg::multiply(const std::vector<Vec6>& p, std::vector<Vec6>& y) const {
-  for (std::size_t b = 0; b < p.size(); ++b) y[b].noalias() = own_[b] * p[b];
-  for (const ContactSpring& s : springs_) {
-    Vec3 u = Vec3::Zero();
-    if (s.a != kGround) u += p[s.a].head<3>() + p[s.a].tail<3>().cross(s.arm_a);
-    if (s.b != kGround) u -= p[s.b].head<3>() + p[s.b].tail<3>().cross(s.arm_b);
-    const Vec3 F = s.C * u;
-    if (s.a != kGround) {
-      y[s.a].head<3>() += F;
-      y[s.a].tail<3>() += s.arm_a.cross(F);
+inline BlockCg::Pair BlockCg::times(const Block& block, const Pair& x) {
+  Pair y{x.moved[0] * block.column[0].moved, x.moved[0] * block.column[0].turned};
+  for (int k = 1; k < 6; ++k) {
+    const float s = k < 3 ? x.moved[k] : x.turned[k - 3];
+    y.moved += s * block.column[k].moved;
+    y.turned += s * block.column[k].turned;
+  }
+  return y;
+}
+
+inline double BlockCg::dot(const Pair& x, const Pair& y) {
+  const Four s = x.moved * y.moved + x.turned * y.turned;
+  return (static_cast<double>(s[0]) + static_cast<double>(s[1])) +
+         (static_cast<double>(s[2]) + static_cast<double>(s[3]));
+}
+
+/// Adds Pᵀ C P with P = [I, −arm^].
+inline void BlockCg::add(const Spring& spring, Four arm, Block& block) {
+  const Four *C = spring.C, turned[3] = {cross(arm, C[0]), cross(arm, C[1]), cross(arm, C[2])};
+  // Column j of −C arm^ is C (e_j × arm).
+  const Four back[3] = {arm[1] * C[2] - arm[2] * C[1], arm[2] * C[0] - arm[0] * C[2],
+                        arm[0] * C[1] - arm[1] * C[0]};
+  for (int j = 0; j < 3; ++j) {
+    block.column[j].moved += C[j];
+    block.column[j].turned += turned[j];
+    block.column[3 + j].moved += back[j];
+    block.column[3 + j].turned += cross(arm, back[j]);
+  }
+}
+
+/// [A, Bᵀ; B, D]⁻¹ by the Schur complement of A. @returns false if it is not positive.
+bool BlockCg::invert(const Block& block, Block& inverse) {
+  Mat3 A, B, D, inverse_A, inverse_S;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      A(i, j) = block.column[j].moved[i];
+      B(i, j) = block.column[j].turned[i];
+      D(i, j) = block.column[3 + j].turned[i];
     }
-    if (s.b != kGround) {
-      y[s.b].head<3>() -= F;
-      y[s.b].tail<3>() -= s.arm_b.cross(F);
+  if (!polhode::invert(A, inverse_A)) return false;
+  const Mat3 X = B * inverse_A;
+  if (!polhode::invert(D - X * B.transpose(), inverse_S)) return false;
+  const Mat3 Y = inverse_S * X;
+  inverse_A += X.transpose() * Y;
+  const auto four = [](double x, double y, double z) {
+    return Four{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.0f};
+  };
+  for (int j = 0; j < 3; ++j) {
+    inverse.column[j].moved = four(inverse_A(0, j), inverse_A(1, j), inverse_A(2, j));
+    inverse.column[j].turned = four(-Y(0, j), -Y(1, j), -Y(2, j));
+    inverse.column[3 + j].moved = four(-Y(j, 0), -Y(j, 1), -Y(j, 2));
+    inverse.column[3 + j].turned = four(inverse_S(0, j), inverse_S(1, j), inverse_S(2, j));
+  }
+  return true;
+}
+
+bool BlockCg::set_bodies(std::span<const Mat6> blocks) {
+  double moving = 0.0, turning = 0.0;
+  for (const Mat6& B : blocks) {
+    moving = std::max(moving, B.topLeftCorner<3, 3>().trace());
+    turning = std::max(turning, B.bottomRightCorner<3, 3>().trace());
+  }
+  if (!blocks.empty() && !(moving > 0.0 && turning > 0.0)) return false;
+  per_length_ = 1.0 / std::sqrt(moving);
+  per_turn_ = 1.0 / std::sqrt(turning);
+  own_.resize(blocks.size());
+  own_inverse_.resize(blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (int j = 0; j < 6; ++j) {
+      const double scale = j < 3 ? per_length_ : per_turn_;
+      Pair& to = own_[b].column[j];
+      to = Pair{};
+      for (int i = 0; i < 3; ++i) {
+        const auto half = [&](int k) { return 0.5 * (blocks[b](k, j) + blocks[b](j, k)); };
+        to.moved[i] = static_cast<float>(per_length_ * scale * half(i));
+        to.turned[i] = static_cast<float>(per_turn_ * scale * half(3 + i));
+      }
     }
+    if (!invert(own_[b], own_inverse_[b])) return false;
+  }
+  return true;
+}
+
+void BlockCg::set_springs(std::span<const ContactSpring> springs) {
+  const double squared = per_length_ * per_length_, ratio = per_turn_ / per_length_;
+  const auto four = [](const auto& x, double s) {
+    return Four{static_cast<float>(s * x[0]), static_cast<float>(s * x[1]),
+                static_cast<float>(s * x[2]), 0.0f};
+  };
+  const auto ground = static_cast<int>(own_.size());
+  inverse_ = own_;
+  springs_.resize(springs.size());
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const ContactSpring& from = springs[k];
+    Spring& s = springs_[k];
+    for (int j = 0; j < 3; ++j) s.C[j] = four(from.C.col(j), squared);
+    s.arm_a = four(from.arm_a, ratio);
+    s.arm_b = four(from.arm_b, ratio);
+    s.a = from.a == kGround ? ground : from.a;
+    s.b = from.b == kGround ? ground : from.b;
+    if (s.a != ground) add(s, s.arm_a, inverse_[s.a]);
+    if (s.b != ground) add(s, s.arm_b, inverse_[s.b]);
+  }
+  // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
+  for (std::size_t b = 0; b < own_.size(); ++b)
+    if (Block inverse; invert(inverse_[b], inverse))
+      inverse_[b] = inverse;
+    else
+      inverse_[b] = own_inverse_[b];
+}
+
+/// y = A p. The ground's part of p stays zero, that of y is never read.
+void BlockCg::multiply() {
+  for (std::size_t b = 0; b < own_.size(); ++b) y_[b] = times(own_[b], p_[b]);
+  for (const Spring& s : springs_) {
+    const Pair &a = p_[s.a], &b = p_[s.b];
+    const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
+    const Four F = u[0] * s.C[0] + u[1] * s.C[1] + u[2] * s.C[2];
+    y_[s.a].moved += F;
+    y_[s.a].turned += cross(s.arm_a, F);
+    y_[s.b].moved -= F;
+    y_[s.b].turned -= cross(s.arm_b, F);
   }
 }
 
 int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most) {
   const std::size_t n = rhs.size();
-  x.assign(n, Vec6::Zero());
-  r_.assign(rhs.begin(), rhs.end());
+  const Pair zero{};
+  x_.assign(n, zero);
+  r_.resize(n);
   z_.resize(n);
-  p_.resize(n);
-  y_.resize(n);
+  p_.assign(n + 1, zero);
+  y_.assign(n + 1, zero);
+  // Scaled to size one as well: forces of any unit fit into single precision.
+  double size = 0.0;
+  for (const Vec6& f : rhs) {
+    size = std::max(size, per_length_ * f.head<3>().lpNorm<Eigen::Infinity>());
+    size = std::max(size, per_turn_ * f.tail<3>().lpNorm<Eigen::Infinity>());
+  }
+  x.assign(n, Vec6::Zero());
+  if (!(size > 0.0) || !std::isfinite(size)) return 0;
+  const double by_length = per_length_ / size, by_turn = per_turn_ / size;
   double rz = 0.0;
   for (std::size_t b = 0; b < n; ++b) {
-    z_[b].noalias() = inverse_[b] * r_[b];
-    p_[b] = z_[b];
-    rz += r_[b].dot(z_[b]);
+    for (int i = 0; i < 3; ++i) {
+      r_[b].moved[i] = static_cast<float>(by_length * rhs[b][i]);
+      r_[b].turned[i] = static_cast<float>(by_turn * rhs[b][3 + i]);
+    }
+    r_[b].moved[3] = r_[b].turned[3] = 0.0f;
+    z_[b] = p_[b] = times(inverse_[b], r_[b]);
+    rz += dot(r_[b], z_[b]);
   }
   const double enough = part * rz;
   int k = 0;
   while (k < most && rz > enough) {
     ++k;
-    multiply(p_, y_);
+    multiply();
     double curvature = 0.0;
-    for (std::size_t b = 0; b < n; ++b) curvature += p_[b].dot(y_[b]);
+    for (std::size_t b = 0; b < n; ++b) curvature += dot(p_[b], y_[b]);
     if (!(curvature > 0.0)) break;
-    const double alpha = rz / curvature;
+    const auto alpha = static_cast<float>(rz / curvature);
     double next = 0.0;
     for (std::size_t b = 0; b < n; ++b) {
-      x[b] += alpha * p_[b];
-      r_[b] -= alpha * y_[b];
-      z_[b].noalias() = inverse_[b] * r_[b];
-      next += r_[b].dot(z_[b]);
+      x_[b].moved += alpha * p_[b].moved;
+      x_[b].turned += alpha * p_[b].turned;
+      r_[b].moved -= alpha * y_[b].moved;
+      r_[b].turned -= alpha * y_[b].turned;
+      z_[b] = times(inverse_[b], r_[b]);
+      next += dot(r_[b], z_[b]);
     }
-    const double beta = next / rz;
+    const auto beta = static_cast<float>(next / rz);
     rz = next;
-    for (std::size_t b = 0; b < n; ++b) p_[b] = z_[b] + beta * p_[b];
+    for (std::size_t b = 0; b < n; ++b) {
+      p_[b].moved = z_[b].moved + beta * p_[b].moved;
+      p_[b].turned = z_[b].turned + beta * p_[b].turned;
+    }
   }
+  const double length = per_length_ * size, turn = per_turn_ * size;
+  for (std::size_t b = 0; b < n; ++b)
+    for (int i = 0; i < 3; ++i) {
+      x[b][i] = length * x_[b].moved[i];
+      x[b][3 + i] = turn * x_[b].turned[i];
+    }
   return k;
 }
 

@@ -11,19 +11,45 @@ namespace polhode {
 /// Conjugate gradients for bodies that only springs between points couple: a symmetric positive
 /// matrix of one 6×6 block a body and one spring a contact, never assembled. The inverse blocks,
 /// springs included, precondition it.
+///
+/// Works in single precision, four numbers at a time, on a matrix scaled to blocks of size one: it
+/// serves Newton iterations, which ask for a few digits of an increment and mend the rest in the
+/// next one.
 class BlockCg {
  public:
   /// @param blocks  By body, the symmetric part counts. @returns false if one is not positive.
-  [[nodiscard]] bool set(std::span<const Mat6> blocks, std::span<const ContactSpring> springs);
+  [[nodiscard]] bool set_bodies(std::span<const Mat6> blocks);
+  /// Of the bodies set last.
+  void set_springs(std::span<const ContactSpring> springs);
   /// x from zero until r·P⁻¹r is below `part` of what it was. @returns iterations done.
   int solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most);
 
  private:
-  void multiply(const std::vector<Vec6>& p, std::vector<Vec6>& y) const;
+  using Four = float __attribute__((vector_size(16)));
+  /// Displacement and turn of a body, or force and moment on it; the fourth numbers are zero.
+  struct Pair {
+    Four moved, turned;
+  };
+  struct Spring {
+    Four C[3];  ///< Columns.
+    Four arm_a, arm_b;
+    int a, b;  ///< The ground comes after the bodies.
+  };
+  struct Block {
+    Pair column[6];
+  };
 
-  std::vector<Mat6> own_, inverse_;
-  std::span<const ContactSpring> springs_;
-  std::vector<Vec6> r_, z_, p_, y_;
+  static Four cross(Four a, Four b);
+  static Pair times(const Block& block, const Pair& x);
+  static double dot(const Pair& x, const Pair& y);
+  static void add(const Spring& spring, Four arm, Block& block);
+  static bool invert(const Block& block, Block& inverse);
+  void multiply();
+
+  double per_length_ = 1.0, per_turn_ = 1.0;  ///< Scales of the matrix: S A S.
+  std::vector<Block> own_, own_inverse_, inverse_;
+  std::vector<Spring> springs_;
+  std::vector<Pair> x_, r_, z_, p_, y_;  ///< By body; p_ and y_ have the ground last.
 };
 
 }  // namespace polhode

@@ -67,6 +67,7 @@ void ContactEngine::begin_step(const State& state, Trial& trial) {
   for (int b = 0; b < system_->body_count(); ++b) {
     start[b].r_n1 = start[b].r_n;
     start[b].Lambda_n1 = start[b].Lambda_n;
+    start[b].u = start[b].theta = Vec3::Zero();
     increments_[b] << steps_[b].u, steps_[b].theta;
   }
   contacts_->begin_step(state, start, trial.context);

@@ -12,9 +12,12 @@ namespace polhode {
 namespace {
 
 /// How far the squared residual falls in the inner iterations: coarse while Newton is far.
-constexpr double kCoarse = 1e-4, kFine = 1e-6;
+constexpr double kCoarse = 1e-3, kFine = 1e-4;
 constexpr int kCoarseIterations = 2, kMostInner = 400;
 constexpr int kMostCuts = 8;
+/// Part of the merit that an increment shall take away. An increment that takes hardly anything
+/// flips between sticking and sliding: half of it takes nearly all.
+constexpr double kDecrease = 0.25;
 constexpr double kRoundOff = 4.4e-16;
 /// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
 constexpr double kPartOfSpeed = 1e-3;
@@ -41,40 +44,68 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
   contacts_->prepare(system);
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.resize(n + 1);
-  at_n_.resize(n);
-  blocks_.resize(n);
+  inertia_.resize(n);
+  own_.resize(n);
   wrenches_.resize(n);
   rhs_.resize(n);
-  increments_.assign(n, Vec6::Zero());
+  x_.resize(n);
+  start_.resize(n);
 }
 
-void CrowdEngine::take_steps(const State& state, const Trial& trial, bool all) {
+/// The inertia tangent of the step's start serves all iterations: turns of a step are small.
+/// @eq{eq:ga-momenta-Newmark} @eq{ga-K-momentum}
+void CrowdEngine::start_inertia(const State& state, const StepContext& context) {
+  const GeneralizedAlpha& ga = context.ga;
+  const double dt = context.dt, K = ga.alpha_m / (ga.beta * dt * dt);
   for (int b = 0; b < system_->body_count(); ++b) {
-    if (all)
-      steps_[b] = body_step(*system_, state, trial, b);
-    else
-      update_body_step(*system_, state, trial, b, steps_[b], true);
+    const BodyData& body = system_->bodies()[b];
+    const BodyMotion m = system_->motion(state, b);
+    const Mat3& Lambda = steps_[b].Lambda_n;
+    Inertia& at = inertia_[b];
+    at.force = body.mass * (system_->gravity() + ga.kappa / dt * m.v - (1.0 - ga.kappa) * m.a);
+    at.moment = ga.kappa / dt * (Lambda * (body.inertia * m.W)) - (1.0 - ga.kappa) * m.h_dot;
+    at.v = (1.0 - ga.c) * m.v + dt * ga.c_A * m.a;
+    at.W = (1.0 - ga.c) * m.W + dt * ga.c_A * m.A;
+    own_[b].setZero();
+    own_[b].topLeftCorner<3, 3>().diagonal().setConstant(K * body.mass);
+    own_[b].bottomRightCorner<3, 3>() = K * Lambda * body.inertia * Lambda.transpose();
   }
-  steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+}
+
+/// @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot} @eq{eq:td-incremental-rotation}
+void CrowdEngine::move(int body, const Vec3& u, const Vec3& theta) {
+  BodyStep& s = steps_[body];
+  s.u = u;
+  s.theta = theta;
+  s.r_n1 = s.r_n + u;
+  s.Lambda_n1 = cay(theta) * s.Lambda_n;
+  s.v_n1 = s.rate * u + inertia_[body].v;
+  s.W_n1 = s.rate * (s.Lambda_n.transpose() * theta) + inertia_[body].W;
+}
+
+void CrowdEngine::write(const State& state, Trial& trial) const {
+  for (int b = 0; b < system_->body_count(); ++b)
+    move_body(state, trial, system_->slot(b), steps_[b].u, steps_[b].theta);
 }
 
 void CrowdEngine::begin_step(const State& state, Trial& trial) {
-  take_steps(state, trial, true);
-  std::vector<BodyStep> start = steps_;
+  std::vector<BodyStep> start(steps_.size(), BodyStep::ground(trial.context.ga.alpha_f));
+  steps_.back() = start.back();
   for (int b = 0; b < system_->body_count(); ++b) {
-    at_n_[b] = system_->motion(state, b);
+    start[b] = steps_[b] = body_step(*system_, state, trial, b);
     start[b].r_n1 = start[b].r_n;
     start[b].Lambda_n1 = start[b].Lambda_n;
-    increments_[b] << steps_[b].u, steps_[b].theta;
+    start[b].u = start[b].theta = Vec3::Zero();
+    x_[b] << steps_[b].u, steps_[b].theta;
   }
+  start_inertia(state, trial.context);
   contacts_->begin_step(state, start, trial.context);
-  contacts_->cover(start, trial.context, increments_);
-  const double part = contacts_->filter(start, increments_);
-  if (part < 1.0) {
-    for (int b = 0; b < system_->body_count(); ++b)
-      move_body(state, trial, system_->slot(b), part * steps_[b].u, part * steps_[b].theta);
-    take_steps(state, trial, false);
-  }
+  contacts_->cover(start, trial.context, x_);
+  pointwise_->place_impacts(start, trial.context, x_);
+  const double part = contacts_->filter(start, x_);
+  for (int b = 0; b < system_->body_count(); ++b)
+    move(b, part * x_[b].head<3>(), part * x_[b].tail<3>());
+  write(state, trial);
   evaluated_ = false;
   searches_ = 0;
 }
@@ -83,17 +114,16 @@ void CrowdEngine::begin_step(const State& state, Trial& trial) {
 void CrowdEngine::evaluate(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
   std::fill(wrenches_.begin(), wrenches_.end(), Vec6::Zero());
+  const double per_speed = context.ga.kappa / context.dt;
   double fastest = 0.0;
   for (int b = 0; b < system_->body_count(); ++b) {
     const BodyData& body = system_->bodies()[b];
-    const MomentumRates m = momentum_rates(body.mass, body.inertia, at_n_[b], steps_[b], context);
-    rhs_[b] << body.mass * system_->gravity() - m.p_dot, -m.h_dot;
-    Mat6& K = blocks_[b];
-    K.setZero();
-    K.topLeftCorner<3, 3>().diagonal().setConstant(m.K_r);
-    K.bottomRightCorner<3, 3>() = m.K_theta;
-    fastest = std::max(fastest, steps_[b].v_n.squaredNorm());
+    const BodyStep& s = steps_[b];
+    rhs_[b] << inertia_[b].force - per_speed * body.mass * s.v_n1,
+        inertia_[b].moment - per_speed * (s.Lambda_n1 * (body.inertia * s.W_n1));
+    fastest = std::max(fastest, s.v_n.squaredNorm());
   }
+  if (!loads_.empty()) blocks_ = own_;
   loads_.run(steps_, context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& t) {
                const InteractionRef& ref = system_->interactions()[interaction];
@@ -138,33 +168,34 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   if (!evaluated_) evaluate(state, trial);
   done.solved = std::isfinite(merit_);
   if (!done.solved || residual_ < enough_) return done;
-  if (!cg_.set(blocks_, springs_)) {
+  if ((searches_ == 0 || !loads_.empty()) && !cg_.set_bodies(loads_.empty() ? own_ : blocks_)) {
     done.solved = false;
     return done;
   }
+  cg_.set_springs(springs_);
   inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner);
   ++searches_;
-  for (int b = 0; b < system_->body_count(); ++b) increments_[b] = x_[b];
-  contacts_->cover(steps_, trial.context, increments_);
-  double part = std::min(damping, contacts_->filter(steps_, increments_));
+  contacts_->cover(steps_, trial.context, x_);
+  double part = std::min(damping, contacts_->filter(steps_, x_));
   const double before = merit_, per_length = 1.0 / system_->length_scale();
-  const std::vector<BodyStep> start = steps_;
+  for (int b = 0; b < system_->body_count(); ++b) start_[b] << steps_[b].u, steps_[b].theta;
   for (int cut = 0;; ++cut) {
     done.increment = done.rotation = 0.0;
     for (int b = 0; b < system_->body_count(); ++b) {
       const Vec3 D_r = x_[b].head<3>(), D_theta = x_[b].tail<3>();
       done.increment = std::max({done.increment, per_length * D_r.lpNorm<Eigen::Infinity>(),
                                  D_theta.lpNorm<Eigen::Infinity>()});
-      const Vec3 turned = compose_cayley(part * D_theta, start[b].theta);
+      const Vec3 turned = compose_cayley(part * D_theta, Vec3(start_[b].tail<3>()));
       done.rotation = std::max(done.rotation, turned.norm());
-      move_body(state, trial, system_->slot(b), start[b].u + part * D_r, turned);
+      move(b, start_[b].head<3>() + part * D_r, turned);
     }
-    take_steps(state, trial, false);
     evaluate(state, trial);
-    if (cut == kMostCuts || merit_ <= (1.0 - 1e-4 * part) * before || residual_ < enough_) break;
+    if (cut == kMostCuts || merit_ <= (1.0 - kDecrease * part) * before || residual_ < enough_)
+      break;
     const double best = before / (merit_ - (1.0 - 2.0 * part) * before) * part;  // of a parabola
     part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
   }
+  write(state, trial);
   done.applied = part;
   // What the residual says is final: the increment is no measure of the next one.
   if (residual_ < enough_) {
@@ -205,6 +236,7 @@ Work CrowdEngine::commit(State& state, const Trial& trial) {
 
 VelocityJump CrowdEngine::settle_impacts(State& state, const Trial&) {
   if (!touches_) return {};
+  state.past_count = 0;  // measured: from the velocities at t_n crowds need the fewest iterations
   return contacts_->settle_impacts(state, {});
 }
 

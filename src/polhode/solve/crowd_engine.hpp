@@ -43,7 +43,9 @@ class CrowdEngine final : public NewtonEngine {
   [[nodiscard]] static bool suits(const System& system);
 
  private:
-  void take_steps(const State& state, const Trial& trial, bool all);
+  void start_inertia(const State& state, const StepContext& context);
+  void move(int body, const Vec3& u, const Vec3& theta);
+  void write(const State& state, Trial& trial) const;
   void evaluate(const State& state, const Trial& trial);
 
   const System* system_;
@@ -52,10 +54,15 @@ class CrowdEngine final : public NewtonEngine {
   InteractionSweep loads_;
   double tolerance_, enough_ = 0.0;
   BlockCg cg_;
+  /// The parts of a body's momentum rates and velocities at t_{n+1} that t_n determines.
+  struct Inertia {
+    Vec3 force, moment;  ///< Gravity and what the rates have of t_n [N, N m].
+    Vec3 v, W;           ///< [m/s, rad/s]
+  };
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
-  std::vector<BodyMotion> at_n_;
-  std::vector<Mat6> blocks_;
-  std::vector<Vec6> wrenches_, rhs_, x_, increments_;
+  std::vector<Inertia> inertia_;
+  std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; and with loads.
+  std::vector<Vec6> wrenches_, rhs_, x_, start_;
   std::vector<ContactSpring> springs_;
   double merit_ = 0.0, residual_ = 0.0;
   bool evaluated_ = false, touches_ = false;
