@@ -142,8 +142,59 @@ def rubber_bushing():
     return figure
 
 
+def side(scene, x, faces, values, scale, towards):
+    """The faces of a solid that look along a direction, seen from there: x over z."""
+    quads = x[faces]
+    normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+    seen = normals @ towards > 0.5 * np.linalg.norm(normals, axis=1)
+    base = cm.viridis(np.clip(values[faces].mean(axis=1) / scale, 0, 1))
+    for quad, colour in zip(quads[seen], base[seen]):
+        scene.fill(1e3 * quad[:, 0], 1e3 * quad[:, 2], facecolor=colour, edgecolor=INK, linewidth=0.25)
+
+
+def ironing():
+    m = Solids("ironing")
+    figure, scene, plot = sheet(flat=True, wide=1.5)
+    x, values, k = m.nodes["block"], m.stress["block"], len(m.t) - 3
+    side(scene, x[k], m.faces["block"], values[k], np.percentile(values[k], 97), np.array([0, -1, 0]))
+    a = np.linspace(0, 2 * np.pi, 90)
+    scene.fill(20 * np.cos(a), 40.2 + 20 * np.sin(a), facecolor=PALE, edgecolor=INK, linewidth=0.8)
+    label(scene, "stress of the block while it is drawn to the left", "x [mm]", "z [mm]")
+    face = m.probe("face")
+    plot.plot(face["t"], face["normal"], color=BLUE, label="normal")
+    plot.plot(face["t"], np.hypot(face["ftx"], face["ftz"]), color=RED, label="friction")
+    plot.plot(face["t"], 0.3 * face["normal"], color=GOLD, linestyle="--", linewidth=0.8, label="0.3 of normal")
+    plot.legend(frameon=False, fontsize=7.5)
+    label(plot, "force on the block [N]")
+    return figure
+
+
+def tyre_on_kerb():
+    m = Solids("tyre_on_kerb")
+    figure, scene, plot = sheet(flat=True, wide=2.2)
+    x, values = m.nodes["tyre"], m.stress["tyre"]
+    scene.fill([-250, 400, 400, 800, 800, 1300, 1300, -250], [0, 0, 30, 30, 0, 0, -25, -25], facecolor=PALE, edgecolor=INK,
+               linewidth=0.8)
+    a = np.linspace(0, 2 * np.pi, 60)
+    for t in (0.0, 0.2, 0.42, 0.6):
+        k = int(np.argmin(abs(m.t - t)))
+        side(scene, x[k], m.faces["tyre"], values[k], 1.2e5, np.array([0, -1, 0]))
+        centre = 1e3 * m.place["hub"][k]
+        scene.fill(centre[0] + 120 * np.cos(a), centre[2] + 120 * np.sin(a), facecolor="white", edgecolor=INK, linewidth=0.6)
+        spoke = m.turn["hub"][k] @ np.array([0.12, 0, 0]) * 1e3
+        draw(scene, [[centre[0], centre[2]], [centre[0] + spoke[0], centre[2] + spoke[2]]], RED, 1, 1.2)
+    label(scene, "0, 0.2, 0.42 and 0.6 s", "x [mm]", "z [mm]")
+    hub, floor, kerb = m.probe("hub"), m.probe("floor"), m.probe("kerb")
+    plot.plot(floor["t"], floor["normal"], color=BLUE, label="floor")
+    plot.plot(kerb["t"], kerb["normal"], color=RED, label="kerb")
+    plot.legend(frameon=False, fontsize=7.5)
+    label(plot, "normal force [N]")
+    return figure
+
+
 DYNAMICS = ("analysis.type=dynamics", "analysis.duration=40 ms", "analysis.step=0.25 ms")
-PICTURES = {"flexible_panel": flexible_panel, "knee": knee, "rubber_bushing": rubber_bushing}
+PICTURES = {"flexible_panel": flexible_panel, "knee": knee, "rubber_bushing": rubber_bushing, "ironing": ironing,
+            "tyre_on_kerb": tyre_on_kerb}
 
 
 def main():

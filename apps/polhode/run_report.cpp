@@ -73,6 +73,7 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
     const RunSummary::Contacts& c = *s.contacts;
     json["contacts"] = {
         {"shapes", c.shapes},
+        {"surfaces", c.surfaces},
         {"touching", c.touching},
         {"least_gap", std::isfinite(c.least_gap) ? nlohmann::ordered_json(c.least_gap)
                                                  : nlohmann::ordered_json(nullptr)},
@@ -108,6 +109,14 @@ std::string statics_table(const RunSummary& s) {
   return text;
 }
 
+/// "5 shapes", "5 shapes and 2 surfaces".
+std::string parties_text(const RunSummary::Contacts& c) {
+  const std::string surfaces =
+      counted(static_cast<std::size_t>(c.surfaces), "surface", "surfaces") + " of solids";
+  if (c.shapes == 0) return surfaces;
+  return format("{} shapes", c.shapes) + (c.surfaces > 0 ? " and " + surfaces : "");
+}
+
 std::string summary_table(const RunSummary& s) {
   const auto small = [](double x) { return format("{:.1e}", x); };
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
@@ -125,11 +134,11 @@ std::string summary_table(const RunSummary& s) {
   };
   if (s.contacts) {
     const RunSummary::Contacts& c = *s.contacts;
-    rows.push_back({"contact", counted(static_cast<std::size_t>(c.touching), "pair", "pairs"),
-                    std::isfinite(c.least_gap)
-                        ? format("touch now, of {} shapes; smallest gap of the run {:.2e} m",
-                                 c.shapes, c.least_gap)
-                        : format("touch now, of {} shapes", c.shapes)});
+    rows.push_back(
+        {"contact", counted(static_cast<std::size_t>(c.touching), "pair", "pairs"),
+         "touch now, of " + parties_text(c) +
+             (std::isfinite(c.least_gap) ? format("; smallest gap of the run {:.2e} m", c.least_gap)
+                                         : "")});
     rows.push_back({"  lost in impacts", format("{:.6g} J", c.lost_in_impacts)});
     rows.push_back({"  lost by friction", format("{:.6g} J", c.lost_by_friction)});
     rows.push_back({"  numerical", format("{:.1e} J", c.numerical),

@@ -87,14 +87,12 @@ struct Block {
 
   void touch(const LoadedFaces& faces, const RigidSurface& surface, const SurfacePlace& place,
              const SurfaceLaw& law) {
-    contact = system.add_elements(
-        std::make_unique<SurfaceContact>("contacts.c", faces, X, surface, place, law));
+    contact = system.add_elements(std::make_unique<SurfaceContact>(
+        "contacts.c", surface_points("contacts.c", faces, X), X, surface, place, law));
   }
   [[nodiscard]] SurfaceReport report() const {
     const auto& group = dynamic_cast<const SurfaceContact&>(system.nodes().group(contact));
-    StepContext still;
-    return group.report(node_instant(state, still),
-                        state.element_history.data() + system.nodes().first_history(contact));
+    return group.report(state.element_history.data() + system.nodes().first_history(contact));
   }
 
   void start_run(double step) {

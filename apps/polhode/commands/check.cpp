@@ -44,11 +44,18 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
   }
   if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
     list.emplace_back("The mobility is 0: nothing can move.");
-  if (simulation.contact_set() && simulation.model().analysis.rho_inf < 1.0)
+  if (simulation.has_contacts() && simulation.model().analysis.rho_inf < 1.0)
     list.push_back(
         format("rho_inf is {:g}: numerical damping takes energy from every contact; "
                "restitution and rebound are not those asked for.",
                simulation.model().analysis.rho_inf));
+  std::vector<std::string> touching;
+  for (const SolidSpec& solid : simulation.model().solids)
+    if (simulation.has_contacts() && solid.contact.touches.value_or(true))
+      touching.push_back(solid.name);
+  if (touching.size() > 1)
+    list.push_back(format("The solids {} touch shapes of bodies, but not one another.",
+                          name_list(touching, 12)));
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
   return list;
@@ -123,9 +130,39 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
                     format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
 }
 
+/// What a surface of a solid meets, and how.
+nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const Model& model = simulation.model();
+  for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
+    const auto& contact =
+        dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
+    list.push_back({{"solid", model.solids[static_cast<std::size_t>(s.solid)].name},
+                    {"body", model.bodies[static_cast<std::size_t>(s.body)].name},
+                    {"points", contact.size()},
+                    {"gap_tolerance", contact.law().normal.tolerance},
+                    {"stiffness_per_area", contact.law().normal.stiffness},
+                    {"friction", contact.law().mu}});
+  }
+  return list;
+}
+
+void add_surface_rows(const Simulation& simulation, std::vector<std::vector<std::string>>& rows) {
+  for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
+    const auto& contact =
+        dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
+    rows.push_back(
+        {format("surface {}", contact.name()),
+         counted(static_cast<std::size_t>(contact.size()), "point", "points"),
+         format("gap tolerance {:.3g} m, stiffness {:.3g} Pa/m, friction {:g}",
+                contact.law().normal.tolerance, contact.law().normal.stiffness, contact.law().mu)});
+  }
+}
+
 nlohmann::ordered_json contacts_json(const Simulation& simulation) {
-  if (!simulation.contact_set()) return nullptr;
-  return {{"shapes", simulation.contact_map().body.size()},
+  if (!simulation.has_contacts()) return nullptr;
+  return {{"surfaces", surfaces_json(simulation)},
+          {"shapes", simulation.contact_map().body.size()},
           {"pairs_kept", simulation.contact_map().pairs.size()},
           {"every_pair_kept", simulation.contact_map().all_pairs}};
 }
@@ -204,11 +241,11 @@ int check(const Options& options) {
                              solid.plan.least_jacobian, solid.plan.least_element)});
     }
     add_line_rows(simulation.model(), rows);
-    if (simulation.contact_set())
+    add_surface_rows(simulation, rows);
+    if (simulation.has_contacts())
       rows.push_back({"contact", counted(simulation.contact_map().body.size(), "shape", "shapes"),
                       format("none overlap at the start; results are kept of {}",
-                             counted(simulation.contact_map().pairs.size(), "pair of bodies",
-                                     "pairs of bodies"))});
+                             counted(simulation.contact_map().pairs.size(), "pair", "pairs"))});
     print(table(rows));
     for (const std::string& note : notes) say("warning: " + note);
   }

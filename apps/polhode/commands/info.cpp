@@ -127,14 +127,16 @@ std::string section(const std::string& heading, const std::vector<std::string>& 
 }
 
 std::string contact_text(const Simulation& simulation) {
-  if (!simulation.contact_set()) return "none";
+  if (!simulation.has_contacts()) return "none";
   const ContactsSpec& contacts = simulation.model().contacts;
   const auto sensors = static_cast<std::size_t>(
       std::count_if(contacts.pairs.begin(), contacts.pairs.end(),
                     [](const ContactPairSpec& pair) { return pair.sensor; }));
-  std::string text = format("{} shapes, law {}, friction {:g}, restitution {:g}",
-                            simulation.contact_map().body.size(), contacts.standard.potential,
-                            contacts.standard.friction, contacts.standard.restitution);
+  const std::size_t surfaces = simulation.contact_map().surfaces.size();
+  std::string text = surfaces > 0 ? counted(surfaces, "surface", "surfaces") + " of solids, " : "";
+  text += format("{} shapes, law {}, friction {:g}, restitution {:g}",
+                 simulation.contact_map().body.size(), contacts.standard.potential,
+                 contacts.standard.friction, contacts.standard.restitution);
   if (contacts.pairs.size() > sensors)
     text += ", " + counted(contacts.pairs.size() - sensors, "pair", "pairs") +
             " with a law of their own";

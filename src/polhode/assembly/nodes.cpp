@@ -120,7 +120,8 @@ void Nodes::build_graph() {
   double extents = 0.0;
   int elements = 0;
   for (const auto& g : groups_) {
-    if (!g->has_tangent() && !has_mass(*g)) continue;
+    const bool massive = has_mass(*g);
+    if (!g->has_tangent() && !massive) continue;
     for (int e = 0; e < g->size(); ++e) {
       const auto nodes = g->nodes(e);
       Vec3 low = data_[nodes[0]].position, high = low;
@@ -129,7 +130,7 @@ void Nodes::build_graph() {
         high = high.cwiseMax(data_[i].position);
         for (int j : nodes) neighbours[i].push_back(j);
       }
-      if (nodes.size() > 3) extents += (high - low).mean(), ++elements;
+      if (massive && nodes.size() > 3) extents += (high - low).mean(), ++elements;
     }
   }
   element_size_ = elements > 0 && extents > 0.0 ? extents / elements : 1.0;

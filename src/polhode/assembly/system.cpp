@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/system.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
@@ -61,6 +62,8 @@ void System::finish() {
     }
   }
   nodes_.finish(n);
+  for (int g = 0; g < nodes_.group_count(); ++g)
+    stiff_ = stiff_ || dynamic_cast<const BarrierPoints*>(&nodes_.group(g));
   conservative_ = conservative_ && nodes_.conservative();
   dissipates_ = dissipates_ || nodes_.dissipates();
   for (int i = 0; i < nodes_.count(); ++i)

@@ -418,6 +418,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&cable_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());
+  tables.push_back(&solid_contact_fields());
   for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);
   for (const FieldTable* table :
        {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),

@@ -132,6 +132,7 @@ const FieldTable& contact_sensor_fields();
 const FieldTable& contact_material_fields();
 const FieldTable& contact_combination_fields();
 const FieldTable& contact_side_fields();
+const FieldTable& solid_contact_fields();
 const FieldTable& hull_fields();
 const FieldTable& height_field_fields();
 const FieldTable& time_table_fields();

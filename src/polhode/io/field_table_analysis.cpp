@@ -214,7 +214,7 @@ const FieldTable& probe_fields() {
           {.name = "contact",
            .kind = kBodyPair,
            .meaning = "Record gap, forces, point, status, impulse and energy lost between these "
-                      "two bodies."},
+                      "two bodies, or this body and this solid."},
           {.name = "every",
            .kind = kNumber,
            .dimension = kTime,

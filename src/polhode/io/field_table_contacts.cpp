@@ -52,6 +52,13 @@ std::vector<Field> law_fields() {
        .meaning = "A normal force that the barrier carries at gap 0; it chooses the stiffness.",
        .standard = "the weight of the lighter body",
        .range = kPositive},
+      {.name = "reference_pressure",
+       .kind = kNumber,
+       .dimension = kPressure,
+       .meaning = "Of surfaces of solids: a pressure that the barrier carries at gap 0; it chooses "
+                  "the stiffness.",
+       .standard = "from the solid's elasticity, density and step",
+       .range = kPositive},
       kRestitution,
       {.name = "rebound",
        .kind = kChoice,
@@ -103,15 +110,16 @@ std::vector<Field> law_fields() {
 }
 
 FieldTable pair_table(const std::string& title, const std::string& meaning) {
-  FieldTable t{
-      title,
-      meaning,
-      {
-          {.name = "between", .kind = kBodyPair, .meaning = "Two bodies; a fixed one too."},
-          {.name = "materials",
-           .kind = kNames,
-           .meaning = "Two contact materials, or one twice, instead of between."},
-      }};
+  FieldTable t{title,
+               meaning,
+               {
+                   {.name = "between",
+                    .kind = kBodyPair,
+                    .meaning = "Two bodies, a fixed one too, or a body and a solid."},
+                   {.name = "materials",
+                    .kind = kNames,
+                    .meaning = "Two contact materials, or one twice, instead of between."},
+               }};
   for (Field& f : law_fields()) {
     f.standard = f.name == "friction" || f.name == "restitution"
                      ? "default's; of materials, their combination"
@@ -126,9 +134,10 @@ FieldTable pair_table(const std::string& title, const std::string& meaning) {
 const FieldTable& contacts_fields() {
   static const FieldTable table{
       "contacts",
-      "Contact between the shapes of bodies. Without this section bodies pass through one another; "
-      "with it, an empty one too, every shape meets those of all other bodies but neighbours at a "
-      "joint.",
+      "Contact between the shapes of bodies, and of surfaces of solids with them. Without this "
+      "section all pass through one another; with it, an empty one too, every shape meets those of "
+      "all other bodies but neighbours at a joint, and every solid meets the shapes of all bodies "
+      "but those it is bonded to.",
       {
           {.name = "default",
            .kind = kSection,
@@ -136,7 +145,8 @@ const FieldTable& contacts_fields() {
            .table = "contact law"},
           {.name = "materials",
            .kind = kNamed,
-           .meaning = "Contact materials by name, for the key contact of bodies and shapes.",
+           .meaning =
+               "Contact materials by name, for the key contact of bodies, shapes and solids.",
            .table = "contact material"},
           {.name = "combine",
            .kind = kSection,
@@ -144,13 +154,16 @@ const FieldTable& contacts_fields() {
            .table = "contact combination"},
           {.name = "pairs",
            .kind = kNamed,
-           .meaning = "Laws of pairs of bodies or of materials, by a name of your choice; one of "
-                      "bodies goes before one of materials.",
+           .meaning =
+               "Laws of pairs of bodies, of a body and a solid, or of materials, by a name of "
+               "your choice; those that name bodies go before those of materials.",
            .table = "contact pair"},
-          {.name = "exclude", .kind = kBodyPairs, .meaning = "Pairs of bodies that do not meet."},
+          {.name = "exclude",
+           .kind = kBodyPairs,
+           .meaning = "Pairs of bodies, or of a body and a solid, that do not meet."},
           {.name = "joint_neighbours",
            .kind = kBoolean,
-           .meaning = "Bodies with a common joint meet.",
+           .meaning = "Bodies with a common joint meet, and solids the bodies they are bonded to.",
            .standard = "false"},
           {.name = "sensors",
            .kind = kNamed,
@@ -243,6 +256,22 @@ const FieldTable& contact_side_fields() {
            .meaning = "Groups it meets; two shapes touch if both say so.",
            .standard = "all"},
       }};
+  return table;
+}
+
+const FieldTable& solid_contact_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"solid contact",
+                 "How the surface of a solid takes part in contact.",
+                 {{.name = "surface",
+                   .kind = kSelection,
+                   .meaning = "The faces that may touch, among those of the solid's boundary.",
+                   .standard = "the whole boundary",
+                   .table = "selection"}}};
+    for (const Field& field : contact_side_fields().fields) t.fields.push_back(field);
+    t.fields[1].meaning = "false: the solid meets nothing.";
+    return t;
+  }();
   return table;
 }
 

@@ -168,13 +168,14 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
 
 /// Two bodies with shapes, in a model with contact.
 void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
-  const auto pair = section.body_pair("contact");
+  const auto pair = read_side_pair(context, *section.find("contact"), section.path("contact"));
   if (!pair) return;
   if (!context.model.contacts.present) {
     section.fault("contact", "the model has no contacts", "Add 'contacts: {}'.");
     return;
   }
   for (const int body : *pair) {
+    if (is_solid_side(body)) continue;
     const bool ground = body == kGround;
     if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
     section.fault("contact",

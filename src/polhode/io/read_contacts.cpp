@@ -6,6 +6,8 @@
 #include <polhode/base/format.hpp>
 #include <polhode/io/read_context.hpp>
 #include <polhode/model/build_contacts.hpp>
+#include <polhode/model/build_surface_contacts.hpp>
+#include <polhode/model/contact_sides.hpp>
 
 namespace polhode {
 namespace {
@@ -36,6 +38,7 @@ void read_law(Section& section, ContactLawSpec& law) {
   assign(law.reference_load, section.number("reference_load"));
   if (section.has("reference_load"))
     section.refuse_both("stiffness", "reference_load", "Give one of them.");
+  assign(law.reference_pressure, section.number("reference_pressure"));
   assign(law.restitution, section.number("restitution"));
   assign(law.rebound, section.choice("rebound"));
   if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
@@ -138,9 +141,11 @@ class ContactsReader {
     if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
   }
 
-  /// Two bodies that have shapes; ground itself has none.
-  std::optional<std::array<int, 2>> read_bodies(Section& section) {
-    const auto pair = section.body_pair("between");
+  /// Two bodies that have shapes, or one and a solid; ground itself has none.
+  std::optional<std::array<int, 2>> read_sides(Section& section) {
+    const SourceNode* node = section.find("between");
+    if (!node) return std::nullopt;
+    const auto pair = read_side_pair(context_, *node, section.path("between"));
     if (!pair || !check_bodies(*pair, *section.find("between"), section.path("between")))
       return std::nullopt;
     return pair;
@@ -149,6 +154,7 @@ class ContactsReader {
   bool check_bodies(const std::array<int, 2>& pair, const SourceNode& node,
                     const std::string& path) {
     for (std::size_t k = 0; k < 2; ++k) {
+      if (is_solid_side(pair[k])) continue;
       if (pair[k] == kGround) {
         context_.fault(node.children[k], path, "the ground has no shapes",
                        "Name the fixed body whose shape is meant.");
@@ -162,7 +168,7 @@ class ContactsReader {
       return false;
     }
     const auto fixed = [&](int b) {
-      return context_.model.bodies[static_cast<std::size_t>(b)].fixed;
+      return !is_solid_side(b) && context_.model.bodies[static_cast<std::size_t>(b)].fixed;
     };
     if (!fixed(pair[0]) || !fixed(pair[1])) return true;
     context_.fault(node, path, "both bodies are fixed", "Name at least one that moves.");
@@ -190,10 +196,11 @@ class ContactsReader {
         pair.law.restitution = combined.restitution;
       }
     } else {
-      ends = read_bodies(section);
+      ends = read_sides(section);
     }
     read_law(section, pair.law);
     if (!ends) return;
+    if (!pair.of_materials) check_law_of_sides(section, *ends);
     pair.a = (*ends)[0];
     pair.b = (*ends)[1];
     for (const ContactPairSpec& other : contacts_.pairs)
@@ -203,6 +210,24 @@ class ContactsReader {
                       format("{} states this pair already", quote(other.name)),
                       "Keep one of them.");
     contacts_.pairs.push_back(std::move(pair));
+  }
+
+  /// What is stated of a point does not suit a surface, and the other way round.
+  void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
+    if (!is_solid_side(sides[0]) && !is_solid_side(sides[1])) {
+      if (section.has("reference_pressure"))
+        section.fault("reference_pressure", "stands in a pair of bodies",
+                      "It belongs to surfaces of solids: use reference_load.");
+      return;
+    }
+    for (const char* key : {"stiffness", "hertz_stiffness", "reference_load", "rebound",
+                            "friction_stiffness", "friction_damping"})
+      if (section.has(key))
+        section.fault(key, "does not go with the surface of a solid",
+                      "Leave it out; reference_pressure makes the surface stiffer or softer.");
+    if (section.has("law") && section.choice("law") == "hertz")
+      section.fault("law", "hertz does not go with the surface of a solid",
+                    "Use barrier or linear: the solid itself gives way as Hertz says.");
   }
 
   std::optional<std::array<int, 2>> read_materials(Section& section) {
@@ -247,8 +272,13 @@ class ContactsReader {
 
   void read_sensor(Section& section, const std::string& name) {
     if (!section.has("between")) return;
-    const auto ends = read_bodies(section);
+    const auto ends = read_sides(section);
     if (!ends) return;
+    if (is_solid_side((*ends)[0]) || is_solid_side((*ends)[1])) {
+      section.fault("between", "a sensor does not know surfaces of solids",
+                    "Name two bodies; for a solid a probe tells gap and force.");
+      return;
+    }
     for (const ContactPairSpec& other : contacts_.pairs)
       if (!other.of_materials &&
           std::minmax(other.a, other.b) == std::minmax((*ends)[0], (*ends)[1]))
@@ -273,7 +303,7 @@ class ContactsReader {
       return;
     }
     for (const SourceNode& child : node.children) {
-      const auto pair = read_body_pair(context_, child, path);
+      const auto pair = read_side_pair(context_, child, path);
       if (pair && check_bodies(*pair, child, path)) contacts_.excluded.push_back(*pair);
     }
   }
@@ -324,6 +354,46 @@ void read_contact_side(Section& section, ContactSideSpec& side) {
   side.meets = section.names("meets");
 }
 
+void read_solid_contact(ReadContext& context, const SourceNode& node, const std::string& path,
+                        SolidSpec& solid) {
+  Section section(context, node, context.tree.place_of(node), path, solid_contact_fields());
+  if (!node.is_map()) return;
+  if (const SourceNode* value = section.find("surface"))
+    if (auto faces = read_selections(context, *value, section.path("surface")))
+      solid.contact_surface = std::move(*faces);
+  read_contact_side(section, solid.contact);
+}
+
+std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
+                                                 const std::string& path) {
+  const auto is_solid = [&](const SourceNode& child) {
+    return child.is_text() && context.solids.contains(child.text);
+  };
+  if (!node.is_list() || node.children.size() != 2 ||
+      std::none_of(node.children.begin(), node.children.end(), is_solid))
+    return read_body_pair(context, node, path);
+  std::array<int, 2> sides{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const SourceNode& child = node.children[k];
+    if (!is_solid(child)) {
+      const auto body = read_body(context, child, path);
+      if (!body) return std::nullopt;
+      sides[k] = *body;
+      continue;
+    }
+    if (context.bodies.contains(child.text)) {
+      context.fault(child, path, format("{} is a body and a solid", quote(child.text)),
+                    "Give one of them another name.");
+      return std::nullopt;
+    }
+    sides[k] = side_of_solid(context.solids.at(child.text));
+  }
+  if (!is_solid_side(sides[0]) || !is_solid_side(sides[1])) return sides;
+  context.fault(node, path, "both are solids, which do not touch one another",
+                "Name a body and a solid.");
+  return std::nullopt;
+}
+
 void read_contacts(ReadContext& context, const SourceNode& node) {
   ContactsReader(context, node).read();
 }
@@ -336,6 +406,7 @@ void check_contacts(ReadContext& context, const SourceNode& root) {
     return;
   std::vector<InputError> faults;
   check_contact_shapes(model, faults);
+  if (faults.empty()) static_cast<void>(plan_surface_contacts(model, &faults));
   for (const InputError& e : faults)
     context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
                             sentence(e.mend()));

@@ -146,10 +146,11 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
   const int order = model.analysis.order.value_or(2);
-  if (model.contacts.present && model.analysis.type != "dynamics")
+  const bool surfaces = model.analysis.type == "statics" && !model.solids.empty();
+  if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces)
     context.fault(*root.find("contacts"), "contacts",
                   format("stands beside an analysis of type {}", model.analysis.type),
-                  "Contact exists in dynamics only: let the model come to rest there.");
+                  "Contact of bodies exists in dynamics only: let the model come to rest there.");
   if (order > 2 && model.contacts.present)
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
                   format("order {} stands beside contacts", order),

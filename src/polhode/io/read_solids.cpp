@@ -44,6 +44,8 @@ class SolidReader {
     if (const auto stress = section_.choice("stress")) solid_.stress = *stress;
     if (const SourceNode* bonded = section_.find("bonded")) read_bonds(*bonded);
     if (const SourceNode* prescribed = section_.find("prescribed")) read_prescribed(*prescribed);
+    if (const SourceNode* value = section_.find("contact"))
+      read_solid_contact(context_, *value, section_.path("contact"), solid_);
     solid_.velocity = section_.vector("velocity");
     solid_.angular_velocity = section_.vector("angular_velocity");
   }

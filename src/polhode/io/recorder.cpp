@@ -45,6 +45,26 @@ class SensorFile {
   std::size_t done_ = 0;
 };
 
+/// Points of bodies, then those of surfaces of solids, of which the solid is side a.
+std::vector<contact::TouchingPoint> touching_points(const Simulation& simulation) {
+  std::vector<contact::TouchingPoint> points = simulation.contact_points();
+  int side = static_cast<int>(simulation.contact_map().body.size());
+  const auto surfaces = static_cast<int>(simulation.contact_map().surfaces.size());
+  for (int s = 0; s < surfaces; ++s, side += 2)
+    for (const SurfacePointReport& p : simulation.surface_points(s)) {
+      contact::TouchingPoint point;
+      point.a = side;
+      point.b = side + 1;
+      point.point = p.point;
+      point.normal = p.normal;
+      point.force = p.force;
+      point.friction = p.friction;
+      point.gap = p.gap;
+      points.push_back(point);
+    }
+  return points;
+}
+
 bool has_sensors(const Simulation& simulation) {
   const std::vector<ContactMap::Pair>& pairs = simulation.contact_map().pairs;
   return std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.sensor.empty(); });
@@ -99,11 +119,17 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
   if (output.paraview && !(model.beams.empty() && model.cables.empty()))
     impl_->lines.emplace(folder + "/paraview", "lines", model, simulation.system().length_scale(),
                          keep);
-  if (output.paraview && simulation.contact_set()) {
+  if (output.paraview && simulation.has_contacts()) {
     std::vector<std::string> names;
-    for (const BodySpec& body : simulation.model().bodies) names.push_back(body.name);
-    impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names),
-                            simulation.contact_map().body, keep);
+    for (const BodySpec& body : model.bodies) names.push_back(body.name);
+    for (const SolidSpec& solid : model.solids) names.push_back(solid.name);
+    // Sides of surfaces are numbered behind the shapes of bodies, see touching_points().
+    std::vector<int> side = simulation.contact_map().body;
+    for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
+      side.insert(side.end(),
+                  {static_cast<int>(model.bodies.size()) + surface.solid, surface.body});
+    impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names), std::move(side),
+                            keep);
   }
   if (has_sensors(simulation)) impl_->sensors.emplace(folder + "/events.csv", keep);
   if (output.csv) impl_->probes.emplace(simulation, folder + "/probes", keep);
@@ -136,7 +162,7 @@ void Recorder::frame(const Simulation& simulation) {
       cables.push_back(simulation.cable(static_cast<int>(i)));
     impl_->lines->append(simulation.time(), beams, cables);
   }
-  if (impl_->contacts) impl_->contacts->append(simulation.time(), simulation.contact_points());
+  if (impl_->contacts) impl_->contacts->append(simulation.time(), touching_points(simulation));
   ++impl_->frames;
 }
 

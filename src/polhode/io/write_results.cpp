@@ -257,9 +257,9 @@ ResultsLayout results_layout(const Simulation& simulation) {
   }
   for (const CableLineSpec& cable : model.cables)
     layout.cables.push_back({cable.name, cable.pieces.size()});
-  layout.has_contacts = simulation.contact_set() != nullptr;
+  layout.has_contacts = simulation.has_contacts();
   for (const ContactMap::Pair& pair : simulation.contact_map().pairs)
-    layout.contacts.push_back(format("{}+{}", model.body_name(pair.a), model.body_name(pair.b)));
+    layout.contacts.push_back(format("{}+{}", model.side_name(pair.a), model.side_name(pair.b)));
   return layout;
 }
 

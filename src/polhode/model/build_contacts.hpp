@@ -17,23 +17,27 @@ class ContactSet;
 
 /// What the contacts of a Model became.
 struct ContactMap {
-  /// A pair of bodies whose contact is kept: of the sensors, of pairs with a law of their own, of
+  /// A pair of sides whose contact is kept: of the sensors, of pairs with a law of their own, of
   /// probes, and, in models with few, of all that may meet.
   struct Pair {
-    int a = 0, b = 0;    ///< Indices into Model::bodies.
+    int a = 0, b = 0;    ///< Sides, see contact_spec.hpp.
     std::string sensor;  ///< Name of the sensor, or empty.
   };
   std::vector<Pair> pairs;
   std::vector<int> body;   ///< By shape of the ContactSet: index into Model::bodies.
   bool all_pairs = false;  ///< Every pair that may meet is kept.
+  /// Faces of one kind of a solid against one shape of a body.
+  struct Surface {
+    int solid = 0;          ///< Index into Model::solids.
+    int body = 0;           ///< Index into Model::bodies.
+    std::size_t shape = 0;  ///< Of that body.
+    int group = 0;          ///< Of elements, in System::nodes().
+  };
+  std::vector<Surface> surfaces;
 };
 
 /// Models with more pairs of bodies that may meet keep only those that are named.
 inline constexpr int kMostContactPairs = 100;
-
-/// Friction and restitution of a pair of materials by the rules of combination.
-/// @param a, b  Indices into ContactsSpec::materials; −1: the default law.
-[[nodiscard]] ContactMaterialSpec combined_surface(const ContactsSpec& contacts, int a, int b);
 
 /// Finds what only the shapes show: hulls without volume, open meshes, point masses that would
 /// turn, unknown materials, too many groups.
@@ -41,7 +45,8 @@ void check_contact_shapes(const Model& model, std::vector<InputError>& faults);
 
 /// Builds the contact of a model.
 /// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
-/// @returns null if the model has no contacts. @throws InputError, see check_contact_shapes().
+/// @returns null if the model has no contacts, or if beside solids no two bodies may meet. @throws
+/// InputError, see check_contact_shapes().
 [[nodiscard]] std::shared_ptr<contact::ContactSet> build_contacts(const Model& model,
                                                                   const std::vector<int>& bodies,
                                                                   ContactMap& map);

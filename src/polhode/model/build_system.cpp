@@ -10,6 +10,7 @@
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/beam_mesh.hpp>
+#include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/joint_resistance.hpp>
 
@@ -32,6 +33,7 @@ class Builder {
     for (const BeamSpec& beam : model_.beams) add_beam(beam);
     for (const CableLineSpec& cable : model_.cables) add_cable(cable);
     map_.contacts = build_contacts(model_, map_.body, map_.contact);
+    add_surface_contacts(system_, model_, map_.body, map_.solids, map_.contact);
     system_.set_contacts(map_.contacts);
     system_.finish();
     if (map) fill(*map);

@@ -11,7 +11,15 @@
 
 namespace polhode {
 
-/// How a shape takes part in contact; what is absent is as the body's, then as the model's.
+// A side of contact is a body, by its index into Model::bodies, or the surface of a solid:
+/// The side of a solid, by its index into Model::solids.
+[[nodiscard]] constexpr int side_of_solid(int solid) { return kGround - 1 - solid; }
+[[nodiscard]] constexpr bool is_solid_side(int side) { return side < kGround; }
+/// Index into Model::solids of a side that is a solid's.
+[[nodiscard]] constexpr int solid_of_side(int side) { return kGround - 1 - side; }
+
+/// How a shape takes part in contact; what is absent is as the body's, then as the model's. Of a
+/// solid: how its surface does.
 struct ContactSideSpec {
   std::optional<bool> touches;                     ///< False: the shape meets nothing.
   std::optional<std::string> material;             ///< Name of a contact material.
@@ -27,6 +35,7 @@ struct ContactLawSpec {
   double gap_tolerance = 0.0;           ///< Half the band of the barrier [m].
   double stiffness = 0.0;               ///< [N/m]; hertz [N/m^1.5].
   double reference_load = 0.0;          ///< At which the gap of the barrier is zero [N].
+  double reference_pressure = 0.0;      ///< Of surfaces of solids, at which the gap is zero [Pa].
   double restitution = 0.0;             ///< 0 to 1.
   std::string rebound = "exit";         ///< exit | damped.
   double friction = 0.0;                ///< Coefficient.
@@ -45,12 +54,12 @@ struct ContactMaterialSpec {
   double friction = 0.0, restitution = 0.0;
 };
 
-/// A pair of bodies or of materials with a law of its own, or a sensor between two bodies.
+/// A pair of sides or of materials with a law of its own, or a sensor between two bodies.
 struct ContactPairSpec {
   std::string name;
   Place place;
   bool of_materials = false;
-  int a = 0, b = 0;  ///< Indices into Model::bodies, or ContactsSpec::materials.
+  int a = 0, b = 0;  ///< Sides, or indices into ContactsSpec::materials.
   bool sensor = false;
   ContactLawSpec law;
 };
@@ -58,7 +67,7 @@ struct ContactPairSpec {
 /// How a property of a pair follows from its two materials.
 enum class Combination { geometric_mean, mean, minimum, maximum, product };
 
-/// Contact between the shapes of bodies, as described.
+/// Contact between the shapes of bodies, and of surfaces of solids with them, as described.
 struct ContactsSpec {
   bool present = false;
   Place place;
@@ -67,8 +76,9 @@ struct ContactsSpec {
   Combination friction = Combination::geometric_mean;
   Combination restitution = Combination::minimum;
   std::vector<ContactPairSpec> pairs;        ///< Sensors too.
-  std::vector<std::array<int, 2>> excluded;  ///< Bodies that do not meet.
-  bool joint_neighbours = false;             ///< Bodies with a common joint meet.
+  std::vector<std::array<int, 2>> excluded;  ///< Sides that do not meet.
+  bool joint_neighbours = false;             ///< Bodies with a common joint meet, solids and the
+                                             ///< bodies they are bonded to, too.
   bool resolve_overlaps = false;             ///< Move bodies that overlap at the start.
   std::optional<bool> record;  ///< Results of every pair of bodies; absent: if there are few.
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/assembly/barrier_points.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/model/method.hpp>
@@ -17,6 +18,8 @@ namespace {
 constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 /// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
+/// Surfaces of solids in contact: forces follow from tiny ways.
+constexpr double kToleranceSurfaces = 1e-9;
 /// Of contact, whose stiffness turns a gap that is off by little into a force that is off by much.
 constexpr double kToleranceContact = 1e-12;
 constexpr int kIterationsContact = 40;
@@ -78,6 +81,13 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   return order;
 }
 
+/// Surfaces of solids touch.
+bool has_surfaces(const System& system) {
+  for (int g = 0; g < system.nodes().group_count(); ++g)
+    if (dynamic_cast<const BarrierPoints*>(&system.nodes().group(g))) return true;
+  return false;
+}
+
 /// Bodies hang together by beams or cables, of which the tree makes loops.
 bool has_elastic_pairs(const System& system) {
   for (const InteractionRef& ref : system.interactions())
@@ -101,14 +111,9 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
       throw InputError("analysis.solver", "'tree' has no contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
     if (!system.nodes().empty())
-      throw InputError("contacts", "the model has deformable solids, which do not touch yet",
-                       "Leave out the solids or the contacts");
-    if (a.rho_inf < 1.0)
-      narration += format(
-          "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, up to nine "
-          "tenths of that of an impact shorter than the step; restitution and rebound heights are "
-          "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
-          a.rho_inf);
+      throw InputError("contacts",
+                       "bodies may touch bodies in a model that has deformable solids, too",
+                       "Exclude these pairs: beside solids only surfaces of solids touch");
     if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
         system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
@@ -123,7 +128,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' has no deformable solids",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
-    const NodeFactor factor = policy == JacobianPolicy::every_iteration
+    const NodeFactor factor = policy == JacobianPolicy::every_iteration || has_surfaces(system)
                                   ? NodeFactor::every_iteration
                                   : NodeFactor::automatic;
     return std::make_unique<CoupledEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
@@ -175,6 +180,16 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
     c.newton.max_iterations = a.max_iterations.value_or(kIterationsContact);
     if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
     c.newton.line_search = false;  // the engine has one of its own
+  }
+  if ((system.contacts() || has_surfaces(system)) && a.rho_inf < 1.0)
+    m.narration += format(
+        "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, up to nine "
+        "tenths of that of an impact shorter than the step; restitution and rebound heights are "
+        "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
+        a.rho_inf);
+  if (has_surfaces(system)) {
+    if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceSurfaces;
+    if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
   }
   m.engine = choose_engine(system, a, momentum_rate(a.momentum_rate), policy, m.narration);
   return m;

@@ -31,6 +31,11 @@ const std::string& Model::body_name(int body) const {
   return body == kGround ? ground : bodies.at(static_cast<std::size_t>(body)).name;
 }
 
+const std::string& Model::side_name(int side) const {
+  return is_solid_side(side) ? solids.at(static_cast<std::size_t>(solid_of_side(side))).name
+                             : body_name(side);
+}
+
 int Model::joint_index(const std::string& name) const {
   return index_of(joints, name, "joint", "joints", {});
 }

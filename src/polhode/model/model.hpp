@@ -115,7 +115,7 @@ struct ProbeSpec {
   Place place;
   std::string kind;             ///< body, joint, load, solid, beam, cable or contact.
   std::string target;           ///< Its name.
-  std::array<int, 2> pair{};    ///< Of a contact probe: indices into Model::bodies.
+  std::array<int, 2> pair{};    ///< Of a contact probe: sides.
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
                                 ///< solid probe: in the mesh's own coordinates [m].
   std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
@@ -177,7 +177,9 @@ struct Model {
 
   [[nodiscard]] int body_index(
       const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
-  [[nodiscard]] const std::string& body_name(int body) const;    ///< "ground" for kGround.
+  [[nodiscard]] const std::string& body_name(int body) const;  ///< "ground" for kGround.
+  /// Of a side of contact.
+  [[nodiscard]] const std::string& side_name(int side) const;
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
   [[nodiscard]] int material_index(
       const std::string& name) const;                            ///< Throws InputError if unknown.

@@ -39,6 +39,7 @@ class Planner {
     if (!check_cells()) return std::move(plan_);
     choose_material();
     select_nodes_held();
+    select_touching();
     measure();
     return std::move(plan_);
   }
@@ -237,6 +238,16 @@ class Planner {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     return nodes;
+  }
+
+  void select_touching() {
+    if (!model_.contacts.present || !solid_.contact.touches.value_or(true)) return;
+    try {
+      plan_.touching =
+          select_faces(where_ + ".contact.surface", plan_.mesh, solid_.contact_surface);
+    } catch (const InputError& e) {
+      fault(e);
+    }
   }
 
   void measure() {

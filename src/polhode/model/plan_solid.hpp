@@ -19,7 +19,8 @@ struct SolidPlan {
   double density = 0.0;                      ///< [kg/m³]
   std::vector<std::vector<int>> bonded;      ///< Nodes by SolidSpec::bonded, ascending.
   std::vector<std::vector<int>> prescribed;  ///< Nodes by SolidSpec::prescribed, ascending.
-  double volume = 0.0;                       ///< [m³]
+  Surface touching;     ///< Faces that may touch, if the model has contacts and the solid touches.
+  double volume = 0.0;  ///< [m³]
   double least_jacobian = 0.0;  ///< Smallest det ∂X/∂ξ at a node or middle of an element [m³].
   int least_element = 0;        ///< Where.
   std::vector<std::string> warnings;  ///< What deserves a look.

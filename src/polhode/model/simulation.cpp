@@ -121,13 +121,15 @@ RunSummary Simulation::summary() const {
     r.statics = s.statics->report();
     r.strain_energy = s.statics->strain_energy(s.state);
   }
-  if (s.map.contacts) {
-    const ContactLosses lost = s.contacts.losses();
+  if (has_contacts()) {
+    const ContactLosses lost = contact_losses();
     const Balance b = balance();
     r.contacts = RunSummary::Contacts{
         .shapes = static_cast<int>(s.map.contact.body.size()),
-        .touching = s.contacts.touching(),
-        .least_gap = s.contacts.least_gap(),
+        .surfaces = static_cast<int>(s.map.contact.surfaces.size()),
+        .touching =
+            s.contacts.touching() + surface_figures(s.system, s.state, s.map.contact).touching,
+        .least_gap = std::fmin(s.contacts.least_gap(), s.surface_gap),
         .lost_in_impacts = lost.impacts,
         .lost_by_friction = lost.friction,
         .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
+#include <polhode/fe/contact/surface_contact.hpp>
 #include <polhode/model/beam_report.hpp>
 #include <polhode/model/build_solids.hpp>
 #include <polhode/model/contact_keeper.hpp>
@@ -59,8 +60,9 @@ struct RunSummary {
   std::vector<std::string> warnings;    ///< What was seen at output times and deserves a look.
   /// Of models with contact.
   struct Contacts {
-    int shapes = 0;          ///< That take part.
-    int touching = 0;        ///< Pairs of shapes that press on each other now.
+    int shapes = 0;          ///< Of bodies that may touch bodies.
+    int surfaces = 0;        ///< Of solids, each with every shape that it may touch.
+    int touching = 0;        ///< Pairs of shapes or surfaces that press on each other now.
     double least_gap = 0.0;  ///< After any step since the start or restart [m]; NaN: none was near.
     double lost_in_impacts = 0.0, lost_by_friction = 0.0;  ///< Since the start [J].
     /// What the energy changed by beyond loads and losses [J]; below zero: lost.
@@ -124,17 +126,20 @@ class Simulation {
   [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
   /// What interfaces(solid)[k] exerts on the solid.
   [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
-  // Contact between bodies.
-  /// Null without contact.
+  // Contact of bodies, and of surfaces of solids with them.
+  [[nodiscard]] bool has_contacts() const;
+  /// Null unless bodies may touch bodies.
   [[nodiscard]] const contact::ContactSet* contact_set() const;
   [[nodiscard]] const ContactMap& contact_map() const;
   /// Of contact_map().pairs[pair]: over the last step.
   [[nodiscard]] ContactReport contact(int pair) const;
-  /// Index into contact_map().pairs of two bodies of the model. @throws InputError if not kept.
-  [[nodiscard]] int contact_pair(int body_a, int body_b) const;
+  /// Index into contact_map().pairs of two sides. @throws InputError if not kept.
+  [[nodiscard]] int contact_pair(int side_a, int side_b) const;
   [[nodiscard]] ContactLosses contact_losses() const;
-  /// Points that carried force in the last step; shapes as in contact_map().body.
+  /// Points of bodies that carried force in the last step; shapes as in contact_map().body.
   [[nodiscard]] const std::vector<contact::TouchingPoint>& contact_points() const;
+  /// The same of contact_map().surfaces[surface].
+  [[nodiscard]] std::vector<SurfacePointReport> surface_points(int surface) const;
   /// What sensors told since the start or restart.
   [[nodiscard]] const std::vector<SensorEvent>& sensor_events() const;
   /// SHA-256 over the whole state, moving bodies in the model's order.

@@ -15,6 +15,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/base/names.hpp>
 #include <polhode/fe/solid_elements.hpp>
+#include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/method.hpp>
 #include <polhode/model/separate_overlaps.hpp>
@@ -52,6 +53,8 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
+  /// Smallest of surfaces of solids after any step [m].
+  double surface_gap = std::numeric_limits<double>::quiet_NaN();
   std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
 
   explicit Impl(Model m)
@@ -75,6 +78,10 @@ struct Simulation::Impl {
         throw InputError(format("bodies.{}", body.name),
                          "has a velocity, but in statics and modes nothing moves",
                          "Leave velocity and angular_velocity out, or use type: dynamics");
+    if (map.contacts)
+      throw InputError(
+          "contacts", "bodies may touch bodies, which in statics and modes they cannot do",
+          "Exclude these pairs: surfaces of solids touch alone, or use type: dynamics");
     StaticOptions options;
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
@@ -88,7 +95,10 @@ struct Simulation::Impl {
   StepReport advance(double t_limit) {
     if (!statics) {
       StepReport report = stepper->advance(state, t_limit);
-      if (report.accepted) contacts.after_step(state);
+      if (report.accepted) {
+        contacts.after_step(state);
+        watch_surfaces();
+      }
       return report;
     }
     const double before = state.t;
@@ -125,6 +135,7 @@ struct Simulation::Impl {
     if (statics) statics->begin(state);
     stepper->begin(state);
     contacts.begin(state);
+    watch_surfaces();
     state.ledger.constraint_max = 0.0;
     start_seconds = wall_clock() - t0;
   }
@@ -208,7 +219,17 @@ struct Simulation::Impl {
                           system.bodies()[static_cast<std::size_t>(body)].name, distance);
   }
 
+  void watch_surfaces() {
+    surface_gap = std::fmin(surface_gap, surface_figures(system, state, map.contact).least_gap);
+  }
+
   void refuse_overlaps() const {
+    const std::vector<std::string> surfaces = surface_overlaps(model, system, state, map.contact);
+    if (!surfaces.empty())
+      throw InputError("contacts",
+                       "surfaces of solids overlap shapes at the start: " + name_list(surfaces, 12),
+                       "Correct positions or sizes, or exclude pairs that are meant to overlap; "
+                       "'overlaps: resolve' moves bodies only");
     if (!map.contacts) return;
     const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
     if (list.empty()) return;

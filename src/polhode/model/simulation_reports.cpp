@@ -172,20 +172,46 @@ const contact::ContactSet* Simulation::contact_set() const { return impl_->map.c
 
 const ContactMap& Simulation::contact_map() const { return impl_->map.contact; }
 
-ContactReport Simulation::contact(int pair) const { return impl_->contacts.report(pair); }
+bool Simulation::has_contacts() const {
+  return impl_->map.contacts || !impl_->map.contact.surfaces.empty();
+}
 
-int Simulation::contact_pair(int body_a, int body_b) const {
+ContactReport Simulation::contact(int pair) const {
+  const ContactMap& map = impl_->map.contact;
+  const ContactMap::Pair& sides = map.pairs.at(static_cast<std::size_t>(pair));
+  if (is_solid_side(sides.a) || is_solid_side(sides.b))
+    return surface_report(impl_->system, impl_->state, map, sides);
+  return impl_->contacts.report(pair);
+}
+
+int Simulation::contact_pair(int side_a, int side_b) const {
   const std::vector<ContactMap::Pair>& pairs = contact_map().pairs;
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(body_a, body_b))
+    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(side_a, side_b))
       return static_cast<int>(k);
   throw InputError("contacts",
-                   format("results of '{}' and '{}' are not kept", model().body_name(body_a),
-                          model().body_name(body_b)),
+                   format("results of '{}' and '{}' are not kept", model().side_name(side_a),
+                          model().side_name(side_b)),
                    "Name the pair in contacts.pairs or a probe, or set contacts.record: true");
 }
 
-ContactLosses Simulation::contact_losses() const { return impl_->contacts.losses(); }
+ContactLosses Simulation::contact_losses() const {
+  ContactLosses sum = impl_->contacts.losses();
+  const ContactLosses more = surface_losses(impl_->system, impl_->state, impl_->map.contact);
+  sum.impacts += more.impacts;
+  sum.friction += more.friction;
+  return sum;
+}
+
+std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
+  const int group = impl_->map.contact.surfaces.at(static_cast<std::size_t>(surface)).group;
+  const Nodes& nodes = impl_->system.nodes();
+  StepContext still;
+  still.t_n = impl_->state.t;
+  return dynamic_cast<const SurfaceContact&>(nodes.group(group))
+      .point_reports(node_instant(impl_->state, still),
+                     impl_->state.element_history.data() + nodes.first_history(group));
+}
 
 const std::vector<contact::TouchingPoint>& Simulation::contact_points() const {
   return impl_->contacts.points();

@@ -9,6 +9,7 @@
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
 #include <polhode/fe/mesh/selection.hpp>
+#include <polhode/model/contact_spec.hpp>
 #include <polhode/model/place.hpp>
 
 namespace polhode {
@@ -57,6 +58,8 @@ struct SolidSpec {
   std::optional<double> density;      ///< Instead of the material's [kg/m^3].
   std::vector<BondSpec> bonded;
   std::vector<PrescribedSpec> prescribed;
+  ContactSideSpec contact;                 ///< How its surface takes part in contact.
+  std::vector<Selection> contact_surface;  ///< Faces that may touch; empty: the whole boundary.
   std::optional<Vec3> velocity;  ///< Of the centre of mass, world [m/s]; absent: see below.
   /// World [rad/s]. Without velocity and angular_velocity a solid starts by moving rigidly with the
   /// first body it is bonded to, or rests.

@@ -16,6 +16,12 @@ constexpr double kLeave = 0.1;
 constexpr double kShorter = 0.98;
 constexpr int kMostRepeats = 20;
 
+double smallest(const std::vector<double>& clearances) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double c : clearances) least = std::min(least, c);
+  return least;
+}
+
 }  // namespace
 
 BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& trial,
@@ -40,13 +46,26 @@ void BarrierGuard::measure(std::vector<double>& clearance) const {
   for (const BarrierPoints* points : points_) points->clearances(step, clearance);
 }
 
-double BarrierGuard::part(const std::vector<double>& from, const std::vector<double>& to) {
+void BarrierGuard::measure_start() {
+  measure(from_);
+  if (!points_.empty()) from_x_ = trial_.node_x;
+}
+
+double BarrierGuard::part() const {
   double most = 1.0;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const double least = kLeave * std::min(from[i], 1.0);
-    if (to[i] >= least) continue;
-    const double way = from[i] - to[i];
-    most = std::min(most, way > 0.0 ? kShorter * (from[i] - least) / way : 0.0);
+  for (std::size_t i = 0; i < from_.size(); ++i) {
+    const double leave = kLeave * std::min(from_[i], 1.0);
+    if (to_[i] >= leave) continue;
+    const double way = from_[i] - to_[i];
+    most = std::min(most, way > 0.0 ? kShorter * (from_[i] - leave) / way : 0.0);
+  }
+  if (points_.empty()) return most;
+  const NodeStep to = node_step(state_, trial_);
+  NodeStep from = to;
+  from.x_n1 = from_x_.data();
+  for (const BarrierPoints* points : points_) {
+    const double free = points->free_part(from, to);
+    if (free < 1.0) most = std::min(most, kShorter * free);
   }
   return most;
 }
@@ -76,24 +95,24 @@ void BarrierGuard::hold_prediction() {
     update_node_velocities(system_, state_, trial_);
   };
   measure(to_);
-  near_ = *std::min_element(to_.begin(), to_.end()) < 1.0;
-  if (!near_) return;
+  near_ = smallest(to_) < 1.0;
+  if (!near_ && points_.empty()) return;
   go(0.0);
-  measure(from_);
+  measure_start();
+  go(1.0);
   double taken = 1.0;
   for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
-    const double fits = part(from_, to_);
+    const double fits = part();
     if (fits >= 1.0) break;
     taken = repeat + 1 < kMostRepeats ? taken * fits : 0.0;
     go(taken);
     measure(to_);
   }
-  if (taken == 1.0) go(1.0);
 }
 
 void BarrierGuard::before() {
   if (idle_) return;
-  measure(from_);
+  measure_start();
   engine_.end_step(state_, trial_);  // brings the multipliers into the trial
   iterate_.keep(system_, trial_);
 }
@@ -103,15 +122,14 @@ Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
   double applied = 1.0;
   for (int repeat = 0; done.solved && repeat < kMostRepeats; ++repeat) {
     measure(to_);
-    const double fits = part(from_, to_);
+    const double fits = part();
     if (fits >= 1.0) break;
     applied *= fits;
     iterate_.restore(system_, trial_);
     engine_.begin_step(state_, trial_);
     done = engine_.iterate(state_, trial_, refactor, damping * applied);
   }
-  near_ = std::min(*std::min_element(from_.begin(), from_.end()),
-                   *std::min_element(to_.begin(), to_.end())) < 1.0;
+  near_ = std::min(smallest(from_), smallest(to_)) < 1.0;
   done.applied *= applied;
   return done;
 }

@@ -26,8 +26,11 @@ class BarrierGuard {
 
  private:
   void measure(std::vector<double>& clearance) const;
-  /// The largest part of the way from one to the other that leaves a tenth of what there was.
-  [[nodiscard]] static double part(const std::vector<double>& from, const std::vector<double>& to);
+  /// The same with where nodes are: whence iterates go.
+  void measure_start();
+  /// The largest part of the way to the trial that leaves a tenth of what there was, on the way and
+  /// at its end.
+  [[nodiscard]] double part() const;
 
   const System& system_;
   const State& state_;
@@ -35,7 +38,8 @@ class BarrierGuard {
   NewtonEngine& engine_;
   std::vector<const BarrierPoints*> points_;  ///< Of groups of elements.
   bool idle_ = true;                          ///< Nothing has barriers.
-  std::vector<double> from_, to_;
+  std::vector<double> from_, to_;             ///< Clearances.
+  std::vector<double> from_x_;                ///< Positions of nodes [m].
   KeptIterate iterate_;
   bool near_ = false;
 };

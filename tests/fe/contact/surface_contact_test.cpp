@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <polhode/base/error.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
 #include <polhode/so3/cayley.hpp>
 #include <polhode/so3/hat.hpp>
@@ -31,6 +32,12 @@ struct Nodes {
   }
   [[nodiscard]] NodeStep step() const {
     return {x_n.data(), x_n1.data(), u.data(), v.data(), v.data(), context, alpha_f, 1.0};
+  }
+  [[nodiscard]] std::vector<Vec3> start_positions() const {
+    std::vector<Vec3> X;
+    for (std::size_t k = 0; k < x_n.size(); k += 3)
+      X.push_back(NodeStep::at(x_n.data(), static_cast<int>(k / 3)));
+    return X;
   }
   [[nodiscard]] NodeStep start() const {
     return {x_n.data(), x_n.data(), u.data(), v.data(), v.data(), context, 1.0, 0.0};
@@ -149,9 +156,11 @@ Mat tangent(const SurfaceContact& contact, const Nodes& nodes, const std::vector
 
 std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
   Random random(seed);
-  std::vector<double> history(contact.history_size(), 0.0);
-  for (std::size_t i = 0; i < history.size(); ++i)
-    if (i % 4 != 3) history[i] = 0.05 * random.number();
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
+  for (std::size_t i = 0; i < kNumbers * static_cast<std::size_t>(contact.size()); ++i)
+    if (i % kNumbers < 3) history[i] = 0.05 * random.number();
   return history;
 }
 
@@ -163,7 +172,8 @@ void for_scenes(const SurfaceLaw& l, double rho_inf, What&& what) {
         for (const unsigned seed : {1U}) {
           SCOPED_TRACE(std::string(c.name) + " " + shape + (on_body ? " on a body" : ""));
           const Scene s = scene(c, shape, on_body, seed, context_of(rho_inf));
-          const SurfaceContact contact("c", s.faces, s.X, c.surface, s.place, l);
+          const SurfaceContact contact("c", surface_points("c", s.faces, s.X),
+                                       s.nodes.start_positions(), c.surface, s.place, l);
           what(contact, s, bristles(contact, seed));
         }
 }
@@ -230,6 +240,13 @@ TEST(SurfaceContact, DoesExactlyTheWorkItStoresAndTakes) {
       EXPECT_GE(w.dissipated, 0.0);
       EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12);
       contact.commit(s.nodes.step(), history.data(), nullptr);
+      const SurfaceReport told = contact.report(history.data());
+      EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-14);
+      EXPECT_NEAR(told.impulse, told.normal_force * s.nodes.context.dt, 1e-14);
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t i = 0; i < s.X.size(); ++i)
+        sum += f.segment<3>(3 * static_cast<Eigen::Index>(i));
+      EXPECT_LT((told.force - sum).norm(), 1e-13) << "on the solid";
       still.x_n = s.nodes.x_n1;
       EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
     });
@@ -255,15 +272,51 @@ TEST(SurfaceContact, SharesItsAreaAmongTheNodes) {
   const LoadedFaces faces{"quad4", {0, 1, 2, 3}};
   const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
   SurfaceLaw l = law(0.0);
-  const SurfaceContact contact("c", faces, X, plane, {}, l);
+  const SurfaceContact contact("c", surface_points("c", faces, X), X, plane, {}, l);
   Nodes nodes;
-  nodes.context.dt = 0.0;
   for (const Vec3& x : X) nodes.add(x, Vec3::Zero());
-  const std::vector<double> history(contact.history_size(), 0.0);
-  const SurfaceReport r = contact.report(nodes.start(), history.data());
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  EXPECT_EQ(contact.report(history.data()).least_gap, 0.0);
+  contact.commit(nodes.step(), history.data(), nullptr);
+  const SurfaceReport r = contact.report(history.data());
   EXPECT_NEAR(r.area, 6.0, 1e-14);
   EXPECT_NEAR(r.force[2], 6.0 * l.normal.force(0.0), 1e-12);
   EXPECT_EQ(r.least_gap, 0.0);
+}
+
+/// Points on their way, stopped before they come out on the other side.
+TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
+  using enum RigidSurface::Kind;
+  const RigidSurface plate{.kind = box, .half = {5, 5, 0.5}, .rounding = 0.1};
+  SurfaceLaw l = law(0.0);
+  l.normal.tolerance = 0.1;
+  const std::vector<Vec3> X{{0, 0, 4}, {1, 0, 4}, {1, 1, 4}, {0, 1, 4}};
+  const SurfaceContact contact("c", surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X, plate, {},
+                               l);
+  const auto part = [&](const Vec3& move) {
+    Nodes nodes;
+    for (const Vec3& x : X) nodes.add(x, move);
+    return contact.free_part(nodes.start(), nodes.step());
+  };
+  EXPECT_EQ(part({0, 0, -3.0}), 1.0);
+  EXPECT_EQ(part({8, 0, -1.0}), 1.0) << "beside it";
+  EXPECT_EQ(part({0, 0, 9.0}), 1.0) << "away";
+  // From 4 through the plate to −4: free as far as 0.5 − 0.1 + 0.02, a tenth of the band.
+  EXPECT_NEAR(part({0, 0, -8.0}), 3.58 / 8.0, 1e-3);
+  EXPECT_NEAR(part({1, 0, -100.0}), 3.58 / 100.0, 1e-4);
+  // Across an edge, which a look at the ends would not see.
+  EXPECT_LT(part({8.0, 0, -8.0}), 0.5);
+}
+
+TEST(SurfaceContact, LeavesOutWhatItIsToldTo) {
+  const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
+  const SurfacePoints some = surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {1, 3});
+  EXPECT_EQ(some.nodes, (std::vector<int>{0, 2}));
+  EXPECT_NEAR(some.points[0].area, 1.5, 1e-14);
+  EXPECT_THROW(static_cast<void>(surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {0, 1, 2, 3})),
+               InputError);
+  EXPECT_EQ(median_edge({"quad4", {0, 1, 2, 3}}, X), 3.0);
 }
 
 }  // namespace

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <limits>
 
-#include <polhode/base/error.hpp>
 #include <polhode/contact/bristle.hpp>
 #include <polhode/contact/stop_force.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
-#include <polhode/fe/elements/quadrature.hpp>
-#include <polhode/fe/elements/reference_data.hpp>
-#include <polhode/fe/mesh/shapes.hpp>
 
 namespace polhode {
 
@@ -23,82 +18,36 @@ constexpr double kNoDirection = 1e-6;
 
 Vec3 at(const double* x, int node) { return NodeStep::at(x, node); }
 
-double area_of(const Mat3& J) { return J.col(0).cross(J.col(1)).norm(); }
-
 }  // namespace
 
-/// Per unit of area: force conjugate to y, its derivative by y_{n+1}.
-struct SurfaceContact::Action {
-  Vec3 h = Vec3::Zero();
-  Mat3 D = Mat3::Zero();
-  Vec3 friction = Vec3::Zero();  ///< Part of h.
-  Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
-  Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
-  double pressure = 0.0;
-  double gap_n = 0.0, gap_n1 = 0.0;
-  bool acts = false, slips = false;
-};
-
-SurfaceContact::SurfaceContact(std::string name, const LoadedFaces& faces,
-                               const std::vector<Vec3>& X, const RigidSurface& surface,
-                               const SurfacePlace& place, const SurfaceLaw& law)
+SurfaceContact::SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
+                               const RigidSurface& surface, const SurfacePlace& place,
+                               const SurfaceLaw& law)
     : name_(std::move(name)),
       surface_(surface),
       place_(place),
       law_(law),
-      frame_(place.moves() ? 4 : 0) {
-  const bool nodal = faces.shape == "tri3" || faces.shape == "quad4";
-  n_ = nodal ? 1 : cell_shape(faces.shape).size();
-  nodal ? add_nodal_points(faces, X) : add_gauss_points(faces, X);
-  if (points_.empty())
-    throw InputError(name_, "there are no faces to touch", "Choose faces of the solid's boundary");
-}
-
-void SurfaceContact::add_nodal_points(const LoadedFaces& faces, const std::vector<Vec3>& X) {
-  const CellShape& shape = cell_shape(faces.shape);
-  const auto n = static_cast<std::size_t>(shape.size());
-  std::map<int, double> area;
-  for (const QuadraturePoint& q : face_rule(faces.shape)) {
-    const Vec N = shape_functions(shape, q.xi);
-    const Mat D = shape_gradients(shape, q.xi);
-    for (std::size_t first = 0; first < faces.nodes.size(); first += n) {
-      const std::span<const int> own = std::span(faces.nodes).subspan(first, n);
-      const double dA = q.weight * area_of(reference_jacobian(D, own, X));
-      for (std::size_t a = 0; a < n; ++a) area[own[a]] += N[static_cast<Eigen::Index>(a)] * dA;
-    }
-  }
-  for (const auto& [node, share] : area) {
-    Point p;
-    p.area = share;
-    p.N[0] = 1.0;
-    points_.push_back(p);
-    nodes_.push_back(node);
+      n_(points.nodes_per_point),
+      frame_(place.moves() ? 4 : 0),
+      points_(std::move(points)) {
+  for (int i = 0; i < size(); ++i) {
+    const auto first = points_.nodes.begin() + static_cast<std::ptrdiff_t>(i) * n_;
+    nodes_.insert(nodes_.end(), first, first + n_);
     if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
   }
-}
-
-void SurfaceContact::add_gauss_points(const LoadedFaces& faces, const std::vector<Vec3>& X) {
-  const CellShape& shape = cell_shape(faces.shape);
-  const auto n = static_cast<std::size_t>(n_);
-  for (std::size_t first = 0; first < faces.nodes.size(); first += n) {
-    const std::span<const int> own = std::span(faces.nodes).subspan(first, n);
-    for (const QuadraturePoint& q : face_rule(faces.shape)) {
-      const Vec N = shape_functions(shape, q.xi);
-      Point p;
-      p.area = q.weight * area_of(reference_jacobian(shape_gradients(shape, q.xi), own, X));
-      for (int a = 0; a < n_; ++a) p.N[a] = N[a];
-      points_.push_back(p);
-      nodes_.insert(nodes_.end(), own.begin(), own.end());
-      if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
-    }
-  }
+  std::vector<double> x;
+  for (const Vec3& node : X) x.insert(x.end(), node.begin(), node.end());
+  gap_at_start_ = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size(); ++i)
+    gap_at_start_ = std::min(gap_at_start_, surface_.distance(local(x.data(), i)));
 }
 
 Vec3 SurfaceContact::position(const double* x, int point) const {
   const std::span<const int> own = nodes(point);
   Vec3 p = Vec3::Zero();
   for (int a = 0; a < n_; ++a)
-    p += points_[static_cast<std::size_t>(point)].N[a] * at(x, own[static_cast<std::size_t>(a)]);
+    p += points_.points[static_cast<std::size_t>(point)].N[a] *
+         at(x, own[static_cast<std::size_t>(a)]);
   return p;
 }
 
@@ -110,6 +59,16 @@ Vec3 SurfaceContact::local(const double* x, int point) const {
   for (std::size_t k = 0; k < 3; ++k)
     y[static_cast<int>(k)] = (p - x_0).dot(at(x, place_.nodes[k + 1]) - x_0) / place_.size;
   return y;
+}
+
+/// Of the surface, columns.
+Mat3 SurfaceContact::axes(const double* x) const {
+  if (frame_ == 0) return place_.axes;
+  Mat3 R;
+  for (std::size_t k = 0; k < 3; ++k)
+    R.col(static_cast<int>(k)) =
+        (at(x, place_.nodes[k + 1]) - at(x, place_.nodes[0])) / place_.size;
+  return R;
 }
 
 namespace {
@@ -214,14 +173,6 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
   return a;
 }
 
-void SurfaceContact::clearances(const NodeStep& step, std::vector<double>& list) const {
-  if (law_.normal.potential != contact::NormalPotential::barrier) return;
-  for (int i = 0; i < size(); ++i) {
-    const double gap = surface_.distance(local(step.x_n1, i)) - law_.normal.floor();
-    list.push_back(gap / (2.0 * law_.normal.tolerance));
-  }
-}
-
 namespace {
 
 /// Forces and stiffness between the point p and the four nodes of the frame: p
@@ -272,12 +223,13 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
                                        const ElementSink& sink) const {
   const bool tangent = sink.tangent != nullptr;
   const int width = 3 * (n_ + frame_);
-  std::vector<double> f(static_cast<std::size_t>(width)),
-      K(static_cast<std::size_t>(width * width));
+  constexpr std::size_t kWidth = 3 * (SurfacePoints::kMostNodes + 4);
+  std::array<double, kWidth> f;
+  std::array<double, kWidth * kWidth> K;
   for (int i = 0; i < size(); ++i) {
-    const Point& point = points_[static_cast<std::size_t>(i)];
-    const Place place{local(step.x_n, i), local(step.x_n1, i)};
-    const Action a = act(step, place, history + kMemory * static_cast<std::size_t>(i), tangent);
+    const SurfacePoints::Point& point = points_.points[static_cast<std::size_t>(i)];
+    const Action a =
+        act(step, place(step, i), history + kMemory * static_cast<std::size_t>(i), tangent);
     if (!a.acts) continue;
     Central c;
     if (frame_ == 0) {
@@ -315,70 +267,6 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
     if (tangent) sink.add_tangent(i, n_ + frame_, K.data());
   }
   return {};
-}
-
-void SurfaceContact::commit(const NodeStep& step, double* history,
-                            const double* /*scratch*/) const {
-  for (int i = 0; i < size(); ++i) {
-    double* memory = history + kMemory * static_cast<std::size_t>(i);
-    const Action a = act(step, {local(step.x_n, i), local(step.x_n1, i)}, memory, false);
-    const bool stays = a.gap_n1 < law_.normal.reach();
-    for (int k = 0; k < 3; ++k) memory[k] = stays ? a.bristle[k] : 0.0;
-    memory[3] = stays && a.slips ? 1.0 : 0.0;
-  }
-}
-
-Work SurfaceContact::work(const NodeStep& step, const double* history,
-                          const double* /*scratch*/) const {
-  Work w;
-  const bool instant = step.x_n == step.x_n1;
-  for (int i = 0; i < size(); ++i) {
-    const double* memory = history + kMemory * static_cast<std::size_t>(i);
-    const double area = points_[static_cast<std::size_t>(i)].area;
-    const Vec3 kept(memory[0], memory[1], memory[2]);
-    if (instant) {
-      w.stored += area * (law_.normal.energy(surface_.distance(local(step.x_n1, i))) +
-                          0.5 * law_.bristle * kept.squaredNorm());
-      continue;
-    }
-    const Action a = act(step, {local(step.x_n, i), local(step.x_n1, i)}, memory, false);
-    if (!a.acts) continue;
-    const bool stays = a.gap_n1 < law_.normal.reach();
-    const double bristle_n1 = stays ? 0.5 * law_.bristle * a.bristle.squaredNorm() : 0.0;
-    const double e_n1 = law_.normal.energy(a.gap_n1);
-    w.stored += area * (e_n1 + bristle_n1);
-    w.dissipated += area * std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 +
-                                             0.5 * law_.bristle * kept.squaredNorm());
-    if (law_.end_share > 0.0 || step.alpha_f != 0.5)
-      w.dissipated += area * std::max(0.0, -a.pressure * (a.gap_n1 - a.gap_n) - e_n1 +
-                                               law_.normal.energy(a.gap_n));
-  }
-  return w;
-}
-
-SurfaceReport SurfaceContact::report(const NodeStep& instant, const double* history) const {
-  SurfaceReport r;
-  r.least_gap = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size(); ++i) {
-    const double* memory = history + kMemory * static_cast<std::size_t>(i);
-    const Vec3 y = local(instant.x_n1, i);
-    const Action a = act(instant, {y, y}, memory, false);
-    r.least_gap = std::min(r.least_gap, a.gap_n1);
-    if (!a.acts) continue;
-    Mat3 R = place_.axes;
-    if (frame_ > 0)
-      for (std::size_t k = 0; k < 3; ++k)
-        R.col(static_cast<int>(k)) =
-            (at(instant.x_n1, place_.nodes[k + 1]) - at(instant.x_n1, place_.nodes[0])) /
-            place_.size;
-    const double area = points_[static_cast<std::size_t>(i)].area;
-    r.force += area * (R * a.h);
-    r.friction += area * (R * a.friction);
-    r.area += area;
-    r.largest_pressure = std::max(r.largest_pressure, a.pressure);
-    ++(a.slips ? r.slipping : r.sticking);
-  }
-  return r;
 }
 
 }  // namespace polhode

@@ -10,7 +10,7 @@
 #include <polhode/assembly/element_group.hpp>
 #include <polhode/contact/normal_law.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
-#include <polhode/fe/loads/solid_loads.hpp>
+#include <polhode/fe/contact/surface_points.hpp>
 
 namespace polhode {
 
@@ -38,33 +38,50 @@ struct SurfaceLaw {
   double bristle = 0.0;       ///< Stiffness of the friction bristle [Pa/m].
 };
 
-/// What the contact does at an instant or over the last step.
+/// What the contact did over the last step, and since the start.
 struct SurfaceReport {
-  Vec3 force = Vec3::Zero();       ///< On the solid [N], world.
+  double least_gap = 0.0;          ///< At the end of the step [m].
+  double normal_force = 0.0;       ///< Sum of pressure times area [N].
+  Vec3 force = Vec3::Zero();       ///< On the solid, friction included [N], world.
   Vec3 friction = Vec3::Zero();    ///< Its tangential part [N].
-  double area = 0.0;               ///< Of points in contact [m²], reference.
-  double least_gap = 0.0;          ///< [m]
+  Vec3 point = Vec3::Zero();       ///< Mean of the points, by normal force [m]; zero if none acts.
+  double area = 0.0;               ///< Of points that act [m²], reference.
   double largest_pressure = 0.0;   ///< [Pa]
-  int sticking = 0, slipping = 0;  ///< Points in contact.
+  int sticking = 0, slipping = 0;  ///< Points that act.
+  double impulse = 0.0;            ///< Of the normal force since the start [N s].
+  double friction_loss = 0.0;      ///< Energy that friction took since the start [J].
+  double normal_loss = 0.0;        ///< Likewise the normal force, see SurfaceLaw::end_share [J].
+};
+
+/// A point that acts, over the last step.
+struct SurfacePointReport {
+  Vec3 point = Vec3::Zero();                           ///< World [m].
+  Vec3 normal = Vec3::UnitZ();                         ///< Towards the solid, world.
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero();  ///< On the solid [N], world.
+  double gap = 0.0;                                    ///< [m]
+  double pressure = 0.0;                               ///< [Pa]
 };
 
 /// Faces of a solid against a rigid surface: the potential ∫ β(g) dA over the
 /// reference area.
 ///
-/// The points are the nodes, with their share of the area, of faces with
-/// straight edges, and Gauss points of curved ones. The forces of a point are
-/// functions of its coordinates y in the surface's axes, and y of squared
-/// distances between nodes: central forces, so that energy and both momenta are
-/// kept exactly at ρ∞ = 1. @eq{surface-squared-distances}
+/// The forces of a point are functions of its coordinates y in the surface's
+/// axes, and y of squared distances between nodes: central forces, so that
+/// energy and both momenta are kept exactly at ρ∞ = 1.
+/// @eq{surface-squared-distances}
+///
+/// The history holds, for each point, bristle, slip and what acted in the last
+/// step, and then sums over the run: all that reports tell goes with the state.
 class SurfaceContact final : public ElementGroup, public BarrierPoints {
  public:
-  /// @param X  Reference positions by the system's node numbers.
-  SurfaceContact(std::string name, const LoadedFaces& faces, const std::vector<Vec3>& X,
+  /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
+  ///           that carry it are among them.
+  SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
                  const RigidSurface& surface, const SurfacePlace& place, const SurfaceLaw& law);
 
   std::string kind() const override { return "surface contact"; }
   const std::string& name() const override { return name_; }
-  int size() const override { return static_cast<int>(points_.size()); }
+  int size() const override { return static_cast<int>(points_.points.size()); }
   int nodes_per_element() const override { return n_ + frame_; }
   std::span<const int> nodes(int element) const override {
     const auto width = static_cast<std::size_t>(n_ + frame_);
@@ -73,48 +90,72 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints {
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
   bool external() const override { return frame_ == 0; }
-  std::size_t history_size() const override { return kMemory * points_.size(); }
+  std::size_t history_size() const override { return kMemory * points_.points.size() + kTotals; }
+  void initialize(double* history) const override;
   void clearances(const NodeStep& step, std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to) const override;
 
   ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                          const Mat3& turn, const ElementSink& sink) const override;
   void commit(const NodeStep& step, double* history, const double* scratch) const override;
   Work work(const NodeStep& step, const double* history, const double* scratch) const override;
 
-  /// @param instant  Of node_instant().
-  [[nodiscard]] SurfaceReport report(const NodeStep& instant, const double* history) const;
+  [[nodiscard]] const SurfaceLaw& law() const { return law_; }
+  /// The smallest gap of the nodes as they are at an instant [m].
+  [[nodiscard]] double least_gap(const NodeStep& instant) const;
+  [[nodiscard]] SurfaceReport report(const double* history) const;
+  /// Points that acted in the last step, where they are at its end.
+  [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
+                                                              const double* history) const;
 
  private:
-  static constexpr int kMostNodes = 9;
-  static constexpr std::size_t kMemory = 4;  ///< Bristle in the surface's axes; whether it slips.
+  /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its
+  /// tangential part and the pressure.
+  static constexpr std::size_t kMemory = 11;
+  static constexpr std::size_t kTotals = 18;  ///< See Totals.
 
-  struct Point {
-    double area = 0.0;  ///< [m²]
-    double N[kMostNodes]{};
-  };
   /// The point in the surface's coordinates over the step.
   struct Place {
     Vec3 at_n, at_n1;
   };
-  /// What acts at a point, conjugate to y, per unit of area.
-  struct Action;
+  /// What acts at a point over a step, conjugate to y, per unit of area.
+  struct Action {
+    Vec3 h = Vec3::Zero();
+    Mat3 D = Mat3::Zero();         ///< By y_{n+1}.
+    Vec3 friction = Vec3::Zero();  ///< Part of h.
+    Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
+    Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
+    double pressure = 0.0;
+    double gap_n = 0.0, gap_n1 = 0.0;
+    bool acts = false, slips = false;
+  };
+  /// Energy per unit of area: stored at the end, taken over the step.
+  struct Energies {
+    double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
+  };
+  struct Totals;
   template <class T>
   struct Terms;
 
   [[nodiscard]] Vec3 position(const double* x, int point) const;
   [[nodiscard]] Vec3 local(const double* x, int point) const;
+  [[nodiscard]] Mat3 axes(const double* x) const;
+  [[nodiscard]] Place place(const NodeStep& step, int point) const {
+    return {local(step.x_n, point), local(step.x_n1, point)};
+  }
   [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
                            bool tangent) const;
-  void add_nodal_points(const LoadedFaces& faces, const std::vector<Vec3>& X);
-  void add_gauss_points(const LoadedFaces& faces, const std::vector<Vec3>& X);
+  [[nodiscard]] Energies energies(const NodeStep& step, const Action& a,
+                                  const double* memory) const;
 
   std::string name_;
   RigidSurface surface_;
   SurfacePlace place_;
   SurfaceLaw law_;
   int n_ = 1, frame_ = 0;  ///< Nodes of the face, of the frame.
-  std::vector<int> nodes_;
-  std::vector<Point> points_;
+  SurfacePoints points_;
+  std::vector<int> nodes_;     ///< Of each point: of its face, then of the frame.
+  double gap_at_start_ = 0.0;  ///< Smallest [m].
 };
 
 }  // namespace polhode

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/fe/loads/solid_loads.hpp>
+
+namespace polhode {
+
+/// Where the surface of a solid is looked at: p = Σ N_a x_a, each point with its share of the
+/// reference area.
+struct SurfacePoints {
+  static constexpr int kMostNodes = 9;
+  struct Point {
+    double area = 0.0;  ///< [m²]
+    double N[kMostNodes]{};
+  };
+  int nodes_per_point = 1;
+  std::vector<Point> points;
+  std::vector<int> nodes;  ///< Numbers, nodes_per_point of each point.
+};
+
+/// The nodes, with their share of the area, of faces with straight edges; Gauss points of curved
+/// ones. Both carry a uniform pressure exactly.
+/// @param X         Reference positions by number [m].
+/// @param left_out  Ascending numbers of nodes that are no points; a curved face is left out if all
+///                  its nodes are among them.
+/// @throws InputError if nothing is left.
+[[nodiscard]] SurfacePoints surface_points(const std::string& where, const LoadedFaces& faces,
+                                           const std::vector<Vec3>& X,
+                                           const std::vector<int>& left_out = {});
+
+/// Middle one of the lengths of the faces' edges, corner to corner [m].
+[[nodiscard]] double median_edge(const LoadedFaces& faces, const std::vector<Vec3>& X);
+
+}  // namespace polhode

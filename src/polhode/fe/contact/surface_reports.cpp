@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a surface contact lets pass, what it takes, and what it remembers and tells.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/fe/contact/surface_contact.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// What is left in front of a barrier at the end of a way, of what there was at its start.
+constexpr double kLeave = 0.1;
+/// Ways are followed by advances of the gap's own size, at most so many.
+constexpr int kMostAdvances = 200;
+
+}  // namespace
+
+void SurfaceContact::clearances(const NodeStep& step, std::vector<double>& list) const {
+  if (law_.normal.potential != contact::NormalPotential::barrier) return;
+  for (int i = 0; i < size(); ++i) {
+    const double gap = surface_.distance(local(step.x_n1, i)) - law_.normal.floor();
+    list.push_back(gap / (2.0 * law_.normal.tolerance));
+  }
+}
+
+/// The gap changes by no more than the way in the surface's coordinates.
+double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to) const {
+  if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
+  double most = 1.0;
+  for (int i = 0; i < size(); ++i) {
+    const Vec3 start = local(from.x_n1, i), way = local(to.x_n1, i) - start;
+    const double length = way.norm();
+    double room = surface_.distance(start) - law_.normal.floor();
+    const double least = kLeave * std::min(room, 2.0 * law_.normal.tolerance);
+    if (room <= 0.0 || room - least >= length * most) continue;
+    double part = 0.0;
+    for (int k = 0; k < kMostAdvances && part < most; ++k) {
+      const double advance = (room - least) / length;
+      part += advance;
+      room = surface_.distance(start + std::min(part, most) * way) - law_.normal.floor();
+      if (room <= least) break;
+    }
+    most = std::min(most, part);
+  }
+  return most;
+}
+
+double SurfaceContact::least_gap(const NodeStep& instant) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size(); ++i)
+    least = std::min(least, surface_.distance(local(instant.x_n1, i)));
+  return least;
+}
+
+SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
+                                                  const double* memory) const {
+  const Vec3 kept(memory[0], memory[1], memory[2]);
+  const bool stays = a.gap_n1 < law_.normal.reach();
+  const double half_k = 0.5 * law_.bristle;
+  const double bristle_n1 = stays ? half_k * a.bristle.squaredNorm() : 0.0;
+  const double e_n1 = law_.normal.energy(a.gap_n1);
+  Energies e;
+  e.stored = e_n1 + bristle_n1;
+  e.by_friction = std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 + half_k * kept.squaredNorm());
+  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+    e.by_pressure =
+        std::max(0.0, -a.pressure * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+  return e;
+}
+
+Work SurfaceContact::work(const NodeStep& step, const double* history,
+                          const double* /*scratch*/) const {
+  Work w;
+  const bool instant = step.x_n == step.x_n1;
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    if (instant) {
+      const Vec3 kept(memory[0], memory[1], memory[2]);
+      w.stored += area * (law_.normal.energy(surface_.distance(local(step.x_n1, i))) +
+                          0.5 * law_.bristle * kept.squaredNorm());
+      continue;
+    }
+    const Action a = act(step, place(step, i), memory, false);
+    if (!a.acts) continue;
+    const Energies e = energies(step, a, memory);
+    w.stored += area * e.stored;
+    w.dissipated += area * (e.by_friction + e.by_pressure);
+  }
+  return w;
+}
+
+/// The numbers behind those of the points, in this order.
+struct SurfaceContact::Totals {
+  double impulse, friction_loss, normal_loss;  // since the start
+  double gap, normal_force, area, pressure, sticking, slipping;
+  double force[3], friction[3], point[3];
+};
+
+void SurfaceContact::initialize(double* history) const {
+  static_assert(sizeof(Totals) == kTotals * sizeof(double));
+  std::fill_n(history, history_size(), 0.0);
+  history[kMemory * points_.points.size() + offsetof(Totals, gap) / sizeof(double)] = gap_at_start_;
+}
+
+void SurfaceContact::commit(const NodeStep& step, double* history,
+                            const double* /*scratch*/) const {
+  double* const numbers = history + kMemory * points_.points.size();
+  Totals t{};
+  std::copy_n(numbers, 3, &t.impulse);
+  t.gap = std::numeric_limits<double>::infinity();
+  const bool instant = step.x_n == step.x_n1;  // in statics nothing moves
+  const Mat3 R = (1.0 - step.alpha_f) * axes(step.x_n) + step.alpha_f * axes(step.x_n1);
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
+  for (int i = 0; i < size(); ++i) {
+    double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    const Action a = act(step, place(step, i), memory, false);
+    t.gap = std::min(t.gap, a.gap_n1);
+    if (a.acts && !instant) {
+      const Energies e = energies(step, a, memory);
+      t.friction_loss += area * e.by_friction;
+      t.normal_loss += area * e.by_pressure;
+      t.impulse += area * a.pressure * step.context.dt;
+    }
+    if (a.acts && a.pressure > 0.0) {
+      t.normal_force += area * a.pressure;
+      t.area += area;
+      t.pressure = std::max(t.pressure, a.pressure);
+      (a.slips ? t.slipping : t.sticking) += 1.0;
+      force += area * a.h;
+      friction += area * a.friction;
+      moment += area * a.pressure * position(step.x_n1, i);
+    }
+    const bool stays = a.gap_n1 < law_.normal.reach();
+    for (int k = 0; k < 3; ++k) {
+      memory[k] = stays ? a.bristle[k] : 0.0;
+      memory[4 + k] = a.h[k];
+      memory[7 + k] = a.friction[k];
+    }
+    memory[3] = stays && a.slips ? 1.0 : 0.0;
+    memory[10] = a.pressure;
+  }
+  if (t.normal_force > 0.0) moment /= t.normal_force;
+  for (int k = 0; k < 3; ++k) {
+    t.force[k] = (R * force)[k];
+    t.friction[k] = (R * friction)[k];
+    t.point[k] = moment[k];
+  }
+  std::copy_n(&t.impulse, kTotals, numbers);
+}
+
+SurfaceReport SurfaceContact::report(const double* history) const {
+  Totals t;
+  std::copy_n(history + kMemory * points_.points.size(), kTotals, &t.impulse);
+  SurfaceReport r;
+  r.least_gap = t.gap;
+  r.normal_force = t.normal_force;
+  r.force = Vec3(t.force);
+  r.friction = Vec3(t.friction);
+  r.point = Vec3(t.point);
+  r.area = t.area;
+  r.largest_pressure = t.pressure;
+  r.sticking = static_cast<int>(t.sticking);
+  r.slipping = static_cast<int>(t.slipping);
+  r.impulse = t.impulse;
+  r.friction_loss = t.friction_loss;
+  r.normal_loss = t.normal_loss;
+  return r;
+}
+
+std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& instant,
+                                                              const double* history) const {
+  std::vector<SurfacePointReport> list;
+  const Mat3 R = axes(instant.x_n1);
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    if (!(memory[10] > 0.0)) continue;
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    const RigidSurface::Gap gap = surface_.gap(local(instant.x_n1, i));
+    list.push_back({.point = position(instant.x_n1, i),
+                    .normal = R * gap.normal,
+                    .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
+                    .friction = area * (R * Vec3(memory[7], memory[8], memory[9])),
+                    .gap = gap.value,
+                    .pressure = memory[10]});
+  }
+  return list;
+}
+
+}  // namespace polhode

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/base/error.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/build_surface_contacts.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+namespace {
+
+using testing::HasSubstr;
+
+/// A pad on a plate above the floor, with a roller beside it.
+Model model_of(const std::string& contacts, const std::string& pad = "",
+               const std::string& analysis = "{duration: 1 s, step: 10 ms}",
+               const std::string& floor = "") {
+  return read_model_text(R"(
+format: 1
+bodies:
+  floor: {fixed: true, shape: {plane: z})" +
+                             floor + R"(}
+  plate: {shape: {box: [1, 1, 0.1]}, density: 500, position: [0, 0, 0.65]}
+  roller: {shape: {cylinder: [0.4, 0.6]}, density: 500, position: [2, 0, 0.3]}
+materials:
+  rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.25, density: 1000}
+solids:
+  pad:
+    mesh: {block: {size: [0.4, 0.4, 0.5], cells: [4, 4, 5]}, position: [0, 0, 0.35]}
+    material: rubber
+    bonded: {plate: zmax}
+    )" + pad + "\n" + contacts +
+                             "\nanalysis: " + analysis + "\n",
+                         "m.yaml");
+}
+const std::string kAlone = "exclude: [[plate, floor], [plate, roller], [roller, floor]]";
+
+std::vector<std::string> met(const Model& model) {
+  std::vector<std::string> names;
+  for (const SurfacePair& pair : plan_surface_contacts(model))
+    names.push_back(model.bodies[static_cast<std::size_t>(pair.body)].name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(BuildSurfaceContacts, ASolidMeetsEveryBodyButThoseItIsBondedTo) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(met(model_of("")), Names{}) << "without contacts";
+  EXPECT_EQ(met(model_of("contacts: {}")), (Names{"floor", "roller"}));
+  EXPECT_EQ(met(model_of("contacts: {joint_neighbours: true}")),
+            (Names{"floor", "plate", "roller"}));
+  EXPECT_EQ(met(model_of("contacts: {pairs: {own: {between: [pad, plate]}}}")),
+            (Names{"floor", "plate", "roller"}))
+      << "a pair that is named is meant";
+  EXPECT_EQ(met(model_of("contacts: {exclude: [[floor, pad]]}")), Names{"roller"});
+  EXPECT_EQ(met(model_of("contacts: {}", "contact: {touches: false}")), Names{});
+  EXPECT_EQ(met(model_of("contacts: {}", "contact: {meets: [base]}", "{duration: 1 s, step: 10 ms}",
+                         ", contact: {groups: [base]}")),
+            Names{"floor"});
+  EXPECT_EQ(met(model_of("contacts: {}", "contact: {groups: [soft]}")), (Names{"floor", "roller"}));
+}
+
+TEST(BuildSurfaceContacts, TakesTheLawOfThePairThenOfMaterialsThenCombined) {
+  const auto friction = [](const std::string& contacts, const std::string& body) {
+    const Model model = model_of(contacts, "contact: {material: soft}",
+                                 "{duration: 1 s, step: 10 ms}", ", contact: {material: ice}");
+    for (const SurfacePair& pair : plan_surface_contacts(model))
+      if (model.bodies[static_cast<std::size_t>(pair.body)].name == body) return pair.law.friction;
+    return -1.0;
+  };
+  const std::string materials = "materials: {ice: {friction: 0.04}, soft: {friction: 1}}";
+  const std::string contacts = "contacts: {default: {friction: 0.25}, " + materials;
+  EXPECT_DOUBLE_EQ(friction(contacts + "}", "floor"), 0.2);
+  EXPECT_DOUBLE_EQ(friction(contacts + "}", "roller"), 0.5);
+  const std::string pair = ", pairs: {m: {materials: [soft, ice], friction: 0.3}";
+  EXPECT_EQ(friction(contacts + pair + "}}", "floor"), 0.3);
+  EXPECT_EQ(friction(contacts + pair + ", f: {between: [floor, pad], friction: 0.7}}}", "floor"),
+            0.7);
+}
+
+/// The law as built, and how many points there are.
+struct Built {
+  Simulation simulation;
+  const SurfaceContact* contact = nullptr;
+
+  Built(const std::string& contacts, const std::string& pad) : simulation(model_of(contacts, pad)) {
+    for (const ContactMap::Surface& s : simulation.contact_map().surfaces)
+      if (simulation.model().bodies[static_cast<std::size_t>(s.body)].name == "floor")
+        contact = &dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
+  }
+};
+
+// @tests{surface-stiffness}
+TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
+  const Built plain("contacts: {" + kAlone + "}", "contact: {surface: zmin}");
+  ASSERT_TRUE(plain.contact);
+  EXPECT_EQ(plain.contact->size(), 25);
+  const contact::NormalLaw& law = plain.contact->law().normal;
+  EXPECT_NEAR(law.tolerance, 1e-4, 1e-12) << "1e-3 of an edge";
+  EXPECT_NEAR(law.stiffness, 1.5 * 0.02 * 1e6 / 2e-4, 1.0) << "2 % of Young's modulus at gap 0";
+  EXPECT_NEAR(law.force(0.0), 0.02 * 1e6, 1e-6);
+  EXPECT_EQ(plain.contact->law().end_share, 0.5) << "restitution 0";
+
+  const Built stated("contacts: {" + kAlone +
+                         ", default: {gap_tolerance: 1 mm, reference_pressure: 4 kPa, "
+                         "restitution: 1, friction: 0.3}}",
+                     "");
+  EXPECT_EQ(stated.contact->law().normal.tolerance, 1e-3);
+  EXPECT_NEAR(stated.contact->law().normal.force(0.0), 4e3, 1e-9);
+  EXPECT_EQ(stated.contact->law().end_share, 0.0);
+  EXPECT_EQ(stated.contact->law().mu, 0.3);
+  // The whole boundary: 5 x 5 x 6 nodes less the 3 x 3 x 4 inside.
+  EXPECT_EQ(stated.contact->size(), 150 - 36);
+  // In steps too short for elasticity to be felt, inertia counts: ρ h/Δt².
+  Model quick = model_of("contacts: {" + kAlone + ", default: {gap_tolerance: 1 mm}}");
+  quick.analysis.step = 1e-4;
+  const Simulation fast(std::move(quick));
+  const int group = fast.contact_map().surfaces.front().group;
+  EXPECT_NEAR(dynamic_cast<const SurfaceContact&>(fast.system().nodes().group(group))
+                  .law()
+                  .normal.stiffness,
+              1000 * 0.1 / 1e-8, 1.0);
+}
+
+std::string complaint(const std::string& contacts, const std::string& pad = "",
+                      const std::string& analysis = "{duration: 1 s, step: 10 ms}") {
+  try {
+    const Simulation simulation(model_of(contacts, pad, analysis));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(BuildSurfaceContacts, RefusesSolidsThatOverlapAtTheStart) {
+  EXPECT_EQ(complaint("contacts: {" + kAlone + "}"), "");
+  Model model = model_of("contacts: {" + kAlone + "}");
+  model.solids[0].mesh.position[2] -= 0.11;
+  try {
+    const Simulation simulation(std::move(model));
+    FAIL() << "the pad starts 1 cm in the floor";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("pad in floor by 0.01 m"));
+    EXPECT_THAT(e.what(), HasSubstr("moves bodies only"));
+  }
+}
+
+TEST(BuildSurfaceContacts, InStaticsKnowsNoFrictionAndNoBodies) {
+  const std::string statics = "{type: statics}";
+  const std::string hold = "prescribed: {hold: {nodes: zmin, x: 0, y: 0, z: 0}}";
+  EXPECT_EQ(complaint("contacts: {" + kAlone + "}", hold, statics), "");
+  EXPECT_THAT(complaint("contacts: {" + kAlone + ", default: {friction: 0.2}}", hold, statics),
+              HasSubstr("meet with friction, which statics does not know"));
+  EXPECT_THAT(complaint("contacts: {}", hold, statics), HasSubstr("bodies may touch bodies"));
+}
+
+}  // namespace
+}  // namespace polhode

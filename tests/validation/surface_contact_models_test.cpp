@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces of solids in contact, from model files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode::test {
+namespace {
+
+/// A block of hexahedra as nodes and elements of a model file.
+/// @param place  From (i, j, k) / cells to a node.
+template <class Place>
+std::string inline_block(const std::array<int, 3>& cells, Place&& place) {
+  std::string nodes, elements;
+  const auto [nx, ny, nz] = cells;
+  for (int k = 0; k <= nz; ++k)
+    for (int j = 0; j <= ny; ++j)
+      for (int i = 0; i <= nx; ++i) {
+        const Vec3 x = place(i, j, k);
+        nodes +=
+            format("{}[{:.17g}, {:.17g}, {:.17g}]", nodes.empty() ? "" : ", ", x[0], x[1], x[2]);
+      }
+  const auto at = [&](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        elements +=
+            format("{}[{}, {}, {}, {}, {}, {}, {}, {}]", elements.empty() ? "" : ", ", at(i, j, k),
+                   at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k), at(i, j, k + 1),
+                   at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1), at(i, j + 1, k + 1));
+  return format("{{nodes: [{}], elements: [{}]}}", nodes, elements);
+}
+
+/// A distorted mesh between a plane below and a dead pressure above.
+TEST(SurfaceContactModel, PassesThePatchTest) {
+  const double p = 30.0;
+  const std::string mesh = inline_block({3, 3, 3}, [](int i, int j, int k) {
+    Vec3 x(i / 3.0, 0.4 * j, 0.8 * k / 3.0);
+    if (i % 3 != 0 && j % 3 != 0) x += 0.04 * Vec3(std::sin(9.0 * j), std::cos(7.0 * i), 0.0);
+    if (k % 3 != 0) x[2] += 0.04 * std::sin(8.0 * i + 5.0 * j);
+    return x;
+  });
+  Simulation simulation(read_model_text(R"(
+format: 1
+bodies: {floor: {fixed: true, shape: {plane: z}}}
+materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
+solids:
+  block:
+    mesh: )" + mesh + R"(
+    element: hex8_standard
+    material: m
+    contact: {surface: {plane: {axis: z, at: min}}}
+    prescribed: {x: {nodes: {plane: {axis: x, at: min}}, x: 0}, y: {nodes: {plane: {axis: y, at: min}}, y: 0}}
+loads: {p: {type: pressure, solid: block, surface: {plane: {axis: z, at: max}}, pressure: 30, follower: false}}
+contacts: {default: {gap_tolerance: 1 mm}}
+analysis: {type: statics}
+)",
+                                        "patch.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  const std::vector<SurfacePointReport> points = simulation.surface_points(0);
+  ASSERT_EQ(points.size(), 16U);
+  for (const SurfacePointReport& point : points) EXPECT_NEAR(point.pressure / p, 1.0, 1e-10);
+  const ContactReport contact = simulation.contact(0);
+  EXPECT_NEAR(contact.force[2] / (1.2 * p), 1.0, 1e-10);
+  const SolidReport solid = simulation.solid(0);
+  for (const ElementSample& s : solid.elements) {
+    const double area = s.principal_stretches[0] * s.principal_stretches[1];
+    EXPECT_NEAR(s.cauchy(2, 2) * area / p, -1.0, 1e-10);  // the pressure is per undeformed area
+    EXPECT_LT(std::abs(s.cauchy(0, 0)) / p, 1e-10);
+  }
+}
+
+/// A hammer with a head of rubber and a free ball, in space: they meet while both turn.
+TEST(SurfaceContactModel, KeepsEnergyAndMomentaOfASolidThatIsBondedToABody) {
+  Simulation simulation(read_model_text(R"(
+format: 1
+bodies:
+  hammer: {shape: {box: [0.3, 0.1, 0.1]}, density: 1000, position: [-0.2, 0.01, 0], velocity: [1.5, 0, 0], angular_velocity: [0.5, 0.4, 3]}
+  ball: {shape: {sphere: 0.2}, density: 700, position: [0.21, 0.03, 0.01], velocity: [-1, 0, 0.1], angular_velocity: [0, 5, 0]}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.35, density: 1100}}
+solids:
+  head:
+    mesh: {block: {size: [0.1, 0.1, 0.1], cells: [2, 2, 2]}, position: [0, 0.01, 0]}
+    material: rubber
+    bonded: {hammer: xmin}
+contacts:
+  default: {restitution: 1}
+  exclude: [[hammer, ball]]
+analysis: {duration: 0.4 s, step: 0.5 ms}
+)",
+                                        "hammer.yaml"));
+  double touched = 0.0;
+  const RunSummary summary = simulation.run({}, [&](Simulation& s) {
+    if (s.contact(0).points > 0) touched += 5e-4;
+  });
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  EXPECT_GT(touched, 2e-3);
+  EXPECT_LT(summary.energy_drift, 1e-10);
+  EXPECT_LT(summary.linear_momentum_drift, 1e-10);
+  EXPECT_LT(summary.angular_momentum_drift, 1e-10);
+  EXPECT_EQ(summary.contacts->lost_in_impacts, 0.0);
+  EXPECT_GT(summary.contacts->least_gap, -5e-5);
+}
+
+/// The end of a ball of radius 1 pressed on a plane. Hertz: with the force F and E* = E/(1 − ν²)
+/// the radius of contact is (3 F R/(4 E*))^(1/3), the pressure in the middle 3 F/(2π a²)
+/// (K. L. Johnson, Contact Mechanics, 1985, section 4.2).
+TEST(SurfaceContactModel, CarriesTheEndOfABallAsHertzSays) {
+  constexpr int kAcross = 14, kDeep = 12;
+  const double E = 1e6, nu = 0.3;
+  const auto graded = [](int i, double first, int even, double growth) {
+    if (i <= even) return first * i;
+    return first * (even + growth * (std::pow(growth, i - even) - 1.0) / (growth - 1.0));
+  };
+  const double first = 0.01 / 6.0;  // six elements over the radius of contact
+  const std::string mesh = inline_block({kAcross, kAcross, kDeep}, [&](int i, int j, int k) {
+    const double x = graded(i, first, 7, 1.5), y = graded(j, first, 7, 1.5);
+    const double z = graded(k, first, 6, 1.6), depth = graded(kDeep, first, 6, 1.6);
+    const double cap = 1.0 - std::sqrt(1.0 - x * x - y * y);
+    return Vec3(x, y, cap + (depth + 0.02 - cap) * z / depth);
+  });
+  Simulation simulation(read_model_text(R"(
+format: 1
+variables: {T: 1 s}
+bodies: {wall: {fixed: true, shape: {plane: z}}}
+materials: {m: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  ball:
+    mesh: )" + mesh + R"(
+    material: m
+    contact: {surface: {sphere: {centre: [0, 0, 1], radius: 1, surface: true}}}
+    prescribed:
+      x: {nodes: {plane: {axis: x, at: min}}, x: 0}
+      y: {nodes: {plane: {axis: y, at: min}}, y: 0}
+      top: {nodes: {plane: {axis: z, at: max}}, z: "-1e-4*t/T"}
+contacts: {default: {law: linear, gap_tolerance: 1e-6, reference_pressure: 20 kPa}}
+analysis: {type: statics}
+)",
+                                        "hertz.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  const double F = 4.0 * simulation.contact(0).normal_force;  // two planes of symmetry
+  const double E_star = E / (1.0 - nu * nu);
+  const double a = std::cbrt(0.75 * F / E_star), p_0 = 1.5 * F / (std::numbers::pi * a * a);
+  EXPECT_LT(a, 0.011);
+  EXPECT_GT(a, 0.009);
+  double pressure = 0.0, farthest = 0.0;
+  for (const SurfacePointReport& point : simulation.surface_points(0)) {
+    const double r = std::hypot(point.point[0], point.point[1]);
+    farthest = std::max(farthest, r);
+    if (r < 1e-6) pressure = point.pressure;
+    if (r < 0.8 * a) {
+      EXPECT_NEAR(point.pressure / p_0, std::sqrt(1.0 - r * r / (a * a)), 0.03) << "at " << r / a;
+    }
+  }
+  EXPECT_NEAR(pressure / p_0, 1.0, 0.03);
+  EXPECT_NEAR(farthest, a, 1.5 * first);
+}
+
+/// A cube of rubber is shot at a plate that it would pass in a twentieth of a step.
+TEST(SurfaceContactModel, NothingPassesThroughAThinPlate) {
+  for (const char* shape : {"{box: [1, 1, 0.005]}", "{cylinder: [1, 0.005]}"}) {
+    Simulation simulation(read_model_text(std::string(R"(
+format: 1
+bodies: {plate: {fixed: true, shape: )") + shape +
+                                              R"(}}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 1 ms}}}
+solids:
+  cube:
+    mesh: {block: {size: [0.1, 0.1, 0.1], cells: [2, 2, 2]}, position: [0.02, 0.01, 0.33], orientation: {axis: [1, 2, 0], angle: 20 deg}}
+    material: rubber
+    velocity: [0.3, 0, -20]
+contacts: {default: {friction: 0.3}}
+analysis: {duration: 40 ms, step: 5 ms}
+)",
+                                          "shot.yaml"));
+    double energy = simulation.balance().kinetic, rise = 0.0;
+    const RunSummary summary = simulation.run({}, [&](Simulation& s) {
+      const Balance b = s.balance();
+      rise = std::max(rise, b.kinetic + b.potential - energy);
+      energy = b.kinetic + b.potential;
+      for (const Vec3& x : s.solid(0).position) EXPECT_GT(x[2], 0.0024) << "at " << s.time();
+    });
+    ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+    EXPECT_GT(simulation.contact(0).impulse, 20.0) << "it was stopped";
+    EXPECT_LT(rise, 1e-9 * 200.0);
+  }
+}
+
+}  // namespace
+}  // namespace polhode::test
