@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/assembly/state_archive.hpp>
 
+#include <algorithm>
 #include <bit>
-#include <cstring>
 #include <type_traits>
 
 #include <polhode/base/error.hpp>
@@ -92,7 +92,7 @@ class Reader {
 
   void take(void* target, std::size_t size) {
     if (size > bytes_.size()) throw InputError(where_, "ends in the middle of a state", kMend);
-    std::memcpy(target, bytes_.data(), size);
+    std::copy_n(bytes_.data(), size, static_cast<char*>(target));  // memcpy may not have null
     bytes_.remove_prefix(size);
   }
 
