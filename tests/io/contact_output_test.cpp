@@ -5,17 +5,18 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include <polhode/base/error.hpp>
 #include <polhode/io/checkpoint.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/read_model.hpp>
-#include <polhode/io/recorder.hpp>
+#include <support/recorded_run.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode {
 namespace {
+
+using test::csv_rows, test::recorded_run;
 
 using testing::HasSubstr;
 
@@ -43,37 +44,14 @@ output:
     ball: {body: ball}
 )";
 
-std::vector<std::vector<double>> rows(const std::string& path) {
-  std::istringstream lines(read_file(path));
-  std::vector<std::vector<double>> all;
-  std::string line, cell;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    all.emplace_back();
-    while (std::getline(cells, cell, ',')) all.back().push_back(std::strtod(cell.c_str(), nullptr));
-  }
-  return all;
-}
-
-RunSummary run(Simulation& simulation, const std::string& folder, bool restarted = false) {
-  Recorder recorder(simulation, folder, {}, restarted);
-  recorder.step(simulation);
-  RunSummary summary = simulation.run([&](Simulation& s) { recorder.frame(s); },
-                                      [&](Simulation& s) { recorder.step(s); });
-  recorder.frame(simulation);
-  recorder.close();
-  return summary;
-}
-
 TEST(ContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
-  const RunSummary summary = run(simulation, (scratch / "out"));
+  const RunSummary summary = recorded_run(simulation, (scratch / "out"));
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
   // Columns: t, gap, normal, f (3), ft (3), p (3), points, status, impulse, lost.
-  const auto feet = rows((scratch / "out/probes/feet.csv"));
-  const auto turned = rows((scratch / "out/probes/turned.csv"));
+  const auto feet = csv_rows((scratch / "out/probes/feet.csv"));
+  const auto turned = csv_rows((scratch / "out/probes/turned.csv"));
   ASSERT_EQ(feet.front().size(), 16U);
   // It slides to a halt in 0.4 s: v²/(2 µ g) = 0.2 m; meanwhile friction is 0.25 of the weight.
   const std::vector<double>& sliding = feet[40];
@@ -102,7 +80,7 @@ TEST(ContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
 TEST(ContactOutput, TellsWhenASensorBeginsAndEnds) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
-  run(simulation, (scratch / "out"));
+  recorded_run(simulation, (scratch / "out"));
   const std::string events = read_file((scratch / "out/events.csv"));
   EXPECT_THAT(events, HasSubstr("passing,began"));
   EXPECT_THAT(events, HasSubstr("passing,ended"));
@@ -116,16 +94,16 @@ TEST(ContactOutput, ARunGoesOnFromACheckpointBitForBit) {
   const test::Scratch scratch;
   Model model = read_model_text(kModel, "m.yaml");
   Simulation straight(model);
-  const RunSummary whole = run(straight, (scratch / "straight"));
+  const RunSummary whole = recorded_run(straight, (scratch / "straight"));
   // Stop where the block slides and the ball is on its way up again.
   model.analysis.duration = 0.35;
   Simulation first(model);
-  run(first, (scratch / "parts"));
+  recorded_run(first, (scratch / "parts"));
   write_checkpoint((scratch / "c.pst"), first.model(), first.system(), first.state());
   model.analysis.duration = 1.5;
   const Simulation plan(model);
   Simulation second(model, read_checkpoint((scratch / "c.pst"), model, plan.system()));
-  const RunSummary rest = run(second, (scratch / "parts"), true);
+  const RunSummary rest = recorded_run(second, (scratch / "parts"), true);
   EXPECT_EQ(rest.result_hash, whole.result_hash);
   EXPECT_EQ(rest.contacts->lost_by_friction, whole.contacts->lost_by_friction);
   EXPECT_EQ(rest.contacts->lost_in_impacts, whole.contacts->lost_in_impacts);

@@ -5,16 +5,17 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include <polhode/io/checkpoint.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/read_model.hpp>
-#include <polhode/io/recorder.hpp>
+#include <support/recorded_run.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode {
 namespace {
+
+using test::csv_rows, test::recorded_run;
 
 /// A rubber block lands on a floor that slopes less than friction holds, and a ball on the block.
 const char* kModel = R"(
@@ -42,36 +43,13 @@ output:
     head: {contact: [ball, block], every: 1 us}
 )";
 
-std::vector<std::vector<double>> rows(const std::string& path) {
-  std::istringstream lines(read_file(path));
-  std::vector<std::vector<double>> all;
-  std::string line, cell;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    all.emplace_back();
-    while (std::getline(cells, cell, ',')) all.back().push_back(std::strtod(cell.c_str(), nullptr));
-  }
-  return all;
-}
-
-RunSummary run(Simulation& simulation, const std::string& folder, bool restarted = false) {
-  Recorder recorder(simulation, folder, {}, restarted);
-  recorder.step(simulation);
-  RunSummary summary = simulation.run([&](Simulation& s) { recorder.frame(s); },
-                                      [&](Simulation& s) { recorder.step(s); });
-  recorder.frame(simulation);
-  recorder.close();
-  return summary;
-}
-
 TEST(SurfaceContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
   const test::Scratch scratch;
   Simulation simulation(read_model_text(kModel, "m.yaml"));
-  const RunSummary summary = run(simulation, scratch / "out");
+  const RunSummary summary = recorded_run(simulation, scratch / "out");
   ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
-  const auto foot = rows(scratch / "out/probes/foot.csv"),
-             head = rows(scratch / "out/probes/head.csv");
+  const auto foot = csv_rows(scratch / "out/probes/foot.csv"),
+             head = csv_rows(scratch / "out/probes/head.csv");
   ASSERT_EQ(foot.front().size(), 16U);
   // The probe gives forces on what it names first: the floor carries block and ball, the block
   // carries the ball. Impulses balance the change of momentum in every direction.
@@ -112,15 +90,15 @@ TEST(SurfaceContactOutput, ARunGoesOnFromACheckpointBitForBit) {
   const test::Scratch scratch;
   const Model model = read_model_text(kModel, "m.yaml");
   Simulation straight(model);
-  const RunSummary whole = run(straight, scratch / "straight");
+  const RunSummary whole = recorded_run(straight, scratch / "straight");
   Model half = model;
   half.analysis.duration = 0.1;  // the block deforms and rubs
   Simulation first(half);
-  ASSERT_EQ(run(first, scratch / "cut").end, RunEnd::finished);
+  ASSERT_EQ(recorded_run(first, scratch / "cut").end, RunEnd::finished);
   write_checkpoint(scratch / "c.pst", first.model(), first.system(), first.state());
   const Simulation plan(model);
   Simulation second(model, read_checkpoint(scratch / "c.pst", model, plan.system()));
-  const RunSummary rest = run(second, scratch / "cut", true);
+  const RunSummary rest = recorded_run(second, scratch / "cut", true);
   EXPECT_EQ(rest.result_hash, whole.result_hash);
   for (const char* file : {"foot", "head"})
     EXPECT_EQ(read_file(scratch / ("cut/probes/" + std::string(file) + ".csv")),
