@@ -31,7 +31,7 @@ struct ContactSideSpec {
 /// What two surfaces do to each other. Zero, where no other meaning is told: chosen from the
 /// bodies.
 struct ContactLawSpec {
-  std::string potential = "barrier";    ///< barrier, linear, hertz.
+  std::string potential = "barrier";    ///< barrier, linear, hertz, nonsmooth.
   double gap_tolerance = 0.0;           ///< Half the band of the barrier [m].
   double stiffness = 0.0;               ///< [N/m]; hertz [N/m^1.5].
   double reference_load = 0.0;          ///< At which the gap of the barrier is zero [N].
@@ -80,7 +80,12 @@ struct ContactsSpec {
   bool joint_neighbours = false;             ///< Bodies with a common joint meet, solids and the
                                              ///< bodies they are bonded to, too.
   bool resolve_overlaps = false;             ///< Move bodies that overlap at the start.
-  std::optional<bool> record;  ///< Results of every pair of bodies; absent: if there are few.
+  std::optional<bool> record;    ///< Results of every pair of bodies; absent: if there are few.
+  int sweeps = 0;                ///< Of the non-smooth law, most in a step; 0: the default.
+  double sweep_tolerance = 0.0;  ///< Of the non-smooth law, see docs/reference; 0: the default.
+
+  /// Impulses instead of forces; a law of all pairs, as it decides how steps are taken.
+  [[nodiscard]] bool nonsmooth() const { return present && standard.potential == "nonsmooth"; }
 };
 
 }  // namespace polhode
