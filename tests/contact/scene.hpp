@@ -7,14 +7,29 @@
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/fe/materials/registry.hpp>
+#include <polhode/fe/mesh/generators.hpp>
+#include <polhode/fe/solid_elements.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/solve/contact_engine.hpp>
+#include <polhode/solve/coupled_engine.hpp>
 #include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
 #include <polhode/solve/single_step.hpp>
 
 namespace polhode::test {
+
+/// A bar of solid that is bonded to a body by one end, or by both ends to two, see
+/// Scene::add_bar().
+struct Bar {
+  Vec3 from = Vec3::Zero();  ///< Middle of its end on the body, in its axes; it goes along x.
+  Vec3 size = {0.4, 0.1, 0.1};
+  std::vector<double> cells{2, 1, 1};
+  double density = 100.0, stiffness = 1e5;  ///< Young's modulus [Pa].
+  double relaxation_time = 0.0;             ///< Kelvin-Voigt [s].
+  int far = kFreeNode;                      ///< Body at the far end.
+};
 
 /// Bodies with shapes, and a run of fixed steps.
 class Scene {
@@ -24,6 +39,8 @@ class Scene {
   State state;
   int iterations = 0, steps = 0, cuts = 0;
   double crowd_residual = 0.0;  ///< Above 0: the engine for crowds.
+  double newton_tolerance = 1e-12;
+  int max_iterations = 40;
 
   explicit Scene(const Vec3& gravity = {0.0, 0.0, -9.81}) { system.set_gravity(gravity); }
 
@@ -67,6 +84,44 @@ class Scene {
     place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
     contacts->add_shape({kGround, "floor", contact::plane(place)});
   }
+  /// A bar on a body, moving with it. @returns its mass.
+  double add_bar(int body, const Bar& bar) {
+    const Mesh mesh = make_mesh(
+        "bar", "block",
+        {{"size", {bar.size.x(), bar.size.y(), bar.size.z()}}, {"cells", bar.cells}}, "hex8");
+    const BodyMotion& m = starts_.at(body);
+    std::vector<Vec3> X;
+    const int first = system.nodes().count();
+    for (const Vec3& own : mesh.nodes) {
+      const Vec3 Z = bar.from + own + Vec3(0.5 * bar.size.x(), 0.0, 0.0);
+      const Vec3 x = m.r + m.q * Z;
+      X.push_back(x);
+      NodeData node{.position = x, .velocity = m.v + m.omega().cross(x - m.r)};
+      if (own.x() < -0.5 * bar.size.x() + 1e-9) {
+        node.body = body;
+        node.Z = Z;
+      } else if (bar.far != kFreeNode && own.x() > 0.5 * bar.size.x() - 1e-9) {
+        node.body = bar.far;
+        node.Z = starts_.at(bar.far).q.conjugate() * (x - starts_.at(bar.far).r);
+      }
+      system.add_node(node);
+    }
+    MaterialDescription material;
+    material.kind = "neo_hookean";
+    material.values = {{"youngs_modulus", bar.stiffness}, {"poisson_ratio", 0.3}};
+    material.relaxation_time = bar.relaxation_time;
+    SolidElementsDescription d;
+    d.name = "bar";
+    d.element = "hex8_eas9";
+    d.material = make_material("materials.m", material);
+    d.density = bar.density;
+    d.connectivity = mesh.blocks.at(0).nodes;
+    for (int& node : d.connectivity) node += first;
+    bar_points_.insert(bar_points_.end(), X.begin(), X.end());
+    d.X = bar_points_;
+    system.add_elements(make_solid_elements(std::move(d)));
+    return bar.density * bar.size.prod();
+  }
   void law(double mu, double restitution, double tolerance = 0.0) {
     contact::ContactLaw law;
     law.friction.mu = mu;
@@ -88,6 +143,9 @@ class Scene {
     std::unique_ptr<NewtonEngine> engine;
     if (crowd_residual > 0.0)
       engine = std::make_unique<CrowdEngine>(system, crowd_residual);
+    else if (!system.nodes().empty())
+      engine = std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum,
+                                               NodeFactor::every_iteration);
     else
       engine = std::make_unique<ContactEngine>(system, "block_lu");
     single_ = std::make_unique<SingleStep>(system, std::move(engine),
@@ -98,8 +156,8 @@ class Scene {
   bool step() {
     double left = dt_;
     NewtonOptions options;
-    options.tolerance = 1e-12;
-    options.max_iterations = 40;
+    options.tolerance = newton_tolerance;
+    options.max_iterations = max_iterations;
     options.jacobian = JacobianPolicy::every_iteration;
     options.line_search = false;
     double h = dt_;
@@ -135,12 +193,14 @@ class Scene {
   /// Of the energy balance, largest so far [J].
   [[nodiscard]] double drift() const { return state.ledger.energy_drift; }
   [[nodiscard]] BodyMotion motion(int body) const { return system.motion(state, body); }
+  [[nodiscard]] Balance balance() const { return single_->ledger().balance(state); }
   NewtonReport last;
   std::function<void(double)> watch;  ///< After every attempt at a step of this length.
 
  private:
   double dt_ = 1e-2;
   std::vector<BodyMotion> starts_;
+  std::vector<Vec3> bar_points_;
   std::unique_ptr<SingleStep> single_;
 };
 

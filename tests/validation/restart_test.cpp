@@ -35,6 +35,13 @@ Model touching(const std::string& name, double duration) {
   return model;
 }
 
+/// Bodies, surfaces of solids and stops of joints, all of which touch.
+Model trolley() {
+  Model model = read_model(source_dir() + "/tests/validation/data/trolley.yaml");
+  model.analysis.duration = 0.25;
+  return model;
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -50,6 +57,7 @@ std::vector<RestartCase> cases() {
       {"Rattleback", touching("rattleback", 0.2)},
       {"GearPair", touching("gear_pair", 0.05)},
       {"SpheresInABin", touching("spheres_in_a_bin", 0.3)},
+      {"Trolley", trolley()},
   };
 }
 

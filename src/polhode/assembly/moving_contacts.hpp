@@ -12,16 +12,10 @@ namespace polhode {
 
 class System;
 
-/// One row of a velocity constraint between two bodies: G_a·(v, ω)_a + G_b·(v, ω)_b = 0.
-struct VelocityRow {
-  int a = kGround, b = kGround;
-  Vec6 G_a = Vec6::Zero(), G_b = Vec6::Zero();
-};
-
-/// What velocities jumped by when impacts were settled. World, about the origin.
-struct VelocityJump {
-  double energy_lost = 0.0;                             ///< [J]
-  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();  ///< Of what stands still [N s, N m s].
+/// An impact between two bodies, or of one with the ground.
+struct PairImpact {
+  Participants bodies;
+  Impact impact;
 };
 
 /// Forces between bodies that meet and part: which pairs of bodies they couple changes during a
@@ -52,9 +46,14 @@ class MovingContacts {
   /// The step is accepted: histories go into the state, before it moves to t_{n+1}.
   virtual Work commit(State& state, std::span<const BodyStep> steps,
                       const StepContext& context) = 0;
-  /// The state has moved to t_{n+1}: impacts that ended in the step take their part of the speed.
-  /// @param rows  Of joints: they hold while velocities jump.
-  virtual VelocityJump settle_impacts(State& state, std::span<const VelocityRow> rows) = 0;
+  /// Something acted in the step that was committed last.
+  [[nodiscard]] virtual bool touched() const = 0;
+  /// The state has moved to t_{n+1}: appends the impacts that ended in the step. What they remember
+  /// goes into the state.
+  virtual void impacts(State& state, std::vector<PairImpact>& list) = 0;
+  /// They have been settled. @param impulses  Along each [N s]. @param losses  Energy each took
+  /// [J].
+  virtual void settled(std::span<const double> impulses, std::span<const double> losses) = 0;
   /// Where a step that cannot be solved is tightest: "box 'a' on 'floor'"; may be empty.
   [[nodiscard]] virtual std::string tightest() const = 0;
 };

@@ -68,6 +68,14 @@ void System::finish() {
   dissipates_ = dissipates_ || nodes_.dissipates();
   for (int i = 0; i < nodes_.count(); ++i)
     if (const int b = nodes_[i].body; b >= 0) reach[b] = std::max(reach[b], nodes_[i].Z.norm());
+  for (const BodyData& body : bodies_) carried_mass_.push_back(body.mass);
+  for (int i = 0; i < nodes_.count(); ++i) {
+    if (nodes_[i].body >= 0) carried_mass_[nodes_[i].body] += nodes_.node_mass(i);
+    if (nodes_.piece(i) < 0) continue;
+    const std::vector<int>& holders = nodes_.pieces()[nodes_.piece(i)].bodies;
+    for (int b : holders)
+      carried_mass_[b] += nodes_.node_mass(i) / static_cast<double>(holders.size());
+  }
   double mass = 0.0, length = 0.0;
   for (int b = 0; b < n; ++b) {
     mass += bodies_[b].mass;

@@ -68,6 +68,8 @@ class System {
   [[nodiscard]] const std::vector<BodyData>& bodies() const { return bodies_; }
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies_.size()); }
   [[nodiscard]] const Nodes& nodes() const { return nodes_; }
+  /// Of a body and the solids it holds; what hangs between several bodies in equal parts [kg].
+  [[nodiscard]] double carried_mass(int body) const { return carried_mass_[body]; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const InteractionGroup& group(int i) const { return *groups_[i]; }
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
@@ -111,6 +113,7 @@ class System {
   State initial_;
   Vec3 gravity_ = Vec3::Zero();
   int rows_ = 0;
+  std::vector<double> carried_mass_;
   double mean_mass_ = 1.0, length_ = 1.0;
   bool conservative_ = true, dissipates_ = false, stiff_ = false;
   std::vector<int> barriers_;

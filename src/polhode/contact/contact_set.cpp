@@ -110,6 +110,8 @@ void ContactSet::prepare(const System& system) {
     reach_of_body_[s.body] = std::max(reach_of_body_[s.body], s.shape.reach);
     size_of_body_[s.body] = std::min(size_of_body_[s.body], s.shape.bound_radius);
   }
+  carried_mass_.clear();
+  for (int b = 0; b < system.body_count(); ++b) carried_mass_.push_back(system.carried_mass(b));
   references_.assign(n, {});
   wrenches_.assign(n, Vec6::Zero());
 }
@@ -119,7 +121,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   const PlacedShape &a = shapes_[p.a], &b = shapes_[p.b];
   const ContactLaw& law = this->law(p.a, p.b);
   const auto inverse_mass = [&](const PlacedShape& s) {
-    return s.body == kGround ? 0.0 : 1.0 / system_->bodies()[s.body].mass;
+    return s.body == kGround ? 0.0 : 1.0 / carried_mass_[s.body];
   };
   const double mass = 1.0 / (inverse_mass(a) + inverse_mass(b));
   const double length = std::min(a.shape.size, b.shape.size);
@@ -334,6 +336,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
   values.tangents = false;
   PairTerms unused;
   unused.set_zero();
+  touched_ = false;
   for (Vec6& w : wrenches_) w.setZero();
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
@@ -346,6 +349,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     p.impact_impulse = 0.0;
     const bool touched_before = p.touched;
     p.touched = acts(i, gap_1, least);
+    touched_ = touched_ || p.touched;
     if (!p.touched) {
       if (touched_before) p.report = {};
       p.report.gap_n = p.gap_n;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -104,7 +105,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
-  VelocityJump settle_impacts(State& state, std::span<const VelocityRow> rows) override;
+  bool touched() const override { return touched_; }
+  void impacts(State& state, std::vector<PairImpact>& list) override;
+  void settled(std::span<const double> impulses, std::span<const double> losses) override;
   std::string tightest() const override;
 
  private:
@@ -136,11 +139,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
     double margin = -1.0;
   };
 
-  struct ImpactRow;
-  [[nodiscard]] static std::vector<std::vector<int>> islands(std::span<const ImpactRow> rows,
-                                                             int bodies);
-  void settle_in_turn(std::span<const ImpactRow> rows, const std::vector<int>& island,
-                      std::map<int, BodyMotion>& motions, VelocityJump& jump);
+  [[nodiscard]] std::optional<double> exit_speed(const Point& p) const;
   void load(const State& state);
   void save(State& state);
   void refer(std::span<const BodyStep> steps, const StepContext& context);
@@ -172,14 +171,16 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   mutable std::map<std::pair<int, int>, ContactLaw> combined_;
 
   const System* system_ = nullptr;
+  std::vector<double> carried_mass_;  ///< By body: its own and that of the solids it holds [kg].
   std::vector<double> reach_of_body_, size_of_body_;
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
   std::vector<ApproachOfBalls> balls_;  ///< By point.
   std::vector<Participants> pairs_;
+  std::vector<int> settling_;  ///< Points of the impacts that were told last.
   std::vector<double> saved_, totals_;
-  bool loaded_ = false;
+  bool loaded_ = false, touched_ = false;
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
   BroadPhase broad_;
   std::vector<Bounds> bounds_;

@@ -110,10 +110,6 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' has no contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
-    if (!system.nodes().empty())
-      throw InputError("contacts",
-                       "bodies may touch bodies in a model that has deformable solids, too",
-                       "Exclude these pairs: beside solids only surfaces of solids touch");
     if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
         system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
@@ -121,19 +117,21 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
       return std::make_unique<CrowdEngine>(
           system, a.newton_tolerance > 0.0 ? a.newton_tolerance : CrowdEngine::kResidual);
     }
-    return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
-                                           rate);
   }
   if (!system.nodes().empty()) {
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' has no deformable solids",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
-    const NodeFactor factor = policy == JacobianPolicy::every_iteration || has_surfaces(system)
-                                  ? NodeFactor::every_iteration
-                                  : NodeFactor::automatic;
+    const NodeFactor factor =
+        policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
+            ? NodeFactor::every_iteration
+            : NodeFactor::automatic;
     return std::make_unique<CoupledEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
                                            rate, factor);
   }
+  if (system.contacts())
+    return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
+                                           rate);
   if (a.solver != "automatic" && a.solver != "tree")
     return std::make_unique<SparseEngine>(system, a.solver, rate);
   if (!tree_fits) {

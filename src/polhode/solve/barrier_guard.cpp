@@ -75,24 +75,9 @@ void BarrierGuard::hold_prediction() {
   const std::vector<TrialBlock> predicted = trial_.blocks;
   const std::vector<double> node_u = trial_.node_u;
   const auto go = [&](double part) {
-    for (int slot = 0; slot < system_.tree().slots; ++slot) {
-      const TrialBlock& p = predicted[static_cast<std::size_t>(slot / kLanes)];
-      const int l = slot % kLanes;
-      move_body(state_, trial_, slot, part * Vec3(p.u[0][l], p.u[1][l], p.u[2][l]),
-                part * Vec3(p.theta[0][l], p.theta[1][l], p.theta[2][l]));
-    }
-    if (system_.nodes().empty()) return;
-    for (std::size_t k = 0; k < node_u.size(); ++k) {
-      trial_.node_u[k] = part * node_u[k];
-      trial_.node_x[k] = state_.node_x[k] + trial_.node_u[k];
-    }
-    for (const PrescribedComponent& p : system_.nodes().prescribed()) {
-      const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
-      trial_.node_u[k] = node_u[k];
-      trial_.node_x[k] = state_.node_x[k] + node_u[k];
-    }
-    follow_bodies(system_, state_, trial_);
-    update_node_velocities(system_, state_, trial_);
+    std::copy(predicted.begin(), predicted.end(), trial_.blocks.begin());
+    trial_.node_u = node_u;
+    shorten_motion(system_, state_, part, trial_);
   };
   measure(to_);
   near_ = smallest(to_) < 1.0;
@@ -126,7 +111,7 @@ Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
     if (fits >= 1.0) break;
     applied *= fits;
     iterate_.restore(system_, trial_);
-    engine_.begin_step(state_, trial_);
+    engine_.resume(state_, trial_);
     done = engine_.iterate(state_, trial_, refactor, damping * applied);
   }
   near_ = std::min(smallest(from_), smallest(to_)) < 1.0;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/base/format.hpp>
 #include <polhode/solve/coupled_engine.hpp>
+#include <polhode/solve/merit_search.hpp>
 #include <polhode/solve/sparse_engine.hpp>
 
 namespace polhode {
@@ -21,22 +23,45 @@ constexpr double kStepChange = 0.2;
 constexpr int kHalvings = 8;
 /// Increments below this do not turn an element inside out: no iterate is kept to go back to.
 constexpr double kHarmless = 1e-3;
+/// Bodies that may touch are looked up so often for one iteration.
+constexpr int kMostPairChanges = 4;
+/// Round-off of a merit, as part of ℓ² m.
+constexpr double kNothing = 1e-28;
 
 }  // namespace
 
 CoupledEngine::CoupledEngine(const System& system, const std::string& solver, MomentumRate form,
                              NodeFactor policy)
-    : condensation_(system),
+    : system_(&system),
+      condensation_(system),
       nodes_(system),
-      newton_(system, form, condensation_.pairs()),
+      newton_(system, form),
       solver_(make_linear_solver(solver)) {
-  solver_->analyse(newton_.topology());
+  if (system.contacts()) touching_.emplace(system);
+  set_up();
   reuse_ = policy == NodeFactor::reuse ||
            (policy == NodeFactor::automatic && system.nodes().unknowns() > kFactorAlways);
   shares_.resize(system.body_count());
 }
 
-void CoupledEngine::begin_step(const State&, Trial&) {
+/// The matrix of bodies: interactions, then solids, then pairs that may touch.
+void CoupledEngine::set_up() {
+  std::vector<KktPair> more = condensation_.pairs();
+  if (touching_) more.insert(more.end(), touching_->pairs().begin(), touching_->pairs().end());
+  newton_.couple(more);
+  solver_->analyse(newton_.topology());
+  ++analyses_;
+}
+
+void CoupledEngine::begin_step(const State& state, Trial& trial) {
+  resume(state, trial);
+  if (!touching_) return;
+  if (!touching_->begin_step(state, trial)) set_up();
+  if (const double part = touching_->free_part(); part < 1.0)
+    shorten_motion(*system_, state, part, trial);
+}
+
+void CoupledEngine::resume(const State&, Trial&) {
   step_iterations_ = 0;
   last_increment_ = contraction_ = 0.0;
   before_.forget();
@@ -50,22 +75,75 @@ bool CoupledEngine::must_factor(const Trial& trial, bool refactor) const {
          (step_iterations_ > 0 && step_iterations_ % kPatience == 0);
 }
 
-/// @eq{eq:ga-Newton-scheme}
-Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor, double damping) {
-  const System& system = newton_.system();
-  Iteration done;
-  const bool factor = must_factor(trial, refactor);
+bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor, Iteration& done) {
   ElementReport elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
   for (int i = 0; i < kHalvings && before_.kept() && !(elements.least_volume > 0.0); ++i) {
-    retreat(state, trial);
+    retreat(state, trial, 0.5);
     elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
   }
-  if (!(elements.least_volume > 0.0)) {
-    done.reason = format("{} is turned inside out (det F = {:.2g})",
-                         system.nodes().element_name(nodes_.worst_group(), elements.worst_element),
-                         elements.least_volume);
-    return done;
+  if (elements.least_volume > 0.0) return true;
+  done.reason = format("{} is turned inside out (det F = {:.2g})",
+                       system_->nodes().element_name(nodes_.worst_group(), elements.worst_element),
+                       elements.least_volume);
+  return false;
+}
+
+bool CoupledEngine::solve(const State& state, const Trial& trial) {
+  for (int again = 0; again < kMostPairChanges; ++again) {
+    newton_.assemble(state, trial, true);
+    KktValues& values = newton_.values();
+    const auto couplings = newton_.cleared_couplings();
+    const std::size_t cliques = condensation_.pairs().size();
+    std::fill(shares_.begin(), shares_.end(), Vec6::Zero());
+    const double s = trial.scale(*system_);
+    condensation_.condense(nodes_.residual(), s, shares_, values.diagonal,
+                           couplings.first(cliques));
+    x_ = newton_.right_hand_side();
+    for (int b = 0; b < system_->body_count(); ++b) x_.segment<6>(6 * b) -= shares_[b];
+    if (touching_) {
+      touching_->evaluate(state, trial, true);
+      touching_->add_wrenches(s, x_);
+      touching_->add_tangents(s, values, couplings.subspan(cliques));
+    }
+    if (x_.size() > 0) {
+      if (!solver_->factor(values)) return false;
+      solver_->solve(x_);
+      if (!x_.allFinite()) return false;
+    }
+    if (!touching_ || touching_->cover(trial, x_)) {
+      condensation_.expand(x_.data(), du_);
+      return true;
+    }
+    set_up();
   }
+  return false;
+}
+
+double CoupledEngine::merit(const State& state, const Trial& trial) {
+  newton_.assemble(state, trial, false);
+  touching_->evaluate(state, trial, false);
+  const double s = trial.scale(*system_);
+  rhs_ = newton_.right_hand_side();
+  touching_->add_wrenches(s, rhs_);
+  std::fill(shares_.begin(), shares_.end(), Vec6::Zero());
+  condensation_.gather(nodes_.residual(), s, shares_);
+  for (int b = 0; b < system_->body_count(); ++b) rhs_.segment<6>(6 * b) -= shares_[b];
+  double sum = merit_of_bodies(*system_, rhs_);
+  const Nodes& nodes = system_->nodes();
+  for (int i = 0; i < nodes.count(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      if (nodes.unknown(i, c) < 0) continue;
+      const double R = s * nodes_.residual()[3 * static_cast<std::size_t>(i) + c];
+      sum += R * R / nodes.node_mass(i);
+    }
+  return sum;
+}
+
+/// @eq{eq:ga-Newton-scheme}
+Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor, double damping) {
+  Iteration done;
+  const bool factor = must_factor(trial, refactor);
+  if (!take_elements(state, trial, factor, done)) return done;
   if (factor) {
     if (!condensation_.factor(nodes_, trial)) {
       done.reason = "the matrix of the solids is singular";
@@ -75,37 +153,38 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
     factored_dt_ = trial.context.dt;
     contraction_ = 0.0;
   }
-  newton_.assemble(state, trial, true);
-  KktValues& values = newton_.values();
-  const std::size_t own = values.pairs.size() - condensation_.pairs().size();
-  const auto cliques = std::span(values.pairs).subspan(own);
-  for (KktValues::Pair& v : cliques) {
-    v.K_ab.setZero();
-    v.K_ba.setZero();
-  }
-  std::fill(shares_.begin(), shares_.end(), Vec6::Zero());
-  condensation_.condense(nodes_.residual(), trial.scale(system), shares_, values.diagonal, cliques);
-  x_ = newton_.right_hand_side();
-  for (int b = 0; b < system.body_count(); ++b) x_.segment<6>(6 * b) -= shares_[b];
-  if (x_.size() > 0) {
-    if (!solver_->factor(values)) return done;
-    solver_->solve(x_);
-    if (!x_.allFinite()) return done;
-  }
-  condensation_.expand(x_.data(), du_);
+  if (!solve(state, trial)) return done;
   done.solved = true;
-  if (last_increment_ == 0.0 || last_increment_ > kHarmless)
-    before_.keep(system, trial);
+  if (touching_ || last_increment_ == 0.0 || last_increment_ > kHarmless)
+    before_.keep(*system_, trial);
   else
     before_.forget();
-  part_ = damping;
-  move(state, trial, damping, done);
-  move_nodes(state, trial, damping, done);
+  part_ = touching_ ? std::min(damping, touching_->filter()) : damping;
+  const double before = touching_ ? merit(state, trial) : 0.0;
+  move(state, trial, part_, done);
+  move_nodes(state, trial, part_, done);
   if (!std::isfinite(done.increment)) done.solved = false;
+  if (touching_ && done.solved) {
+    search(state, trial, before, done);
+    done.applied = part_;
+  }
   ++step_iterations_;
   if (last_increment_ > 0.0 && !factor) contraction_ = done.increment / last_increment_;
   last_increment_ = done.increment;
   return done;
+}
+
+/// Elements that are turned inside out have no residual: there the merit is infinite.
+void CoupledEngine::search(const State& state, Trial& trial, double before, Iteration& done) {
+  MeritSearch search(before, part_);
+  while (search.wants(done.increment)) {
+    const ElementReport elements = nodes_.assemble(state, trial, false, condensation_.turns(trial));
+    const double after =
+        elements.least_volume > 0.0 ? merit(state, trial) : std::numeric_limits<double>::infinity();
+    if (after < kNothing * std::pow(system_->length_scale(), 2) * system_->mean_mass()) return;
+    if (search.accepts(after)) return;
+    retreat(state, trial, search.part() / part_);
+  }
 }
 
 /// @eq{eq:ga-Newton-iterations}
@@ -148,14 +227,14 @@ void CoupledEngine::shift_nodes(const State& state, Trial& trial) const {
   update_node_velocities(system, state, trial);
 }
 
-/// Half the way back to the iterate before.
-void CoupledEngine::retreat(const State& state, Trial& trial) {
+/// Back to this part of the way from the iterate before.
+void CoupledEngine::retreat(const State& state, Trial& trial, double part) {
   const System& system = newton_.system();
   const std::vector<double> inside =
-      part_way(before_.unknowns(), element_unknowns(system, trial), 0.5);
+      part_way(before_.unknowns(), element_unknowns(system, trial), part);
   before_.restore(system, trial);
-  part_ *= 0.5;
-  for (double& d : du_) d *= 0.5;
+  part_ *= part;
+  for (double& d : du_) d *= part;
   Iteration again;
   apply_increments(system, state, trial, x_, part_, again, worst_body_);
   shift_nodes(state, trial);
@@ -163,7 +242,7 @@ void CoupledEngine::retreat(const State& state, Trial& trial) {
 }
 
 std::string CoupledEngine::worst_other() const {
-  if (worst_node_ < 0) return {};
+  if (worst_node_ < 0) return touching_ ? touching_->contacts()->tightest() : std::string{};
   const Nodes& nodes = newton_.system().nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     for (int e = 0; e < nodes.group(g).size(); ++e)
@@ -176,6 +255,20 @@ ConstraintCheck CoupledEngine::check(const State& state, Trial& trial) {
   return newton_.check(state, trial);
 }
 
-void CoupledEngine::end_step(const State&, Trial&) {}
+void CoupledEngine::end_step(const State& state, Trial& trial) {
+  if (touching_) touching_->end_step(state, trial);
+}
+
+void CoupledEngine::add_ground_wrench(double* force, double* moment) const {
+  if (touching_) touching_->add_ground_wrench(force, moment);
+}
+
+double CoupledEngine::stored(const State& state) const {
+  return touching_ ? touching_->stored(state) : 0.0;
+}
+
+Work CoupledEngine::commit(State& state, const Trial& trial) {
+  return touching_ ? touching_->commit(state, trial) : Work{};
+}
 
 }  // namespace polhode

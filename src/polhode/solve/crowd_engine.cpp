@@ -25,7 +25,7 @@ constexpr double kPartOfSpeed = 1e-3;
 }  // namespace
 
 bool CrowdEngine::suits(const System& system) {
-  if (!system.contacts() || system.rows() > 0) return false;
+  if (!system.contacts() || system.rows() > 0 || !system.nodes().empty()) return false;
   if (!dynamic_cast<PointwiseContacts*>(system.contacts().get())) return false;
   return std::none_of(
       system.interactions().begin(), system.interactions().end(),
@@ -207,8 +207,6 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   return done;
 }
 
-void CrowdEngine::end_step(const State&, Trial&) { touches_ = !springs_.empty(); }
-
 void CrowdEngine::add_ground_wrench(double* force, double* moment) const {
   Vec3 f = Vec3::Zero(), m = Vec3::Zero();
   for (std::size_t b = 0; b < wrenches_.size(); ++b) {
@@ -232,12 +230,6 @@ double CrowdEngine::stored(const State& state) const {
 
 Work CrowdEngine::commit(State& state, const Trial& trial) {
   return contacts_->commit(state, steps_, trial.context);
-}
-
-VelocityJump CrowdEngine::settle_impacts(State& state, const Trial&) {
-  if (!touches_) return {};
-  state.past_count = 0;  // measured: from the velocities at t_n crowds need the fewest iterations
-  return contacts_->settle_impacts(state, {});
 }
 
 }  // namespace polhode

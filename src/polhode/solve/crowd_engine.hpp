@@ -31,10 +31,10 @@ class CrowdEngine final : public NewtonEngine {
   [[nodiscard]] std::string worst_other() const override { return contacts_->tightest(); }
   [[nodiscard]] bool may_grow() const override { return true; }
   void add_ground_wrench(double* force, double* moment) const override;
-  void end_step(const State& state, Trial& trial) override;
+  void end_step(const State&, Trial&) override {}
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
-  VelocityJump settle_impacts(State& state, const Trial& trial) override;
+  [[nodiscard]] MovingContacts* contacts() const override { return contacts_; }
 
   /// Iterations of conjugate gradients so far.
   [[nodiscard]] long inner_iterations() const { return inner_; }
@@ -65,7 +65,7 @@ class CrowdEngine final : public NewtonEngine {
   std::vector<Vec6> wrenches_, rhs_, x_, start_;
   std::vector<ContactSpring> springs_;
   double merit_ = 0.0, residual_ = 0.0;
-  bool evaluated_ = false, touches_ = false;
+  bool evaluated_ = false;
   int worst_body_ = -1, searches_ = 0;
   long inner_ = 0;
 };

@@ -120,7 +120,6 @@ InstantSolution InstantSolver::accelerations(const State& state, std::span<const
     return solution;
   }
   const Impl::Outcome outcome = s.solve(state);
-  s.clear_cliques();
   solution.solved = outcome.solved;
   solution.consistent = outcome.consistent;
   solution.residual = outcome.residual;

@@ -63,6 +63,17 @@ class InstantSolver {
   /// @param more  Wrenches by body that act beside those of the system, such as contacts'; may be
   ///              empty. World, about the centres of mass [N, N m].
   [[nodiscard]] InstantSolution accelerations(const State& state, std::span<const Vec6> more = {});
+  /// From here on velocity jumps at this instant. Solids take part: their free nodes get no
+  /// impulse, but move with those that bodies carry as their mass couples them.
+  /// @returns false if a matrix is singular.
+  [[nodiscard]] bool take_impulses(const State& state);
+  /// M Δv = impulses with G Δv = 0. By body (linear, angular), world, about the centres of mass.
+  [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
+  /// The least change that takes the velocities onto G v = 0.
+  [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
+  /// Of the nodes of solids (3 each), for jumps of the bodies.
+  [[nodiscard]] std::vector<double> node_jumps(std::span<const Vec6> bodies);
+
   /// The part of a field of velocities that the constraints allow, in the mass metric. In and out:
   /// by body (linear, angular), world.
   void keep_admissible(const State& state, std::vector<Vec6>& field);

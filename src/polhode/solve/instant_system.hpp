@@ -89,7 +89,9 @@ struct InstantSolver::Impl {
     x = correction = rhs;
   }
 
+  /// Of the bodies; add_nodes() adds those of solids.
   void put_masses() {
+    clear_cliques();
     const double per_mass = 1.0 / system.mean_mass();
     for (int b = 0; b < system.body_count(); ++b) {
       const BodyData& body = system.bodies()[b];
@@ -115,10 +117,10 @@ struct InstantSolver::Impl {
       v.K_ba.setZero();
     }
   }
-  /// Adds masses and forces of the solids to the bodies'.
-  [[nodiscard]] bool add_nodes(const State& state) {
+  /// Adds masses and forces of the solids to the bodies'; for impulses there are no forces.
+  [[nodiscard]] bool add_nodes(const State& state, bool impulses = false) {
     if (!nodes) return true;
-    if (!nodes->take(state)) return false;
+    if (!(impulses ? nodes->take_masses(state) : nodes->take(state))) return false;
     const double per_mass = 1.0 / system.mean_mass();
     std::vector<Vec6> force(static_cast<std::size_t>(system.body_count()), Vec6::Zero());
     nodes->put(per_mass, force, values.diagonal, cliques());
@@ -204,10 +206,10 @@ struct InstantSolver::Impl {
     return true;
   }
   /// Solves for x with the right-hand side `rhs`, repeating until the rows hold to round-off.
-  Outcome solve(const State& state) {
+  Outcome solve(const State& state) { return factor(state) ? solve_factored() : Outcome{}; }
+  Outcome solve_factored() {
     Outcome outcome;
     x.setZero();
-    if (!factor(state)) return outcome;
     outcome.solved = true;
     const int bodies = 6 * map.topology.bodies, rows = map.topology.rows;
     correction = rhs;
@@ -236,6 +238,13 @@ struct InstantSolver::Impl {
       correction.tail(rows) = G_x;
     }
     return outcome;
+  }
+  /// The same for the bodies; zero if that cannot be solved.
+  std::vector<Vec6> solution_by_body() {
+    std::vector<Vec6> by_body(static_cast<std::size_t>(system.body_count()), Vec6::Zero());
+    if (!solve_factored().solved) return by_body;
+    for (int b = 0; b < system.body_count(); ++b) by_body[b] = x.segment<6>(6 * b);
+    return by_body;
   }
 };
 

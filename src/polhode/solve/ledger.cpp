@@ -152,14 +152,6 @@ void LedgerKeeper::add(State& state, const Work& work) {
   state.ledger.put_in.add(work.put_in);
 }
 
-void LedgerKeeper::add(State& state, const VelocityJump& jump) {
-  state.ledger.dissipated.add(jump.energy_lost);
-  for (int i = 0; i < 3; ++i) {
-    state.ledger.impulse[i].add(jump.impulse[i]);
-    state.ledger.angular_impulse[i].add(jump.turning[i]);
-  }
-}
-
 void LedgerKeeper::add_jump(State& state, const BodySums& before) {
   const BodySums after = sums(state);
   state.ledger.dissipated.add(before.kinetic - after.kinetic);

@@ -31,7 +31,6 @@ class LedgerKeeper {
   void after_commit(State& state, const Trial& trial);
   /// What the engine's own forces did over the step, between before_commit() and after_commit().
   void add(State& state, const Work& work);
-  void add(State& state, const VelocityJump& jump);
   /// Velocities have jumped: what they lost, and what stands still took, since `before`.
   void add_jump(State& state, const BodySums& before);
   [[nodiscard]] BodySums sums(const State& state) const;

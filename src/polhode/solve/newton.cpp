@@ -67,7 +67,7 @@ class LineSearch {
       return false;
     }
     iterate_.restore(system_, trial_);
-    engine_.begin_step(state_, trial_);
+    engine_.resume(state_, trial_);
     damping_ *= 0.5;
     return true;
   }

@@ -75,10 +75,12 @@ void InteractionSweep::evaluate(const Batch& batch, std::span<const BodyStep> st
   system_->group(batch.group).evaluate(items_, pair_steps_, std::span(terms_).first(items_.size()));
 }
 
-NewtonSystem::NewtonSystem(const System& system, MomentumRate form,
-                           const std::vector<KktPair>& more)
-    : system_(&system), form_(form), map_(kkt_map(system)), sweep_(system) {
-  map_.topology.pairs.insert(map_.topology.pairs.end(), more.begin(), more.end());
+NewtonSystem::NewtonSystem(const System& system, MomentumRate form)
+    : system_(&system),
+      form_(form),
+      map_(kkt_map(system)),
+      own_pairs_(map_.topology.pairs.size()),
+      sweep_(system) {
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.resize(n + 1);
   values_.diagonal.resize(n);
@@ -87,6 +89,22 @@ NewtonSystem::NewtonSystem(const System& system, MomentumRate form,
   body_residual_.assign(n, Vec6::Zero());
   body_scale_.assign(n, Vec6::Zero());
   row_residual_.assign(system.rows(), 0.0);
+}
+
+void NewtonSystem::couple(const std::vector<KktPair>& more) {
+  std::vector<KktPair>& pairs = map_.topology.pairs;
+  pairs.resize(own_pairs_);
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  values_.pairs.resize(pairs.size());
+}
+
+std::span<KktValues::Pair> NewtonSystem::cleared_couplings() {
+  const auto couplings = std::span(values_.pairs).subspan(own_pairs_);
+  for (KktValues::Pair& v : couplings) {
+    v.K_ab.setZero();
+    v.K_ba.setZero();
+  }
+  return couplings;
 }
 
 void NewtonSystem::take_steps(const State& state, const Trial& trial) {

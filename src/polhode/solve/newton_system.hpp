@@ -71,9 +71,13 @@ class InteractionSweep {
 /// @eq{eq:ga-residual-vector} @eq{eq:ga-Newton-scheme}
 class NewtonSystem {
  public:
-  /// @param more  Pairs of bodies that something else couples: their blocks come last in values().
-  NewtonSystem(const System& system, MomentumRate form, const std::vector<KktPair>& more = {});
+  NewtonSystem(const System& system, MomentumRate form);
 
+  /// Pairs of bodies that something else couples: their blocks come last in values(), for others
+  /// to fill. Replaces those stated before.
+  void couple(const std::vector<KktPair>& more);
+  /// Their blocks, all zero.
+  [[nodiscard]] std::span<KktValues::Pair> cleared_couplings();
   /// Statics: bodies have no rates of momentum.
   void set_static(bool yes) { static_ = yes; }
   /// Fills right_hand_side() and the residuals; with `tangent` the values as well.
@@ -104,6 +108,7 @@ class NewtonSystem {
   MomentumRate form_;
   bool static_ = false;
   KktMap map_;
+  std::size_t own_pairs_ = 0;  ///< Of interactions: the first ones.
   InteractionSweep sweep_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   KktValues values_;

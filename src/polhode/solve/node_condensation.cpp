@@ -212,16 +212,22 @@ const std::vector<Mat3>& NodeCondensation::turns(const Trial& trial) {
   return turn_;
 }
 
+void NodeCondensation::gather(const std::vector<double>& F, double scale,
+                              std::vector<Vec6>& residual) const {
+  for (const Bond& bond : bonds_) {
+    const Eigen::Map<const Vec3> at(F.data() + 3 * bond.node);
+    Vec6& R = residual[bond.body];
+    R.head<3>() += scale * at;
+    R.tail<3>() += scale * bond.z_alpha.cross(at);
+  }
+}
+
 void NodeCondensation::condense(const std::vector<double>& F, double scale,
                                 std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
                                 std::span<KktValues::Pair> pairs) {
   const Nodes& nodes = system_->nodes();
   const auto at = [&](int node) { return Eigen::Map<const Vec3>(F.data() + 3 * node); };
-  for (const Bond& bond : bonds_) {
-    Vec6& R = residual[bond.body];
-    R.head<3>() += scale * at(bond.node);
-    R.tail<3>() += scale * bond.z_alpha.cross(at(bond.node));
-  }
+  gather(F, scale, residual);
   for (int i = 0; i < nodes.count(); ++i) {
     if (nodes.piece(i) < 0) continue;
     const Vec3 f = turn_[nodes.piece(i)].transpose() * at(i);

@@ -41,6 +41,8 @@ class NodeCondensation {
   [[nodiscard]] bool factored() const { return factored_; }
   /// Rotation of each piece since the factorisation.
   [[nodiscard]] const std::vector<Mat3>& turns(const Trial& trial);
+  /// After factor() or turns(): adds P̄ᵀF times `scale` to the residuals by body.
+  void gather(const std::vector<double>& F, double scale, std::vector<Vec6>& residual) const;
   /// After factor() or turns(): the bodies' share. Adds P̄ᵀF − A_bf A_ff⁻¹ F_f to the residuals by
   /// body, and S to the diagonal and to the pairs' blocks, all times `scale`.
   void condense(const std::vector<double>& F, double scale, std::vector<Vec6>& residual,

@@ -56,6 +56,19 @@ bool NodeInertia::take(const State& state) {
     Eigen::Map<Vec3> R(residual_.data() + 3 * i);
     R = M_gamma - R - nodes.node_mass(i) * system_->gravity();
   }
+  return condense();
+}
+
+bool NodeInertia::take_masses(const State& state) {
+  trial_.context.t_n = state.t;
+  trial_.context.dt = 0.0;
+  start_trial(*system_, state, trial_);
+  residual_.assign(state.node_x.size(), 0.0);
+  gamma_.assign(state.node_x.size(), 0.0);
+  return condense();
+}
+
+bool NodeInertia::condense() {
   return condensation_.factor(mass_, residual_, trial_,
                               {.arms_turn = false, .same_matrix = condensation_.factored()});
 }

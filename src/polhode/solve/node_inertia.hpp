@@ -18,6 +18,9 @@ class NodeInertia {
   [[nodiscard]] const std::vector<KktPair>& pairs() const { return condensation_.pairs(); }
   /// Takes an instant. @returns false if the solids' mass matrix is singular.
   [[nodiscard]] bool take(const State& state);
+  /// The same where nothing acts and nothing turns: impulses instead of forces, and jumps of
+  /// velocities instead of accelerations.
+  [[nodiscard]] bool take_masses(const State& state);
   /// Adds the condensed mass and, to `force` by body, what the nodes exert, all times `scale`.
   void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
            std::span<KktValues::Pair> pairs);
@@ -28,6 +31,8 @@ class NodeInertia {
   [[nodiscard]] std::vector<double> reactions() const;
 
  private:
+  [[nodiscard]] bool condense();
+
   const System* system_;
   NodeCondensation condensation_;
   Trial trial_;

@@ -82,6 +82,27 @@ void update_node_velocities(const System&, const State& state, Trial& trial) {
     trial.node_v[k] += dt * ga.c_A * state.node_a[k];
 }
 
+void shorten_motion(const System& system, const State& state, double part, Trial& trial) {
+  for (int slot = 0; slot < system.tree().slots; ++slot) {
+    const TrialBlock& t = trial.blocks[static_cast<std::size_t>(slot / kLanes)];
+    const int l = slot % kLanes;
+    move_body(state, trial, slot, part * lane(t.u, l), part * lane(t.theta, l));
+  }
+  if (system.nodes().empty()) return;
+  std::vector<double> given;
+  for (const PrescribedComponent& p : system.nodes().prescribed())
+    given.push_back(trial.node_u[3 * static_cast<std::size_t>(p.node) + p.component]);
+  for (double& u : trial.node_u) u *= part;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const PrescribedComponent& p = system.nodes().prescribed()[k];
+    trial.node_u[3 * static_cast<std::size_t>(p.node) + p.component] = given[k];
+  }
+  for (std::size_t k = 0; k < trial.node_u.size(); ++k)
+    trial.node_x[k] = state.node_x[k] + trial.node_u[k];
+  follow_bodies(system, state, trial);
+  update_node_velocities(system, state, trial);
+}
+
 NodeStep node_step(const State& state, const Trial& trial) {
   const StepContext& c = trial.context;
   return {.x_n = state.node_x.data(),

@@ -18,6 +18,9 @@ void predict_nodes(const System& system, const State& state, Trial& trial,
 void follow_bodies(const System& system, const State& state, Trial& trial);
 /// Velocities at t_{n+1} from the increments, all nodes.
 void update_node_velocities(const System& system, const State& state, Trial& trial);
+/// Leaves a part of the trial's motion over the step, of bodies and of nodes. Prescribed components
+/// go where they must.
+void shorten_motion(const System& system, const State& state, double part, Trial& trial);
 /// The trial's nodes as elements see them.
 [[nodiscard]] NodeStep node_step(const State& state, const Trial& trial);
 /// The nodes of a state at its instant, velocities included.

@@ -9,26 +9,49 @@
 
 namespace polhode {
 
-/// Makes velocities jump where impacts of interactions, such as the stops of joints, ended in a
-/// step: by impulses along them that leave G v = 0. @eq{joint-stop-exit}
+/// Makes velocities jump where impacts ended in a step, of contacts and of the stops of joints: by
+/// impulses along them, from bodies that are as heavy as the solids they hold make them, while
+/// G v = 0. Impulses only take speed, and energy. @eq{exit-law} @eq{joint-stop-exit}
 class SettleImpacts {
  public:
-  explicit SettleImpacts(const System& system) : system_(&system) {}
+  explicit SettleImpacts(const System& system);
 
-  /// Finds the impacts of an accepted step, the state and the histories still at t_n.
+  /// Finds the impacts of interactions in an accepted step, the state and the histories still at
+  /// t_n. Forgets those before.
   void find(const State& state, const Trial& trial);
+  /// Adds those of contacts, the state having moved to t_{n+1}.
+  void find(State& state, MovingContacts& contacts);
   [[nodiscard]] bool any() const { return !rows_.empty(); }
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   void settle(State& state);
 
  private:
-  struct Row {
-    int a = kGround, b = kGround;
-    Impact impact;
+  /// Rows that share bodies, directly or by way of joints and solids.
+  struct Island {
+    std::vector<int> rows, bodies;
+    bool tied = false;  ///< Joints or solids make its bodies answer together.
   };
+  [[nodiscard]] std::vector<Island> islands() const;
+  [[nodiscard]] Vec6 velocity(const State& state, int body) const;
+  /// J of a row times velocities of the island's bodies.
+  [[nodiscard]] double along(const PairImpact& row, const std::vector<Vec6>& v) const;
+  /// Velocities by which the island's bodies answer a unit impulse of each of its rows.
+  [[nodiscard]] std::vector<std::vector<Vec6>> answers(const State& state, const Island& island);
+  void settle_together(State& state, const Island& island);
+  void settle_in_turn(State& state, const Island& island);
+  /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
+  ///          tell [J].
+  double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
+
   const System* system_;
-  std::unique_ptr<InstantSolver> solver_;  ///< From the first impact on.
-  std::vector<Row> rows_;
+  std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of tied bodies on.
+  std::vector<int> tie_;    ///< By body: the first of those that joints and solids tie it to.
+  std::vector<bool> tied_;  ///< By body: something ties it, be it to the ground.
+  std::vector<int> place_;  ///< By body: in the island at hand.
+  std::vector<PairImpact> rows_;
+  MovingContacts* contacts_ = nullptr;  ///< Whose impacts the last rows are.
+  std::size_t of_joints_ = 0;           ///< Rows before those.
+  std::vector<double> impulses_, losses_;
 };
 
 }  // namespace polhode

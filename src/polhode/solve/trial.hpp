@@ -70,6 +70,8 @@ class NewtonEngine {
   [[nodiscard]] virtual std::string name() const = 0;
   /// Called once per step when the trial was predicted.
   virtual void begin_step(const State& state, Trial& trial) = 0;
+  /// The trial was set back to an iterate of the same step: what follows from it is renewed.
+  virtual void resume(const State& state, Trial& trial) { begin_step(state, trial); }
   /// One iteration on the trial. `refactor` false: keep the last factorisation if there is one.
   /// `damping` in (0, 1]: part of the increment that is applied.
   virtual Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) = 0;
@@ -90,8 +92,8 @@ class NewtonEngine {
   [[nodiscard]] virtual double stored(const State& /*state*/) const { return 0.0; }
   /// The step is accepted, the state still at t_n: histories and work of such forces.
   virtual Work commit(State& /*state*/, const Trial& /*trial*/) { return {}; }
-  /// The state has moved to t_{n+1}: impacts make velocities jump.
-  virtual VelocityJump settle_impacts(State& /*state*/, const Trial& /*trial*/) { return {}; }
+  /// Contacts that it solves, whose impacts are to be settled when the state has moved to t_{n+1}.
+  [[nodiscard]] virtual MovingContacts* contacts() const { return nullptr; }
   /// Called after convergence: makes trial.lambda complete.
   virtual void end_step(const State& state, Trial& trial) = 0;
 };

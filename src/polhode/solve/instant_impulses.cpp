@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solve/instant_system.hpp>
+
+namespace polhode {
+
+/// @eq{solid-impulse}
+bool InstantSolver::take_impulses(const State& state) {
+  Impl& s = *impl_;
+  s.take(state);
+  s.prepare();
+  s.put_masses();
+  s.run(
+      state,
+      [&](int i, const PairStep&, const PairTerms& terms) {
+        s.put_rows(i, terms, kInstantProximal);
+      },
+      true);
+  return s.add_nodes(state, true) && s.factor(state);
+}
+
+std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
+  Impl& s = *impl_;
+  const double per_mass = 1.0 / s.system.mean_mass();
+  s.rhs.setZero();
+  for (std::size_t b = 0; b < impulses.size(); ++b)
+    s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) = per_mass * impulses[b];
+  return s.solution_by_body();
+}
+
+std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
+  Impl& s = *impl_;
+  Vec given(6 * s.system.body_count());
+  for (int b = 0; b < s.system.body_count(); ++b) {
+    const BodyMotion m = s.system.motion(state, b);
+    given.segment<6>(6 * b) << m.v, m.omega();
+  }
+  s.rhs.setZero();
+  s.rows_times(given, s.rhs.tail(s.system.rows()));
+  s.rhs = -s.rhs;
+  return s.solution_by_body();
+}
+
+std::vector<double> InstantSolver::node_jumps(std::span<const Vec6> bodies) {
+  Impl& s = *impl_;
+  if (!s.nodes) return {};
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    s.x.segment<6>(6 * static_cast<Eigen::Index>(b)) = bodies[b];
+  return s.nodes->accelerations(s.x.data());
+}
+
+}  // namespace polhode
