@@ -22,7 +22,7 @@ JointResistance friction_of(const std::string& type, State state) {
   // Deflections are of size one: the cone is wide, or narrow.
   r.friction = JointFriction{.mu = 0.3,
                              .radius = 0.4,
-                             .face_radius = type == "revolute" ? 0.2 : 0.0,
+                             .face_radius = type == "revolute" || type == "universal" ? 0.2 : 0.0,
                              .length = type == "spherical" ? 0.0 : 1.5,
                              .constant = 0.1,
                              .stiffness = state == State::sticks ? 0.01 : 3.0,
@@ -30,7 +30,19 @@ JointResistance friction_of(const std::string& type, State state) {
   return r;
 }
 
-/// A joint whose angle and displacement are allowed, in a large step; histories of size one.
+/// Angles whose turns a joint's history counts, and deflections that follow them.
+struct HistoryOf {
+  explicit HistoryOf(const std::string& type)
+      : angles(type == "universal"                           ? 2
+               : type == "revolute" || type == "cylindrical" ? 1
+                                                             : 0),
+        deflections(type == "spherical"                            ? 3
+                    : type == "cylindrical" || type == "universal" ? 2
+                                                                   : 1) {}
+  int angles, deflections;
+};
+
+/// A joint whose angles and displacement are allowed, in a large step; histories of size one.
 Sample sample(const std::string& type, const JointResistance& resistance, unsigned seed,
               const StepContext& context) {
   Random random(seed);
@@ -41,15 +53,20 @@ Sample sample(const std::string& type, const JointResistance& resistance, unsign
   const double start = random.number(2.0), turn = random.number(1.0);
   if (type != "spherical") {
     const auto b_of = [&](const Mat3& Lambda_a, double angle) -> Mat3 {
-      return Lambda_a * f.R_a * exp_map(angle * Vec3::UnitZ()) * f.R_b.transpose();
+      const Mat3 turned =
+          type == "universal"
+              ? Mat3(exp_map(angle * Vec3::UnitX()) * exp_map(-0.8 * angle * Vec3::UnitY()))
+              : exp_map(angle * Vec3::UnitZ());
+      return Lambda_a * f.R_a * turned * f.R_b.transpose();
     };
     m.b_n.q = Quat(b_of(m.a_n.Lambda(), start)).normalized();
     m.theta_b = cayley_vector(b_of(m.a().Lambda_n1, start + turn) * m.b_n.Lambda().transpose());
   }
-  const bool has_angle = type == "revolute" || type == "cylindrical";
+  const HistoryOf history(type);
   m.history[0] = start;
-  const int deflections = type == "spherical" ? 3 : type == "cylindrical" ? 2 : 1;
-  for (int i = 0; i < deflections; ++i) m.history[has_angle + i] = 0.02 * random.number();
+  if (history.angles == 2) m.history[1] = -0.8 * start;
+  for (int i = 0; i < history.deflections; ++i)
+    m.history[history.angles + i] = 0.02 * random.number();
   return {joint, m};
 }
 
@@ -109,7 +126,7 @@ TEST_P(EveryResistance, HasTheTangentsOfItsFrictionByMotionAndReaction) {
 }
 
 TEST_P(EveryResistance, HasTheTangentsOfItsStops) {
-  if (GetParam() == "spherical") return;
+  if (GetParam() == "spherical" || GetParam() == "universal") return;
   for (const double e : {1.0, 0.0})
     for (const bool conserving : {true, false})
       for (const double rho_inf : {1.0, 0.5, 0.0})
@@ -145,10 +162,9 @@ TEST_P(EveryResistance, NeverGivesEnergyByFriction) {
       const double work =
           (wrenches(evaluate(joint, m)) - wrenches(evaluate(free, m))).dot(step_motion(m));
       const Work w = m.with(Displacement::Zero(), [&](const PairStep& s) { return joint.work(s); });
-      const bool has_angle = GetParam() == "revolute" || GetParam() == "cylindrical";
-      const Vec3 s_n(m.history[has_angle], m.history[has_angle + 1], m.history[has_angle + 2]);
+      const auto [angles, n] = HistoryOf(GetParam());
+      const Vec3 s_n(m.history[angles], m.history[angles + 1], m.history[angles + 2]);
       const double k = joint.resistance()->data().friction->stiffness;
-      const int n = GetParam() == "spherical" ? 3 : GetParam() == "cylindrical" ? 2 : 1;
       const double before = 0.5 * k * s_n.head(n).squaredNorm();
       EXPECT_GE(w.dissipated, 0.0);
       EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12) << "seed " << seed;
@@ -156,7 +172,8 @@ TEST_P(EveryResistance, NeverGivesEnergyByFriction) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryResistance,
-                         testing::Values("revolute", "prismatic", "cylindrical", "spherical"),
+                         testing::Values("revolute", "prismatic", "cylindrical", "spherical",
+                                         "universal"),
                          [](const auto& kind) { return kind.param; });
 
 // Radial force 5 N, axial 2 N, moment across the axis 1.3 N m.
@@ -170,7 +187,7 @@ TEST(JointFriction, SlipsAtTheLimitOfItsKind) {
     std::array<double, 24> history{};
     BodyStep b = BodyStep::at_instant({}, Mat3::Identity(), {}, {});
     b.alpha_f = 0.5;
-    b.theta = Vec3(0.0, 0.0, 0.2);
+    b.theta = type == "universal" ? Vec3(0.2, 0.0, 0.0) : Vec3(0.0, 0.0, 0.2);
     b.Lambda_n1 = cay(b.theta);
     b.u = b.r_n1 = Vec3(0.0, 0.0, type == "prismatic" ? 0.2 : 0.0);
     if (type == "prismatic") {
@@ -211,6 +228,17 @@ TEST(JointFriction, SlipsAtTheLimitOfItsKind) {
   w = slip_of("spherical", {.mu = 0.3, .radius = 0.05, .constant = 0.02, .stiffness = k},
               {3.0, 4.0, 12.0}, stored);
   EXPECT_NEAR(w[5], -(0.3 * 0.05 * 13.0 + 0.02), 1e-12);
+  // About the pin x: 5 N across it, 2 N along, and 1.3 N m.
+  w = slip_of("universal",
+              {.mu = 0.3,
+               .radius = 0.05,
+               .face_radius = 0.1,
+               .length = 0.4,
+               .constant = 0.02,
+               .stiffness = k},
+              {2.0, 3.0, 4.0, -1.3}, stored);
+  EXPECT_NEAR(w[3] * 0.2, -pin * 2.0 * std::atan(0.1), 1e-12);
+  EXPECT_NEAR(w[4], 0.0, 1e-12);
 }
 
 TEST(JointFriction, IsRefusedWhereItHasNoMeaning) {

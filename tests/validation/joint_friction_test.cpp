@@ -68,6 +68,64 @@ TEST_P(PinFriction, TurnsThePendulumWhereItShouldAndHoldsItInTheEnd) {
   EXPECT_LT(s.state().ledger.energy_drift, 1e-10);
 }
 
+/// The cross of a universal joint has two pins: about either of them the pendulum swings as about
+/// that of a revolute joint, while the other one sticks.
+// @tests{joint-friction-limit}
+TEST(UniversalFriction, TurnsThePendulumLikeAPinAboutEitherAxis) {
+  for (const int pin : {0, 1}) {
+    Model m = pendulum(1.2, 2.5e-3);
+    m.joints.clear();
+    ModelBuilder b;
+    b.model = m;
+    Mat3 R = Mat3::Identity();  // y of both sides is the pin
+    if (pin == 0) R << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    b.joint_along("cross", "universal", kGround, 0, Vec3::Zero(), R).friction =
+        JointFrictionSpec{.mu = 0.3, .radius = 0.05, .stiffness = 1e4};
+    Simulation s(b.model);
+    std::vector<double> turns;
+    double rate = 0.0;
+    const auto k = static_cast<std::size_t>(pin);
+    while (s.time() < 18.0) {
+      ASSERT_TRUE(s.step(1e3).accepted);
+      const JointReport now = s.joint(0);
+      if (rate * now.rates[k] < 0.0) turns.push_back(1.2 + now.coordinates[k]);
+      rate = now.rates[k];
+      ASSERT_NEAR(now.coordinates[1 - k], 0.0, 1e-9) << "the other pin";
+    }
+    ASSERT_GE(turns.size(), 3U);
+    EXPECT_NEAR(turns[0], -1.0956, 1e-3) << pin;
+    EXPECT_NEAR(turns[1], 0.99926, 1e-3) << pin;
+    EXPECT_NEAR(turns[2], -0.90952, 1e-3) << pin;
+    EXPECT_NEAR(std::abs(1.2 + s.joint(0).coordinates[k]), 0.0239, 1e-3) << pin;
+    EXPECT_FALSE(s.joint(0).slips);
+    EXPECT_LT(s.state().ledger.energy_drift, 1e-10);
+  }
+}
+
+/// A shaft that coasts about both pins at once, each with a constant moment of its own: energy only
+/// falls, until both stick.
+TEST(UniversalFriction, NeverRaisesTheEnergyAboutBothPins) {
+  ModelBuilder b;
+  const int rod = b.body("rod", {0.0, 0.0, -0.5}, 1.0, Vec3(0.1, 0.12, 0.02));
+  b.turning(rod, {2.0, -1.5, 0.0});
+  b.joint_along("cross", "universal", kGround, rod, Vec3::Zero(), Mat3::Identity()).friction =
+      JointFrictionSpec{.mu = 0.2, .radius = 0.05, .length = 0.2, .constant = 0.1};
+  b.model.gravity = {0.0, 0.0, -kG};
+  b.model.analysis.step = 5e-3;
+  b.model.analysis.duration = 1.0;
+  Simulation s(b.model);
+  double energy = energy_of(s);
+  const double scale = s.balance().kinetic;
+  while (s.time() < 12.0) {
+    ASSERT_TRUE(s.step(1e3).accepted);
+    ASSERT_LE(energy_of(s), energy + 1e-12 * scale);
+    energy = energy_of(s);
+  }
+  EXPECT_LT(s.balance().kinetic, 1e-10 * scale);
+  EXPECT_FALSE(s.joint(0).slips);
+  EXPECT_LT(s.state().ledger.energy_drift, 1e-10 * scale);
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, PinFriction,
                          testing::Values("tree", "block_lu", "klu", "sparse_lu"),
                          [](const auto& solver) { return std::string(solver.param); });

@@ -84,6 +84,19 @@ FieldTable spherical() {
   return t;
 }
 
+FieldTable universal() {
+  FieldTable t{
+      "friction universal",
+      "Friction of the two pins of the cross, x of the first body and y of the second. Each "
+      "slips at mu (radius F + 2 radius/length M + face_radius F_p) + moment, with the "
+      "reaction's force F across the pin and F_p along it, and its moment M across both.",
+      {kMu, number("radius", kLength, "Radius of the pins.", "0"),
+       number("face_radius", kLength, "Mean radius of the faces that take F_p.", "0"), kBearing,
+       kMoment0}};
+  add_bristle(t.fields, true);
+  return t;
+}
+
 FieldTable limits(const std::string& title, const std::string& what, bool turns) {
   const Dimension& x = turns ? kAngle : kLength;
   return {title,
@@ -106,7 +119,8 @@ const std::vector<KindTable>& friction_tables() {
   static const std::vector<KindTable> tables{{"revolute", revolute()},
                                              {"prismatic", prismatic()},
                                              {"cylindrical", cylindrical()},
-                                             {"spherical", spherical()}};
+                                             {"spherical", spherical()},
+                                             {"universal", universal()}};
   return tables;
 }
 

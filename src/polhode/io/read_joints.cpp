@@ -216,7 +216,8 @@ class JointReader {
                         .constant = number("moment") + number("force"),
                         .stiffness = section.number("stiffness"),
                         .damping = section.number("damping")};
-    const bool by_arm = joint_.type == "revolute" || joint_.type == "spherical";
+    const bool by_arm =
+        joint_.type == "revolute" || joint_.type == "spherical" || joint_.type == "universal";
     if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
       section.fault("'radius' is missing", "mu acts on the radius of the pin or ball: give it.");
     else if (f.mu == 0.0 && f.constant == 0.0 && section.misses("mu"))

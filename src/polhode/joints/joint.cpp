@@ -64,14 +64,18 @@ auto Joint::with_view(const PairStep& step, What&& what) const {
   q_alpha.z_a = z_a.at_alpha;
   q_alpha.z_b = z_b.at_alpha;
   q_alpha.R_a = (1.0 - af) * q_n.R_a + af * q_n1.R_a;
-  const std::optional<FreeAngle> about = axis_angle();
-  return what(Resistance::View{.step = step,
-                               .q_n = q_n,
-                               .q_alpha = q_alpha,
-                               .q_n1 = q_n1,
-                               .angle = about ? &*about : nullptr,
-                               .angle_n = about ? step.history[0] : 0.0,
-                               .memory = step.history + angles()});
+  q_n1.R_b = b.Lambda_n1 * frames_.R_b;
+  q_alpha.R_b = (1.0 - af) * (b.Lambda_n * frames_.R_b) + af * q_n1.R_b;
+  Resistance::View view{.step = step,
+                        .q_n = q_n,
+                        .q_alpha = q_alpha,
+                        .q_n1 = q_n1,
+                        .memory = step.history + angles()};
+  for (int i = 0; i < angles(); ++i) {
+    view.angle[static_cast<std::size_t>(i)] = angle(i);
+    view.angle_n[static_cast<std::size_t>(i)] = step.history[i];
+  }
+  return what(view);
 }
 
 void Joint::evaluate(const PairStep& step, PairTerms& t) const {
@@ -116,7 +120,7 @@ void Joint::set_resistance(const JointResistance& data) {
   if (!kind)
     throw InputError(
         format("joints.{}", name), format("{} joints have neither friction nor limits", type_),
-        "Use a revolute, prismatic, cylindrical or spherical joint, or leave them out");
+        "Use a revolute, prismatic, cylindrical, spherical or universal joint, or leave them out");
   resistance_ = data.any() ? std::make_shared<const Resistance>(*kind, data) : nullptr;
 }
 

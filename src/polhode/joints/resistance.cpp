@@ -34,9 +34,11 @@ const Mat3& axes_at(const Configuration& q) { return q.R_a; }
 
 /// Slope of an angle at t_{n+1}: ∂φ = gradient·(∂θ_b − ∂θ_a).
 Vec3 angle_gradient(const FreeAngle& x, const PairStep& step) {
-  const Vec3 e = step.a.Lambda_n1 * x.E, f = step.a.Lambda_n1 * x.F, d = step.b.Lambda_n1 * x.D;
+  const Mat3& base = x.on_b ? step.b.Lambda_n1 : step.a.Lambda_n1;
+  const Mat3& other = x.on_b ? step.a.Lambda_n1 : step.b.Lambda_n1;
+  const Vec3 e = base * x.E, f = base * x.F, d = other * x.D;
   const double C = e.dot(d), S = f.dot(d);
-  return d.cross(C * f - S * e) / (C * C + S * S);
+  return (x.on_b ? -1.0 : 1.0) / (C * C + S * S) * d.cross(C * f - S * e);
 }
 
 /// A body at t_n, as an instant.
@@ -65,12 +67,13 @@ struct Resistance::Coordinate {
   double force = 0.0;  ///< Generalised, on b along +.
   Vec6 D_a, D_b;       ///< Its derivative.
   Vec6 by_lambda;      ///< Likewise, by the multipliers.
+  int angle = -1;      ///< Which of the joint's angles it is.
 };
 
 struct Resistance::Motion {
   int count = 0;
   Coordinate of[kMost];
-  AngleStep angle;
+  AngleStep angle[2];
   int slide = -1, turn = -1;  ///< Which coordinate is which.
 };
 
@@ -78,7 +81,7 @@ struct Resistance::Motion {
 struct Resistance::Slip {
   double force = 0.0;
   Vec6 by_lambda = Vec6::Zero();
-  Vec3 by_theta_a = Vec3::Zero();
+  Vec3 by_theta_a = Vec3::Zero(), by_theta_b = Vec3::Zero();
 };
 
 /// The bristle over the step.
@@ -87,7 +90,7 @@ struct Resistance::Bristle {
   Vec3 moved = Vec3::Zero();  ///< Increment of the coordinates, levers included.
   Vec3 acting = Vec3::Zero(), at_n1 = Vec3::Zero();  ///< On the cone or in it.
   Mat3 D_acting = Mat3::Zero();                      ///< By the increment.
-  Vec3 D_radius = Vec3::Zero();                      ///< By the cone's radius.
+  Vec3 D_radius = Vec3::Zero();                      ///< By the radius of its cone.
   bool slips = false;
 };
 
@@ -96,6 +99,7 @@ std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
   if (type == "prismatic") return Kind::prismatic;
   if (type == "cylindrical") return Kind::cylindrical;
   if (type == "spherical") return Kind::spherical;
+  if (type == "universal") return Kind::universal;
   return std::nullopt;
 }
 
@@ -123,6 +127,22 @@ Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
     c.by_lambda.setZero();
     return c;
   };
+  const auto add_angle = [&](int i) -> Coordinate& {
+    Coordinate& c = add();
+    const FreeAngle& angle = v.angle[static_cast<std::size_t>(i)];
+    AngleStep& s = m.angle[i];
+    s = angle_step(angle, step.a, step.b, v.angle_n[static_cast<std::size_t>(i)],
+                   step.context.conserving);
+    c.angle = i;
+    c.at_n = s.at_n;
+    c.at_n1 = s.at_n1;
+    c.on_a.tail<3>() = -s.mu;
+    c.on_b.tail<3>() = s.mu;
+    const Vec3 gradient = angle_gradient(angle, step);
+    c.by_a.tail<3>() = -gradient;
+    c.by_b.tail<3>() = gradient;
+    return c;
+  };
   if (kind_ == Kind::prismatic || kind_ == Kind::cylindrical) {
     m.slide = m.count;
     Coordinate& c = add();
@@ -134,17 +154,11 @@ Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
   }
   if (kind_ == Kind::revolute || kind_ == Kind::cylindrical) {
     m.turn = m.count;
-    Coordinate& c = add();
-    m.angle = angle_step(*v.angle, step.a, step.b, v.angle_n, step.context.conserving);
-    c.at_n = m.angle.at_n;
-    c.at_n1 = m.angle.at_n1;
+    Coordinate& c = add_angle(0);
     if (kind_ == Kind::cylindrical && data_.friction) c.lever = data_.friction->radius;
-    c.on_a.tail<3>() = -m.angle.mu;
-    c.on_b.tail<3>() = m.angle.mu;
-    const Vec3 gradient = angle_gradient(*v.angle, step);
-    c.by_a.tail<3>() = -gradient;
-    c.by_b.tail<3>() = gradient;
   }
+  if (kind_ == Kind::universal)
+    for (int i = 0; i < 2; ++i) add_angle(i);
   if (kind_ == Kind::spherical) {
     const Mat3 T_a = cayley_tangent(step.a.theta), T_b = cayley_tangent(step.b.theta);
     for (int i = 0; i < 3; ++i) {
@@ -160,7 +174,7 @@ Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
 }
 
 /// @eq{joint-friction-limit}
-Resistance::Slip Resistance::slip(const View& v) const {
+Resistance::Slip Resistance::slip(const View& v, int pin) const {
   const JointFriction& f = *data_.friction;
   Slip s;
   s.force = f.constant;
@@ -175,17 +189,28 @@ Resistance::Slip Resistance::slip(const View& v) const {
     s.by_lambda[row + 1] += factor * l[row + 1] / size;
   };
   const Vec3 F(l[0], l[1], l[2]);
+  const auto add_pin = [&](const Vec3& d, const Vec3& d_n1, Vec3& by_theta) {
+    const double along = d.dot(F), square = std::max(0.0, F.squaredNorm() - along * along);
+    const double sign = along < 0.0 ? -1.0 : 1.0;
+    const double radial = f.mu * f.radius, axial = f.mu * f.face_radius * sign;
+    s.force += radial * std::sqrt(square) + axial * along;
+    s.by_lambda.head<3>() += radial * over_root(F - along * d, square) + axial * d;
+    const Vec3 by_d = radial * over_root(-along * F, square) + axial * F;
+    by_theta = v.step.a.alpha_f * d_n1.cross(by_d);  // D d_α = −α ẑ_{n+1}
+  };
   switch (kind_) {
-    case Kind::revolute: {
-      const Vec3 d = v.q_alpha.R_a.col(kZ), d_n1 = v.q_n1.R_a.col(kZ);
-      const double along = d.dot(F), square = std::max(0.0, F.squaredNorm() - along * along);
-      const double sign = along < 0.0 ? -1.0 : 1.0;
-      const double radial = f.mu * f.radius, axial = f.mu * f.face_radius * sign;
-      s.force += radial * std::sqrt(square) + axial * along;
-      s.by_lambda.head<3>() += radial * over_root(F - along * d, square) + axial * d;
-      const Vec3 by_d = radial * over_root(-along * F, square) + axial * F;
-      s.by_theta_a = v.step.a.alpha_f * d_n1.cross(by_d);  // D d_α = −α ẑ_{n+1}
+    case Kind::revolute:
+      add_pin(v.q_alpha.R_a.col(kZ), v.q_n1.R_a.col(kZ), s.by_theta_a);
       add_pair(3, f.mu * f.radius * across);
+      break;
+    case Kind::universal: {
+      if (pin == 0)
+        add_pin(v.q_alpha.R_a.col(kX), v.q_n1.R_a.col(kX), s.by_theta_a);
+      else
+        add_pin(v.q_alpha.R_b.col(kY), v.q_n1.R_b.col(kY), s.by_theta_b);
+      const double bent = f.mu * f.radius * across;
+      s.force += bent * std::abs(l[3]);
+      s.by_lambda[3] += bent * (l[3] < 0.0 ? -1.0 : 1.0);
       break;
     }
     case Kind::spherical:
@@ -218,25 +243,33 @@ Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
     return b;
   }
   for (int i = 0; i < m.count; ++i) b.moved[i] = m.of[i].lever * (m.of[i].at_n1 - m.of[i].at_n);
-  const double radius = slip(v).force / f.stiffness;
   const double weight = v.step.a.alpha_f + f.damping / (f.stiffness * std::abs(v.step.context.dt));
-  Cone<double> cone;
-  cone.radius = radius;
-  const auto nearest = [&](const Vec3& s) { return contact::value(cone.nearest(contact::v3(s))); };
-  const Vec3 start = nearest(b.at_n);  // the cone may have shrunk
-  const Vec3 D_start = cone.outside(b.at_n) ? Vec3(b.at_n.normalized()) : Vec3::Zero();
-  const Vec3 middle = start + weight * b.moved;
-  b.acting = nearest(middle);
-  b.at_n1 = nearest(start + b.moved);
-  b.slips = cone.outside(start + b.moved);
-  b.D_acting = weight * Mat3::Identity();
-  b.D_radius = D_start;
-  if (!cone.outside(middle)) return b;
-  const double size = middle.norm();
-  const Vec3 t = middle / size;
-  const Mat3 turned = radius / size * (Mat3::Identity() - t * t.transpose());
-  b.D_acting = weight * turned;
-  b.D_radius = t + turned * D_start;
+  for (int k = 0; k < cones(); ++k) {
+    const Vec3 of_cone = cones() == 1 ? Vec3(Vec3::Ones()) : Vec3(Vec3::Unit(k));
+    const Vec3 at_n = b.at_n.cwiseProduct(of_cone), moved = b.moved.cwiseProduct(of_cone);
+    Cone<double> cone;
+    cone.radius = slip(v, k).force / f.stiffness;
+    const auto nearest = [&](const Vec3& s) {
+      return contact::value(cone.nearest(contact::v3(s)));
+    };
+    const Vec3 start = nearest(at_n);  // the cone may have shrunk
+    const Vec3 D_start = cone.outside(at_n) ? Vec3(at_n.normalized()) : Vec3::Zero();
+    const Vec3 middle = start + weight * moved;
+    b.acting += nearest(middle);
+    b.at_n1 += nearest(start + moved);
+    b.slips = b.slips || cone.outside(start + moved);
+    if (!cone.outside(middle)) {
+      b.D_acting.diagonal() += weight * of_cone;
+      b.D_radius += D_start;
+      continue;
+    }
+    const double size = middle.norm();
+    const Vec3 t = middle / size;
+    Mat3 turned = -cone.radius / size * t * t.transpose();
+    turned.diagonal() += cone.radius / size * of_cone;
+    b.D_acting += weight * turned;
+    b.D_radius += t + turned * D_start;
+  }
   return b;
 }
 
@@ -248,9 +281,9 @@ void Resistance::add(const View& v, PairTerms& t) const {
   if (data_.friction) {
     const JointFriction& f = *data_.friction;
     const Bristle b = bristle(v, m);
-    const Slip s = slip(v);
     for (int i = 0; i < m.count; ++i) {
       Coordinate& c = m.of[i];
+      const Slip s = slip(v, cone_of(i));
       c.force -= f.stiffness * c.lever * b.acting[i];
       if (!tangents) continue;
       for (int j = 0; j < m.count; ++j) {
@@ -259,6 +292,7 @@ void Resistance::add(const View& v, PairTerms& t) const {
         c.D_b -= k * m.of[j].by_b;
       }
       c.D_a.tail<3>() -= c.lever * b.D_radius[i] * s.by_theta_a;
+      c.D_b.tail<3>() -= c.lever * b.D_radius[i] * s.by_theta_b;
       c.by_lambda -= c.lever * b.D_radius[i] * s.by_lambda;
     }
   }
@@ -285,11 +319,12 @@ void Resistance::add(const View& v, PairTerms& t) const {
     t.B_a += c.on_a * c.by_lambda.transpose();
     t.B_b += c.on_b * c.by_lambda.transpose();
     if (i == m.slide) PointInPlane{kZ}.add_wrench_tangent(v.q_alpha, v.q_n1, alpha_f, &c.force, t);
-    if (i == m.turn) {
-      t.D_aa.bottomRightCorner<3, 3>() -= c.force * m.angle.D_mu_a;
-      t.D_ab.bottomRightCorner<3, 3>() -= c.force * m.angle.D_mu_b;
-      t.D_ba.bottomRightCorner<3, 3>() += c.force * m.angle.D_mu_a;
-      t.D_bb.bottomRightCorner<3, 3>() += c.force * m.angle.D_mu_b;
+    if (c.angle >= 0) {
+      const AngleStep& angle = m.angle[c.angle];
+      t.D_aa.bottomRightCorner<3, 3>() -= c.force * angle.D_mu_a;
+      t.D_ab.bottomRightCorner<3, 3>() -= c.force * angle.D_mu_b;
+      t.D_ba.bottomRightCorner<3, 3>() += c.force * angle.D_mu_a;
+      t.D_bb.bottomRightCorner<3, 3>() += c.force * angle.D_mu_b;
     }
   }
 }
@@ -367,9 +402,9 @@ void Resistance::commit(const View& v, double* memory) const {
   const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
   for_limits([&](const JointLimits& limits, bool slides, int at) {
     const Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const double rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle->rate_at_n1(a_n, b_n);
+    const double rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n);
     const double rate_n1 =
-        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle->rate_at_n1(v.step.a, v.step.b);
+        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle[0].rate_at_n1(v.step.a, v.step.b);
     const double reach = limits.law.reach();
     const auto closed = [&](double x) {
       return std::min(x - limits.lower, limits.upper - x) < reach;
@@ -402,9 +437,9 @@ void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
     const double end = sign > 0.0 ? limits.lower : limits.upper;
     const double gap_n = sign * (c.at_n - end), gap_n1 = sign * (c.at_n1 - end);
     const double w_n =
-        sign * (slides ? slide_rate(v.q_n, a_n, b_n) : v.angle->rate_at_n1(a_n, b_n));
+        sign * (slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n));
     const double w_n1 = sign * (slides ? slide_rate(v.q_n1, v.step.a, v.step.b)
-                                       : v.angle->rate_at_n1(v.step.a, v.step.b));
+                                       : v.angle[0].rate_at_n1(v.step.a, v.step.b));
     const bool plastic = v.memory[at + 1] != 0.0, fresh = v.memory[at + 2] != 0.0;
     double wanted = w_n1;
     if (!plastic && gap_n < reach && gap_n1 >= reach && w_n1 > 0.0) {
@@ -423,9 +458,9 @@ ResistanceReport Resistance::report(const View& v) const {
   ResistanceReport r;
   if (data_.friction) {
     const JointFriction& f = *data_.friction;
-    r.count = kind_ == Kind::revolute || kind_ == Kind::prismatic ? 1
-              : kind_ == Kind::cylindrical                        ? 2
-                                                                  : 3;
+    r.count = kind_ == Kind::revolute || kind_ == Kind::prismatic      ? 1
+              : kind_ == Kind::cylindrical || kind_ == Kind::universal ? 2
+                                                                       : 3;
     const Motion m = motion(v, false);
     Vec3 kept(v.memory[0], v.memory[1], v.memory[2]);
     if (kind_ == Kind::spherical)  // from the body's to the joint's axes

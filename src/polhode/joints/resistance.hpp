@@ -54,11 +54,12 @@ struct ResistanceReport {
   double slide = 0.0, turn = 0.0;  ///< Of the stops, along +z, on b [N], [N m].
 };
 
-/// Friction and stops over the free coordinates of a revolute, prismatic, cylindrical or spherical
-/// joint: evaluated beside the joint's parts, with the same multipliers.
+/// Friction and stops over the free coordinates of a revolute, prismatic, cylindrical, spherical or
+/// universal joint: evaluated beside the joint's parts, with the same multipliers. The cross of a
+/// universal joint turns on two pins, x of a and y of b, each of which slips by itself.
 class Resistance {
  public:
-  enum class Kind : unsigned char { revolute, prismatic, cylindrical, spherical };
+  enum class Kind : unsigned char { revolute, prismatic, cylindrical, spherical, universal };
 
   /// The kind of the joint type of this name; nothing if it takes no resistance.
   [[nodiscard]] static std::optional<Kind> kind_of(const std::string& type);
@@ -76,8 +77,8 @@ class Resistance {
   struct View {
     const PairStep& step;
     const Configuration &q_n, &q_alpha, &q_n1;
-    const FreeAngle* angle;  ///< About z; null if there is none.
-    double angle_n = 0.0;    ///< Its value at t_n [rad].
+    std::array<FreeAngle, 2> angle{};  ///< About z; about the two pins of a universal joint.
+    std::array<double, 2> angle_n{};   ///< Their values at t_n [rad].
     const double* memory = nullptr;
   };
 
@@ -101,7 +102,12 @@ class Resistance {
   struct Slip;
 
   [[nodiscard]] Motion motion(const View& view, bool tangents) const;
-  [[nodiscard]] Slip slip(const View& view) const;
+  /// Coordinates with one cone of friction: those of a universal joint have one each.
+  [[nodiscard]] int cones() const { return kind_ == Kind::universal ? 2 : 1; }
+  [[nodiscard]] int cone_of(int coordinate) const {
+    return kind_ == Kind::universal ? coordinate : 0;
+  }
+  [[nodiscard]] Slip slip(const View& view, int cone) const;
   [[nodiscard]] Bristle bristle(const View& view, const Motion& m) const;
   /// Calls what(limits, coordinate's index in the motion, memory of it).
   template <class What>
