@@ -45,11 +45,6 @@ std::vector<double> arc_lengths(const BeamSpec& beam) {
 
 void add_beam_shapes(Model& model, const BeamSpec& beam) {
   const double radius = radius_of(beam);
-  if (beam.consistent_mass != 0.0)
-    throw InputError(
-        "beams." + beam.name + ".consistent_mass",
-        format("is {:g} beside contact, which strikes single nodes", beam.consistent_mass),
-        "Leave it out, or give 0: the mass of a beam that touches is lumped");
   const int last = beam.node_count() - 1;
   for (int k = 0; k <= last; ++k) {
     BodySpec& node = model.bodies[static_cast<std::size_t>(beam.first_node + k)];
