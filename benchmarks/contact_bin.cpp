@@ -4,15 +4,19 @@
 // penetration, the largest rise of the energy in a step and the largest speed at the end.
 //
 //   benchmark_contact_bin [n] [side m, 0: by n] [residual / weight] [tolerance m] [duration s]
+//   benchmark_contact_bin nonsmooth [n] [side m] [sweep tolerance] [sweeps] [duration s]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <memory>
+#include <string>
 
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/solve/nonsmooth_engine.hpp>
 #include <polhode/solve/single_step.hpp>
 
 using namespace polhode;
@@ -55,90 +59,152 @@ void fill(System& system, contact::ContactSet& contacts, int n, double side) {
   wall("north", -Vec3::UnitY(), 0.5 * side);
 }
 
-}  // namespace
+/// What is asked of the run.
+struct Task {
+  bool nonsmooth = false;
+  int n = 1000;
+  double side = 0.0;
+  double residual = 1e-3;   ///< Of bodies over their weight; or the sweep tolerance.
+  double tolerance = 5e-4;  ///< Half the band of the barrier [m].
+  int sweeps = 100;
+  double duration = 3.0;
 
-int main(int argc, char** argv) {
-  const auto number = [&](int k, double otherwise) {
-    return argc > k ? std::atof(argv[k]) : otherwise;
-  };
-  const int n = static_cast<int>(number(1, 1000));
-  double side = number(2, 0.0);
-  if (side <= 0.0) side = 0.25 * std::ceil(std::sqrt(n / 4.0));
-  const double residual = number(3, 1e-3), tolerance = number(4, 5e-4), duration = number(5, 3.0);
+  Task(int argc, char** argv) {
+    nonsmooth = argc > 1 && std::strcmp(argv[1], "nonsmooth") == 0;
+    const int first = nonsmooth ? 2 : 1;
+    const auto number = [&](int k, double otherwise) {
+      return argc > first + k ? std::atof(argv[first + k]) : otherwise;
+    };
+    n = static_cast<int>(number(0, n));
+    side = number(1, 0.0);
+    if (side <= 0.0) side = 0.25 * std::ceil(std::sqrt(n / 4.0));
+    residual = number(2, residual);
+    if (nonsmooth)
+      sweeps = static_cast<int>(number(3, sweeps));
+    else
+      tolerance = number(3, tolerance);
+    duration = number(4, duration);
+  }
+};
 
-  System system;
-  system.set_gravity({0.0, 0.0, -9.81});
-  const auto contacts = std::make_shared<contact::ContactSet>();
-  fill(system, *contacts, n, side);
-  contact::ContactLaw law;
-  law.friction.mu = 0.5;
-  law.tolerance = tolerance;
-  contacts->set_default(law);
-  system.set_contacts(contacts);
-  system.finish();
-  State state = system.initial_state();
-  state.dt_next = kStep;
-  auto owned = std::make_unique<CrowdEngine>(system, residual);
-  const CrowdEngine& engine = *owned;
-  SingleStep single(system, std::move(owned), GeneralizedAlpha::from_spectral_radius(1.0),
-                    lane_kernels("automatic"), true);
-  single.ledger().begin(state);
-  NewtonOptions options;
-  options.tolerance = 1e-9;
-  options.max_iterations = 60;
-  options.line_search = false;
+/// A mean over the run and one over its last second.
+struct Means {
+  double all = 0.0, late = 0.0;
+  void add(double x, bool is_late) {
+    all += x;
+    if (is_late) late += x;
+  }
+};
 
-  double spent = 0.0, spent_late = 0.0, deepest = 0.0, rise = 0.0, energy = 1e300, touching = 0.0;
-  long iterations = 0, iterations_late = 0, inner_late = 0;
-  int steps = 0, late = 0, cuts = 0;
-  while (state.t < duration - 1e-9) {
-    const double before = processor_seconds();
-    const long inner = engine.inner_iterations();
+/// Steps of one engine, halved where they fail.
+class Runner {
+ public:
+  Runner(const System& system, std::unique_ptr<NewtonEngine> engine)
+      : single_(system, std::move(engine), GeneralizedAlpha::from_spectral_radius(1.0),
+                lane_kernels("automatic"), true) {
+    options_.tolerance = 1e-9;
+    options_.max_iterations = 60;
+    options_.line_search = false;
+  }
+  void begin(State& state) { single_.ledger().begin(state); }
+  bool step(State& state) {
     double left = kStep, h = kStep;
-    int used = 0;
+    iterations = 0;
     while (left > 1e-9 * kStep) {
       h = std::min(h, left);
-      const NewtonReport report = single.take(state, h, options, {1, false});
-      used += report.iterations;
+      const NewtonReport report = single_.take(state, h, options_, {1, false});
+      iterations += report.iterations;
       if (report.converged) {
         left -= h;
         continue;
       }
       ++cuts;
       h *= 0.5;
-      if (h < 1e-4 * kStep) {
-        std::printf("failed at t = %g: %s\n", state.t, report.text().c_str());
-        return 1;
-      }
+      if (h >= 1e-4 * kStep) continue;
+      std::printf("failed at t = %g: %s\n", state.t, report.text().c_str());
+      return false;
     }
+    return true;
+  }
+  [[nodiscard]] double energy(const State& state) const {
+    const Balance b = single_.ledger().balance(state);
+    return b.kinetic + b.potential;
+  }
+  int iterations = 0, cuts = 0;
+
+ private:
+  SingleStep single_;
+  NewtonOptions options_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Task task(argc, argv);
+  System system;
+  system.set_gravity({0.0, 0.0, -9.81});
+  const auto contacts = std::make_shared<contact::ContactSet>();
+  fill(system, *contacts, task.n, task.side);
+  contact::ContactLaw law;
+  law.friction.mu = 0.5;
+  law.tolerance = task.tolerance;
+  contacts->set_default(law);
+  if (task.nonsmooth) contacts->set_impulses({task.sweeps, task.residual});
+  system.set_contacts(contacts);
+  system.finish();
+  State state = system.initial_state();
+  state.dt_next = kStep;
+  std::unique_ptr<NewtonEngine> owned;
+  if (task.nonsmooth)
+    owned = std::make_unique<NonsmoothEngine>(system);
+  else
+    owned = std::make_unique<CrowdEngine>(system, task.residual);
+  const auto* crowd = dynamic_cast<const CrowdEngine*>(owned.get());
+  const auto* impulses = dynamic_cast<const NonsmoothEngine*>(owned.get());
+  Runner runner(system, std::move(owned));
+  runner.begin(state);
+
+  Means time, iterations, inner;
+  double deepest = 0.0, rise = 0.0, energy = 1e300;
+  int steps = 0, late = 0, touching = 0, unconverged = 0;
+  while (state.t < task.duration - 1e-9) {
+    const double before = processor_seconds();
+    const long inner_before = crowd ? crowd->inner_iterations() : 0;
+    if (!runner.step(state)) return 1;
     const double took = processor_seconds() - before;
-    spent += took;
+    const bool is_late = state.t > task.duration - 1.0;
     ++steps;
-    iterations += used;
-    if (state.t > duration - 1.0) {
-      spent_late += took;
-      iterations_late += used;
-      inner_late += engine.inner_iterations() - inner;
-      ++late;
-    }
-    const Balance balance = single.ledger().balance(state);
-    rise = std::max(rise, balance.kinetic + balance.potential - energy);
-    energy = balance.kinetic + balance.potential;
-    touching = 0.0;
+    late += is_late;
+    time.add(1e3 * took, is_late);
+    iterations.add(impulses ? impulses->last_search().sweeps : runner.iterations, is_late);
+    inner.add(crowd ? static_cast<double>(crowd->inner_iterations() - inner_before) : 0.0, is_late);
+    if (impulses && !impulses->last_search().converged) ++unconverged;
+    const double now = runner.energy(state);
+    rise = std::max(rise, now - energy);
+    energy = now;
+    touching = 0;
     for (const contact::ShapePairReport& r : contacts->reports()) {
       deepest = std::max(deepest, -r.gap);
-      touching += r.normal_force > 0.0 ? 1.0 : 0.0;
+      touching += r.normal_force > 0.0;
     }
   }
-  double fastest = 0.0;
-  for (int b = 0; b < n; ++b) fastest = std::max(fastest, system.motion(state, b).v.norm());
+  double fastest = 0.0, end = 0.0;
+  for (int b = 0; b < task.n; ++b) fastest = std::max(fastest, system.motion(state, b).v.norm());
+  for (const contact::ShapePairReport& r : contacts->reports()) end = std::max(end, -r.gap);
+  const double per_late = 1.0 / std::max(1, late);
   std::printf(
-      "{\"spheres\": %d, \"side\": %g, \"residual\": %g, \"tolerance\": %g, \"ms\": %.2f, "
-      "\"ms_last_second\": %.2f, \"newton\": %.2f, \"newton_last_second\": %.2f, "
-      "\"cg_last_second\": %.1f, \"contacts\": %.0f, \"penetration\": %.2e, \"energy_rise\": "
+      "{\"law\": \"%s\", \"spheres\": %d, \"side\": %g, \"residual\": %g, \"ms\": %.2f, "
+      "\"ms_last_second\": %.2f, \"%s\": %.2f, \"%s_last_second\": %.2f, ",
+      impulses ? "nonsmooth" : "barrier", task.n, task.side, task.residual, time.all / steps,
+      time.late * per_late, impulses ? "sweeps" : "newton", iterations.all / steps,
+      impulses ? "sweeps" : "newton", iterations.late * per_late);
+  if (impulses)
+    std::printf("\"most_sweeps\": %d, \"steps_at_most\": %d, ", task.sweeps, unconverged);
+  else
+    std::printf("\"tolerance\": %g, \"cg_last_second\": %.1f, ", task.tolerance,
+                inner.late * per_late);
+  std::printf(
+      "\"contacts\": %d, \"penetration\": %.2e, \"penetration_end\": %.2e, \"energy_rise\": "
       "%.1e, \"speed_end\": %.1e, \"cuts\": %d}\n",
-      n, side, residual, tolerance, 1e3 * spent / steps, 1e3 * spent_late / std::max(1, late),
-      static_cast<double>(iterations) / steps,
-      static_cast<double>(iterations_late) / std::max(1, late),
-      static_cast<double>(inner_late) / std::max(1, late), touching, deepest, rise, fastest, cuts);
+      touching, deepest, end, rise, fastest, runner.cuts);
 }

@@ -80,6 +80,10 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
         {"lost_in_impacts", c.lost_in_impacts},
         {"lost_by_friction", c.lost_by_friction},
         {"numerical", c.numerical}};
+    if (c.sweeps) {
+      json["contacts"]["sweeps_a_step"] = c.sweeps->first;
+      json["contacts"]["unconverged_steps"] = c.sweeps->second;
+    }
   }
   return json.dump(2);
 }
@@ -143,6 +147,9 @@ std::string summary_table(const RunSummary& s) {
     rows.push_back({"  lost by friction", format("{:.6g} J", c.lost_by_friction)});
     rows.push_back({"  numerical", format("{:.1e} J", c.numerical),
                     "what is left of the energy balance at the end"});
+    if (c.sweeps)
+      rows.push_back({"  sweeps", format("{:.1f} a step", c.sweeps->first),
+                      format("{} of the steps ended above sweep_tolerance", c.sweeps->second)});
   }
   rows.push_back({"time", seconds(s.wall_time_s),
                   format("{} of one processor, {} a step", seconds(s.cpu_time_s),

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -16,6 +17,7 @@
 #include <polhode/solve/coupled_engine.hpp>
 #include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/solve/nonsmooth_engine.hpp>
 #include <polhode/solve/single_step.hpp>
 
 namespace polhode::test {
@@ -141,7 +143,9 @@ class Scene {
   /// A fresh engine, as after reading the state from a file.
   void restart() {
     std::unique_ptr<NewtonEngine> engine;
-    if (crowd_residual > 0.0)
+    if (contacts->impulses())
+      engine = std::make_unique<NonsmoothEngine>(system);
+    else if (crowd_residual > 0.0)
       engine = std::make_unique<CrowdEngine>(system, crowd_residual);
     else if (!system.nodes().empty())
       engine = std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum,
@@ -184,6 +188,14 @@ class Scene {
     for (int k = 0; k < count; ++k)
       if (!step()) return false;
     return true;
+  }
+  /// How the impulses of the last step were sought.
+  [[nodiscard]] ImpulseSearch search() const { return contacts->last_search(); }
+  /// Smallest distance of two shapes after the last step [m].
+  [[nodiscard]] double least_gap() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const contact::ShapePairReport& r : contacts->reports()) least = std::min(least, r.gap);
+    return least;
   }
   /// Kinetic and stored energy [J].
   [[nodiscard]] double energy() const {

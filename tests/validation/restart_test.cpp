@@ -42,6 +42,12 @@ Model trolley() {
   return model;
 }
 
+/// The same by impulses, whose points remember what acted.
+Model by_impulses(Model model) {
+  model.contacts.standard.potential = "nonsmooth";
+  return model;
+}
+
 std::vector<RestartCase> cases() {
   return {
       {"FourBarFixedSteps", with(n_four_bar(2), 2.0, 0.01, {})},
@@ -58,6 +64,7 @@ std::vector<RestartCase> cases() {
       {"GearPair", touching("gear_pair", 0.05)},
       {"SpheresInABin", touching("spheres_in_a_bin", 0.3)},
       {"Trolley", trolley()},
+      {"SpheresInABinByImpulses", by_impulses(touching("spheres_in_a_bin", 0.6))},
   };
 }
 

@@ -150,7 +150,7 @@ void ContactSet::find_candidates(double dt) {
   };
   std::vector<std::pair<std::array<int, 5>, const Point*>> old;
   for (const Point& p : points_)
-    if (p.data.history.closed) old.emplace_back(name(p), &p);
+    if (p.data.history.remembers()) old.emplace_back(name(p), &p);
   std::sort(old.begin(), old.end());
   if (!old.empty())
     for (Point& p : points) {

@@ -9,7 +9,7 @@ namespace polhode::contact {
 namespace {
 
 /// Numbers of a point in State::contacts, after those of the references.
-constexpr std::size_t kPointNumbers = 23;
+constexpr std::size_t kPointNumbers = 23, kImpulseNumbers = 11;
 constexpr std::size_t kReferenceNumbers = 13;
 
 }  // namespace
@@ -26,12 +26,17 @@ void ContactSet::save(State& state) {
   }
   for (const Point& p : points_) {
     const PointHistory& h = p.data.history;
-    if (!h.closed) continue;
+    if (!h.remembers()) continue;
     const FeaturePair& f = p.data.pair;
     for (const double x :
          {static_cast<double>(p.a), static_cast<double>(p.b), static_cast<double>(f.kind),
           static_cast<double>(f.i), static_cast<double>(f.j)})
       out.push_back(x);
+    if (impulses_) {
+      put(h.impulse);
+      put(h.turning);
+      continue;
+    }
     put(h.bristle);
     put(h.normal);
     put(h.rolling);
@@ -63,7 +68,8 @@ void ContactSet::load(const State& state) {
     references_[k].margin = x[12];
   }
   // Bare points that carry the histories: find_candidates() hands these on.
-  for (std::size_t at = references; at + kPointNumbers <= in.size(); at += kPointNumbers) {
+  const std::size_t count = impulses_ ? kImpulseNumbers : kPointNumbers;
+  for (std::size_t at = references; at + count <= in.size(); at += count) {
     const double* x = in.data() + at;
     Point p;
     p.a = static_cast<int>(x[0]);
@@ -71,6 +77,12 @@ void ContactSet::load(const State& state) {
     p.data.pair = {static_cast<GapKind>(static_cast<int>(x[2])), static_cast<int>(x[3]),
                    static_cast<int>(x[4])};
     PointHistory& h = p.data.history;
+    if (impulses_) {
+      h.impulse = Eigen::Map<const Vec3>(x + 5);
+      h.turning = Eigen::Map<const Vec3>(x + 8);
+      points_.push_back(p);
+      continue;
+    }
     h.bristle = Eigen::Map<const Vec3>(x + 5);
     h.normal = Eigen::Map<const Vec3>(x + 8);
     h.rolling = Eigen::Map<const Vec3>(x + 11);

@@ -33,11 +33,15 @@ struct PointHistory {
   double approach = 0.0;        ///< w_pre: normal velocity when it closed [m/s], negative.
   double stiffness = 0.0;       ///< k of the normal law, kept while closed.
   double gap = 0.0;             ///< Of a closed point at t_n, as the last step left it [m].
+  Vec3 impulse = Vec3::Zero();  ///< Of the last step on a, world; of the non-smooth law [N s].
+  Vec3 turning = Vec3::Zero();  ///< Likewise, against rolling and drilling [N m s].
   bool closed = false;          ///< The gap was within reach at t_n.
   bool plastic = false;         ///< No rebound: part of the force is that of the end of the step.
   bool fresh = true;            ///< Has not turned since it closed.
   bool slips = false;
 
+  /// There is something to carry to the next step.
+  [[nodiscard]] bool remembers() const { return closed || !impulse.isZero(0.0); }
   /// The same with bristles that hold nothing.
   [[nodiscard]] PointHistory without_bristles() const {
     PointHistory h = *this;

@@ -203,6 +203,9 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
     c = value(g.point);
     n = value(g.normal);
   }
+  p.normal_n = n;
+  p.place_n = c;
+  if (impulses_) return;
   const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
   const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
   h.approach = std::min(0.0, n.dot(v_a - v_b));
@@ -398,6 +401,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
 /// Leaves no trace: a run ends in the same bits however often it is asked for its energy. What a
 /// state that is not the last one has closed is found again when its next step begins.
 double ContactSet::stored(const State& state, std::span<const BodyStep> instants) {
+  if (impulses_) return 0.0;
   if (!loaded_ || saved_ != state.contacts) {
     StepContext still;
     still.dt = state.dt_next > 0.0 ? state.dt_next : 1e-2;

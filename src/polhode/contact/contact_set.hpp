@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <polhode/assembly/contact_springs.hpp>
+#include <polhode/assembly/impulsive_contacts.hpp>
 #include <polhode/assembly/moving_contacts.hpp>
 #include <polhode/assembly/system.hpp>
 #include <polhode/contact/broad_phase.hpp>
@@ -56,7 +57,7 @@ struct PlacedShape {
 ///
 /// Candidates are found when a body has moved by more than its margin since they were found last;
 /// they are sorted, so that sums do not depend on how they were found.
-class ContactSet final : public MovingContacts, public PointwiseContacts {
+class ContactSet final : public MovingContacts, public PointwiseContacts, public ImpulsiveContacts {
  public:
   /// @returns the shape's number.
   int add_shape(PlacedShape shape);
@@ -65,6 +66,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   void set_default(const ContactLaw& law);
   /// Law of two materials. @throws InputError for values out of range.
   void set_law(int material_a, int material_b, const ContactLaw& law);
+  /// Contacts act by impulses: of the laws only the coefficients of friction (not by direction, not
+  /// while sticking) and restitution matter then.
+  void set_impulses(const ImpulseOptions& options) { impulses_ = options; }
   /// Shapes of these owners (bodies, if none is stated) do not meet.
   void exclude(int owner_a, int owner_b);
   /// Whether two shapes touch when they are near: bodies, groups and exclusions allow it.
@@ -110,6 +114,17 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   void settled(std::span<const double> impulses, std::span<const double> losses) override;
   std::string tightest() const override;
 
+  const ImpulseOptions* impulses() const override { return impulses_ ? &*impulses_ : nullptr; }
+  bool covers(std::span<const BodyStep> steps) const override;
+  int find_points(std::span<const BodyStep> steps, const StepContext& context,
+                  std::vector<ImpulsePoint>& list) override;
+  void place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const override;
+  Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
+                       std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
+                       const ImpulseSearch& search) override;
+  /// Of the last step; all zero if contacts act by forces.
+  [[nodiscard]] const ImpulseSearch& last_search() const { return search_; }
+
  private:
   struct Point {
     int a = 0, b = 0;      ///< Shapes, in the order of the feature pair.
@@ -126,6 +141,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
     bool plain = false;   ///< They hold in this step.
     double law_dt = 0.0;  ///< Step the constants of the law were chosen for [s].
     double gap_n = 0.0;
+    Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
+    bool listed = false;   ///< Among the points that act by impulses in this step.
     PointReport report;    ///< Of the last accepted step.
     bool touched = false;  ///< It acted in that step.
     double elastic_force = 0.0;
@@ -154,6 +171,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                      const StepContext& context) const;
   [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
+  void report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss, double dt);
   [[nodiscard]] const Reference& reference_of(int shape, const Reference& ground) const {
     const int body = shapes_[shape].body;
     return body == kGround ? ground : references_[body];
@@ -187,6 +205,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts {
   std::vector<std::pair<int, int>> near_;
   int tightest_ = -1;
   bool pointwise_ = false;  ///< Who evaluates: closed forms differ in the last bit.
+  std::optional<ImpulseOptions> impulses_;
+  ImpulseSearch search_;
 };
 
 }  // namespace polhode::contact

@@ -107,6 +107,8 @@ void add(Fingerprint& f, const ContactsSpec& contacts, const std::vector<BodySpe
   f.number(contacts.present);
   if (!contacts.present) return;
   add(f, contacts.standard);
+  f.number(contacts.sweeps);
+  f.number(contacts.sweep_tolerance);
   f.number(static_cast<double>(contacts.friction));
   f.number(static_cast<double>(contacts.restitution));
   f.number(contacts.joint_neighbours);

@@ -26,9 +26,10 @@ std::vector<Field> law_fields() {
        .kind = kChoice,
        .meaning = "Potential of the normal force: a barrier on a thin band around the surface, "
                   "which no load breaks through, or a force linear in the overlap, or that of "
-                  "Hertz, with overlap to the power 3/2.",
+                  "Hertz, with overlap to the power 3/2. nonsmooth: no forces but impulses, for "
+                  "crowds of bodies without joints; in default only.",
        .standard = "barrier",
-       .choices = {"barrier", "linear", "hertz"}},
+       .choices = {"barrier", "linear", "hertz", "nonsmooth"}},
       {.name = "gap_tolerance",
        .kind = kNumber,
        .dimension = kLength,
@@ -175,6 +176,17 @@ const FieldTable& contacts_fields() {
                       "move bodies apart, the lighter ones farther.",
            .standard = "error",
            .choices = {"error", "resolve"}},
+          {.name = "sweeps",
+           .kind = kInteger,
+           .meaning = "With law: nonsmooth, how often a step goes over all points at most.",
+           .standard = "100",
+           .range = {1.0, 1e6}},
+          {.name = "sweep_tolerance",
+           .kind = kNumber,
+           .meaning = "With law: nonsmooth, change of a point's speed in a sweep, over what "
+                      "gravity adds in a step, below which a step is solved.",
+           .standard = "1e-3",
+           .range = kPositive},
           {.name = "record",
            .kind = kBoolean,
            .meaning = "Keep results of every pair of bodies that may meet; false: only of those "

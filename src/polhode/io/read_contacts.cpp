@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include <polhode/base/error.hpp>
@@ -20,11 +21,29 @@ void assign(T& target, const std::optional<T>& value) {
 /// The smallest restitution that a damper can bring about.
 constexpr double kLeastDamped = 0.05;
 
+/// Keys of forces, which impulses do not have.
+constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_stiffness",
+                                "reference_load",     "rebound",         "reference_pressure",
+                                "static_friction",    "friction_across", "direction",
+                                "friction_stiffness", "friction_damping"};
+
 void read_law(Section& section, ContactLawSpec& law) {
   const auto potential = section.choice("law");
   const bool sound_law = potential || !section.has("law");
   assign(law.potential, potential);
   assign(law.gap_tolerance, section.number("gap_tolerance"));
+  if (law.potential == "nonsmooth") {
+    for (const char* key : kForceKeys)
+      if (section.has(key))
+        section.fault(key, "does not go with the law nonsmooth",
+                      "Leave it out: impulses know restitution, friction, rolling_friction and "
+                      "torsional_friction.");
+    assign(law.restitution, section.number("restitution"));
+    assign(law.friction, section.number("friction"));
+    assign(law.rolling, section.number("rolling_friction"));
+    assign(law.torsion, section.number("torsional_friction"));
+    return;
+  }
   const bool hertz = law.potential == "hertz";
   for (const char* key : {"stiffness", "hertz_stiffness"}) {
     const auto value = section.number(key);
@@ -109,6 +128,12 @@ class ContactsReader {
          [&](Section& section, const std::string& name) { read_sensor(section, name); });
     contacts_.resolve_overlaps = section_.choice("overlaps").value_or("error") == "resolve";
     contacts_.record = section_.boolean("record");
+    assign(contacts_.sweeps, section_.integer("sweeps"));
+    assign(contacts_.sweep_tolerance, section_.number("sweep_tolerance"));
+    for (const char* key : {"sweeps", "sweep_tolerance"})
+      if (section_.has(key) && !contacts_.nonsmooth())
+        section_.fault(key, "stands without the law nonsmooth",
+                       "Set contacts.default.law: nonsmooth, or leave it out.");
   }
 
  private:
@@ -199,6 +224,12 @@ class ContactsReader {
       ends = read_sides(section);
     }
     read_law(section, pair.law);
+    if ((pair.law.potential == "nonsmooth") != contacts_.nonsmooth())
+      section.fault("law",
+                    format("{} beside {} in contacts.default", pair.law.potential,
+                           contacts_.standard.potential),
+                    "The law nonsmooth decides how steps are taken: state it in contacts.default "
+                    "for all pairs, or nowhere.");
     if (!ends) return;
     if (!pair.of_materials) check_law_of_sides(section, *ends);
     pair.a = (*ends)[0];

@@ -11,6 +11,7 @@
 #include <polhode/model/beam_contact.hpp>
 #include <polhode/model/build_contacts.hpp>
 #include <polhode/model/contact_sides.hpp>
+#include <polhode/model/nonsmooth_contacts.hpp>
 #include <polhode/model/shape_surface.hpp>
 
 namespace polhode {
@@ -138,6 +139,7 @@ class ContactsBuilder {
 
   void add_laws() {
     set_->set_default(contact_law(spec_.standard));
+    if (spec_.nonsmooth()) set_->set_impulses(impulse_options(spec_));
     for (const auto& [x, i] : classes_)
       for (const auto& [y, j] : classes_)
         if (i <= j) set_->set_law(i, j, law_of(x, y));
@@ -250,6 +252,7 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
 
 void check_contact_shapes(const Model& model, std::vector<InputError>& faults) {
   check_sides(model, faults);
+  check_nonsmooth(model, faults);
   for (const BodySpec& body : model.bodies)
     for (std::size_t s = 0; s < body.shapes.size(); ++s) {
       if (!contact_side(body, s).touches) continue;
@@ -272,6 +275,7 @@ std::shared_ptr<contact::ContactSet> build_contacts(const Model& model,
   if (!model.contacts.present) return nullptr;
   std::vector<InputError> faults;
   check_sides(model, faults);
+  check_nonsmooth(model, faults);
   if (!faults.empty()) throw InputError(faults.front());
   return ContactsBuilder(model, bodies, map).build();
 }

@@ -11,23 +11,31 @@ namespace polhode {
 namespace {
 
 /// Totals: what impacts and friction took before those of pairs, and for each pair: impulse, energy
-/// lost, whether its sensor overlaps.
-constexpr std::size_t kHead = 2, kPerPair = 3;
+/// lost, whether its sensor overlaps. With impulses, last: sweeps, and steps that did not converge.
+constexpr std::size_t kHead = 2, kPerPair = 3, kImpulses = 2;
 
 }  // namespace
 
+std::size_t ContactKeeper::total_count() const {
+  return kHead + kPerPair * map_->pairs.size() + (contacts_->impulses() ? kImpulses : 0);
+}
+
 void ContactKeeper::begin(State& state) {
   if (!contacts_) return;
-  totals_.assign(kHead + kPerPair * map_->pairs.size(), 0.0);
+  totals_.assign(total_count(), 0.0);
   look(state, false);
 }
 
 void ContactKeeper::resume(const State& state) {
   if (!contacts_) return;
   totals_ = contact::ContactSet::totals_in(state);
-  const std::size_t wanted = kHead + kPerPair * map_->pairs.size();
+  const std::size_t wanted = total_count();
+  const ImpulseFigures search = impulse_figures();
   if (totals_.size() != wanted) totals_.resize(kHead);  // other pairs are kept now
   totals_.resize(wanted, 0.0);
+  if (!contacts_->impulses()) return;
+  totals_[wanted - 2] = search.sweeps;
+  totals_[wanted - 1] = search.unconverged;
 }
 
 void ContactKeeper::after_step(State& state) {
@@ -81,6 +89,10 @@ void ContactKeeper::look(State& state, bool sum) {
     overlaps = report.status;
     events_.push_back({state.t, sensor, report.status != 0});
   }
+  if (contacts_->impulses() && sum) {
+    totals[totals_.size() - 2] += contacts_->last_search().sweeps;
+    totals[totals_.size() - 1] += contacts_->last_search().converged ? 0.0 : 1.0;
+  }
   contacts_->keep_totals(state, totals_);
 }
 
@@ -93,6 +105,11 @@ ContactReport ContactKeeper::report(int pair) const {
   report.impulse = totals_[kHead + kPerPair * k];
   report.energy_lost = totals_[kHead + kPerPair * k + 1];
   return report;
+}
+
+ImpulseFigures ContactKeeper::impulse_figures() const {
+  if (!contacts_ || !contacts_->impulses() || totals_.size() < kHead + kImpulses) return {};
+  return {totals_[totals_.size() - 2], totals_[totals_.size() - 1]};
 }
 
 ContactLosses ContactKeeper::losses() const {

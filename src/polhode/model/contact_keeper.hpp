@@ -30,6 +30,12 @@ struct ContactLosses {
   double impacts = 0.0, friction = 0.0;
 };
 
+/// How impulses were sought since the start, of the non-smooth law.
+struct ImpulseFigures {
+  double sweeps = 0.0;       ///< In all steps.
+  double unconverged = 0.0;  ///< Steps that ended above the tolerance.
+};
+
 /// A sensor's bodies began or ceased to overlap in the step that ended at t.
 struct SensorEvent {
   double t = 0.0;
@@ -54,6 +60,7 @@ class ContactKeeper {
   [[nodiscard]] ContactReport report(int pair) const;
   [[nodiscard]] const std::vector<contact::TouchingPoint>& points() const { return points_; }
   [[nodiscard]] ContactLosses losses() const;
+  [[nodiscard]] ImpulseFigures impulse_figures() const;
   /// Pairs of shapes that pressed on each other in the last step.
   [[nodiscard]] int touching() const { return touching_; }
   /// The smallest gap there was after any step of this run [m]; NaN if none was small.
@@ -65,6 +72,8 @@ class ContactKeeper {
 
  private:
   void look(State& state, bool sum);
+  /// How many numbers are kept.
+  [[nodiscard]] std::size_t total_count() const;
 
   std::shared_ptr<contact::ContactSet> contacts_;
   const ContactMap* map_;

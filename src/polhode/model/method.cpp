@@ -6,6 +6,7 @@
 #include <polhode/solve/contact_engine.hpp>
 #include <polhode/solve/coupled_engine.hpp>
 #include <polhode/solve/crowd_engine.hpp>
+#include <polhode/solve/nonsmooth_engine.hpp>
 #include <polhode/solve/sparse_engine.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
@@ -106,6 +107,10 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
     throw InputError("analysis.solver",
                      "'tree' has the momentum form of the rate and factors in every iteration only",
                      "Use solver: block_lu with this momentum_rate or jacobian");
+  if (NonsmoothEngine::has_impulses(system)) {
+    narration += "Solver: impulses by projected Gauss-Seidel, as contacts are non-smooth.\n";
+    return std::make_unique<NonsmoothEngine>(system);
+  }
   if (system.contacts()) {
     if (a.solver == "tree")
       throw InputError("analysis.solver", "'tree' has no contacts",

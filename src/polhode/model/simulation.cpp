@@ -132,7 +132,13 @@ RunSummary Simulation::summary() const {
         .least_gap = std::fmin(s.contacts.least_gap(), s.surface_gap),
         .lost_in_impacts = lost.impacts,
         .lost_by_friction = lost.friction,
-        .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated};
+        .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated,
+        .sweeps = {}};
+    if (s.model.contacts.nonsmooth()) {
+      const ImpulseFigures search = s.contacts.impulse_figures();
+      r.contacts->sweeps = {search.sweeps / static_cast<double>(std::max<std::int64_t>(l.steps, 1)),
+                            static_cast<std::int64_t>(search.unconverged)};
+    }
   }
   return r;
 }

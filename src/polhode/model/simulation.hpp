@@ -67,6 +67,9 @@ struct RunSummary {
     double lost_in_impacts = 0.0, lost_by_friction = 0.0;  ///< Since the start [J].
     /// What the energy changed by beyond loads and losses [J]; below zero: lost.
     double numerical = 0.0;
+    /// Of the non-smooth law: sweeps over all points, mean of the steps since the start, and steps
+    /// that ended above sweep_tolerance.
+    std::optional<std::pair<double, std::int64_t>> sweeps;
   };
   std::optional<Contacts> contacts;
 };

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contact points that act by impulses: the non-smooth law.
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Of the speed of approach, the part that a point that overlaps may throw back to come free. With
+/// no more than half, what the next step takes is at least what this one gives.
+constexpr double kComesFree = 0.5;
+
+}  // namespace
+
+/// A point that lands is slowed down so that it arrives at gap 0 with the next step. One that
+/// rebounds does so in the step after which it would be too close. Both keep p_n (w_n + w_{n+1})
+/// from being positive.
+double least_exit_speed(double gap, double w, double restitution, double dt, double slow) {
+  const double land = -0.5 * w - gap / dt;
+  if (w >= 0.0) return std::min(land, -w);
+  const double back = -restitution * w;
+  if (restitution == 0.0 || (restitution < 1.0 && back < slow))
+    return std::min(land, -kComesFree * w);
+  return gap < -(1.5 - 0.5 * restitution) * w * dt ? back : -w - 2.0 * gap / dt;
+}
+
+namespace contact {
+
+namespace {
+
+/// A point whose potential would have faded by more than this has a neighbour that acts instead.
+constexpr double kFades = 0.5;
+/// Normals of the middle of the step that turn by more than this (cosine) since its start come from
+/// bodies that would pass one another.
+constexpr double kPasses = 0.5;
+/// Points of one surface that are closer than this part of the rounding are one.
+constexpr double kSamePlace = 1e-6;
+
+/// Weight of a feature pair's potential, see Fade.
+double weight_of(const PointData& d, const Placement<double>& at_a, const Placement<double>& at_b) {
+  if (d.pair.fade == Fade::none) return 1.0;
+  const FadeDirections<double> f = fade_directions(d.pair, *d.a, *d.b, at_a, at_b);
+  const Vec3 e = value(f.a), g = value(f.b);
+  const double y = e.dot(g) / std::sqrt(e.squaredNorm() * g.squaredNorm());
+  const double x = std::min(1.0, (1.0 - y * y) / 1e-3), m = x * (2.0 - x);
+  if (d.pair.fade == Fade::parallel) return m;
+  return y < 0.0 ? 1.0 - m : 0.0;
+}
+
+/// Edges touch where they cross; their ends are corners, which meet the whole solid. Cores that
+/// have passed through one another are told by the outward sides of the edges.
+bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
+  const Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
+  const auto inner = [](const Shape& s, const Shape::Edge& edge, const BodyStep& step,
+                        const Vec3& x) {
+    const Vec3 p = step.r_n + step.Lambda_n * s.corners[edge.i];
+    const Vec3 u = step.Lambda_n * (s.corners[edge.j] - s.corners[edge.i]);
+    const double t = (x - p).dot(u) / u.squaredNorm();
+    return t > 0.0 && t < 1.0;
+  };
+  const Vec3 n = value(g.normal), c = value(g.point);
+  if (!inner(*d.a, e, a, c) || !inner(*d.b, f, b, c)) return false;
+  if (n.dot(b.Lambda_n * f.out - a.Lambda_n * e.out) >= 0.0) return true;
+  g.distance = -g.distance - 2.0 * (d.a->rounding + d.b->rounding);
+  g.normal = -1.0 * g.normal;
+  return true;
+}
+
+/// Neighbouring triangles have an edge in common, and are as near by it as each other: what is not
+/// left over after the edges' weights, −1, is no point of the surface's own.
+void drop_cancelled(std::vector<ImpulsePoint>& list, std::size_t first,
+                    std::vector<double>& weights) {
+  std::size_t kept = first;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    if (weights[k] > 0.5) list[kept++] = list[first + k];
+  if (!weights.empty()) list.resize(kept);
+  weights.clear();
+}
+
+/// The middle of a step as a placement: the mean of both orientations is no rotation, but carries
+/// points by exactly u + θ × z̄ over the step.
+struct Middle {
+  Vec3 r;
+  Mat3 Lambda;
+
+  explicit Middle(const BodyStep& s)
+      : r(s.r_n + 0.5 * s.u), Lambda(0.5 * (s.Lambda_n + s.Lambda_n1)) {}
+};
+
+Vec3 relative(const Vec3& v_a, const Vec3& w_a, const Vec3& arm_a, const Vec3& v_b, const Vec3& w_b,
+              const Vec3& arm_b) {
+  return v_a + w_a.cross(arm_a) - v_b - w_b.cross(arm_b);
+}
+
+}  // namespace
+
+bool ContactSet::covers(std::span<const BodyStep> steps) const {
+  for (int body = 0; body < static_cast<int>(references_.size()); ++body)
+    if (reach_of_body_[body] > 0.0 &&
+        !(moved(body, steps[body].r_n1, steps[body].Lambda_n1) < references_[body].margin))
+      return false;
+  return true;
+}
+
+int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& context,
+                            std::vector<ImpulsePoint>& list) {
+  const double dt = context.dt, slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
+  if (list.empty())
+    for (Point& p : points_) p.listed = false;
+  const std::size_t before = list.size();
+  std::size_t of_pair = before;  // first of the points of the pair of shapes at hand
+  std::uint64_t last = 0;
+  std::vector<double> weights;  // of the points of a pair with a surface of triangles
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
+    if (p.key[0] != last) {
+      drop_cancelled(list, of_pair, weights);
+      of_pair = list.size();
+      last = p.key[0];
+    }
+    if (p.listed || p.sensor) continue;
+    const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
+    const Vec3 &n = p.normal_n, &c = p.place_n;
+    const Vec3 arm_a = c - a.r_n, arm_b = c - b.r_n;
+    const double w =
+        n.dot(relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b));
+    // Either of them may be stopped by something else.
+    const double of_a = n.dot(a.u + a.theta.cross(arm_a)), of_b = n.dot(b.u + b.theta.cross(arm_b));
+    const double way = std::min({of_a - of_b, of_a, -of_b});
+    const double least = least_exit_speed(p.gap_n, w, p.restitution, dt, slow);
+    const bool acted = !p.data.history.impulse.isZero(0.0) && before == 0;
+    if (!acted && 2.0 * way / dt - w >= least) continue;
+    ImpulsePoint point;
+    point.gap = p.gap_n;
+    point.normal = n;
+    point.place = c;
+    if (!balls_[i].holds) {
+      const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
+      if (weight_of(p.data, at_a, at_b) < kFades) continue;
+      if (p.data.pair.kind == GapKind::edge_edge) {
+        Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
+        if (!mend_edges(p.data, a, b, g)) continue;
+        point.gap = g.distance;
+        point.normal = value(g.normal);
+        point.place = value(g.point);
+      }
+    }
+    point.a = shapes_[p.a].body;
+    point.b = shapes_[p.b].body;
+    point.restitution = p.restitution;
+    const FrictionLaw& f = p.data.friction;
+    point.friction = f.mu;
+    point.rolling = f.rolling;
+    point.torsion = f.torsion;
+    point.impulse = p.data.history.impulse;
+    point.turning = p.data.history.turning;
+    point.number = i;
+    p.listed = true;
+    if (p.data.b->solid == Solid::surface) {
+      const double near = kSamePlace * (p.data.a->rounding + p.data.b->rounding);
+      weights.resize(list.size() - of_pair, 1.0);
+      std::size_t k = 0;
+      while (k < weights.size() && (list[of_pair + k].place - point.place).norm() > near) ++k;
+      if (k < weights.size()) {
+        weights[k] += p.data.pair.weight;
+        continue;
+      }
+      weights.push_back(p.data.pair.weight);
+    }
+    list.push_back(point);
+  }
+  drop_cancelled(list, of_pair, weights);
+  return static_cast<int>(list.size() - before);
+}
+
+void ContactSet::place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const {
+  for (ImpulsePoint& at : list) {
+    const Point& p = points_[at.number];
+    const ApproachOfBalls& balls = balls_[at.number];
+    const BodyStep &a = steps[balls.a], &b = steps[balls.b];
+    if (balls.holds) {
+      const Vec3 r = a.r_n + 0.5 * a.u;
+      double gap_m = 0.0;
+      if (balls.distance == 0.0) {
+        gap_m = balls.gap_n + 0.5 * balls.offset.dot(a.u);
+      } else {
+        const Vec3 w = balls.offset + 0.5 * (a.u - b.u);
+        const double length = w.norm();
+        const Vec3 n = w / length;
+        at.normal = n.dot(p.normal_n) > kPasses ? n : p.normal_n;
+        gap_m = balls.gap_n + (length - balls.distance);
+      }
+      at.place = r - (p.data.a->rounding + 0.5 * gap_m) * at.normal;
+      continue;
+    }
+    const Middle m_a(a), m_b(b);
+    Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(m_a.r, m_a.Lambda, 0),
+                        Placement<double>(m_b.r, m_b.Lambda, 6));
+    if (p.data.pair.kind == GapKind::edge_edge) mend_edges(p.data, a, b, g);
+    const Vec3 n = value(g.normal);
+    // What slides off its triangle belongs to the next one, not to the edge between them.
+    const bool leaves = p.data.pair.kind == GapKind::point_triangle && g.feature != 0;
+    if (!leaves && n.dot(p.normal_n) > kPasses) {
+      at.normal = n.normalized();
+      at.place = value(g.point);
+    } else {
+      at.normal = p.normal_n;
+      at.place = p.place_n + 0.5 * a.u;
+    }
+  }
+}
+
+void ContactSet::report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss,
+                                double dt) {
+  PointReport& r = p.report;
+  const double push = at.normal.dot(at.impulse);
+  r.normal_force = push / dt;
+  r.force = at.impulse / dt;
+  r.normal = at.normal;
+  r.point = at.place;
+  r.friction_force = (at.impulse - push * at.normal) / dt;
+  r.work.dissipated = loss.normal + loss.friction;
+  r.normal_loss = loss.normal;
+  r.after = p.data.history;
+  r.after.slips = r.friction_force.norm() >= (1.0 - 1e-9) * at.friction * r.normal_force;
+  p.touched = push > 0.0;
+}
+
+Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
+                                 const StepContext& context, std::span<const ImpulsePoint> list,
+                                 std::span<const ImpulseLoss> losses, const ImpulseSearch& search) {
+  Work work;
+  search_ = search;
+  for (Vec6& w : wrenches_) w.setZero();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
+    const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
+    p.impact_loss = p.impact_impulse = 0.0;
+    p.touched = false;
+    p.report = {};
+    p.report.gap_n = p.gap_n;
+    p.report.gap_n1 = gap_at_end(i, a, b);
+    p.data.history.impulse.setZero();
+    p.data.history.turning.setZero();
+  }
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const ImpulsePoint& at = list[k];
+    if (at.impulse.isZero(0.0)) continue;
+    Point& p = points_[at.number];
+    p.data.history.impulse = at.impulse;
+    p.data.history.turning = at.turning;
+    report_impulse(p, at, losses[k], context.dt);
+    const auto add = [&](int shape, double sign) {
+      const int body = shapes_[shape].body;
+      if (body == kGround) return;
+      const Vec3 arm = at.place - steps[body].r_n - 0.5 * steps[body].u;
+      wrenches_[body].head<3>() += sign / context.dt * at.impulse;
+      wrenches_[body].tail<3>() += sign / context.dt * (arm.cross(at.impulse) + at.turning);
+    };
+    add(p.a, 1.0);
+    add(p.b, -1.0);
+    lost_in_impacts_ += losses[k].normal;
+    lost_by_friction_ += losses[k].friction;
+    work.dissipated += losses[k].normal + losses[k].friction;
+  }
+  // What sweeps that ended early may have given shall be seen in the balance, not hide in it.
+  work.dissipated = std::max(0.0, work.dissipated);
+  save(state);
+  return work;
+}
+
+}  // namespace contact
+
+}  // namespace polhode
