@@ -192,9 +192,26 @@ def tyre_on_kerb():
     return figure
 
 
+def soft_rings():
+    m = Solids("soft_rings")
+    figure, scene, plot = sheet(flat=True, wide=1.6)
+    for shift, t in ((0.0, 0.0), (0.085, 0.2), (0.175, 0.4)):
+        k = int(np.argmin(abs(m.t - t)))
+        for name in ("lower", "upper"):
+            x = m.nodes[name][k][:, [0, 2, 1]] + np.array([shift, 0, 0])
+            side(scene, x, m.faces[name], m.stress[name][k], 4e4, np.array([0, -1, 0]))
+    label(scene, "0, 0.2 and 0.4 s", "x [mm]", "y [mm]")
+    face, hand = m.probe("face"), m.probe("hand")
+    plot.plot(1e3 * face["t"], face["normal"], color=BLUE, label="normal force at the face")
+    plot.plot(1e3 * hand["t"], -hand["fy"], color=RED, linewidth=0.8, label="hand")
+    plot.legend(frameon=False, fontsize=7.5)
+    label(plot, "force [N]", "time [ms]")
+    return figure
+
+
 DYNAMICS = ("analysis.type=dynamics", "analysis.duration=40 ms", "analysis.step=0.25 ms")
 PICTURES = {"flexible_panel": flexible_panel, "knee": knee, "rubber_bushing": rubber_bushing, "ironing": ironing,
-            "tyre_on_kerb": tyre_on_kerb}
+            "tyre_on_kerb": tyre_on_kerb, "soft_rings": soft_rings}
 
 
 def main():

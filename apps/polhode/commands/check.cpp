@@ -5,6 +5,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/base/names.hpp>
+#include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/solve/rank_report.hpp>
 #include <polhode/solve/tangent_check.hpp>
 
@@ -130,32 +131,43 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
                     format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
 }
 
+/// A surface of a solid against a shape or against that of a solid.
+struct TouchingGroup {
+  std::string name;
+  const SurfaceLaw& law;
+  std::size_t points;
+};
+
+TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Surface& s) {
+  const ElementGroup& group = simulation.system().nodes().group(s.group);
+  if (const auto* on_solid = dynamic_cast<const SolidContact*>(&group))
+    return {group.name(), on_solid->law(), on_solid->points().size()};
+  return {group.name(), dynamic_cast<const SurfaceContact&>(group).law(),
+          static_cast<std::size_t>(group.size())};
+}
+
 /// What a surface of a solid meets, and how.
 nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const Model& model = simulation.model();
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
-    const auto& contact =
-        dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
+    const TouchingGroup group = touching_group(simulation, s);
     list.push_back({{"solid", model.solids[static_cast<std::size_t>(s.solid)].name},
-                    {"body", model.bodies[static_cast<std::size_t>(s.body)].name},
-                    {"points", contact.size()},
-                    {"gap_tolerance", contact.law().normal.tolerance},
-                    {"stiffness_per_area", contact.law().normal.stiffness},
-                    {"friction", contact.law().mu}});
+                    {is_solid_side(s.side) ? "on_solid" : "body", model.side_name(s.side)},
+                    {"points", group.points},
+                    {"gap_tolerance", group.law.normal.tolerance},
+                    {"stiffness_per_area", group.law.normal.stiffness},
+                    {"friction", group.law.mu}});
   }
   return list;
 }
 
 void add_surface_rows(const Simulation& simulation, std::vector<std::vector<std::string>>& rows) {
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
-    const auto& contact =
-        dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
-    rows.push_back(
-        {format("surface {}", contact.name()),
-         counted(static_cast<std::size_t>(contact.size()), "point", "points"),
-         format("gap tolerance {:.3g} m, stiffness {:.3g} Pa/m, friction {:g}",
-                contact.law().normal.tolerance, contact.law().normal.stiffness, contact.law().mu)});
+    const TouchingGroup group = touching_group(simulation, s);
+    rows.push_back({format("surface {}", group.name), counted(group.points, "point", "points"),
+                    format("gap tolerance {:.3g} m, stiffness {:.3g} Pa/m, friction {:g}",
+                           group.law.normal.tolerance, group.law.normal.stiffness, group.law.mu)});
   }
 }
 

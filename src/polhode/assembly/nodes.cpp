@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include <polhode/assembly/moving_pattern.hpp>
 #include <polhode/assembly/nodes.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
@@ -188,6 +189,19 @@ void Nodes::find_pieces() {
         sets.unite(first, i);
       }
     }
+  // What may meet is of one piece.
+  std::vector<const MovingPattern*> moving;
+  for (const auto& g : groups_)
+    if (const auto* pattern = dynamic_cast<const MovingPattern*>(g.get()))
+      moving.push_back(pattern);
+  for (const MovingPattern* pattern : moving) {
+    int first = -1;
+    for (int i : pattern->reach()) {
+      if (bonded(i)) continue;
+      if (first < 0) first = i;
+      sets.unite(first, i);
+    }
+  }
   piece_.assign(data_.size(), -1);
   std::vector<int> piece_of_root(data_.size(), -1);
   std::vector<std::set<int>> bodies;
@@ -226,6 +240,15 @@ void Nodes::find_pieces() {
       bodies[piece].insert(touched.begin(), touched.end());
       piece_of_group_[k] = piece;
     }
+  for (const MovingPattern* pattern : moving) {
+    const auto& reach = pattern->reach();
+    const auto free =
+        std::find_if(reach.begin(), reach.end(), [&](int i) { return piece_[i] >= 0; });
+    if (free == reach.end()) continue;
+    pieces_[piece_[*free]].turns = false;  // what touches does not turn as one
+    for (int i : reach)
+      if (data_[i].body >= 0) bodies[piece_[*free]].insert(data_[i].body);
+  }
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     pieces_[p].bodies.assign(bodies[p].begin(), bodies[p].end());
     if (pieces_[p].bodies.empty()) pieces_[p].turns = false;

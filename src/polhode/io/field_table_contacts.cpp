@@ -279,9 +279,13 @@ const FieldTable& solid_contact_fields() {
                    .kind = kSelection,
                    .meaning = "The faces that may touch, among those of the solid's boundary.",
                    .standard = "the whole boundary",
-                   .table = "selection"}}};
+                   .table = "selection"},
+                  {.name = "self",
+                   .kind = kBoolean,
+                   .meaning = "true: it touches itself, too, where it is folded.",
+                   .standard = "false"}}};
     for (const Field& field : contact_side_fields().fields) t.fields.push_back(field);
-    t.fields[1].meaning = "false: the solid meets nothing.";
+    t.fields[2].meaning = "false: the solid meets nothing.";
     return t;
   }();
   return table;

@@ -85,7 +85,7 @@ const FieldTable& solid_fields() {
            .table = "prescribed"},
           {.name = "contact",
            .kind = kSection,
-           .meaning = "How its surface takes part in contact with shapes of bodies.",
+           .meaning = "How its surface takes part in contact, see contacts.",
            .table = "solid contact"},
           {.name = "velocity",
            .kind = kVector,

@@ -392,6 +392,7 @@ void read_solid_contact(ReadContext& context, const SourceNode& node, const std:
   if (const SourceNode* value = section.find("surface"))
     if (auto faces = read_selections(context, *value, section.path("surface")))
       solid.contact_surface = std::move(*faces);
+  solid.self_contact = section.boolean("self").value_or(false);
   read_contact_side(section, solid.contact);
 }
 
@@ -419,10 +420,7 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
     }
     sides[k] = side_of_solid(context.solids.at(child.text));
   }
-  if (!is_solid_side(sides[0]) || !is_solid_side(sides[1])) return sides;
-  context.fault(node, path, "both are solids, which do not touch one another",
-                "Name a body and a solid.");
-  return std::nullopt;
+  return sides;
 }
 
 void read_contacts(ReadContext& context, const SourceNode& node) {

@@ -126,8 +126,10 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     // Sides of surfaces are numbered behind the shapes of bodies, see touching_points().
     std::vector<int> side = simulation.contact_map().body;
     for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
-      side.insert(side.end(),
-                  {static_cast<int>(model.bodies.size()) + surface.solid, surface.body});
+      side.insert(side.end(), {static_cast<int>(model.bodies.size()) + surface.solid,
+                               is_solid_side(surface.side) ? static_cast<int>(model.bodies.size()) +
+                                                                 solid_of_side(surface.side)
+                                                           : surface.side});
     impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names), std::move(side),
                             keep);
   }

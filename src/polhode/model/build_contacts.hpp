@@ -26,11 +26,12 @@ struct ContactMap {
   std::vector<Pair> pairs;
   std::vector<int> body;   ///< By shape of the ContactSet: index into Model::bodies.
   bool all_pairs = false;  ///< Every pair that may meet is kept.
-  /// Faces of one kind of a solid against one shape of a body.
+  /// Faces of one kind of a solid against one shape of a body; or points of its surface against
+  /// that of a solid, of which another such entry has the points.
   struct Surface {
     int solid = 0;          ///< Index into Model::solids.
-    int body = 0;           ///< Index into Model::bodies.
-    std::size_t shape = 0;  ///< Of that body.
+    int side = 0;           ///< What it meets, see contact_spec.hpp.
+    std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
   };
   std::vector<Surface> surfaces;

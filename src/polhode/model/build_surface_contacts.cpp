@@ -5,6 +5,7 @@
 #include <set>
 
 #include <polhode/base/format.hpp>
+#include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/contact_sides.hpp>
@@ -60,6 +61,10 @@ class Planner {
         }
       }
     }
+    for (std::size_t s = 0; s < model_.solids.size(); ++s)
+      for (std::size_t t = s; t < model_.solids.size(); ++t)
+        add_solids(static_cast<int>(s), static_cast<int>(t));
+    check_named();
     return std::move(list_);
   }
 
@@ -101,6 +106,48 @@ class Planner {
           format("'{}' and '{}' meet with friction, which statics does not know", name, spec.name),
           "Set friction: 0, or let the model come to rest in dynamics");
     list_.push_back({solid, body, shape, stated.law});
+  }
+
+  /// Two solids; or one with itself, if it says so.
+  void add_solids(int s, int t) {
+    const SolidSpec &one = model_.solids[static_cast<std::size_t>(s)],
+                    &two = model_.solids[static_cast<std::size_t>(t)];
+    const ContactSide a = contact_side(one), b = contact_side(two);
+    if (!a.touches || !b.touches || (s == t && !one.self_contact)) return;
+    if (s != t && (!(groups_.of(a) & groups_.met_by(b)) || !(groups_.of(b) & groups_.met_by(a))))
+      return;
+    if (excluded_.contains(std::minmax(side_of_solid(s), side_of_solid(t)))) return;
+    const StatedLaw stated =
+        law_between(model_.contacts, {material_of(model_.contacts, a), side_of_solid(s)},
+                    {material_of(model_.contacts, b), side_of_solid(t)});
+    const std::string where =
+        stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
+    const std::string who = s == t ? format("'{}' meets itself", one.name)
+                                   : format("'{}' and '{}' meet", one.name, two.name);
+    const std::string mend = s == t ? "leave out contact: {self: true}" : "exclude the pair";
+    if (model_.analysis.type != "dynamics")
+      fault(where, format("{}, which surfaces of solids can do in dynamics only", who),
+            format("Use type: dynamics and let the model come to rest, or {}", mend));
+    if (const std::string key = strange_key(stated.law); !key.empty())
+      fault(where, format("{} by a law with {}, which surfaces of solids do not know", who, key),
+            "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
+            "friction, or zero");
+    if (stated.law.potential == "linear")
+      fault(where, format("{} by the linear law, which lets meshes pass", who),
+            "Give the pair a law of its own in contacts.pairs, with law: barrier");
+    list_.push_back({s, side_of_solid(t), 0, stated.law});
+  }
+
+  /// A solid with itself, named without that it touches itself.
+  void check_named() {
+    for (const ContactPairSpec& pair : model_.contacts.pairs) {
+      if (pair.of_materials || pair.a != pair.b || !is_solid_side(pair.a)) continue;
+      const SolidSpec& solid = model_.solids[static_cast<std::size_t>(solid_of_side(pair.a))];
+      if (!solid.self_contact)
+        fault(format("contacts.pairs.{}", pair.name),
+              format("'{}' does not touch itself", solid.name),
+              format("Set solids.{}.contact: {{self: true}}, or leave the pair out", solid.name));
+    }
   }
 
   void fault(const std::string& where, const std::string& what, const std::string& mend) {
@@ -165,21 +212,17 @@ class SurfacesBuilder {
 
   void build() {
     const std::vector<SurfacePair> pairs = plan_surface_contacts(model_);
-    for (const SurfacePair& pair : pairs) add(pair);
+    for (const SurfacePair& pair : pairs) is_solid_side(pair.side) ? add_solids(pair) : add(pair);
     keep(pairs);
   }
 
  private:
   void add(const SurfacePair& pair) {
     const SolidMap& solid = solids_[static_cast<std::size_t>(pair.solid)];
-    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.body)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
     const ShapeSpec& shape = body.shapes[pair.shape];
-    const int carrier = bodies_[static_cast<std::size_t>(pair.body)];
-    std::vector<LoadedFaces> faces;
-    for (const FaceBlock& block : solid.plan.touching.blocks) {
-      faces.push_back({block.type, block.nodes});
-      for (int& node : faces.back().nodes) node += solid.first_node;
-    }
+    const int carrier = bodies_[static_cast<std::size_t>(pair.side)];
+    const std::vector<LoadedFaces> faces = faces_of(solid);
     // What is bonded to a body does not touch its shapes.
     std::vector<int> left_out;
     for (int k = 0; k < solid.node_count(); ++k)
@@ -191,7 +234,8 @@ class SurfacesBuilder {
       const std::string where =
           format("{} on {}", model_.solids[static_cast<std::size_t>(pair.solid)].name,
                  body.shapes.size() > 1 ? format("{}.{}", body.name, pair.shape) : body.name);
-      const SurfaceLaw law = law_of(pair, shape, median_edge(block, X));
+      const double edge = median_edge(block, X);
+      const SurfaceLaw law = law_of(pair.law, {pair.solid}, edge, std::min(edge, radius_of(shape)));
       SurfacePoints points;
       try {
         points = surface_points(where, block, X, left_out);
@@ -200,8 +244,75 @@ class SurfacesBuilder {
       }
       const int group = system_.add_elements(std::make_unique<SurfaceContact>(
           where, std::move(points), X, rigid_surface(shape, law.normal.tolerance), place, law));
-      map_.surfaces.push_back({pair.solid, pair.body, pair.shape, group});
+      map_.surfaces.push_back({pair.solid, pair.side, pair.shape, group});
     }
+  }
+
+  /// By the system's numbers.
+  [[nodiscard]] static std::vector<LoadedFaces> faces_of(const SolidMap& solid) {
+    std::vector<LoadedFaces> faces;
+    for (const FaceBlock& block : solid.plan.touching.blocks) {
+      faces.push_back({block.type, block.nodes});
+      for (int& node : faces.back().nodes) node += solid.first_node;
+    }
+    return faces;
+  }
+
+  /// Points of each of both surfaces on the triangles of the other, at half their area.
+  void add_solids(const SurfacePair& pair) {
+    const int partner = solid_of_side(pair.side);
+    const bool self = partner == pair.solid;
+    const std::vector<Vec3> X = positions();
+    const int solids[2] = {pair.solid, partner};
+    std::vector<LoadedFaces> faces[2];
+    MeshSurface surfaces[2];
+    double edge[2];
+    for (int k = 0; k < 2; ++k) {
+      faces[k] = faces_of(solids_[static_cast<std::size_t>(solids[k])]);
+      surfaces[k] = triangulated(faces[k]);
+      edge[k] = std::numeric_limits<double>::infinity();
+      for (const LoadedFaces& block : faces[k]) edge[k] = std::min(edge[k], median_edge(block, X));
+    }
+    if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
+    const double least = std::min(edge[0], edge[1]);
+    const SurfaceLaw law = law_of(pair.law, {solids[0], solids[1]}, least, least);
+    std::vector<int> carriers;
+    for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
+    for (int k = 0; k < (self ? 1 : 2); ++k) {
+      const auto& name = [&](int side) -> const std::string& {
+        return model_.solids[static_cast<std::size_t>(solids[side])].name;
+      };
+      const std::string where = format("{} on {}", name(k), name(1 - k));
+      std::vector<MeshPoint> points =
+          contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
+      for (MeshPoint& p : points) p.area *= 0.5;
+      const SolidContactStart start{.X = X,
+                                    .carriers = carriers,
+                                    .edge = least,
+                                    .way = way_of_step(solids[0], solids[1]),
+                                    .self = self};
+      const int group = system_.add_elements(
+          std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start));
+      map_.surfaces.push_back({solids[k], side_of_solid(solids[1 - k]), 0, group});
+    }
+  }
+
+  /// How far nodes of two solids go against each other in the first step [m].
+  [[nodiscard]] double way_of_step(int a, int b) const {
+    Vec3 mean = Vec3::Zero();
+    int count = 0;
+    const auto each = [&](auto&& visit) {
+      for (const int s : {a, b}) {
+        const SolidMap& solid = solids_[static_cast<std::size_t>(s)];
+        for (int k = 0; k < solid.node_count(); ++k)
+          visit(system_.nodes()[solid.first_node + k].velocity);
+      }
+    };
+    each([&](const Vec3& v) { mean += v, ++count; });
+    mean /= count;
+    double most = 0.0;
+    each([&](const Vec3& v) { most = std::max(most, (v - mean).norm()); });
+    return most * model_.analysis.step.value_or(0.0);
   }
 
   /// On the ground, or carried by four nodes that are bonded to the body.
@@ -233,22 +344,23 @@ class SurfacesBuilder {
     return X;
   }
 
-  /// @eq{surface-stiffness}
-  [[nodiscard]] SurfaceLaw law_of(const SurfacePair& pair, const ShapeSpec& shape,
-                                  double edge) const {
-    const ContactLawSpec& spec = pair.law;
-    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(pair.solid)];
+  /// Of several solids the softest and lightest counts. @eq{surface-stiffness}
+  /// @param smallest  Of edges and half sizes of the shape [m].
+  [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const std::vector<int>& solids,
+                                  double edge, double smallest) const {
     SurfaceLaw law;
     if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
-    law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance
-                                                    : kTolerance * std::min(edge, radius_of(shape));
-    const double density = solids_[static_cast<std::size_t>(pair.solid)].plan.density;
+    law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
+    double E = std::numeric_limits<double>::infinity(), density = E;
+    for (const int s : solids) {
+      E = std::min(E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
+      density = std::min(density, solids_[static_cast<std::size_t>(s)].plan.density);
+    }
     const double dt = model_.analysis.type == "dynamics" ? model_.analysis.step.value_or(0.0) : 0.0;
     double& k = law.normal.stiffness;
     if (spec.reference_pressure > 0.0) {
       k = 1.5 * spec.reference_pressure / (2.0 * law.normal.tolerance);
     } else {
-      const double E = modulus(model_, solid);
       k = 1.5 * std::max(E / edge, kPressure * E / (2.0 * law.normal.tolerance));
       if (dt > 0.0) k = std::max(k, density * edge / (dt * dt));
     }
@@ -270,7 +382,7 @@ class SurfacesBuilder {
     for (const ProbeSpec& probe : model_.output.probes)
       if (probe.kind == "contact") keep(probe.pair[0], probe.pair[1]);
     if (!model_.contacts.record.value_or(true)) return;
-    for (const SurfacePair& pair : pairs) keep(side_of_solid(pair.solid), pair.body);
+    for (const SurfacePair& pair : pairs) keep(side_of_solid(pair.solid), pair.side);
   }
 
   System& system_;

@@ -12,19 +12,21 @@
 
 namespace polhode {
 
-/// The surface of a solid and a shape of a body that may meet.
+/// The surface of a solid and a shape of a body, or two surfaces, that may meet.
 struct SurfacePair {
-  int solid = 0, body = 0;  ///< Indices into Model::solids and Model::bodies.
-  std::size_t shape = 0;    ///< Of that body.
+  int solid = 0;          ///< Index into Model::solids.
+  int side = 0;           ///< What it meets: a body, another solid or itself.
+  std::size_t shape = 0;  ///< Of a body.
   ContactLawSpec law;
 };
 
-/// Which surfaces of solids may meet which shapes, and by which law.
+/// Which surfaces of solids may meet which shapes and which of one another, and by which law.
 /// @param faults  Told of shapes and laws that surfaces do not know; null: the first is thrown.
 [[nodiscard]] std::vector<SurfacePair> plan_surface_contacts(
     const Model& model, std::vector<InputError>* faults = nullptr);
 
-/// Adds the contact of surfaces of solids with shapes of bodies, after solids and bodies.
+/// Adds the contact of surfaces of solids with shapes of bodies and with one another, after solids
+/// and bodies.
 /// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
 /// @param map     Gains pairs and surfaces.
 void add_surface_contacts(System& system, const Model& model, const std::vector<int>& bodies,
@@ -44,7 +46,8 @@ struct SurfaceFigures {
 };
 [[nodiscard]] SurfaceFigures surface_figures(const System& system, const State& state,
                                              const ContactMap& map);
-/// Surfaces that are deeper in a shape than the tolerance: "pad in floor by 0.01 m".
+/// Surfaces that are deeper in a shape than the tolerance: "pad in floor by 0.01 m"; and surfaces
+/// of two solids that overlap or leave no gap: "pad touches block".
 [[nodiscard]] std::vector<std::string> surface_overlaps(const Model& model, const System& system,
                                                         const State& state, const ContactMap& map);
 

@@ -226,10 +226,12 @@ struct Simulation::Impl {
   void refuse_overlaps() const {
     const std::vector<std::string> surfaces = surface_overlaps(model, system, state, map.contact);
     if (!surfaces.empty())
-      throw InputError("contacts",
-                       "surfaces of solids overlap shapes at the start: " + name_list(surfaces, 12),
-                       "Correct positions or sizes, or exclude pairs that are meant to overlap; "
-                       "'overlaps: resolve' moves bodies only");
+      throw InputError(
+          "contacts",
+          "surfaces of solids overlap or touch at the start: " + name_list(surfaces, 12),
+          "Correct positions or sizes, or exclude pairs that are meant to overlap; "
+          "'overlaps: resolve' moves bodies only. Between two solids leave a gap of "
+          "at least half the gap_tolerance");
     if (!map.contacts) return;
     const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
     if (list.empty()) return;

@@ -208,7 +208,7 @@ std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
   const Nodes& nodes = impl_->system.nodes();
   StepContext still;
   still.t_n = impl_->state.t;
-  return dynamic_cast<const SurfaceContact&>(nodes.group(group))
+  return dynamic_cast<const TouchingSurface&>(nodes.group(group))
       .point_reports(node_instant(impl_->state, still),
                      impl_->state.element_history.data() + nodes.first_history(group));
 }

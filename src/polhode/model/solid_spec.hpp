@@ -60,6 +60,7 @@ struct SolidSpec {
   std::vector<PrescribedSpec> prescribed;
   ContactSideSpec contact;                 ///< How its surface takes part in contact.
   std::vector<Selection> contact_surface;  ///< Faces that may touch; empty: the whole boundary.
+  bool self_contact = false;               ///< Its surface touches itself.
   std::optional<Vec3> velocity;  ///< Of the centre of mass, world [m/s]; absent: see below.
   /// World [rad/s]. Without velocity and angular_velocity a solid starts by moving rigidly with the
   /// first body it is bonded to, or rests.

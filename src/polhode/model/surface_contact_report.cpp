@@ -11,8 +11,8 @@ namespace polhode {
 
 namespace {
 
-const SurfaceContact& contact_of(const System& system, const ContactMap::Surface& surface) {
-  return dynamic_cast<const SurfaceContact&>(system.nodes().group(surface.group));
+const TouchingSurface& contact_of(const System& system, const ContactMap::Surface& surface) {
+  return dynamic_cast<const TouchingSurface&>(system.nodes().group(surface.group));
 }
 
 SurfaceReport report_of(const System& system, const State& state,
@@ -25,14 +25,13 @@ SurfaceReport report_of(const System& system, const State& state,
 
 ContactReport surface_report(const System& system, const State& state, const ContactMap& map,
                              const ContactMap::Pair& pair) {
-  const int solid = solid_of_side(is_solid_side(pair.a) ? pair.a : pair.b);
-  const int body = is_solid_side(pair.a) ? pair.b : pair.a;
-  const double sign = is_solid_side(pair.a) ? 1.0 : -1.0;  // reports are of forces on the solid
   ContactReport report;
   report.gap = std::numeric_limits<double>::quiet_NaN();
   for (const ContactMap::Surface& surface : map.surfaces) {
-    if (surface.solid != solid || surface.body != body) continue;
+    const int own = side_of_solid(surface.solid);
+    if (std::minmax(own, surface.side) != std::minmax(pair.a, pair.b)) continue;
     const SurfaceReport r = report_of(system, state, surface);
+    const double sign = own == pair.a ? 1.0 : -1.0;  // reports are of forces on the solid
     report.gap = std::fmin(report.gap, r.least_gap);
     report.normal_force += r.normal_force;
     report.force += sign * r.force;
@@ -43,6 +42,10 @@ ContactReport surface_report(const System& system, const State& state, const Con
     if (r.slipping > 0) report.status = 2;
     report.impulse += r.impulse;
     report.energy_lost += r.friction_loss + r.normal_loss;
+  }
+  if (pair.a == pair.b) {  // what a surface does to itself has no sum
+    report.force.setZero();
+    report.friction.setZero();
   }
   if (report.normal_force > 0.0) report.point /= report.normal_force;
   return report;
@@ -74,12 +77,13 @@ std::vector<std::string> surface_overlaps(const Model& model, const System& syst
   const StepContext still;
   const NodeStep instant = node_instant(state, still);
   for (const ContactMap::Surface& surface : map.surfaces) {
-    const SurfaceContact& contact = contact_of(system, surface);
-    const double gap = contact.least_gap(instant);
-    if (gap > -contact.law().normal.tolerance) continue;
-    list.push_back(format("{} in {} by {:.3g} m",
-                          model.solids[static_cast<std::size_t>(surface.solid)].name,
-                          model.bodies[static_cast<std::size_t>(surface.body)].name, -gap));
+    const double depth = contact_of(system, surface).overlap(instant);
+    if (depth < 0.0) continue;
+    const std::string own = model.side_name(side_of_solid(surface.solid)),
+                      other = model.side_name(surface.side);
+    const std::string text = depth > 0.0 ? format("{} in {} by {:.3g} m", own, other, depth)
+                                         : format("{} touches {}", own, other);
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
   }
   return list;
 }

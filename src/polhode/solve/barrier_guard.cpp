@@ -30,7 +30,7 @@ BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& tria
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     if (const auto* points = dynamic_cast<const BarrierPoints*>(&nodes.group(g)))
-      points_.push_back(points);
+      points_.push_back({points, state.element_history.data() + nodes.first_history(g)});
   idle_ = system.barriers().empty() && points_.empty();
 }
 
@@ -43,7 +43,7 @@ void BarrierGuard::measure(std::vector<double>& clearance) const {
   }
   if (points_.empty()) return;
   const NodeStep step = node_step(state_, trial_);
-  for (const BarrierPoints* points : points_) points->clearances(step, clearance);
+  for (const Watched& w : points_) w.points->clearances(step, w.history, clearance);
 }
 
 void BarrierGuard::measure_start() {
@@ -63,8 +63,8 @@ double BarrierGuard::part() const {
   const NodeStep to = node_step(state_, trial_);
   NodeStep from = to;
   from.x_n1 = from_x_.data();
-  for (const BarrierPoints* points : points_) {
-    const double free = points->free_part(from, to);
+  for (const Watched& w : points_) {
+    const double free = w.points->free_part(from, to, w.history);
     if (free < 1.0) most = std::min(most, kShorter * free);
   }
   return most;

@@ -36,10 +36,14 @@ class BarrierGuard {
   const State& state_;
   Trial& trial_;
   NewtonEngine& engine_;
-  std::vector<const BarrierPoints*> points_;  ///< Of groups of elements.
-  bool idle_ = true;                          ///< Nothing has barriers.
-  std::vector<double> from_, to_;             ///< Clearances.
-  std::vector<double> from_x_;                ///< Positions of nodes [m].
+  struct Watched {
+    const BarrierPoints* points;
+    const double* history;
+  };
+  std::vector<Watched> points_;    ///< Groups of elements, at t_n.
+  bool idle_ = true;               ///< Nothing has barriers.
+  std::vector<double> from_, to_;  ///< Clearances.
+  std::vector<double> from_x_;     ///< Positions of nodes [m].
   KeptIterate iterate_;
   bool near_ = false;
 };

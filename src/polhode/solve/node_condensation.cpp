@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <map>
 
 #include <polhode/solve/node_condensation.hpp>
 
@@ -49,19 +48,7 @@ NodeCondensation::NodeCondensation(const System& system) : system_(&system) {
   for (int i = 0; i < nodes.count(); ++i)
     if (nodes[i].body >= 0) bonds_.push_back({i, nodes[i].body, Vec3::Zero(), Vec3::Zero()});
 
-  std::vector<int> rows, columns;
-  for (int i = 0; i < nodes.count(); ++i)
-    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) {
-          const int row = nodes.unknown(i, r), column = nodes.unknown(nodes.column()[b], c);
-          if (row < 0 || column < 0) continue;
-          rows.push_back(row);
-          columns.push_back(column);
-          source_.push_back(9 * b + 3 * r + c);
-        }
-  values_.resize(source_.size());
-  if (nodes.unknowns() > 0) mumps_.analyse(nodes.unknowns(), rows, columns);
+  analyse();
 
   const auto pieces = nodes.pieces().size();
   couplings_.resize(pieces);
@@ -84,6 +71,29 @@ NodeCondensation::NodeCondensation(const System& system) : system_(&system) {
   }
   W_.resize(static_cast<std::size_t>(nodes.unknowns()) * columns_);
   y_.resize(nodes.unknowns());
+}
+
+void NodeCondensation::analyse() {
+  const Nodes& nodes = system_->nodes();
+  std::vector<int> rows, columns;
+  source_.clear();
+  const auto add = [&](int i, int j, std::size_t block) {
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        const int row = nodes.unknown(i, r), column = nodes.unknown(j, c);
+        if (row < 0 || column < 0) continue;
+        rows.push_back(row);
+        columns.push_back(column);
+        source_.push_back(static_cast<int>(9 * block) + 3 * r + c);
+      }
+  };
+  for (int i = 0; i < nodes.count(); ++i)
+    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
+      add(i, nodes.column()[b], static_cast<std::size_t>(b));
+  for (std::size_t k = 0; k < moving_.row.size(); ++k)
+    add(moving_.row[k], moving_.column[k], nodes.column().size() + k);
+  values_.resize(source_.size());
+  if (nodes.unknowns() > 0) mumps_.analyse(nodes.unknowns(), rows, columns);
 }
 
 int NodeCondensation::place_in(int piece, int body) const {
@@ -113,23 +123,13 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
     couplings_[p].clear();
     A_bb_[p].setZero(n, n);
   }
-  std::map<std::pair<int, int>, std::size_t> known;  // free node and body: their coupling
+  known_.clear();
   const auto block_of = [&](int row, int column) {
     const auto& c = nodes.column();
     const auto first = c.begin() + nodes.row_start()[row],
                last = c.begin() + nodes.row_start()[row + 1];
     const auto b = std::lower_bound(first, last, column) - c.begin();
     return Mat3(Block(K.data() + 9 * b));
-  };
-  // A bonded node's neighbours: of one piece if one of them is free; bodies alone else.
-  const auto piece_of_pair = [&](int a, int b) {
-    for (std::size_t p = 0; p < nodes.pieces().size(); ++p) {
-      const auto& list = nodes.pieces()[p].bodies;
-      if (std::binary_search(list.begin(), list.end(), a) &&
-          std::binary_search(list.begin(), list.end(), b))
-        return static_cast<int>(p);
-    }
-    return -1;
   };
   for (const Bond& bond : bonds_) {
     const int i = bond.node;
@@ -144,12 +144,7 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
             P_bar.transpose() * K_ij * carried(other->z_n1);
       } else if (nodes.piece(j) >= 0) {
         const int p = nodes.piece(j);
-        const auto [it, fresh] = known.try_emplace({j, bond.body}, couplings_[p].size());
-        if (fresh)
-          couplings_[p].push_back({j, bond.body, place_in(p, bond.body),
-                                   Eigen::Matrix<double, 3, 6>::Zero(),
-                                   Eigen::Matrix<double, 6, 3>::Zero()});
-        Coupling& c = couplings_[p][it->second];
+        Coupling& c = coupling(p, j, bond.body);
         c.bf += P_bar.transpose() * K_ij;
         c.fb += block_of(j, i) * P;
       }
@@ -161,6 +156,59 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
     const int at = 6 * place_in(p, bond.body) + 3;
     A_bb_[p].block<3, 3>(at, at) += arm_weight * hat(F) * hat(bond.z_n1);
   }
+  if (!moving_.row.empty()) gather_moving(K, bond_of);
+}
+
+NodeCondensation::Coupling& NodeCondensation::coupling(int piece, int node, int body) {
+  auto& list = couplings_[piece];
+  const auto [it, fresh] = known_.try_emplace({node, body}, list.size());
+  if (fresh)
+    list.push_back({node, body, place_in(piece, body), Eigen::Matrix<double, 3, 6>::Zero(),
+                    Eigen::Matrix<double, 6, 3>::Zero()});
+  return list[it->second];
+}
+
+/// A bonded node's neighbours: of one piece if one of them is free; bodies alone else.
+int NodeCondensation::piece_of_pair(int a, int b) const {
+  const auto& pieces = system_->nodes().pieces();
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const auto& list = pieces[p].bodies;
+    if (std::binary_search(list.begin(), list.end(), a) &&
+        std::binary_search(list.begin(), list.end(), b))
+      return static_cast<int>(p);
+  }
+  return -1;
+}
+
+/// The blocks beside the graph, each by itself: K_ij and K_ji are two.
+void NodeCondensation::gather_moving(const std::vector<double>& K,
+                                     const std::vector<const Bond*>& bond_of) {
+  const Nodes& nodes = system_->nodes();
+  for (std::size_t k = 0; k < moving_.row.size(); ++k) {
+    const int i = moving_.row[k], j = moving_.column[k];
+    const Bond *row = bond_of[i], *column = bond_of[j];
+    if (!row && !column) continue;
+    const Mat3 K_ij = Block(K.data() + 9 * (nodes.column().size() + k));
+    if (row && column) {
+      const int p = piece_of_pair(row->body, column->body);
+      if (p < 0) continue;
+      A_bb_[p].block<6, 6>(6 * place_in(p, row->body), 6 * place_in(p, column->body)) +=
+          carried(row->z_alpha).transpose() * K_ij * carried(column->z_n1);
+    } else if (row) {
+      if (nodes.piece(j) >= 0)
+        coupling(nodes.piece(j), j, row->body).bf += carried(row->z_alpha).transpose() * K_ij;
+    } else if (nodes.piece(i) >= 0) {
+      coupling(nodes.piece(i), i, column->body).fb += K_ij * carried(column->z_n1);
+    }
+  }
+}
+
+bool NodeCondensation::factor(const NodeSystem& nodes, const Trial& trial) {
+  if (!(nodes.moving() == moving_)) {
+    moving_ = nodes.moving();
+    analyse();
+  }
+  return factor(nodes.tangent(), nodes.residual(), trial, {});
 }
 
 bool NodeCondensation::factor(const std::vector<double>& K, const std::vector<double>& F,

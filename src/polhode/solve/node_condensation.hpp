@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include <polhode/solve/kkt.hpp>
@@ -35,9 +36,8 @@ class NodeCondensation {
   /// @returns false if the nodes' matrix is singular.
   [[nodiscard]] bool factor(const std::vector<double>& K, const std::vector<double>& F,
                             const Trial& trial, const FactorOptions& options);
-  [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial) {
-    return factor(nodes.tangent(), nodes.residual(), trial, {});
-  }
+  /// The same with the blocks beside the graph: where these change, the matrix is analysed anew.
+  [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial);
   [[nodiscard]] bool factored() const { return factored_; }
   /// Rotation of each piece since the factorisation.
   [[nodiscard]] const std::vector<Mat3>& turns(const Trial& trial);
@@ -63,6 +63,10 @@ class NodeCondensation {
     Eigen::Matrix<double, 3, 6> fb;
     Eigen::Matrix<double, 6, 3> bf;
   };
+  void analyse();
+  void gather_moving(const std::vector<double>& K, const std::vector<const Bond*>& bond_of);
+  [[nodiscard]] Coupling& coupling(int piece, int node, int body);
+  [[nodiscard]] int piece_of_pair(int a, int b) const;
   void place_bonds(const Trial& trial);
   void gather_couplings(const std::vector<double>& K, const std::vector<double>& F,
                         double arm_weight);
@@ -73,8 +77,10 @@ class NodeCondensation {
   bool factored_ = false;
   std::vector<int> source_;  ///< Of each entry of A_ff in the nodes' tangent.
   std::vector<double> values_;
+  NodeBlocks moving_;  ///< Blocks beside the graph, as analysed.
   std::vector<Bond> bonds_;
-  std::vector<std::vector<Coupling>> couplings_;  ///< By piece.
+  std::vector<std::vector<Coupling>> couplings_;      ///< By piece.
+  std::map<std::pair<int, int>, std::size_t> known_;  ///< Free node and body: their coupling.
   std::vector<KktPair> pairs_;
   std::vector<std::vector<int>> pair_of_;  ///< By piece: pair of places (i, j), i < j, row by row.
   std::vector<Eigen::MatrixXd> A_bb_, S_;  ///< By piece.

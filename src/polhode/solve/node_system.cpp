@@ -4,14 +4,32 @@
 namespace polhode {
 
 NodeSystem::NodeSystem(const System& system) : system_(&system) {
-  residual_.assign(3 * static_cast<std::size_t>(system.nodes().count()), 0.0);
+  const Nodes& nodes = system.nodes();
+  residual_.assign(3 * static_cast<std::size_t>(nodes.count()), 0.0);
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* pattern = dynamic_cast<const MovingPattern*>(&nodes.group(g)))
+      moving_groups_.push_back({g, pattern, 0});
+}
+
+void NodeSystem::gather_moving(const State& state) {
+  moving_ = {};
+  for (MovingGroup& m : moving_groups_) {
+    m.first = moving_.row.size();
+    const NodeBlocks& own =
+        m.pattern->blocks(state.element_history.data() + system_->nodes().first_history(m.group));
+    moving_.row.insert(moving_.row.end(), own.row.begin(), own.row.end());
+    moving_.column.insert(moving_.column.end(), own.column.begin(), own.column.end());
+  }
 }
 
 ElementReport NodeSystem::assemble(const State& state, Trial& trial, bool tangent,
                                    const std::vector<Mat3>& turns) {
   const Nodes& nodes = system_->nodes();
   std::fill(residual_.begin(), residual_.end(), 0.0);
-  if (tangent) tangent_.assign(9 * nodes.column().size(), 0.0);
+  if (tangent) {
+    gather_moving(state);
+    tangent_.assign(9 * (nodes.column().size() + moving_.row.size()), 0.0);
+  }
   NodeStep step = node_step(state, trial);
   step.mixed_point = mixed_point_;
   if (static_) {
@@ -24,8 +42,11 @@ ElementReport NodeSystem::assemble(const State& state, Trial& trial, bool tangen
   for (int g = 0; g < nodes.group_count(); ++g) {
     const ElementGroup& group = nodes.group(g);
     const bool has_slots = !nodes.slots(g).empty();
-    const ElementSink sink{residual_.data(), tangent && has_slots ? tangent_.data() : nullptr,
-                           nodes.slots(g).data()};
+    ElementSink sink{residual_.data(), tangent && has_slots ? tangent_.data() : nullptr,
+                     nodes.slots(g).data()};
+    for (const MovingGroup& m : moving_groups_)
+      if (tangent && m.group == g)
+        sink.tangent = tangent_.data() + 9 * (nodes.column().size() + m.first);
     const int piece = nodes.piece_of_group(g);
     const ElementReport one =
         group.evaluate(step, state.element_history.data() + nodes.first_history(g),

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <polhode/assembly/moving_pattern.hpp>
 #include <polhode/solve/node_motion.hpp>
 
 namespace polhode {
@@ -29,17 +30,27 @@ class NodeSystem {
   double advance(const double* du, Trial& trial, const std::vector<Mat3>& turns) const;
 
   [[nodiscard]] const std::vector<double>& residual() const { return residual_; }  ///< 3 a node.
-  /// D F / D x_{n+1}: 3×3 blocks of the graph, row by row [N/m].
+  /// D F / D x_{n+1}: 3×3 blocks of the graph, row by row, then those of moving() [N/m].
   [[nodiscard]] const std::vector<double>& tangent() const { return tangent_; }
+  /// Blocks beside the graph, where surfaces of solids may touch; of one place perhaps several.
+  [[nodiscard]] const NodeBlocks& moving() const { return moving_; }
   [[nodiscard]] int worst_group() const { return worst_group_; }  ///< Of the last report.
   [[nodiscard]] const System& system() const { return *system_; }
 
  private:
+  void gather_moving(const State& state);
   void add_inertia(const State& state, const Trial& trial, bool tangent);
 
   const System* system_;
   bool static_ = false, mixed_point_ = false;
   std::vector<double> residual_, tangent_, acceleration_;
+  struct MovingGroup {
+    int group;
+    const MovingPattern* pattern;
+    std::size_t first;  ///< Its first block of moving_.
+  };
+  std::vector<MovingGroup> moving_groups_;
+  NodeBlocks moving_;
   int worst_group_ = -1;
 };
 

@@ -297,7 +297,7 @@ TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
   const auto part = [&](const Vec3& move) {
     Nodes nodes;
     for (const Vec3& x : X) nodes.add(x, move);
-    return contact.free_part(nodes.start(), nodes.step());
+    return contact.free_part(nodes.start(), nodes.step(), nullptr);
   };
   EXPECT_EQ(part({0, 0, -3.0}), 1.0);
   EXPECT_EQ(part({8, 0, -1.0}), 1.0) << "beside it";

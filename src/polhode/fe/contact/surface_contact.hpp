@@ -2,14 +2,13 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/element_group.hpp>
-#include <polhode/contact/normal_law.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
+#include <polhode/fe/contact/surface_law.hpp>
 #include <polhode/fe/contact/surface_points.hpp>
 
 namespace polhode {
@@ -28,40 +27,6 @@ struct SurfacePlace {
   [[nodiscard]] bool moves() const { return nodes[0] >= 0; }
 };
 
-/// How the surface of a solid and a rigid surface act on each other, per
-/// reference area.
-struct SurfaceLaw {
-  contact::NormalLaw normal;  ///< Stiffness in Pa/m.
-  double end_share = 0.0;     ///< Part of the pressure that is that of the step's
-                              ///< end: takes energy.
-  double mu = 0.0;            ///< Coefficient of friction [-].
-  double bristle = 0.0;       ///< Stiffness of the friction bristle [Pa/m].
-};
-
-/// What the contact did over the last step, and since the start.
-struct SurfaceReport {
-  double least_gap = 0.0;          ///< At the end of the step [m].
-  double normal_force = 0.0;       ///< Sum of pressure times area [N].
-  Vec3 force = Vec3::Zero();       ///< On the solid, friction included [N], world.
-  Vec3 friction = Vec3::Zero();    ///< Its tangential part [N].
-  Vec3 point = Vec3::Zero();       ///< Mean of the points, by normal force [m]; zero if none acts.
-  double area = 0.0;               ///< Of points that act [m²], reference.
-  double largest_pressure = 0.0;   ///< [Pa]
-  int sticking = 0, slipping = 0;  ///< Points that act.
-  double impulse = 0.0;            ///< Of the normal force since the start [N s].
-  double friction_loss = 0.0;      ///< Energy that friction took since the start [J].
-  double normal_loss = 0.0;        ///< Likewise the normal force, see SurfaceLaw::end_share [J].
-};
-
-/// A point that acts, over the last step.
-struct SurfacePointReport {
-  Vec3 point = Vec3::Zero();                           ///< World [m].
-  Vec3 normal = Vec3::UnitZ();                         ///< Towards the solid, world.
-  Vec3 force = Vec3::Zero(), friction = Vec3::Zero();  ///< On the solid [N], world.
-  double gap = 0.0;                                    ///< [m]
-  double pressure = 0.0;                               ///< [Pa]
-};
-
 /// Faces of a solid against a rigid surface: the potential ∫ β(g) dA over the
 /// reference area.
 ///
@@ -72,7 +37,7 @@ struct SurfacePointReport {
 ///
 /// The history holds, for each point, bristle, slip and what acted in the last
 /// step, and then sums over the run: all that reports tell goes with the state.
-class SurfaceContact final : public ElementGroup, public BarrierPoints {
+class SurfaceContact final : public ElementGroup, public BarrierPoints, public TouchingSurface {
  public:
   /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
   ///           that carry it are among them.
@@ -92,8 +57,9 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints {
   bool external() const override { return frame_ == 0; }
   std::size_t history_size() const override { return kMemory * points_.points.size() + kTotals; }
   void initialize(double* history) const override;
-  void clearances(const NodeStep& step, std::vector<double>& list) const override;
-  double free_part(const NodeStep& from, const NodeStep& to) const override;
+  void clearances(const NodeStep& step, const double* history,
+                  std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
 
   ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                          const Mat3& turn, const ElementSink& sink) const override;
@@ -101,12 +67,10 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints {
   Work work(const NodeStep& step, const double* history, const double* scratch) const override;
 
   [[nodiscard]] const SurfaceLaw& law() const { return law_; }
-  /// The smallest gap of the nodes as they are at an instant [m].
-  [[nodiscard]] double least_gap(const NodeStep& instant) const;
-  [[nodiscard]] SurfaceReport report(const double* history) const;
-  /// Points that acted in the last step, where they are at its end.
+  [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
-                                                              const double* history) const;
+                                                              const double* history) const override;
+  [[nodiscard]] double overlap(const NodeStep& instant) const override;
 
  private:
   /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its

@@ -17,7 +17,8 @@ constexpr int kMostAdvances = 200;
 
 }  // namespace
 
-void SurfaceContact::clearances(const NodeStep& step, std::vector<double>& list) const {
+void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
+                                std::vector<double>& list) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return;
   for (int i = 0; i < size(); ++i) {
     const double gap = surface_.distance(local(step.x_n1, i)) - law_.normal.floor();
@@ -26,7 +27,8 @@ void SurfaceContact::clearances(const NodeStep& step, std::vector<double>& list)
 }
 
 /// The gap changes by no more than the way in the surface's coordinates.
-double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to) const {
+double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
+                                 const double* /*history*/) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
   double most = 1.0;
   for (int i = 0; i < size(); ++i) {
@@ -47,11 +49,11 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to) const
   return most;
 }
 
-double SurfaceContact::least_gap(const NodeStep& instant) const {
+double SurfaceContact::overlap(const NodeStep& instant) const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size(); ++i)
     least = std::min(least, surface_.distance(local(instant.x_n1, i)));
-  return least;
+  return least > -law_.normal.tolerance ? -1.0 : -least;
 }
 
 SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,

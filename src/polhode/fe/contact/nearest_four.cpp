@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/nearest.hpp>
+#include <polhode/fe/contact/nearest_four.hpp>
+
+namespace polhode {
+
+namespace {
+
+void measure(const Vec3 (&x)[4], NearestFour& n) {
+  Vec3 y = Vec3::Zero();
+  // From the last point on, so that what is far from the origin does not round.
+  for (int i = 0; i < 3; ++i) y += n.c[i] * (x[i] - x[3]);
+  n.distance = y.norm();
+}
+
+}  // namespace
+
+/// @eq{four-point-distance}
+NearestFour::Lengths NearestFour::gradient() const {
+  Lengths g;
+  for (int l = 0; l < kLengths; ++l) g[l] = -c[kEnds[l][0]] * c[kEnds[l][1]];
+  return g;
+}
+
+/// Where c is free, Zᵀ S c = 0 with S_ij = s_ij and Z the free directions: so Zᵀ S Z δη = −Zᵀ δS c.
+Eigen::Matrix<double, NearestFour::kLengths, NearestFour::kLengths> NearestFour::hessian(
+    const Vec3 (&x)[4]) const {
+  Eigen::Matrix<double, kLengths, kLengths> H = Eigen::Matrix<double, kLengths, kLengths>::Zero();
+  if (free_count == 0) return H;
+  // zᵀ S z' = −2 (Σ z x)·(Σ z' x) for directions that sum to zero.
+  Vec3 way[2];
+  for (int k = 0; k < free_count; ++k) {
+    way[k].setZero();
+    for (int i = 0; i < 3; ++i) way[k] += free[k][i] * (x[i] - x[3]);
+  }
+  Eigen::Matrix<double, 2, kLengths> by_length = Eigen::Matrix<double, 2, kLengths>::Zero();
+  for (int l = 0; l < kLengths; ++l) {
+    const int i = kEnds[l][0], j = kEnds[l][1];
+    for (int k = 0; k < free_count; ++k) by_length(k, l) = free[k][i] * c[j] + free[k][j] * c[i];
+  }
+  Eigen::Matrix2d M = Eigen::Matrix2d::Identity();
+  for (int k = 0; k < free_count; ++k)
+    for (int m = 0; m < free_count; ++m) M(k, m) = 2.0 * way[k].dot(way[m]);
+  const Eigen::Matrix<double, 2, kLengths> eta = M.inverse() * by_length;
+  for (int l = 0; l < kLengths; ++l) {
+    const int i = kEnds[l][0], j = kEnds[l][1];
+    for (int k = 0; k < free_count; ++k)
+      H.row(l) -= (free[k][i] * c[j] + free[k][j] * c[i]) * eta.row(k);
+  }
+  return H;
+}
+
+NearestFour nearest_of_triangle(const Vec3 (&x)[4]) {
+  const contact::TriangleRegion region = contact::nearest_on_triangle(x[0], x[1], x[2], x[3]);
+  NearestFour n;
+  n.c[0] = 1.0;
+  if (region.kind == contact::TriangleRegion::corner) {
+    n.c[1 + region.k] = -1.0;
+  } else if (region.kind == contact::TriangleRegion::edge) {
+    const int a = 1 + region.k, b = 1 + (region.k + 1) % 3;
+    const Vec3 e = x[b] - x[a];
+    const double t = (region.nearest - x[a]).dot(e) / e.squaredNorm();
+    n.c[a] = t - 1.0;
+    n.c[b] = -t;
+    n.free[0][a] = 1.0;
+    n.free[0][b] = -1.0;
+    n.free_count = 1;
+  } else {
+    const Vec3 e = x[2] - x[1], f = x[3] - x[1], p = x[0] - x[1];
+    const double ee = e.squaredNorm(), ef = e.dot(f), ff = f.squaredNorm();
+    const double scale = 1.0 / (ee * ff - ef * ef);
+    const double u = scale * (ff * e.dot(p) - ef * f.dot(p));
+    const double v = scale * (ee * f.dot(p) - ef * e.dot(p));
+    n.c << 1.0, u + v - 1.0, -u, -v;
+    n.free[0] << 0.0, 1.0, -1.0, 0.0;
+    n.free[1] << 0.0, 1.0, 0.0, -1.0;
+    n.free_count = 2;
+  }
+  measure(x, n);
+  return n;
+}
+
+}  // namespace polhode

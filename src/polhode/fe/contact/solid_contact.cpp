@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/fe/contact/solid_contact.hpp>
+#include <polhode/fe/contact/solid_contact_field.hpp>
+
+namespace polhode {
+
+SolidContact::SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
+                           const SurfaceLaw& law, const SolidContactStart& start)
+    : name_(std::move(name)),
+      points_(std::move(points)),
+      surface_(std::move(surface)),
+      law_(law),
+      self_(start.self),
+      edge_(start.edge),
+      way_(start.way) {
+  const auto add = [&](const std::vector<MeshPoint>& list) {
+    for (const MeshPoint& p : list) reach_.insert(reach_.end(), p.node, p.node + p.count);
+  };
+  add(points_);
+  add(surface_.vertices);
+  std::sort(reach_.begin(), reach_.end());
+  reach_.erase(std::unique(reach_.begin(), reach_.end()), reach_.end());
+  for (const int i : reach_) {
+    const Vec3& x = start.X[static_cast<std::size_t>(i)];
+    start_.insert(start_.end(), x.begin(), x.end());
+    carriers_.push_back(start.carriers[static_cast<std::size_t>(i)]);
+  }
+}
+
+const MeshPoint& SolidContact::corner(int point, int triangle, int k) const {
+  if (k == 0) return points_[static_cast<std::size_t>(point)];
+  const auto& t = surface_.triangles[static_cast<std::size_t>(triangle)];
+  return surface_.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k - 1)])];
+}
+
+void SolidContact::four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const {
+  x[0] = points_[static_cast<std::size_t>(point)].at(field.nodes);
+  const auto& t = surface_.triangles[static_cast<std::size_t>(triangle)];
+  for (std::size_t k = 0; k < 3; ++k) x[k + 1] = field.vertices[static_cast<std::size_t>(t[k])];
+}
+
+SolidContact::Nearest SolidContact::nearest(const Field& field, std::span<const int> triangles,
+                                            int point) const {
+  Nearest best;
+  best.four.distance = std::numeric_limits<double>::infinity();
+  for (const int t : triangles) {
+    Vec3 x[4];
+    four_points(field, point, t, x);
+    const NearestFour four = nearest_of_triangle(x);
+    if (four.distance < best.four.distance) best = {t, four};
+  }
+  return best;
+}
+
+FourMoves SolidContact::moves(const Field& x_n1, const Field& u, int point, int triangle) const {
+  FourMoves m;
+  four_points(x_n1, point, triangle, m.x_n1);
+  four_points(u, point, triangle, m.u);
+  return m;
+}
+
+SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, const Field& x_n1,
+                                       std::span<const int> triangles, int point) const {
+  Action a;
+  a.at_n1 = nearest(x_n1, triangles, point);
+  a.at_n = step.x_n == step.x_n1 ? a.at_n1 : nearest(x_n, triangles, point);
+  const double tolerance = law_.normal.tolerance;
+  a.gap_n = a.at_n.four.distance - tolerance;
+  a.gap_n1 = a.at_n1.four.distance - tolerance;
+  const double reach = law_.normal.reach();
+  if (a.gap_n >= reach && a.gap_n1 >= reach) return a;
+  a.acts = true;
+  if (step.context.dt == 0.0) {
+    a.pressure = {law_.normal.force(a.gap_n1), 0.0};
+    return a;
+  }
+  a.pressure = contact::stop_force(law_.normal, {.at_n = a.gap_n,
+                                                 .at_n1 = a.gap_n1,
+                                                 .alpha_f = step.alpha_f,
+                                                 .conserving = step.context.conserving,
+                                                 .end_share = law_.end_share});
+  return a;
+}
+
+/// @eq{mesh-contact}
+ElementReport SolidContact::evaluate(const NodeStep& step, const double* history,
+                                     double* /*scratch*/, const Mat3& /*turn*/,
+                                     const ElementSink& sink) const {
+  const Search& s = search(history);
+  if (s.triangle.empty()) return {};
+  const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1);
+  const std::vector<double> still(
+      step.x_n == step.x_n1 ? 3 * static_cast<std::size_t>(reach_.back() + 1) : 0);
+  const Field u(surface_, still.empty() ? step.u : still.data());
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const std::span<const int> triangles = found(s, p);
+    if (triangles.empty()) continue;
+    const Action a = act(step, x_n, x_n1, triangles, p);
+    if (!a.acts) continue;
+    const double area = points_[static_cast<std::size_t>(p)].area;
+    const auto add_force = [&](const MeshPoint& at, const Vec3& f) {
+      for (int k = 0; k < at.count; ++k)
+        for (int c = 0; c < 3; ++c) sink.force[3 * at.node[k] + c] += at.N[k] * f[c];
+    };
+    const bool other = a.at_n.triangle != a.at_n1.triangle;
+    const FourMoves from = moves(x_n1, u, p, a.at_n.triangle);
+    const FourMoves to = other ? moves(x_n1, u, p, a.at_n1.triangle) : from;
+    const CentralGap gap(from, a.at_n.four, other ? &to : nullptr, a.at_n1.four, step.alpha_f,
+                         step.context.conserving);
+    const auto at = [&](int k) -> const MeshPoint& {
+      return corner(p, k < 4 ? a.at_n.triangle : a.at_n1.triangle, k % 4);
+    };
+    const CentralGap::Force f = gap.force(a.pressure.value);
+    for (int k = 0; k < gap.points(); ++k) add_force(at(k), area * f.segment<3>(3 * k));
+    const bool tangent = sink.tangent != nullptr;
+    if (tangent) {
+      const CentralGap::Stiffness K = gap.stiffness(a.pressure);
+      for (int i = 0; i < gap.points(); ++i)
+        for (int j = 0; j < gap.points(); ++j)
+          add_blocks(s, at(i), at(j), area * K.block<3, 3>(3 * i, 3 * j), sink.tangent);
+    }
+    if (law_.mu == 0.0 || step.context.dt == 0.0) continue;
+    const Slide slide =
+        this->slide(step, x_n1, u, triangles, p, a.pressure.value, memory(history, p), tangent);
+    for (int k = 0; k < 4; ++k)
+      add_force(corner(p, slide.triangle, k), area * slide.force.segment<3>(3 * k));
+    if (!tangent) continue;
+    const CentralGap::Force by_x = a.pressure.slope * gap.slope();
+    for (int i = 0; i < 4; ++i) {
+      const MeshPoint& row = corner(p, slide.triangle, i);
+      for (int j = 0; j < 4; ++j)
+        add_blocks(s, row, corner(p, slide.triangle, j), area * slide.K.block<3, 3>(3 * i, 3 * j),
+                   sink.tangent);
+      for (int j = 0; j < gap.points(); ++j)
+        add_blocks(s, row, at(j),
+                   area * slide.by_pressure.segment<3>(3 * i) * by_x.segment<3>(3 * j).transpose(),
+                   sink.tangent);
+    }
+  }
+  return {};
+}
+
+}  // namespace polhode

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/assembly/barrier_points.hpp>
+#include <polhode/assembly/element_group.hpp>
+#include <polhode/assembly/moving_pattern.hpp>
+#include <polhode/fe/contact/central_gap.hpp>
+#include <polhode/fe/contact/mesh_surface.hpp>
+#include <polhode/fe/contact/surface_law.hpp>
+
+namespace polhode {
+
+/// What a contact of surfaces of solids starts from.
+struct SolidContactStart {
+  const std::vector<Vec3>& X;        ///< Positions by the system's node numbers [m].
+  const std::vector<int>& carriers;  ///< Body of each node, as NodeData::body.
+  double edge = 1.0;                 ///< Typical edge of the faces [m].
+  double way = 0.0;                  ///< That surfaces may go against each other in a step [m].
+  bool self = false;  ///< Both are one surface: what is near from the start is not met.
+};
+
+/// Points of the surface of a solid against the triangles of another one's, or of its own: the
+/// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
+///
+/// d is never negative: surfaces keep apart, by 2 g_tol where they do not press. Forces act along
+/// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
+/// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet:
+/// they are looked for anew when nodes have moved against each other by a good part of what was
+/// looked at, and no step may take them farther than that. @eq{mesh-contact}
+class SolidContact final : public ElementGroup,
+                           public BarrierPoints,
+                           public MovingPattern,
+                           public TouchingSurface {
+ public:
+  SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
+               const SurfaceLaw& law, const SolidContactStart& start);
+
+  std::string kind() const override { return "contact of solids"; }
+  const std::string& name() const override { return name_; }
+  int size() const override { return 0; }  // its blocks are those of MovingPattern
+  int nodes_per_element() const override { return 1; }
+  std::span<const int> nodes(int /*element*/) const override { return {}; }
+  bool has_tangent() const override { return false; }
+  bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
+  bool conservative() const override { return !dissipates(); }
+  std::size_t history_size() const override;
+  void initialize(double* history) const override;
+
+  const std::vector<int>& reach() const override { return reach_; }
+  const NodeBlocks& blocks(const double* history) const override { return search(history).blocks; }
+  void clearances(const NodeStep& step, const double* history,
+                  std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
+
+  ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
+                         const Mat3& turn, const ElementSink& sink) const override;
+  void commit(const NodeStep& step, double* history, const double* scratch) const override;
+  Work work(const NodeStep& step, const double* history, const double* scratch) const override;
+
+  [[nodiscard]] const SurfaceLaw& law() const { return law_; }
+  [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
+  /// Pairs of a point and a triangle that are looked at.
+  [[nodiscard]] int candidates(const double* history) const;
+  [[nodiscard]] SurfaceReport report(const double* history) const override;
+  [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
+                                                              const double* history) const override;
+  [[nodiscard]] double overlap(const NodeStep& instant) const override;
+
+ private:
+  /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
+  /// its tangential part and the pressure.
+  static constexpr std::size_t kMemory = 11;
+  static constexpr std::size_t kTotals = 18;  ///< See Totals.
+  struct Totals;
+  struct Field;
+  struct Slide;
+
+  /// Triangles by point, found where nodes were; and the blocks of the tangent.
+  struct Search {
+    std::vector<double> key;  ///< The part of the history that it follows from.
+    std::vector<int> first, triangle;
+    NodeBlocks blocks;
+    std::vector<int> row_start;  ///< By node of reach_: into blocks.
+  };
+  /// The nearest triangle of a point.
+  struct Nearest {
+    int triangle = -1;
+    NearestFour four;
+  };
+  /// A point that acts, over a step.
+  struct Action {
+    Nearest at_n, at_n1;
+    contact::ForceAndSlope pressure;
+    double gap_n = 0.0, gap_n1 = 0.0;  ///< d − g_tol
+    bool acts = false;
+  };
+  struct Energies {
+    double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
+  };
+
+  [[nodiscard]] std::size_t places_size() const { return 3 * reach_.size() + 1; }
+  [[nodiscard]] const double* memory(const double* history, int point) const {
+    return history + places_size() + kMemory * static_cast<std::size_t>(point);
+  }
+  [[nodiscard]] const Search& search(const double* history) const;
+  void find(Search& s) const;
+  [[nodiscard]] bool may_meet(int point, int triangle) const;
+  [[nodiscard]] std::span<const int> found(const Search& s, int point) const;
+  void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
+  [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
+                                int point) const;
+  [[nodiscard]] FourMoves moves(const Field& x_n1, const Field& u, int point, int triangle) const;
+  [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
+  [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
+                           std::span<const int> triangles, int point) const;
+  [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
+                            std::span<const int> triangles, int point, double pressure,
+                            const double* memory, bool tangent) const;
+  [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
+                                  const double* memory) const;
+  void add_blocks(const Search& s, const MeshPoint& row, const MeshPoint& column, const Mat3& K,
+                  double* tangent) const;
+  /// How far node k of reach_ has moved since the search, beside what all have.
+  void deviations(const double* x, const double* places, std::vector<double>& far) const;
+  void note_gap_at_start(double* history) const;
+  void renew_search(const NodeStep& step, double* history) const;
+
+  std::string name_;
+  std::vector<MeshPoint> points_;
+  MeshSurface surface_;
+  SurfaceLaw law_;
+  bool self_ = false;
+  double edge_ = 1.0, way_ = 0.0;
+  std::vector<int> reach_;     ///< Nodes, ascending.
+  std::vector<double> start_;  ///< Their places at the start.
+  std::vector<int> carriers_;  ///< By node of reach_: a body, or kFreeNode.
+  mutable Search search_;      ///< Of the last history asked for.
+};
+
+}  // namespace polhode

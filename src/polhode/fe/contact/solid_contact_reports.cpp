@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// What contact of solids takes, remembers and tells.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <polhode/fe/contact/solid_contact.hpp>
+#include <polhode/fe/contact/solid_contact_field.hpp>
+
+namespace polhode {
+
+SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
+                                              const Slide& slide, const double* memory) const {
+  const Vec3 kept(memory[0], memory[1], memory[2]);
+  const bool stays = a.gap_n1 < law_.normal.reach();
+  const double half_k = 0.5 * law_.bristle;
+  const double bristle_n1 = stays ? half_k * slide.bristle.squaredNorm() : 0.0;
+  const double e_n1 = law_.normal.energy(a.gap_n1);
+  Energies e;
+  e.stored = e_n1 + bristle_n1;
+  e.by_friction =
+      std::max(0.0, -slide.friction.dot(slide.slid) - bristle_n1 + half_k * kept.squaredNorm());
+  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+    e.by_pressure = std::max(
+        0.0, -a.pressure.value * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+  return e;
+}
+
+/// The numbers behind those of the points, in this order.
+struct SolidContact::Totals {
+  double impulse, friction_loss, normal_loss;  // since the start
+  double gap, normal_force, area, pressure, sticking, slipping;
+  double force[3], friction[3], point[3];
+};
+
+Work SolidContact::work(const NodeStep& step, const double* history,
+                        const double* /*scratch*/) const {
+  Work w;
+  const bool instant = step.x_n == step.x_n1;
+  const Search& s = search(history);
+  if (s.triangle.empty()) return w;
+  const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1);
+  const Field u(surface_, instant ? step.x_n : step.u);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const std::span<const int> triangles = found(s, p);
+    if (triangles.empty()) continue;
+    const double* kept = memory(history, p);
+    const double area = points_[static_cast<std::size_t>(p)].area;
+    if (instant) {
+      const double gap = nearest(x_n1, triangles, p).four.distance - law_.normal.tolerance;
+      w.stored += area * (law_.normal.energy(gap) +
+                          0.5 * law_.bristle * Vec3(kept[0], kept[1], kept[2]).squaredNorm());
+      continue;
+    }
+    const Action a = act(step, x_n, x_n1, triangles, p);
+    if (!a.acts) continue;
+    const Slide slide =
+        law_.mu > 0.0 ? this->slide(step, x_n1, u, triangles, p, a.pressure.value, kept, false)
+                      : Slide{};
+    const Energies e = energies(step, a, slide, kept);
+    w.stored += area * e.stored;
+    w.dissipated += area * (e.by_friction + e.by_pressure);
+  }
+  return w;
+}
+
+void SolidContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
+  static_assert(sizeof(Totals) == kTotals * sizeof(double));
+  double* const numbers = history + places_size() + kMemory * points_.size();
+  Totals t{};
+  std::copy_n(numbers, 3, &t.impulse);
+  t.gap = std::numeric_limits<double>::infinity();
+  const Search& s = search(history);
+  const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1), u(surface_, step.u);
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    double* kept = history + (memory(history, p) - history);
+    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
+    const std::span<const int> triangles = found(s, p);
+    Action a;
+    Slide slide;
+    Vec3 h = Vec3::Zero();
+    if (!triangles.empty()) {
+      a = act(step, x_n, x_n1, triangles, p);
+      t.gap = std::min(t.gap, a.at_n1.four.distance);
+    }
+    if (a.acts) {
+      if (law_.mu > 0.0)
+        slide = this->slide(step, x_n1, u, triangles, p, a.pressure.value, kept, false);
+      const bool other = a.at_n.triangle != a.at_n1.triangle;
+      const FourMoves from = moves(x_n1, u, p, a.at_n.triangle);
+      const FourMoves to = other ? moves(x_n1, u, p, a.at_n1.triangle) : from;
+      const CentralGap gap(from, a.at_n.four, other ? &to : nullptr, a.at_n1.four, step.alpha_f,
+                           step.context.conserving);
+      const CentralGap::Force f = gap.force(a.pressure.value);
+      h = f.segment<3>(0) + slide.friction;
+      if (other) h += f.segment<3>(12);
+      const Energies e = energies(step, a, slide, kept);
+      t.friction_loss += point.area * e.by_friction;
+      t.normal_loss += point.area * e.by_pressure;
+      t.impulse += point.area * a.pressure.value * step.context.dt;
+    }
+    const double pressure = a.acts ? a.pressure.value : 0.0;
+    if (pressure > 0.0) {
+      t.normal_force += point.area * pressure;
+      t.area += point.area;
+      t.pressure = std::max(t.pressure, pressure);
+      (slide.slips ? t.slipping : t.sticking) += 1.0;
+      force += point.area * h;
+      friction += point.area * slide.friction;
+      moment += point.area * pressure * point.at(step.x_n1);
+    }
+    const bool stays = a.acts && a.gap_n1 < law_.normal.reach();
+    for (int k = 0; k < 3; ++k) {
+      kept[k] = stays ? slide.bristle_n1[k] : 0.0;
+      kept[4 + k] = h[k];
+      kept[7 + k] = slide.friction[k];
+    }
+    kept[3] = stays && slide.slips ? 1.0 : 0.0;
+    kept[10] = pressure;
+  }
+  if (!std::isfinite(t.gap)) t.gap = std::numeric_limits<double>::quiet_NaN();
+  if (t.normal_force > 0.0) moment /= t.normal_force;
+  for (int k = 0; k < 3; ++k) {
+    t.force[k] = force[k];
+    t.friction[k] = friction[k];
+    t.point[k] = moment[k];
+  }
+  std::copy_n(&t.impulse, kTotals, numbers);
+  renew_search(step, history);
+}
+
+/// NaN where nothing is near.
+void SolidContact::note_gap_at_start(double* history) const {
+  double* const numbers = history + places_size() + kMemory * points_.size();
+  std::vector<double> x(3 * static_cast<std::size_t>(reach_.back() + 1));
+  for (std::size_t k = 0; k < reach_.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      x[3 * static_cast<std::size_t>(reach_[k]) + static_cast<std::size_t>(c)] =
+          start_[3 * k + static_cast<std::size_t>(c)];
+  const Search& s = search(history);
+  const Field start(surface_, x.data());
+  double least = std::numeric_limits<double>::infinity();
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p)
+    least = std::min(least, nearest(start, found(s, p), p).four.distance);
+  numbers[offsetof(Totals, gap) / sizeof(double)] =
+      std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
+}
+
+SurfaceReport SolidContact::report(const double* history) const {
+  Totals t;
+  std::copy_n(history + places_size() + kMemory * points_.size(), kTotals, &t.impulse);
+  SurfaceReport r;
+  r.least_gap = t.gap;
+  r.normal_force = t.normal_force;
+  r.force = Vec3(t.force);
+  r.friction = Vec3(t.friction);
+  r.point = Vec3(t.point);
+  r.area = t.area;
+  r.largest_pressure = t.pressure;
+  r.sticking = static_cast<int>(t.sticking);
+  r.slipping = static_cast<int>(t.slipping);
+  r.impulse = t.impulse;
+  r.friction_loss = t.friction_loss;
+  r.normal_loss = t.normal_loss;
+  return r;
+}
+
+std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& instant,
+                                                            const double* history) const {
+  std::vector<SurfacePointReport> list;
+  const Search& s = search(history);
+  const Field x(surface_, instant.x_n1);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const double* kept = memory(history, p);
+    if (!(kept[10] > 0.0)) continue;
+    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
+    const Nearest n = nearest(x, found(s, p), p);
+    if (n.triangle < 0) continue;
+    Vec3 at[4];
+    four_points(x, p, n.triangle, at);
+    Vec3 y = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) y += n.four.c[k] * (at[k] - at[0]);
+    list.push_back({.point = at[0],
+                    .normal = y.normalized(),
+                    .force = point.area * Vec3(kept[4], kept[5], kept[6]),
+                    .friction = point.area * Vec3(kept[7], kept[8], kept[9]),
+                    .gap = n.four.distance,
+                    .pressure = kept[10]});
+  }
+  return list;
+}
+
+}  // namespace polhode
