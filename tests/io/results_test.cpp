@@ -99,6 +99,39 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
             "1.2.3 format: 1\n\n");
 }
 
+/// Joints with friction or limits have data sets of their own, others have none.
+TEST(ResultsFile, HoldsFrictionAndStopsOfJoints) {
+  const test::Scratch scratch;
+  ResultsLayout l = layout(1);
+  l.joints = {{"free", "revolute", 1, 0, 0},
+              {"bush", "cylindrical", 2, 2, 1},
+              {"pin", "revolute", 1, 1, 0},
+              {"gate", "prismatic", 1, 0, 1}};
+  ResultsFile file(scratch / "results.h5", l, {});
+  for (int k = 0; k < 3; ++k) {
+    ResultsFrame f = frame(l, k);
+    f.friction = {1.0 + k, 2.0 + k, 3.0 + k};
+    f.slips = {0.0, static_cast<double>(k % 2)};
+    f.stops = {-1.0 - k, 5.0 + k};
+    file.append(f);
+  }
+  file.close();
+  const std::string output = python(R"(
+import h5py
+results = h5py.File(")" + scratch / "results.h5" +
+                                    R"(")
+joints = results["joints"]
+print(joints["bush/friction"][2], joints["pin/friction"][1], joints["pin/friction"].attrs["unit"])
+print(joints["pin/slips"][:], joints["pin/slips"].dtype, joints["bush/stops"][1], joints["gate/stops"][2])
+print([name for name in joints["free"]], "stops" in joints["pin"], "friction" in joints["gate"])
+)");
+  if (output == "no h5py") GTEST_SKIP() << "h5py is not installed";
+  EXPECT_EQ(output,
+            "[3. 4.] [4.] N or N m\n"
+            "[0 1 0] int64 [-2.] [7.]\n"
+            "['coordinates', 'force', 'moment', 'rates'] False False\n");
+}
+
 /// Solids have their nodes and elements side by side, and what holds them under its name.
 TEST(ResultsFile, HoldsDeformableSolids) {
   const test::Scratch scratch;

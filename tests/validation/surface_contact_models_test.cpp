@@ -164,6 +164,48 @@ analysis: {type: statics}
   EXPECT_NEAR(farthest, a, 1.5 * first);
 }
 
+/// The same with an octant of the whole ball, cells graded towards the pole: six of them over the
+/// radius of contact, a/R = 0.04. What is left is mostly the finite size of the ball and the mesh.
+TEST(SurfaceContactModel, CarriesAnOctantOfABallAsHertzSays) {
+  constexpr double kModulus = 1e6, kPoisson = 0.3;
+  Simulation simulation(read_model_text(R"(
+format: 1
+variables: {T: 1 s}
+bodies: {wall: {fixed: true, shape: {plane: z}}}
+materials: {m: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  ball:
+    mesh: {sphere: {diameter: 2, octants: 1, cells: [14, 8], grading: [0.02, 100]}, position: [0, 0, 1], orientation: {axis: x, angle: 180 deg}}
+    material: m
+    contact: {surface: outer}
+    prescribed:
+      x: {nodes: xmid, x: 0}
+      y: {nodes: ymid, y: 0}
+      middle: {nodes: zmid, z: "-1.55e-3*t/T"}
+contacts: {default: {law: linear, gap_tolerance: 5e-7, reference_pressure: 20 kPa}}
+analysis: {type: statics}
+)",
+                                        "octant.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  const double F = 4.0 * simulation.contact(0).normal_force;  // two planes of symmetry
+  const double a = std::cbrt(0.75 * F * (1.0 - kPoisson * kPoisson) / kModulus);
+  const double p_0 = 1.5 * F / (std::numbers::pi * a * a);
+  EXPECT_NEAR(a, 0.04, 1e-3);
+  double pressure = 0.0, farthest = 0.0;
+  int along = 0;
+  for (const SurfacePointReport& point : simulation.surface_points(0)) {
+    const double r = std::hypot(point.point[0], point.point[1]);
+    if (r < 1e-6) pressure = point.pressure;
+    if (point.pressure <= 0.0) continue;
+    farthest = std::max(farthest, r);
+    if (std::abs(point.point[1]) < 1e-9) ++along;
+  }
+  EXPECT_GE(along, 6) << "points over the radius";
+  EXPECT_NEAR(pressure / p_0, 1.0, 0.03);
+  EXPECT_NEAR(farthest / a, 1.0, 0.1);
+}
+
 /// A cube of rubber is shot at a plate that it would pass in a twentieth of a step.
 TEST(SurfaceContactModel, NothingPassesThroughAThinPlate) {
   for (const char* shape : {"{box: [1, 1, 0.005]}", "{cylinder: [1, 0.005]}"}) {

@@ -25,8 +25,8 @@ struct Finding {
   bool passed = true;
 };
 
-constexpr double kI_axis = 2.0, kI_across = 1.0;  // kg m²
-constexpr double kSpin = 3.0, kWobble = 0.5;      // rad/s
+constexpr double kAxial = 2.0, kAcross = 1.0;  // kg m²
+constexpr double kSpin = 3.0, kWobble = 0.5;   // rad/s
 
 /// A symmetric top on which nothing acts.
 Model free_top() {
@@ -35,7 +35,7 @@ Model free_top() {
   BodySpec top;
   top.name = "top";
   top.mass = 1.0;
-  top.inertia = Vec3(kI_across, kI_across, kI_axis).asDiagonal();
+  top.inertia = Vec3(kAcross, kAcross, kAxial).asDiagonal();
   top.angular_velocity = {kWobble, 0.0, kSpin};
   model.bodies.push_back(top);
   model.analysis.duration = 1.0;
@@ -49,7 +49,7 @@ Model free_top() {
 Finding known_solution() {
   Simulation simulation(free_top());
   const RunSummary summary = simulation.run();
-  const double angle = (kI_axis - kI_across) / kI_across * kSpin * simulation.time();
+  const double angle = (kAxial - kAcross) / kAcross * kSpin * simulation.time();
   const Vec3 exact(kWobble * std::cos(angle), kWobble * std::sin(angle), kSpin);
   const double error = (simulation.body(0).W - exact).norm() / exact.norm();
   // Second order: about (rate · step)²/12 of the turned part, below 1e-6; taken with a margin.

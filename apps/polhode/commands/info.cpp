@@ -103,6 +103,7 @@ void print_kinds(const Options& options) {
     return;
   }
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(lines.size());
   for (const KindLine& line : lines)
     rows.push_back({line.name, line.meaning, line.more, joined(line.takes)});
   print(table(rows));

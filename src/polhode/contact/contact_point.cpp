@@ -70,6 +70,20 @@ V3<T> average(const V3<double>& at_n, const V3<T>& at_n1, double weight) {
   return (1.0 - weight) * at_n + weight * at_n1;
 }
 
+/// Part of the potential that acts: the weight of the feature pair, faded.
+double weight_at(const PointData& data, const Placement<double>& at_a,
+                 const Placement<double>& at_b) {
+  if (data.pair.fade == Fade::none) return data.pair.weight;
+  const FadeDirections<double> f = fade_directions(data.pair, *data.a, *data.b, at_a, at_b);
+  return data.pair.weight * fading(data.pair.fade, dot(f.a, f.b));
+}
+
+double with_value(double, double v) { return v; }
+Dual with_value(Dual x, double v) {
+  x.v = v;
+  return x;
+}
+
 /// One evaluation of a contact point with numbers of sort T.
 template <class T>
 class Evaluation {
@@ -93,7 +107,10 @@ class Evaluation {
     // To the last bit what the last step ended with: deep in the barrier rounding would count.
     if (data_.history.closed) g_0.distance = data_.history.gap;
     Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
-    if (has_closed_form(data_)) g_1.distance = g_0.distance + closed_form_change();
+    if (has_closed_form(data_))
+      g_1.distance = g_0.distance + closed_form_change();
+    else if (value(g_1.distance) < data_.normal.reach())
+      g_1.distance = with_value(g_1.distance, fine_distance());
     kinematics(g_0, g_1);
     forces(g_0, g_1);
     closed_forms();
@@ -221,6 +238,14 @@ class Evaluation {
     return dot(average(n_0, n_1, 0.5), u) + dot(moved(move_b_, n_0, n_1), average(w_0, w_1, 0.5));
   }
 
+  /// The gap at t_{n+1} to the last digits that u and θ have: deep in the barrier those of a
+  /// double's 1e-16 of the bodies' size would be worth energy. @eq{contact-gap-change}
+  [[nodiscard]] double fine_distance() const {
+    return value(gap(data_.pair, *data_.a, *data_.b, Placement<Fine>(a_, from_, 0),
+                     Placement<Fine>(b_, from_, 6))
+                     .distance);
+  }
+
   /// ρ∞ < 1: force, normal and arms of t_{n+αf}.
   void alpha_corrections(const Gap<double>& g_0, const Gap<T>& g_1) {
     const double e = context_.ga.alpha_f - 0.5;
@@ -341,18 +366,13 @@ class Evaluation {
     r.point = from_ + value(c_);
     r.after = data_.history.without_bristles();
     const Placement<double> end_a(a_, from_, 0), end_b(b_, from_, 6);
-    const double m_0 = weight_at(n_a_, n_b_), m_1 = weight_at(end_a, end_b);
+    const double m_0 = weight_at(data_, n_a_, n_b_), m_1 = weight_at(data_, end_a, end_b);
     r.work = {};
     r.work.stored = m_1 * data_.normal.energy(r.gap_n1);
     // What the normal force took beyond the change of the potential.
     const double elastic = 0.5 * (m_0 + m_1) * data_.normal.quotient(r.gap_n, r.gap_n1);
     r.work.dissipated = (r.normal_force - elastic) * (r.gap_n - r.gap_n1);
     r.normal_loss = r.work.dissipated;
-  }
-  double weight_at(const Placement<double>& at_a, const Placement<double>& at_b) const {
-    if (data_.pair.fade == Fade::none) return data_.pair.weight;
-    const FadeDirections<double> f = fade_directions(data_.pair, *data_.a, *data_.b, at_a, at_b);
-    return data_.pair.weight * fading(data_.pair.fade, dot(f.a, f.b));
   }
 
   const PointData& data_;
@@ -438,17 +458,11 @@ double gap_n1(const PointData& data, double gap_n, const BodyStep& a, const Body
       .distance;
 }
 
-double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b) {
-  StepContext still;
-  still.tangents = false;
-  PointReport report;
-  PairTerms unused;
-  unused.set_zero();
-  PointData at_end = data;
-  at_end.history.plastic = false;
-  at_end.friction = {};
-  add_contact(at_end, a, b, still, unused, &report);
-  return report.work.stored;
+double stored_at(const PointData& data, const BodyStep& a, const BodyStep& b) {
+  const Vec3 from = near_contact(data, a);
+  return weight_at(data, Placement<double>(a.r_n1 - from, a.Lambda_n1, 0),
+                   Placement<double>(b.r_n1 - from, b.Lambda_n1, 6)) *
+         data.normal.energy(data.history.gap);
 }
 
 }  // namespace polhode::contact

@@ -118,7 +118,9 @@ struct NormalForce {
 [[nodiscard]] double gap_n1(const PointData& data, double gap_n, const BodyStep& a,
                             const BodyStep& b);
 
-/// Potential of the point at t_{n+1}, fading included [J].
-[[nodiscard]] double stored_n1(const PointData& data, const BodyStep& a, const BodyStep& b);
+/// Potential of a closed point at an instant, fading included [J]. Its gap is the remembered one:
+/// formed again from positions in the world it would be off by their last digit, which counts deep
+/// in the barrier.
+[[nodiscard]] double stored_at(const PointData& data, const BodyStep& a, const BodyStep& b);
 
 }  // namespace polhode::contact

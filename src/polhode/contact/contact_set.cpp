@@ -12,6 +12,10 @@ namespace polhode::contact {
 
 namespace {
 
+/// The barrier stops an impact that rebounds with at least this part of its band left. Deeper,
+/// where it is stopped within a step, the last digit of a displacement would be worth energy.
+constexpr double kDeepest = 1e-3;
+
 void check_law(const ContactLaw& law) {
   const auto refuse = [](const char* what, double value, const char* mend) {
     throw InputError("contacts", format("{} is {}", what, value), mend);
@@ -140,6 +144,8 @@ void ContactSet::complete_law(Point& p, double dt) const {
     k = std::max(1.5 * weight / band, mass / (dt * dt));
     if (law.potential == NormalPotential::hertz) k /= std::sqrt(d.normal.tolerance);
   }
+  p.mass = mass;
+  p.chosen_stiffness = law.stiffness == 0.0 && law.potential == NormalPotential::barrier ? k : 0.0;
   if (d.history.closed && d.history.stiffness > 0.0) k = d.history.stiffness;
   d.normal.stiffness = d.history.stiffness = k;
   d.friction = law.friction;
@@ -213,6 +219,13 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
   h.plastic = !p.damped &&
               (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
   h.fresh = true;
+  if (p.chosen_stiffness > 0.0) {
+    const double band = 2.0 * p.data.normal.tolerance;
+    double k = p.chosen_stiffness;
+    if (!h.plastic && !p.damped)
+      k = std::max(k, 1.5 * kDeepest * p.mass * h.approach * h.approach / (band * band));
+    p.data.normal.stiffness = h.stiffness = k;
+  }
   if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
   if (p.gap_n >= p.data.normal.reach()) return;
   h.closed = true;
@@ -411,7 +424,7 @@ double ContactSet::stored(const State& state, std::span<const BodyStep> instants
   double energy = 0.0;
   for (const Point& p : points_) {
     if (p.sensor || !p.data.history.closed) continue;
-    energy += stored_n1(p.data, step_of(p.a, instants), step_of(p.b, instants)) +
+    energy += stored_at(p.data, step_of(p.a, instants), step_of(p.b, instants)) +
               0.5 * p.data.friction.stiffness * p.data.history.bristle.squaredNorm() +
               0.5 * p.data.friction.turning_stiffness *
                   (p.data.history.rolling.squaredNorm() +

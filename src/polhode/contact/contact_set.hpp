@@ -138,8 +138,10 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double damping_number = 0.0;  ///< c |w_pre| of a damped rebound [-].
     bool may_be_plain = false;    ///< Closed forms hold at ρ∞ = 1.
     bool sensor = false;
-    bool plain = false;   ///< They hold in this step.
-    double law_dt = 0.0;  ///< Step the constants of the law were chosen for [s].
+    bool plain = false;             ///< They hold in this step.
+    double law_dt = 0.0;            ///< Step the constants of the law were chosen for [s].
+    double mass = 0.0;              ///< Reduced, of both bodies [kg].
+    double chosen_stiffness = 0.0;  ///< Of the barrier, if the law leaves it open; else 0 [N/m].
     double gap_n = 0.0;
     Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
     bool listed = false;   ///< Among the points that act by impulses in this step.
@@ -157,6 +159,11 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   };
 
   [[nodiscard]] std::optional<double> exit_speed(const Point& p) const;
+  struct Followed;
+  [[nodiscard]] Gap<double> gap_along(const Point& p, std::span<const BodyStep> steps,
+                                      std::span<const Vec6> increments, double part) const;
+  [[nodiscard]] double advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
+                               std::span<const Vec6> increments, double most);
   void load(const State& state);
   void save(State& state);
   void refer(std::span<const BodyStep> steps, const StepContext& context);

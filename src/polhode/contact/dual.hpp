@@ -8,7 +8,8 @@
 namespace polhode::contact {
 
 /// A number with its derivatives by the twelve increments (Δr_a, Δθ_a, Δr_b, Δθ_b) of a pair of
-/// bodies: forward differentiation. Formulas of contact are written once, for double and Dual.
+/// bodies: forward differentiation. Formulas of contact are written once, for double, Dual and
+/// Fine.
 struct Dual {
   static constexpr int kDirections = 12;
   double v = 0.0;
@@ -56,12 +57,18 @@ struct Dual {
   friend Dual operator/(const Dual& a, double b) { return a * (1.0 / b); }
 };
 
+/// A number with more digits, for gaps deep in the barrier: there the last digit of a double is
+/// worth energy.
+using Fine = long double;
+
 [[nodiscard]] inline Dual sqrt(const Dual& a) {
   const double root = std::sqrt(a.v);
   return a.chained(root, 0.5 / root);
 }
 [[nodiscard]] inline double sqrt(double a) { return std::sqrt(a); }
+[[nodiscard]] inline Fine sqrt(Fine a) { return std::sqrt(a); }
 [[nodiscard]] inline double value(double a) { return a; }
+[[nodiscard]] inline double value(Fine a) { return static_cast<double>(a); }
 [[nodiscard]] inline double value(const Dual& a) { return a.v; }
 
 /// Three numbers of one sort.

@@ -80,10 +80,14 @@ class Finder {
     if (out_of_ball(middle, a_.bound_radius)) return;
     for (int j = 0; j < static_cast<int>(b_.planes.size()); ++j) {
       if (b_.solid == Solid::polyhedron && !first_of_its_plane(j)) continue;
-      if (std::abs(b_.planes[j].normal.dot(middle) - b_.planes[j].offset) >
-          a_.bound_radius + b_.rounding + distance_)
+      // Of a surface a triangle acts, of a solid the whole: the extreme point may touch another
+      // face.
+      if (b_.solid == Solid::surface &&
+          std::abs(b_.planes[j].normal.dot(middle) - b_.planes[j].offset) >
+              a_.bound_radius + b_.rounding + distance_)
         continue;
-      for (int i = 0; i < extremes; ++i) add({GapKind::extreme_solid, i, j, 1.0, fade});
+      for (int i = 0; i < extremes; ++i)
+        add({GapKind::extreme_solid, i, j, 1.0, fade}, rims ? slide(b_.planes[j].normal) : 0.0);
     }
     const Fade along = a_.solid == Solid::cylinder ? Fade::parallel : Fade::none;
     for (int j : edges_)
@@ -131,9 +135,17 @@ class Finder {
            (x - b_.bound_centre).norm() > b_.bound_radius + a_.rounding + distance_ + radius;
   }
   void push(const FeaturePair& pair) { found_.push_back({pair, swapped_}); }
-  /// Adds the pair if it is near.
-  void add(const FeaturePair& pair) {
-    if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
+  /// Adds the pair if it is near. @param more  How much nearer it may come by its own [m].
+  void add(const FeaturePair& pair, double more = 0.0) {
+    if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_ + more) push(pair);
+  }
+  /// How far the extreme point of a rim of a, against a plane of b, slides along it while the
+  /// shapes turn by what moves them by the distance: far, if the axis is nearly along the normal.
+  [[nodiscard]] double slide(const Vec3& normal) const {
+    const double cosine = value(at_a_.vector(a_.axes.col(2))).dot(value(at_b_.vector(normal)));
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), R = a_.half[0];
+    const double left = sine - distance_ / R;  // of the sine, after such a turn
+    return left > 0.0 ? std::min(2.0 * R, distance_ / left) : 2.0 * R;
   }
 
   /// A fixed point of a rim acts where the rim lies flat: on a plane, or on faces turned to it.

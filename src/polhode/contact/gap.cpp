@@ -23,8 +23,8 @@ Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
       return g;
     }
     case TriangleRegion::edge: {
-      const Vec3 along = b.corners[c[(r.k + 1) % 3]] - b.corners[c[r.k]];
-      g = between_points(x, on_line(x, first, at_b.vector(along)), rho_a, b.rounding);
+      const V3<T> along = at_b.between(b.corners[c[r.k]], b.corners[c[(r.k + 1) % 3]]);
+      g = between_points(x, on_line(x, first, along), rho_a, b.rounding);
       g.feature = 1 + b.triangle_edges[triangle][r.k];
       return g;
     }
@@ -44,7 +44,7 @@ Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
   const double t = (X - p).dot(v) / v.squaredNorm();
   const V3<T> y = t <= 0.0   ? at_b.point(p)
                   : t >= 1.0 ? at_b.point(q)
-                             : on_line(x, at_b.point(p), at_b.vector(v));
+                             : on_line(x, at_b.point(p), at_b.between(p, q));
   Gap<T> g = between_points(x, y, rho_a, b.rounding);
   g.feature = t <= 0.0 ? -1 - b.edges[edge].i : t >= 1.0 ? -1 - b.edges[edge].j : 1 + edge;
   return g;
@@ -123,16 +123,18 @@ Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placem
     y[i] = dot(axis[i], w);
     Y[i] = value(y[i]);
   }
-  const double root = nearest_on_ellipsoid(b.half, Y);
-  T f(-1.0);
-  double slope = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const double d = b.half[i] * b.half[i] + root;
-    const T part = (b.half[i] / d) * y[i];
-    f = f + part * part;
-    slope -= 2.0 * value(part) * value(part) / d;
+  T t(nearest_on_ellipsoid(b.half, Y));
+  for (int step = 0; step < (std::is_same_v<T, Fine> ? 2 : 1); ++step) {
+    T f(-1.0);
+    double slope = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const T d = b.half[i] * b.half[i] + t;
+      const T part = b.half[i] * y[i] / d;
+      f = f + part * part;
+      slope -= 2.0 * value(part) * value(part) / value(d);
+    }
+    t = t - (1.0 / slope) * f;
   }
-  const T t = root - (1.0 / slope) * f;
   V3<T> normal = constant<T>(Vec3::Zero()), nearest = at_b.point(b.centre);
   for (int i = 0; i < 3; ++i) {
     const double square = b.half[i] * b.half[i];
@@ -147,8 +149,8 @@ template <class T>
 Gap<T> edges(const Shape& a, const Shape& b, int i, int j, const Placement<T>& at_a,
              const Placement<T>& at_b) {
   const Shape::Edge &e = a.edges[i], &f = b.edges[j];
-  const V3<T> p = at_a.point(a.corners[e.i]), u = at_a.vector(a.corners[e.j] - a.corners[e.i]);
-  const V3<T> q = at_b.point(b.corners[f.i]), v = at_b.vector(b.corners[f.j] - b.corners[f.i]);
+  const V3<T> p = at_a.point(a.corners[e.i]), u = at_a.between(a.corners[e.i], a.corners[e.j]);
+  const V3<T> q = at_b.point(b.corners[f.i]), v = at_b.between(b.corners[f.i], b.corners[f.j]);
   const SegmentsRegion r = nearest_on_segments(value(p), value(u), value(q), value(v));
   V3<T> x = p + r.s * u, y = q + r.t * v;
   if (r.s_free && r.t_free) {
@@ -258,12 +260,15 @@ template Gap<double> gap(const FeaturePair&, const Shape&, const Shape&, const P
                          const Placement<double>&);
 template Gap<Dual> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<Dual>&,
                        const Placement<Dual>&);
+template Gap<Fine> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<Fine>&,
+                       const Placement<Fine>&);
 template FadeDirections<double> fade_directions(const FeaturePair&, const Shape&, const Shape&,
                                                 const Placement<double>&, const Placement<double>&);
 template FadeDirections<Dual> fade_directions(const FeaturePair&, const Shape&, const Shape&,
                                               const Placement<Dual>&, const Placement<Dual>&);
 template Gap<double> point_over_solid(const V3<double>&, double, const Shape&,
                                       const Placement<double>&);
+template Gap<Fine> point_over_solid(const V3<Fine>&, double, const Shape&, const Placement<Fine>&);
 template Gap<Dual> point_over_solid(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
 
 }  // namespace polhode::contact

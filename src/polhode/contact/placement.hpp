@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <type_traits>
+
 #include <polhode/contact/dual.hpp>
 #include <polhode/time/body_step.hpp>
 
@@ -28,20 +30,27 @@ class Placement {
   /// Λ Z: the vector Z fixed in the body.
   [[nodiscard]] V3<T> vector(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
+    if constexpr (kFine)
+      if (step_) return constant<T>(z_n(Z)) + turned(z_n(Z), z);
     V3<T> result = constant<T>(z);
     turn(result, z);
     return result;
   }
+  /// Λ (Q − P), the same from both sides of an edge.
+  [[nodiscard]] V3<T> between(const Vec3& P, const Vec3& Q) const {
+    if constexpr (kFine) return vector(Q) - vector(P);
+    return vector(Q - P);
+  }
   /// r + Λ Z: the point Z fixed in the body.
   [[nodiscard]] V3<T> point(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
-    V3<T> result = constant<T>(step_ ? at_end(Z, z) : Vec3(r_ + z));
+    V3<T> result = step_ ? at_end(Z, z) : constant<T>(r_ + z);
     turn(result, z);
     move(result);
     return result;
   }
   [[nodiscard]] V3<T> position() const {
-    V3<T> result = constant<T>(r_);
+    V3<T> result = kFine && step_ ? constant<T>(start_) + constant<T>(step_->u) : constant<T>(r_);
     move(result);
     return result;
   }
@@ -49,10 +58,25 @@ class Placement {
   [[nodiscard]] Vec3 to_body(const Vec3& x) const { return Lambda_->transpose() * (x - r_); }
 
  private:
-  /// r_n + z_n + u + θ × z̄, the turn of a step by its Cayley vector.
-  [[nodiscard]] Vec3 at_end(const Vec3& Z, const Vec3& z) const {
-    const Vec3 z_n = step_->Lambda_n * Z;
-    return (start_ + z_n) + (step_->u + step_->theta.cross(0.5 * (z_n + z)));
+  static constexpr bool kFine = std::is_same_v<T, Fine>;
+  using Plain = std::conditional_t<kFine, Fine, double>;
+
+  [[nodiscard]] Vec3 z_n(const Vec3& Z) const { return step_->Lambda_n * Z; }
+  /// cay(θ) z_n − z_n = θ × z̄. With Fine from θ alone: the rotation at the end is a rounded one.
+  [[nodiscard]] V3<Plain> turned(const Vec3& z_n, const Vec3& z) const {
+    const V3<Plain> theta = constant<Plain>(step_->theta);
+    if constexpr (kFine) {
+      const V3<Fine> half = Fine(0.5) * theta, across = cross(theta, constant<Fine>(z_n));
+      return (Fine(1.0) / (Fine(1.0) + dot(half, half))) * (across + cross(half, across));
+    }
+    return 0.5 * cross(theta, constant<Plain>(z_n) + constant<Plain>(z));
+  }
+  /// r_n + z_n + u + θ × z̄
+  [[nodiscard]] V3<T> at_end(const Vec3& Z, const Vec3& z) const {
+    const Vec3 z_0 = z_n(Z);
+    const V3<Plain> moved = constant<Plain>(step_->u) + turned(z_0, z);
+    const V3<Plain> x = (constant<Plain>(start_) + constant<Plain>(z_0)) + moved;
+    return {T(x.x), T(x.y), T(x.z)};
   }
   void turn(V3<T>& result, const Vec3& z) const {
     if constexpr (std::is_same_v<T, Dual>) {

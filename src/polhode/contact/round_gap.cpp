@@ -146,7 +146,7 @@ template <class T>
 Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
                        const Placement<T>& at_b) {
   const Vec3 &P = b.corners[b.edges[edge].i], &Q = b.corners[b.edges[edge].j];
-  const V3<T> p = at_b.point(P), v = at_b.vector(Q - P);
+  const V3<T> p = at_b.point(P), v = at_b.between(P, Q);
   // In coordinates of body a, with one direction of Dual for the parameter.
   const Vec3 X = at_a.to_body(value(p)), V = at_a.to_body(value(p) + value(v)) - X;
   const Mat3 no_turn = Mat3::Identity();
@@ -216,12 +216,17 @@ Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a
 
 template V3<double> extreme_point(const Shape&, int, const V3<double>&, const Placement<double>&);
 template V3<Dual> extreme_point(const Shape&, int, const V3<Dual>&, const Placement<Dual>&);
+template V3<Fine> extreme_point(const Shape&, int, const V3<Fine>&, const Placement<Fine>&);
 template Gap<double> round_over_edge(const Shape&, const Shape&, int, const Placement<double>&,
                                      const Placement<double>&);
 template Gap<Dual> round_over_edge(const Shape&, const Shape&, int, const Placement<Dual>&,
                                    const Placement<Dual>&);
+template Gap<Fine> round_over_edge(const Shape&, const Shape&, int, const Placement<Fine>&,
+                                   const Placement<Fine>&);
 template Gap<double> round_over_round(const Shape&, const Shape&, const Placement<double>&,
                                       const Placement<double>&);
+template Gap<Fine> round_over_round(const Shape&, const Shape&, const Placement<Fine>&,
+                                    const Placement<Fine>&);
 template Gap<Dual> round_over_round(const Shape&, const Shape&, const Placement<Dual>&,
                                     const Placement<Dual>&);
 

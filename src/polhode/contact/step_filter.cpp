@@ -18,6 +18,9 @@ constexpr double kKeptByBalls = 0.35;
 constexpr double kHarmless = 0.9;
 /// An advance below this part of the increment ends the search.
 constexpr double kLeastAdvance = 1e-4;
+/// Of what a point shall keep, this part may be missing in the end.
+constexpr double kMissing = 0.5;
+constexpr int kHalvings = 30;
 
 /// Farthest point of a feature from the origin of its body: how fast a turn moves it.
 double lever(const Shape& s, const FeaturePair& f, bool side_a) {
@@ -62,15 +65,32 @@ int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec
 
 }  // namespace
 
-/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
-/// normal n of where they are no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a
-/// gap can be followed by steps of its own size.
-/// @eq{contact-filter}
-double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
-  struct Closing {
-    int point;
-    double floor;
+/// A point to be followed along the increment, and the gap that it keeps [m].
+struct ContactSet::Followed {
+  int point;
+  double least;
+};
+
+/// Where a point's shapes are at a part of the increments.
+Gap<double> ContactSet::gap_along(const Point& p, std::span<const BodyStep> steps,
+                                  std::span<const Vec6> increments, double part) const {
+  const auto placed = [&](int shape) {
+    const BodyStep& s = step_of(shape, steps);
+    const int body = shapes_[shape].body;
+    if (body == kGround) return std::pair(s.r_n1, s.Lambda_n1);
+    const Vec6& x = increments[body];
+    return std::pair(Vec3(s.r_n1 + part * x.head<3>()),
+                     Mat3(cay(part * x.tail<3>()) * s.Lambda_n1));
   };
+  const auto [r_a, L_a] = placed(p.a);
+  const auto [r_b, L_b] = placed(p.b);
+  return gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(r_a, L_a, 0),
+             Placement<double>(r_b, L_b, 6));
+}
+
+/// What a bound of the speed finds harmless is not followed. The extreme point of a round solid
+/// also slides along its rim, as fast as it likes where the axis is along the normal: it always is.
+double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
   const Vec6 still = Vec6::Zero();
   const auto increment = [&](int shape) -> const Vec6& {
     const int body = shapes_[shape].body;
@@ -81,7 +101,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     const double turn = x.tail<3>().norm();
     if (turn > 0.6) most = std::min(most, 0.6 / turn);
   }
-  std::vector<Closing> closing;
+  std::vector<Followed> closing;
   const auto ground = static_cast<int>(steps.size()) - 1;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     if (const ApproachOfBalls& balls = balls_[i]; balls.holds) {
@@ -110,41 +130,64 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     }
     if (speed == 0.0) continue;
     const double room = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
-    if (most * speed <= kHarmless * room) continue;
+    if (most * speed <= kHarmless * room && p.data.pair.kind != GapKind::extreme_solid) continue;
     const double band = p.data.normal.reach() - p.least_gap;
-    closing.push_back({i, kKept * std::min(room, band)});
+    closing.push_back({i, p.least_gap + kKept * std::min(room, band)});
   }
   if (closing.empty()) return most;
+  double part = advance(closing, steps, increments, most);
+  const auto loses = [&](const Followed& f) {
+    const double least = points_[f.point].least_gap;
+    if (gap_along(points_[f.point], steps, increments, part).distance >=
+        least + (1.0 - kMissing) * (f.least - least))
+      return false;
+    tightest_ = f.point;
+    return true;
+  };
+  for (int k = 0; k < kHalvings && std::any_of(closing.begin(), closing.end(), loses); ++k)
+    part *= 0.5;
+  return part;
+}
+
+/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
+/// normal n of where they are no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a
+/// gap can be followed by steps of its own size.
+/// @eq{contact-filter}
+double ContactSet::advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
+                           std::span<const Vec6> increments, double most) {
+  const Vec6 still = Vec6::Zero();
+  const auto increment = [&](int shape) -> const Vec6& {
+    const int body = shapes_[shape].body;
+    return body == kGround ? still : increments[body];
+  };
   double done = 0.0, last = 0.0;
   for (int k = 0; k < 200; ++k) {
     double advance = std::numeric_limits<double>::infinity();
-    for (const Closing& c : closing) {
+    for (const Followed& c : closing) {
       const Point& p = points_[c.point];
       const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
       const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-      const Mat3 L_a = cay(done * x_a.tail<3>()) * a.Lambda_n1;
-      const Mat3 L_b = cay(done * x_b.tail<3>()) * b.Lambda_n1;
-      const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b,
-                                Placement<double>(a.r_n1 + done * x_a.head<3>(), L_a, 0),
-                                Placement<double>(b.r_n1 + done * x_b.head<3>(), L_b, 6));
+      const Gap<double> g = gap_along(p, steps, increments, done);
       const Vec3 n = value(g.normal), relative = x_a.head<3>() - x_b.head<3>();
       double speed = std::max(0.0, -n.dot(relative));
       std::array<Vec3, 2> few;
-      const auto turns = [&](const Vec3& theta, const Mat3& L, const Vec3& towards, bool side_a) {
+      const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
+                             bool side_a) {
         const Shape& shape = side_a ? *p.data.a : *p.data.b;
         const int count = few_points(shape, p.data.pair, side_a, few);
         if (count == 0) return theta.norm() * lever(shape, p.data.pair, side_a);
+        const Mat3 L = cay(done * theta) * Lambda;
         for (int m = 0; m < count; ++m) few[m] = L * few[m];
         return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
       };
-      speed += turns(x_a.tail<3>(), L_a, n, true);
+      speed += turns(x_a.tail<3>(), a.Lambda_n1, n, true);
       if (p.data.b->bounded())
-        speed += turns(x_b.tail<3>(), L_b, -n, false);
+        speed += turns(x_b.tail<3>(), b.Lambda_n1, -n, false);
       else
         speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + x_a.norm() + p.data.a->reach +
                                          p.data.b->centre.norm());
       if (speed <= 0.0) continue;
-      const double next = (g.distance - p.least_gap - c.floor) / speed;
+      const double next = (g.distance - c.least) / speed;
       if (next < advance) {
         advance = next;
         tightest_ = c.point;

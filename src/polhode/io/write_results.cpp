@@ -94,6 +94,30 @@ void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
     }
 }
 
+/// Friction and stops of joints, in the order of results_frame().
+void plan_resistance(const ResultsLayout& layout, FilePlan& p, bool named) {
+  namespace r = results;
+  const auto add = [&](const Quantity& q, auto&& count_of, bool integer) {
+    std::size_t numbers = 0;
+    for (const auto& joint : layout.joints) numbers += static_cast<std::size_t>(count_of(joint));
+    if (numbers == 0) return;
+    p.add(r::kPackedJoints, q, {numbers}, integer);
+    std::size_t first = 0;
+    for (const auto& joint : layout.joints) {
+      const auto count = static_cast<std::size_t>(count_of(joint));
+      if (named && count > 0) p.view(r::kJoints, joint.name, q, first, count, integer);
+      first += count;
+    }
+  };
+  using Entry = ResultsLayout::JointEntry;
+  add(
+      {"friction", 1, "N or N m"}, [](const Entry& joint) { return joint.friction; }, false);
+  add(
+      {"slips", 1, "-"}, [](const Entry& joint) { return joint.friction > 0 ? 1 : 0; }, true);
+  add(
+      {"stops", 1, "N or N m"}, [](const Entry& joint) { return joint.stops; }, false);
+}
+
 /// What impacts and friction took, and the pairs, in the order of add_contacts().
 void plan_contacts(const ResultsLayout& layout, FilePlan& p) {
   namespace r = results;
@@ -174,6 +198,7 @@ FilePlan plan(const ResultsLayout& layout) {
       first += count;
     }
   }
+  plan_resistance(layout, p, named);
   add_loads(p, layout, named);
   for (const Quantity& q : kEnergies) p.add(r::kEnergy, q, {});
   p.add(r::kMomentum, {"linear", 3, "kg m/s"}, {3});
@@ -238,8 +263,10 @@ ResultsLayout results_layout(const Simulation& simulation) {
   layout.title = model.title;
   for (const BodySpec& body : model.bodies) layout.bodies.push_back(body.name);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const auto count = simulation.joint(static_cast<int>(i)).coordinates.size();
-    layout.joints.push_back({model.joints[i].name, model.joints[i].type, static_cast<int>(count)});
+    const JointReport joint = simulation.joint(static_cast<int>(i));
+    layout.joints.push_back(
+        {model.joints[i].name, model.joints[i].type, static_cast<int>(joint.coordinates.size()),
+         static_cast<int>(joint.friction.size()), static_cast<int>(joint.stops.size())});
   }
   for (const LoadSpec& load : model.loads)
     if (load.solid < 0) layout.loads.push_back({load.name, load.type});
@@ -281,6 +308,9 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.coordinates.insert(frame.coordinates.end(), joint.coordinates.begin(),
                              joint.coordinates.end());
     frame.rates.insert(frame.rates.end(), joint.rates.begin(), joint.rates.end());
+    frame.friction.insert(frame.friction.end(), joint.friction.begin(), joint.friction.end());
+    if (!joint.friction.empty()) frame.slips.push_back(joint.slips ? 1.0 : 0.0);
+    frame.stops.insert(frame.stops.end(), joint.stops.begin(), joint.stops.end());
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     if (model.loads[i].solid >= 0) continue;
@@ -386,8 +416,8 @@ void ResultsFile::append(const ResultsFrame& frame) {
   vectors(frame.force);
   vectors(frame.moment);
   for (double x : frame.coordinates) scalar(x);
-  for (double x : frame.rates) scalar(x);
-  for (double x : frame.loads) scalar(x);
+  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.loads})
+    for (double x : *list) scalar(x);
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
     scalar(x);

@@ -49,7 +49,7 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   int size() const override { return static_cast<int>(points_.points.size()); }
   int nodes_per_element() const override { return n_ + frame_; }
   std::span<const int> nodes(int element) const override {
-    const auto width = static_cast<std::size_t>(n_ + frame_);
+    const auto width = static_cast<std::size_t>(nodes_per_element());
     return std::span(nodes_).subspan(static_cast<std::size_t>(element) * width, width);
   }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
