@@ -147,16 +147,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.mass = mass;
   p.chosen_stiffness = law.stiffness == 0.0 && law.potential == NormalPotential::barrier ? k : 0.0;
   if (d.history.closed && d.history.stiffness > 0.0) k = d.history.stiffness;
-  d.normal.stiffness = d.history.stiffness = k;
-  d.friction = law.friction;
-  FrictionLaw& f = d.friction;
-  const double k_T =
-      law.potential == NormalPotential::hertz ? k * std::sqrt(d.normal.tolerance) : k;
-  if (f.stiffness == 0.0) f.stiffness = k_T;
-  if (f.damping == 0.0) f.damping = 0.7 * std::sqrt(f.stiffness * mass);
-  if (f.turning_stiffness == 0.0) f.turning_stiffness = f.stiffness * length * length;
-  if (f.turning_damping == 0.0)
-    f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * length * length);
+  stiffen(p, k);
   p.restitution = law.damped ? 1.0 : law.restitution;
   p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
@@ -165,6 +156,22 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.law_dt = dt;
   p.least_gap =
       plane || law.potential == NormalPotential::barrier ? d.normal.floor() : -0.9 * rounding;
+}
+
+/// Bristles that the law leaves open go with the stiffness of the normal law.
+void ContactSet::stiffen(Point& p, double k) const {
+  const ContactLaw& law = this->law(p.a, p.b);
+  PointData& d = p.data;
+  d.normal.stiffness = d.history.stiffness = k;
+  d.friction = law.friction;
+  FrictionLaw& f = d.friction;
+  const double k_T =
+      law.potential == NormalPotential::hertz ? k * std::sqrt(d.normal.tolerance) : k;
+  if (f.stiffness == 0.0) f.stiffness = k_T;
+  if (f.damping == 0.0) f.damping = 0.7 * std::sqrt(f.stiffness * p.mass);
+  if (f.turning_stiffness == 0.0) f.turning_stiffness = f.stiffness * d.length * d.length;
+  if (f.turning_damping == 0.0)
+    f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * p.mass * d.length * d.length);
 }
 
 void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContext& context) {
@@ -224,7 +231,7 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
     double k = p.chosen_stiffness;
     if (!h.plastic && !p.damped)
       k = std::max(k, 1.5 * kDeepest * p.mass * h.approach * h.approach / (band * band));
-    p.data.normal.stiffness = h.stiffness = k;
+    if (k != p.data.normal.stiffness) stiffen(p, k);
   }
   if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
   if (p.gap_n >= p.data.normal.reach()) return;

@@ -170,6 +170,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
   void complete_law(Point& p, double dt) const;
+  void stiffen(Point& p, double k) const;
   [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
   /// Whether a point acts in a step that ends with this gap. @param least  Room of the tightest
   /// point so far, renewed with tightest_ [m].
