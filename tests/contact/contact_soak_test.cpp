@@ -100,12 +100,22 @@ TEST(ContactSoak, RandomScenesKeepTheirBalances) {
   for (int k = 1; k <= scenes; ++k) {
     const Outcome o = soak(static_cast<unsigned>(k), asked ? 5.0 : 0.6);
     EXPECT_TRUE(o.finished) << "scene " << k << ": " << o.message;
-    // Where an impact is stopped within a step, rounding of the gap is worth 1e-11 of the energy.
-    EXPECT_LT(o.rise, 1e-10) << "scene " << k;
+    EXPECT_LT(o.rise, 1e-12) << "scene " << k;
     EXPECT_LT(o.drift, 1e-9) << "scene " << k;
     EXPECT_LT(o.momentum, 1e-9) << "scene " << k;
     EXPECT_LT(o.turning, 1e-9) << "scene " << k;
     EXPECT_GT(o.lowest, 0.0) << "scene " << k << ": through the floor";
+  }
+}
+
+/// What longer runs have found: a cone that rolls onto another face of a hull, and a cylinder on a
+/// hull (points on their rims came too late), with a floor and joints.
+TEST(ContactSoak, ScenesThatOnceFailed) {
+  for (const unsigned seed : {35U, 139U}) {
+    const Outcome o = soak(seed, 1.1);
+    EXPECT_TRUE(o.finished) << "scene " << seed << ": " << o.message;
+    EXPECT_LT(o.rise, 1e-12) << "scene " << seed;
+    EXPECT_LT(o.drift, 1e-9) << "scene " << seed;
   }
 }
 
