@@ -15,7 +15,7 @@ def main():
     report.below("deepest overlap of the run [m]", max(0, -contacts["least_gap"]), 1e-4)
     ball = run.probe("b0")
     report.near("height of ball 0 at the end [m]", ball["z"][-1], 0.1, 1e-4)
-    report.below("its speed up or down [m/s]", abs(ball["vz"][-1]), 1e-4)
+    report.below("its speed up or down [m/s]", abs(ball["vz"][-1]), 1e-3)
     # Nothing resists rolling: a ball with room beside it may go on slowly.
     report.below("its speed along the floor [m/s]", max(abs(ball[c][-1]) for c in ("vx", "vy")), 0.1)
     report.below("energy balance with what impacts and friction took", run.figures["energy_drift"], 1e-6)
