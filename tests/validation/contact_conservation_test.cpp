@@ -23,6 +23,31 @@ struct Tie {
 constexpr int kSteps = 10000;
 class Tied : public testing::TestWithParam<Tie> {};
 
+void tie(Scene& s, int a, int b) {
+  LoadDescription spring;
+  spring.name = "spring";
+  spring.bodies = {a, b};
+  spring.values = {{"stiffness", 4.0}, {"free_length", 0.1}};
+  load_kind("spring_damper").add(s.system, spring);
+}
+
+/// Goes all steps. @returns how often bodies met; −1 if a step failed.
+int count_hits(Scene& s) {
+  int hits = 0;
+  bool touched = false;
+  for (int k = 0; k < kSteps; ++k) {
+    if (!s.step()) {
+      ADD_FAILURE() << s.last.text();
+      return -1;
+    }
+    double force = 0.0;
+    for (const auto& r : s.contacts->reports()) force += r.normal_force;
+    if (force > 0.0 && !touched) ++hits;
+    touched = force > 0.0;
+  }
+  return hits;
+}
+
 TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
   const auto all = every_shape();
   const NamedShape &first = all[GetParam().first], &second = all[GetParam().second];
@@ -34,22 +59,10 @@ TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
   m = at({0.8, 0.05, -0.05}, {-0.05, -0.1, 0.1});
   m.W = {-0.2, 0.4, 0.6};
   const int b = s.add("b", second.shape, 1.5, {0.08, 0.09, 0.1}, m);
-  LoadDescription spring;
-  spring.name = "spring";
-  spring.bodies = {a, b};
-  spring.values = {{"stiffness", 4.0}, {"free_length", 0.1}};
-  load_kind("spring_damper").add(s.system, spring);
+  tie(s, a, b);
   s.law(0.0, 1.0);
   s.begin(GetParam().step);
-  int hits = 0;
-  bool touched = false;
-  for (int k = 0; k < kSteps; ++k) {
-    ASSERT_TRUE(s.step()) << s.last.text();
-    double force = 0.0;
-    for (const auto& r : s.contacts->reports()) force += r.normal_force;
-    if (force > 0.0 && !touched) ++hits;
-    touched = force > 0.0;
-  }
+  const int hits = count_hits(s);
   const Ledger& l = s.state.ledger;
   EXPECT_GT(hits, 5);
   EXPECT_LT(s.drift(), 1e-10 * l.energy_scale);
@@ -95,22 +108,10 @@ TEST_P(TiedWithSolids, BodiesCollideForThousandsOfStepsAndLoseNothing) {
         b,
         {.from = {0.3, 0.0, 0.0}, .size = {0.3, 0.1, 0.1}, .cells = {1, 1, 1}, .stiffness = 1e4});
   }
-  LoadDescription spring;
-  spring.name = "spring";
-  spring.bodies = {a, b};
-  spring.values = {{"stiffness", 4.0}, {"free_length", 0.1}};
-  load_kind("spring_damper").add(s.system, spring);
+  tie(s, a, b);
   s.law(0.0, 1.0);
   s.begin(GetParam().step);
-  int hits = 0;
-  bool touched = false;
-  for (int k = 0; k < kSteps; ++k) {
-    ASSERT_TRUE(s.step()) << s.last.text();
-    double force = 0.0;
-    for (const auto& r : s.contacts->reports()) force += r.normal_force;
-    if (force > 0.0 && !touched) ++hits;
-    touched = force > 0.0;
-  }
+  const int hits = count_hits(s);
   const Ledger& l = s.state.ledger;
   RecordProperty("energy_drift", format("{:.2e}", s.drift() / l.energy_scale));
   RecordProperty("angular_momentum_drift", format("{:.2e}", l.l_drift / l.l_scale));

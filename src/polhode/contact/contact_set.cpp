@@ -222,7 +222,7 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
   const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
   const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
   h.approach = std::min(0.0, n.dot(v_a - v_b));
-  const double slow = 2.0 * system_->gravity().norm() * context.dt;
+  const double slow = kSlowReboundSteps * system_->gravity().norm() * context.dt;
   h.plastic = !p.damped &&
               (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
   h.fresh = true;

@@ -40,14 +40,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   report.residual = report.residual_before;
   if (report.residual <= 32.0 * kInstantRoundOff * largest_scale) return report;
 
-  s.prepare();
-  s.put_masses();
-  s.run(
-      state,
-      [&](int i, const PairStep&, const PairTerms& terms) {
-        s.put_rows(i, terms, kInstantProximal);
-      },
-      true);
+  s.put_masses_and_rows(state);
   Vec given(6 * bodies);
   for (int b = 0; b < bodies; ++b) given.segment<6>(6 * b) = velocity(b);
   s.rhs.setZero();
@@ -141,14 +134,7 @@ InstantSolution InstantSolver::accelerations(const State& state, std::span<const
 void InstantSolver::keep_admissible(const State& state, std::vector<Vec6>& field) {
   Impl& s = *impl_;
   s.take(state);
-  s.prepare();
-  s.put_masses();
-  s.run(
-      state,
-      [&](int i, const PairStep&, const PairTerms& terms) {
-        s.put_rows(i, terms, kInstantProximal);
-      },
-      true);
+  s.put_masses_and_rows(state);
   s.rhs.setZero();
   s.x.setZero();
   for (int b = 0; b < s.system.body_count(); ++b) s.x.segment<6>(6 * b) = field[b];

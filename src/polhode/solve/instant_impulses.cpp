@@ -7,14 +7,7 @@ namespace polhode {
 bool InstantSolver::take_impulses(const State& state) {
   Impl& s = *impl_;
   s.take(state);
-  s.prepare();
-  s.put_masses();
-  s.run(
-      state,
-      [&](int i, const PairStep&, const PairTerms& terms) {
-        s.put_rows(i, terms, kInstantProximal);
-      },
-      true);
+  s.put_masses_and_rows(state);
   return s.add_nodes(state, true) && s.factor(state);
 }
 

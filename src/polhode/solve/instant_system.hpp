@@ -106,6 +106,17 @@ struct InstantSolver::Impl {
         if (body != kGround)
           values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= per_mass * m.mass;
   }
+  /// The matrix of jumps of velocities: masses of the bodies, and rows that hold.
+  void put_masses_and_rows(const State& state) {
+    prepare();
+    put_masses();
+    run(
+        state,
+        [&](int i, const PairStep&, const PairTerms& terms) {
+          put_rows(i, terms, kInstantProximal);
+        },
+        true);
+  }
   /// Blocks of the pairs of bodies that solids couple: the last ones.
   [[nodiscard]] std::span<KktValues::Pair> cliques() {
     return std::span(values.pairs).last(nodes->pairs().size());

@@ -10,7 +10,7 @@
 #include <polhode/assembly/moving_pattern.hpp>
 #include <polhode/fe/contact/central_gap.hpp>
 #include <polhode/fe/contact/mesh_surface.hpp>
-#include <polhode/fe/contact/surface_law.hpp>
+#include <polhode/fe/contact/surface_totals.hpp>
 
 namespace polhode {
 
@@ -74,8 +74,6 @@ class SolidContact final : public ElementGroup,
   /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
   /// its tangential part and the pressure.
   static constexpr std::size_t kMemory = 11;
-  static constexpr std::size_t kTotals = 18;  ///< See Totals.
-  struct Totals;
   struct Field;
   struct Slide;
 

@@ -27,13 +27,6 @@ SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action
   return e;
 }
 
-/// The numbers behind those of the points, in this order.
-struct SolidContact::Totals {
-  double impulse, friction_loss, normal_loss;  // since the start
-  double gap, normal_force, area, pressure, sticking, slipping;
-  double force[3], friction[3], point[3];
-};
-
 Work SolidContact::work(const NodeStep& step, const double* history,
                         const double* /*scratch*/) const {
   Work w;
@@ -66,9 +59,8 @@ Work SolidContact::work(const NodeStep& step, const double* history,
 }
 
 void SolidContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
-  static_assert(sizeof(Totals) == kTotals * sizeof(double));
   double* const numbers = history + places_size() + kMemory * points_.size();
-  Totals t{};
+  SurfaceTotals t{};
   std::copy_n(numbers, 3, &t.impulse);
   t.gap = std::numeric_limits<double>::infinity();
   const Search& s = search(history);
@@ -127,7 +119,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     t.friction[k] = friction[k];
     t.point[k] = moment[k];
   }
-  std::copy_n(&t.impulse, kTotals, numbers);
+  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
   renew_search(step, history);
 }
 
@@ -144,27 +136,12 @@ void SolidContact::note_gap_at_start(double* history) const {
   double least = std::numeric_limits<double>::infinity();
   for (int p = 0; p < static_cast<int>(points_.size()); ++p)
     least = std::min(least, nearest(start, found(s, p), p).four.distance);
-  numbers[offsetof(Totals, gap) / sizeof(double)] =
+  numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
       std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
 }
 
 SurfaceReport SolidContact::report(const double* history) const {
-  Totals t;
-  std::copy_n(history + places_size() + kMemory * points_.size(), kTotals, &t.impulse);
-  SurfaceReport r;
-  r.least_gap = t.gap;
-  r.normal_force = t.normal_force;
-  r.force = Vec3(t.force);
-  r.friction = Vec3(t.friction);
-  r.point = Vec3(t.point);
-  r.area = t.area;
-  r.largest_pressure = t.pressure;
-  r.sticking = static_cast<int>(t.sticking);
-  r.slipping = static_cast<int>(t.slipping);
-  r.impulse = t.impulse;
-  r.friction_loss = t.friction_loss;
-  r.normal_loss = t.normal_loss;
-  return r;
+  return SurfaceTotals::report(history + places_size() + kMemory * points_.size());
 }
 
 std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& instant,

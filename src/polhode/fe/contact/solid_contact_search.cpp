@@ -39,7 +39,7 @@ double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 std::size_t SolidContact::history_size() const {
-  return places_size() + kMemory * points_.size() + kTotals;
+  return places_size() + kMemory * points_.size() + SurfaceTotals::kCount;
 }
 
 std::span<const int> SolidContact::found(const Search& s, int point) const {

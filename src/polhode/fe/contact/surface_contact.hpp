@@ -8,8 +8,8 @@
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/element_group.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
-#include <polhode/fe/contact/surface_law.hpp>
 #include <polhode/fe/contact/surface_points.hpp>
+#include <polhode/fe/contact/surface_totals.hpp>
 
 namespace polhode {
 
@@ -55,7 +55,9 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
   bool external() const override { return frame_ == 0; }
-  std::size_t history_size() const override { return kMemory * points_.points.size() + kTotals; }
+  std::size_t history_size() const override {
+    return kMemory * points_.points.size() + SurfaceTotals::kCount;
+  }
   void initialize(double* history) const override;
   void clearances(const NodeStep& step, const double* history,
                   std::vector<double>& list) const override;
@@ -76,7 +78,6 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its
   /// tangential part and the pressure.
   static constexpr std::size_t kMemory = 11;
-  static constexpr std::size_t kTotals = 18;  ///< See Totals.
 
   /// The point in the surface's coordinates over the step.
   struct Place {
@@ -97,7 +98,6 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   struct Energies {
     double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
   };
-  struct Totals;
   template <class T>
   struct Terms;
 

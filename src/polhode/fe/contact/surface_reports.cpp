@@ -94,23 +94,16 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
   return w;
 }
 
-/// The numbers behind those of the points, in this order.
-struct SurfaceContact::Totals {
-  double impulse, friction_loss, normal_loss;  // since the start
-  double gap, normal_force, area, pressure, sticking, slipping;
-  double force[3], friction[3], point[3];
-};
-
 void SurfaceContact::initialize(double* history) const {
-  static_assert(sizeof(Totals) == kTotals * sizeof(double));
   std::fill_n(history, history_size(), 0.0);
-  history[kMemory * points_.points.size() + offsetof(Totals, gap) / sizeof(double)] = gap_at_start_;
+  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] =
+      gap_at_start_;
 }
 
 void SurfaceContact::commit(const NodeStep& step, double* history,
                             const double* /*scratch*/) const {
   double* const numbers = history + kMemory * points_.points.size();
-  Totals t{};
+  SurfaceTotals t{};
   std::copy_n(numbers, 3, &t.impulse);
   t.gap = std::numeric_limits<double>::infinity();
   const bool instant = step.x_n == step.x_n1;  // in statics nothing moves
@@ -151,26 +144,11 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
     t.friction[k] = (R * friction)[k];
     t.point[k] = moment[k];
   }
-  std::copy_n(&t.impulse, kTotals, numbers);
+  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
 }
 
 SurfaceReport SurfaceContact::report(const double* history) const {
-  Totals t;
-  std::copy_n(history + kMemory * points_.points.size(), kTotals, &t.impulse);
-  SurfaceReport r;
-  r.least_gap = t.gap;
-  r.normal_force = t.normal_force;
-  r.force = Vec3(t.force);
-  r.friction = Vec3(t.friction);
-  r.point = Vec3(t.point);
-  r.area = t.area;
-  r.largest_pressure = t.pressure;
-  r.sticking = static_cast<int>(t.sticking);
-  r.slipping = static_cast<int>(t.slipping);
-  r.impulse = t.impulse;
-  r.friction_loss = t.friction_loss;
-  r.normal_loss = t.normal_loss;
-  return r;
+  return SurfaceTotals::report(history + kMemory * points_.points.size());
 }
 
 std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& instant,
