@@ -115,7 +115,7 @@ std::string statics_table(const RunSummary& s) {
 
 /// "5 shapes", "5 shapes and 2 surfaces".
 std::string parties_text(const RunSummary::Contacts& c) {
-  const std::string surfaces =
+  std::string surfaces =
       counted(static_cast<std::size_t>(c.surfaces), "surface", "surfaces") + " of solids";
   if (c.shapes == 0) return surfaces;
   return format("{} shapes", c.shapes) + (c.surfaces > 0 ? " and " + surfaces : "");

@@ -126,6 +126,7 @@ void ContactSet::find_candidates(double dt) {
     return std::pair(x, y);
   };
   std::vector<std::pair<int, int>> body_pairs;
+  body_pairs.reserve(shape_pairs.size());
   for (const auto& [a, b] : shape_pairs) body_pairs.push_back(bodies(a, b));
   std::sort(body_pairs.begin(), body_pairs.end());
   body_pairs.erase(std::unique(body_pairs.begin(), body_pairs.end()), body_pairs.end());

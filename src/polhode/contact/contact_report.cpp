@@ -73,6 +73,7 @@ std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep>
     found = {std::min(p.a, p.b), std::max(p.a, p.b), -p.gap_n, sign * value(g.normal)};
   }
   std::vector<ShapeOverlap> list;
+  list.reserve(deepest.size());
   for (const auto& [key, overlap] : deepest) list.push_back(overlap);
   // Nothing of this may be left when steps begin: stiffnesses are frozen while points are closed.
   points_.clear();

@@ -212,7 +212,7 @@ Shape height_field(std::string_view where, int columns, double spacing,
   TriangleSurface field;
   for (int iy = 0; iy < rows; ++iy)
     for (int ix = 0; ix < columns; ++ix) {
-      const double z = heights[static_cast<std::size_t>(iy * columns + ix)];
+      const double z = heights[iy * columns + ix];
       if (!std::isfinite(z))
         throw InputError(where, "a height is not finite", "Correct the table of heights");
       field.points.push_back(

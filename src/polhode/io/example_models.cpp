@@ -141,9 +141,10 @@ std::string spheres_in_a_bin(const Values& values) {
       "      - {{plane: y, position: [0, {}, 0]}}\n      - {{plane: -y, position: [0, {}, 0]}}\n",
       n, -half, half, -half, half);
   for (int i = 0; i < n; ++i) {
-    const Vec3 x(x0 + 0.22 * (i % row) + 0.005 * std::sin(12.9898 * i),
-                 x0 + 0.22 * (i / row % row) + 0.005 * std::sin(78.233 * i),
-                 0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i));
+    const int column = i % row, line = i / row % row, layer = i / (row * row);
+    const Vec3 x(x0 + 0.22 * column + 0.005 * std::sin(12.9898 * i),
+                 x0 + 0.22 * line + 0.005 * std::sin(78.233 * i),
+                 0.12 + 0.22 * layer + 0.005 * std::sin(37.719 * i));
     text += format("  b{}: {{shape: {{sphere: 0.2}}, mass: 1, position: {}}}\n", i, list(x));
   }
   return text +

@@ -103,6 +103,7 @@ std::string vtp(const std::vector<BodyPicture>& pictures, const std::vector<Body
     first += static_cast<std::int64_t>(surface.points.size());
   }
   std::vector<std::string> names;
+  names.reserve(pictures.size());
   for (const BodyPicture& picture : pictures) names.push_back(picture.name);
   VtkFile file("PolyData");
   file.names("body_names", names);

@@ -29,6 +29,7 @@ const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const 
                             const std::string& path, const std::vector<KindTable>& kinds,
                             std::string& type, const char* key) {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const KindTable& kind : kinds) names.push_back(kind.name);
   if (!node.is_map()) {
     context.fault(node, path, "expects a map of keys and values, but is " + node.description(),

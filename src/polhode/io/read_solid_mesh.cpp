@@ -104,7 +104,7 @@ class SolidMeshReader {
     for (std::size_t k = 0; k < sets.keys.size(); ++k) {
       if (!check_name(context_, sets.keys[k], sets.children[k], path)) continue;
       const std::string& name = sets.keys[k].name;
-      if (auto nodes = read_indices(context_, sets.children[k], path + "." + name))
+      if (auto nodes = read_indices(context_, sets.children[k], format("{}.{}", path, name)))
         mesh_.sets[name] = std::move(*nodes);
     }
   }

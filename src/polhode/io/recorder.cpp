@@ -151,6 +151,7 @@ void Recorder::frame(const Simulation& simulation) {
   }
   if (impl_->solids) {
     std::vector<SolidReport> reports;
+    reports.reserve(simulation.solids().size());
     for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i)
       reports.push_back(simulation.solid(i));
     impl_->solids->append(simulation.time(), reports);

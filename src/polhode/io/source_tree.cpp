@@ -273,12 +273,12 @@ SourceTree SourceTree::parse(std::string text, std::string filename, const Sourc
     diagnostics.add(place, "", std::move(what), std::move(mend));
     diagnostics.throw_if_any();
   };
-  if (text.size() > limits.bytes) {
-    tree.source_ = std::make_shared<SourceText>(std::move(filename), "");
-    refuse(1, 1, format("the file has {} bytes, more than {}", text.size(), limits.bytes),
+  const std::size_t size = text.size();
+  tree.source_ = std::make_shared<SourceText>(
+      std::move(filename), size > limits.bytes ? "" : normalised(std::move(text)));
+  if (size > limits.bytes)
+    refuse(1, 1, format("the file has {} bytes, more than {}", size, limits.bytes),
            "Build a model of this size in code.");
-  }
-  tree.source_ = std::make_shared<SourceText>(std::move(filename), normalised(std::move(text)));
   try {
     parse_into(*tree.source_, limits, tree.root_);
   } catch (const Stop& stop) {

@@ -286,6 +286,7 @@ UnitReading read_unit(std::string_view text) { return UnitParser(text).read(); }
 
 std::vector<std::string> unit_names() {
   std::vector<std::string> names;
+  names.reserve(std::size(kUnits));
   for (const NamedUnit& u : kUnits) names.emplace_back(u.name);
   return names;
 }

@@ -76,8 +76,7 @@ ResultsLayout results_layout(const Simulation& simulation) {
   for (const BeamSpec& beam : model.beams) {
     layout.beams.push_back({beam.name, {}});
     for (int k = 0; k < beam.node_count(); ++k)
-      layout.beams.back().reference.push_back(
-          model.bodies[static_cast<std::size_t>(beam.first_node + k)].position);
+      layout.beams.back().reference.push_back(model.bodies[beam.first_node + k].position);
   }
   for (const CableLineSpec& cable : model.cables)
     layout.cables.push_back({cable.name, cable.pieces.size()});

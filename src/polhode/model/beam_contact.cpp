@@ -47,7 +47,7 @@ void add_beam_shapes(Model& model, const BeamSpec& beam) {
   const double radius = radius_of(beam);
   const int last = beam.node_count() - 1;
   for (int k = 0; k <= last; ++k) {
-    BodySpec& node = model.bodies[static_cast<std::size_t>(beam.first_node + k)];
+    BodySpec& node = model.bodies[beam.first_node + k];
     node.contact = beam.contact->side;
     const Quat to_node = node.orientation.conjugate();
     const auto half = [&](int element, bool ahead) {  // from the node to the middle of the element

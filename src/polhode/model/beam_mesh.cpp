@@ -294,8 +294,7 @@ double CableLineSpec::mass() const {
 std::vector<bool> are_nodes(const Model& model) {
   std::vector<bool> nodes(model.bodies.size(), false);
   for (const BeamSpec& beam : model.beams)
-    for (int k = 0; k < beam.node_count(); ++k)
-      nodes.at(static_cast<std::size_t>(beam.first_node + k)) = true;
+    for (int k = 0; k < beam.node_count(); ++k) nodes.at(beam.first_node + k) = true;
   for (const CableLineSpec& cable : model.cables)
     for (const CableLineSpec::Piece& piece : cable.pieces)
       if (piece.mass > 0.0)  // else its ends are bodies of others

@@ -277,6 +277,7 @@ class SurfacesBuilder {
     const double least = std::min(edge[0], edge[1]);
     const SurfaceLaw law = law_of(pair.law, {solids[0], solids[1]}, least, least);
     std::vector<int> carriers;
+    carriers.reserve(system_.nodes().count());
     for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
     for (int k = 0; k < (self ? 1 : 2); ++k) {
       const auto& name = [&](int side) -> const std::string& {
@@ -340,6 +341,7 @@ class SurfacesBuilder {
   /// At the start, by the system's numbers.
   [[nodiscard]] std::vector<Vec3> positions() const {
     std::vector<Vec3> X;
+    X.reserve(system_.nodes().count());
     for (int i = 0; i < system_.nodes().count(); ++i) X.push_back(system_.nodes()[i].position);
     return X;
   }

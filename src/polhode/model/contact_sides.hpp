@@ -54,7 +54,7 @@ class ContactGroups {
 struct ContactParty {
   int material = -1;   ///< Index into ContactsSpec::materials, or −1.
   int side = kGround;  ///< See contact_spec.hpp; kGround: no pair names it.
-  auto operator<=>(const ContactParty&) const = default;
+  auto operator<=>(const ContactParty&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// What holds between two sides: a pair of sides goes before a pair of materials, that before the

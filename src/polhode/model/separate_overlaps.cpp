@@ -28,6 +28,7 @@ SeparationReport separate_overlaps(const System& system, contact::ContactSet& co
                                    State& state) {
   SeparationReport report;
   std::vector<Vec3> start;
+  start.reserve(system.body_count());
   for (int b = 0; b < system.body_count(); ++b) start.push_back(system.motion(state, b).r);
   for (; report.rounds < kMostRounds; ++report.rounds) {
     const auto list = contacts.deepest_overlaps(instants_of(system, state));

@@ -15,7 +15,7 @@ TriangleSurface field_surface(const ShapeSpec& shape) {
     for (int ix = 0; ix < columns; ++ix)
       field.points.emplace_back(shape.spacing * (ix - 0.5 * (columns - 1)),
                                 shape.spacing * (iy - 0.5 * (rows - 1)),
-                                shape.heights[static_cast<std::size_t>(iy * columns + ix)]);
+                                shape.heights[iy * columns + ix]);
   for (int iy = 0; iy + 1 < rows; ++iy)
     for (int ix = 0; ix + 1 < columns; ++ix) {
       const int a = iy * columns + ix, b = a + 1, c = a + columns, d = c + 1;

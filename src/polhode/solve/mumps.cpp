@@ -132,6 +132,7 @@ void Mumps::find_null_pivots(bool yes) { impl_->control(24) = yes ? 1 : 0; }
 std::vector<int> Mumps::null_pivots() const {
   const Impl& s = *impl_;
   std::vector<int> list;
+  list.reserve(s.m.infog[27]);
   for (int k = 0; k < s.m.infog[27]; ++k) list.push_back(s.m.pivnul_list[k] - 1);
   return list;
 }

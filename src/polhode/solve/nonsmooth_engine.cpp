@@ -48,7 +48,7 @@ NonsmoothEngine::NonsmoothEngine(const System& system)
   sweeps_.bodies.assign(n + 1, {});
   for (const BodyData& body : system.bodies()) {
     sweeps_.bodies[round_.size()].inverse_mass = 1.0 / body.mass;
-    round_.push_back(body.inertia == body.inertia(0, 0) * Mat3::Identity());
+    round_.push_back(body.inertia == body.inertia(0, 0) * Mat3::Identity() ? 1 : 0);
   }
 }
 

@@ -29,6 +29,7 @@ struct Columns {
 
 Columns constraint_columns(const System& system, const State& state) {
   std::vector<BodyStep> steps;
+  steps.reserve(system.body_count() + 1);
   for (int b = 0; b < system.body_count(); ++b) steps.push_back(system.instant(state, b));
   steps.push_back(BodyStep::ground(1.0));
   StepContext context;

@@ -252,15 +252,13 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
     };
     for (int p = 0; p < n_ + frame_; ++p) {
       const auto [from, N] = spread(p);
-      for (int r = 0; r < 3; ++r)
-        f[static_cast<std::size_t>(3 * p + r)] = point.area * N * c.f[3 * from + r];
+      for (int r = 0; r < 3; ++r) f[3 * p + r] = point.area * N * c.f[3 * from + r];
       if (!tangent) continue;
       for (int q = 0; q < n_ + frame_; ++q) {
         const auto [by, M] = spread(q);
         for (int r = 0; r < 3; ++r)
           for (int s = 0; s < 3; ++s)
-            K[static_cast<std::size_t>((3 * p + r) * width + 3 * q + s)] =
-                point.area * N * M * c.K(3 * from + r, 3 * by + s);
+            K[(3 * p + r) * width + 3 * q + s] = point.area * N * M * c.K(3 * from + r, 3 * by + s);
       }
     }
     sink.add_force(nodes(i), f.data());

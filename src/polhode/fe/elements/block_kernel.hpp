@@ -201,7 +201,7 @@ struct BlockForces {
       P S[6], D[36];
       stress_between<P>(data, block.fibre, !kMean, ends.E_a, ends.E_b, S, kTangent ? D : nullptr);
       if (kTangent && ends.factor != 1.0)
-        for (int i = 0; i < 36; ++i) D[i] *= ends.factor;
+        for (P& entry : D) entry *= ends.factor;
       if (data.conserving && alpha_f != 0.5 && alpha_f != 1.0)
         add_shift<P>(data, block.fibre, !kMean, alpha_f - 0.5, m.E_0, m.E_1, S,
                      kTangent ? D : nullptr);
@@ -254,7 +254,7 @@ struct BlockForces {
   static void add_rows(const P& w, const P* F, const P* S, const P* G, P (*rows)[3]) {
     P A[9];
     times_symmetric(F, S, A);
-    for (int i = 0; i < 9; ++i) A[i] *= w;
+    for (P& entry : A) entry *= w;
     for (int r = 0; r < R; ++r)
       for (int i = 0; i < 3; ++i)
         rows[r][i] +=

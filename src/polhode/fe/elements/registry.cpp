@@ -32,6 +32,7 @@ std::vector<ElementKind> make_kinds() {
 
 std::vector<std::string> names_of(const std::vector<const ElementKind*>& kinds) {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const ElementKind* kind : kinds) names.push_back(kind->name);
   return names;
 }

@@ -67,7 +67,7 @@ void each_point(std::span<const LoadedFaces> faces, std::span<const Vec3> X, con
 
 }  // namespace
 
-std::unique_ptr<ElementGroup> make_nodal_force(std::string name, std::vector<int> nodes,
+std::unique_ptr<ElementGroup> make_nodal_force(std::string name, const std::vector<int>& nodes,
                                                std::span<const Vec3> X, TimeVector force) {
   if (nodes.empty())
     throw InputError(name, "there are no nodes to load", "Choose at least one node");
@@ -104,7 +104,7 @@ std::unique_ptr<ElementGroup> make_dead_pressure(std::string name,
 }
 
 std::vector<std::unique_ptr<ElementGroup>> make_follower_pressure(
-    const std::string& name, std::span<const LoadedFaces> faces, TimeFunctionPtr pressure,
+    const std::string& name, std::span<const LoadedFaces> faces, const TimeFunctionPtr& pressure,
     FollowerRule rule) {
   check_faces(name, faces);
   std::vector<std::unique_ptr<ElementGroup>> groups;

@@ -36,7 +36,7 @@ enum class FollowerRule : unsigned char {
 
 /// The same force on each node [N]; absent components are zero.
 [[nodiscard]] std::unique_ptr<ElementGroup> make_nodal_force(std::string name,
-                                                             std::vector<int> nodes,
+                                                             const std::vector<int>& nodes,
                                                              std::span<const Vec3> X,
                                                              TimeVector force);
 
@@ -55,7 +55,7 @@ enum class FollowerRule : unsigned char {
 
 /// Pressure against the present outward normals and areas [Pa]: one group for each shape of face.
 [[nodiscard]] std::vector<std::unique_ptr<ElementGroup>> make_follower_pressure(
-    const std::string& name, std::span<const LoadedFaces> faces, TimeFunctionPtr pressure,
+    const std::string& name, std::span<const LoadedFaces> faces, const TimeFunctionPtr& pressure,
     FollowerRule rule = FollowerRule::kMomentum);
 
 /// Force per undeformed volume [N/m³] on solid elements.

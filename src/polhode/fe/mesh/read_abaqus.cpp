@@ -377,6 +377,7 @@ class AbaqusReader {
   [[noreturn]] void refuse_set(const char* things, const std::string& name,
                                const Sets& sets) const {
     std::vector<std::string> names;
+    names.reserve(sets.size());
     for (const auto& [key, members] : sets) names.push_back(key);
     refuse(format("there is no set of {} {} above", things, quote(name)),
            did_you_mean(name, names) +

@@ -164,7 +164,7 @@ std::vector<int> select_nodes(std::string_view where, const Mesh& mesh,
           where,
           format("{} holds no node of the mesh{}", description(selection), miss(mesh, selection)),
           extent_text(mesh));
-    for (std::size_t i = 0; i < in.size(); ++i) in[i] = in[i] || one[i];
+    for (std::size_t i = 0; i < in.size(); ++i) in[i] |= one[i];
   }
   std::vector<int> nodes;
   for (int i = 0; i < static_cast<int>(in.size()); ++i)

@@ -228,7 +228,7 @@ __attribute__((noinline)) void carry_loops(const TreeView& v, int slot, const do
     const LoopAtBody& here = v.open[o];
     TreeLoop& loop = v.loop[here.loop];
     for (int k = 0; k < loop.panels; ++k) {
-      constexpr int most = nq > 0 ? nq : 1;
+      constexpr int most = nq > 0 ? nq : 1;  // NOLINT(bugprone-branch-clone): the two agree for one
       Row C[6], R[6], e[most], gamma[most], projected[most];
       for (int i = 0; i < 6; ++i) {
         C[i] = row_load(pair_row(v, here.pair, loop.panels, i) + 8 * k);

@@ -112,7 +112,7 @@ POLHODE_INLINE Row spread(const Row& a) {
   const Pack x = __builtin_shufflevector(from, from, k, k);
 #endif
   Row r;
-  for (int p = 0; p < kParts; ++p) r.part[p] = x;
+  for (Pack& part : r.part) part = x;
   return r;
 }
 POLHODE_INLINE Row& operator+=(Row& a, const Row& b) { return a = a + b; }
