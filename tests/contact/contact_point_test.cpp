@@ -137,40 +137,40 @@ TEST_P(EveryPairOfShapes, DoesExactlyTheWorkItStoresAndNothingElse) {
 }
 
 /// A gap in fine numbers follows a displacement of 1e-13 to a hundred thousandth of it: doubles
-/// know it to a part in ten only. Where the nearest place on an edge is found by halving intervals,
-/// a kink of the round solid, it is as good as doubles.
+/// know it to a part in ten only.
 // @tests{contact-gap-change}
 TEST_P(EveryPairOfShapes, HasFineGapsThatFollowTheLastDigitsOfAStep) {
   Random random(14);
-  const Encounter e = meet(a_, b_, context_of(1.0, 0.01), random, kReach);
   int followed = 0;
-  for (const OrderedPair& p : e.pairs) {
-    const Shape &x = p.swapped ? b_ : a_, &y = p.swapped ? a_ : b_;
-    const auto gap_after = [&](double more) {
-      BodyStep first = e.motion.a();
-      const BodyStep second = e.motion.b();
-      first.u.x() += more;
-      const Vec3 from = first.r_n;
-      const Placement<Fine> on_first(first, from, 0), on_second(second, from, 6);
-      return p.swapped ? gap(p.pair, x, y, on_second, on_first).distance
-                       : gap(p.pair, x, y, on_first, on_second).distance;
-    };
-    const double u = e.motion.a().u.x();
-    std::vector<Fine> way, change;
-    for (int k = 0; k <= 8; ++k) {
-      way.push_back(Fine(u + k * 1e-13) - Fine(u));
-      change.push_back(gap_after(k * 1e-13) - gap_after(0.0));
+  for (int trial = 0; trial < 9; ++trial) {
+    const Encounter e = meet(a_, b_, context_of(1.0, 0.01), random, kReach);
+    for (const OrderedPair& p : e.pairs) {
+      const Shape &x = p.swapped ? b_ : a_, &y = p.swapped ? a_ : b_;
+      const auto gap_after = [&](double more) {
+        BodyStep first = e.motion.a();
+        const BodyStep second = e.motion.b();
+        first.u.x() += more;
+        const Vec3 from = first.r_n;
+        const Placement<Fine> on_first(first, from, 0), on_second(second, from, 6);
+        return p.swapped ? gap(p.pair, x, y, on_second, on_first).distance
+                         : gap(p.pair, x, y, on_first, on_second).distance;
+      };
+      // Cores that overlap, which no law allows, have several depths.
+      if (gap_after(0.0) < -(x.rounding + y.rounding)) continue;
+      const double u = e.motion.a().u.x();
+      std::vector<Fine> way, change;
+      for (int k = 0; k <= 8; ++k) {
+        way.push_back(Fine(u + k * 1e-13) - Fine(u));
+        change.push_back(gap_after(k * 1e-13) - gap_after(0.0));
+      }
+      const Fine slope = change.back() / way.back();
+      double worst = 0.0;
+      for (std::size_t k = 0; k < way.size(); ++k)
+        worst = std::max(worst, std::abs(value(change[k] - slope * way[k])));
+      EXPECT_LT(worst, 1e-18) << static_cast<int>(p.pair.kind) << " " << p.pair.i << " "
+                              << p.pair.j;
+      ++followed;
     }
-    const Fine slope = change.back() / way.back();
-    double worst = 0.0;
-    for (std::size_t k = 0; k < way.size(); ++k)
-      worst = std::max(worst, std::abs(value(change[k] - slope * way[k])));
-    if (p.pair.kind == GapKind::round_edge && worst > 1e-18) {
-      EXPECT_LT(worst, 1e-15);
-      continue;
-    }
-    EXPECT_LT(worst, 1e-18) << static_cast<int>(p.pair.kind) << " " << p.pair.i << " " << p.pair.j;
-    ++followed;
   }
   EXPECT_GE(followed, 1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random scenes of mixed shapes, joints and materials that fall on a floor. A few run always; with
-// the environment variable POLHODE_SOAK as many as it says, 5 s each.
+// Random scenes of all shapes, joints and materials that fall on a floor or into a bowl. A few run
+// always; with the environment variable POLHODE_SOAK as many as it says, 5 s each.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -36,12 +36,28 @@ contact::Shape shape_of(Random& random, int kind, const std::string& name) {
       return cone(name, size(), size());
     case 5:
       return ellipsoid(name, {size(), size(), size()});
-    default: {
-      std::vector<Vec3> points = stone(static_cast<unsigned>(kind));
+    case 6: {
+      std::vector<Vec3> points = stone(static_cast<unsigned>(name.back()));
       for (Vec3& x : points) x *= 0.4;
       return hull(name, points);
     }
+    default: {
+      const double R = 0.5 * size();
+      return mesh(name, torus(R, 0.4 * R));
+    }
   }
+}
+
+/// A bowl with bumps, 12 m wide.
+contact::Shape bowl() {
+  const int n = 13;
+  std::vector<double> heights;
+  for (int iy = 0; iy < n; ++iy)
+    for (int ix = 0; ix < n; ++ix) {
+      const double x = ix - 6, y = iy - 6;
+      heights.push_back(0.1 + 0.05 * (x * x + y * y) + 0.1 * std::sin(5.0 * x + 3.0 * y));
+    }
+  return contact::height_field("bowl", n, 1.0, heights);
 }
 
 Outcome soak(unsigned seed, double duration) {
@@ -51,13 +67,13 @@ Outcome soak(unsigned seed, double duration) {
   std::vector<int> bodies;
   for (int i = 0; i < count; ++i) {
     const std::string name = "body " + std::to_string(i);
-    const int kind = static_cast<int>((seed * 7 + static_cast<unsigned>(i) * 5) % 7);
+    const int kind = static_cast<int>((seed * 3 + static_cast<unsigned>(i) * 5) % 8);
     BodyMotion start = random.motion();
-    start.r = {0.1 * random.vector(1.0).x(), 0.1 * random.vector(1.0).y(), 0.4 + 0.45 * i};
+    start.r = {0.1 * random.vector(1.0).x(), 0.1 * random.vector(1.0).y(), 0.9 + 0.7 * i};
     start.v = random.vector(0.5);
     start.W = random.vector(3.0);
     const bool joined = i > 0 && (seed + static_cast<unsigned>(i)) % 3 == 0;
-    if (joined) start = at({0.0, 0.0, 0.4 + 0.45 * i});
+    if (joined) start = at({0.0, 0.0, 0.9 + 0.7 * i});
     const double mass = 0.5 + std::abs(random.vector(2.0).x());
     bodies.push_back(
         s.add(name, shape_of(random, kind, name), mass, mass * Vec3(0.010, 0.012, 0.014), start));
@@ -65,7 +81,10 @@ Outcome soak(unsigned seed, double duration) {
       s.add_joint(seed % 2 == 0 ? "spherical" : "revolute", kGround, bodies[i],
                   start.r + Vec3(0.3, 0.0, 0.3));
   }
-  s.add_floor();
+  if (seed % 5 == 0)
+    s.contacts->add_shape({kGround, "bowl", bowl()});
+  else
+    s.add_floor();
   const double mus[3] = {0.0, 0.3, 0.8}, es[3] = {0.0, 0.3, 0.7};
   s.law(mus[seed % 3], es[(seed / 3) % 3]);
   s.begin(seed % 2 ? 5e-3 : 2e-3);

@@ -172,6 +172,7 @@ class Scene {
       if (watch) watch(h);
       if (last.converged) {
         left -= h;
+        h *= 2.0;
         continue;
       }
       ++cuts;

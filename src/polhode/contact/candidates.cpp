@@ -67,16 +67,20 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
   }
 }
 
+/// How far a body may well go in a few steps of that length [m].
+double ContactSet::margin_of(int body, const BodyStep& s, double dt) const {
+  const double ahead = std::abs(dt) * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]) +
+                       dt * dt * system_->gravity().norm();
+  const double size = std::isfinite(size_of_body_[body]) ? size_of_body_[body] : 0.0;
+  return std::max(4.0 * ahead, 0.05 * size);
+}
+
 /// Where bodies are at t_n, and how far they may go until candidates are found again.
 void ContactSet::refer(std::span<const BodyStep> steps, const StepContext& context) {
   for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
     Reference& ref = references_[body];
     const BodyStep& s = steps[body];
-    const double ahead =
-        std::abs(context.dt) * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]) +
-        context.dt * context.dt * system_->gravity().norm();
-    const double size = std::isfinite(size_of_body_[body]) ? size_of_body_[body] : 0.0;
-    ref.margin = std::max({ref.margin, 4.0 * ahead, 0.05 * size});
+    ref.margin = std::max(ref.margin, margin_of(body, s, context.dt));
     ref.r = s.r_n;
     ref.Lambda = s.Lambda_n;
   }
@@ -170,9 +174,10 @@ void ContactSet::find_candidates(double dt) {
 bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const Vec6> increments) {
   bool leaves = false;
+  const double part = sensible_part(increments);
   const auto ahead = [&](int body) {
-    return increments[body].head<3>().norm() +
-           std::min(2.0, increments[body].tail<3>().norm()) * reach_of_body_[body];
+    return part * (increments[body].head<3>().norm() +
+                   increments[body].tail<3>().norm() * reach_of_body_[body]);
   };
   const auto bodies = static_cast<int>(references_.size());
   for (int body = 0; body < bodies && !leaves; ++body)

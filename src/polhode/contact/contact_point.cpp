@@ -52,7 +52,11 @@ Vec3 near_contact(const PointData& data, const BodyStep& a) {
       const Shape::Edge& e = A.edges[data.pair.i];
       return a.r_n + a.Lambda_n * (0.5 * (A.corners[e.i] + A.corners[e.j]));
     }
-    case GapKind::extreme_solid:
+    case GapKind::extreme_plane:
+    case GapKind::part_solid:
+    case GapKind::part_triangle:
+    case GapKind::part_edge:
+    case GapKind::part_corner:
     case GapKind::round_edge:
     case GapKind::round_round:
       break;

@@ -15,6 +15,9 @@ namespace {
 /// The barrier stops an impact that rebounds with at least this part of its band left. Deeper,
 /// where it is stopped within a step, the last digit of a displacement would be worth energy.
 constexpr double kDeepest = 1e-3;
+/// Candidates are found anew when their margin is so many times what is needed, as after an
+/// iteration that went astray.
+constexpr double kWideMargin = 8.0;
 
 void check_law(const ContactLaw& law) {
   const auto refuse = [](const char* what, double value, const char* mend) {
@@ -106,6 +109,7 @@ void ContactSet::prepare(const System& system) {
   const auto n = static_cast<std::size_t>(system.body_count());
   reach_of_body_.assign(n, 0.0);
   size_of_body_.assign(n, std::numeric_limits<double>::infinity());
+  stride_.assign(n, std::numeric_limits<double>::infinity());
   for (const PlacedShape& s : shapes_) {
     if (s.body == kGround) continue;
     if (s.body < 0 || s.body >= system.body_count())
@@ -252,7 +256,10 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
     if (reach_of_body_[body] == 0.0) continue;
     const BodyStep& s = steps[body];
     const double ahead = context.dt * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]);
-    if (!(moved(body, s.r_n, s.Lambda_n) + ahead < references_[body].margin)) stale = true;
+    const double margin = references_[body].margin, wanted = margin_of(body, s, context.dt);
+    if (!(moved(body, s.r_n, s.Lambda_n) + ahead < margin) || margin > kWideMargin * wanted)
+      stale = true;
+    stride_[body] = std::max(2.0 * size_of_body_[body], wanted);
   }
   if (stale) {
     for (Reference& r : references_) r.margin = -1.0;

@@ -178,6 +178,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void open_or_close(std::span<const BodyStep> steps, const StepContext& context);
   void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                      const StepContext& context) const;
+  [[nodiscard]] double margin_of(int body, const BodyStep& s, double dt) const;
+  /// Part of the increments that is no farther than a step of Newton should go.
+  [[nodiscard]] double sensible_part(std::span<const Vec6> increments) const;
   [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
   void report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss, double dt);
   [[nodiscard]] const Reference& reference_of(int shape, const Reference& ground) const {
@@ -199,6 +202,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   const System* system_ = nullptr;
   std::vector<double> carried_mass_;  ///< By body: its own and that of the solids it holds [kg].
   std::vector<double> reach_of_body_, size_of_body_;
+  std::vector<double> stride_;  ///< Longest way of a body in one iteration of this step [m].
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;

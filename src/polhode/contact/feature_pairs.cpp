@@ -33,17 +33,17 @@ class Finder {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
     // A ball has one corner and no other feature: the other shape's corners would repeat it.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
-    for (int i : a_.points) {
+    const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
+    for (int i : faces ? a_.face_points : a_.points) {
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         point_over_surface(i, x);
         continue;
       }
-      if (a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex())) {
-        rim_point(i, x);
-        continue;
-      }
-      add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+      // A fixed point of a rim acts on a plane where the rim lies flat.
+      const bool rim = a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
+      add({GapKind::point_solid, i, 0, 1.0,
+           rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none});
     }
   }
 
@@ -65,33 +65,26 @@ class Finder {
   /// Side a is round.
   void round() {
     if (!a_.round()) return;
-    const bool rims = a_.solid != Solid::ellipsoid;
-    const int extremes = a_.solid == Solid::cylinder ? 2 : 1;
-    const Fade fade = rims ? Fade::parallel : Fade::none;
+    const int parts = a_.solid == Solid::cylinder ? 2 : 1;
+    const Fade fade = a_.solid == Solid::ellipsoid ? Fade::none : Fade::parallel;
     if (b_.solid == Solid::half_space) {
-      for (int i = 0; i < extremes; ++i) push({GapKind::extreme_solid, i, 0, 1.0, fade});
+      for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
       return;
     }
     if (b_.round()) {
       if (!swapped_) push({GapKind::round_round, 0, 0, 1.0, Fade::none});
       return;
     }
-    const Vec3 middle = in_b(a_.bound_centre);
-    if (out_of_ball(middle, a_.bound_radius)) return;
-    for (int j = 0; j < static_cast<int>(b_.planes.size()); ++j) {
-      if (b_.solid == Solid::polyhedron && !first_of_its_plane(j)) continue;
-      // Of a surface a triangle acts, of a solid the whole: the extreme point may touch another
-      // face.
-      if (b_.solid == Solid::surface &&
-          std::abs(b_.planes[j].normal.dot(middle) - b_.planes[j].offset) >
-              a_.bound_radius + b_.rounding + distance_)
-        continue;
-      for (int i = 0; i < extremes; ++i)
-        add({GapKind::extreme_solid, i, j, 1.0, fade}, rims ? slide(b_.planes[j].normal) : 0.0);
-    }
-    const Fade along = a_.solid == Solid::cylinder ? Fade::parallel : Fade::none;
+    if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
+    for (int i = 0; i < parts; ++i)
+      if (b_.solid == Solid::surface)
+        part_over_surface(i);
+      else if (b_.solid == Solid::polyhedron)
+        add({GapKind::part_solid, i, 0, 1.0, Fade::none});
+    // What lies between both ends; on a ball's or a capsule's core nothing else does.
+    if (a_.solid == Solid::ellipsoid && b_.solid != Solid::segment) return;
     for (int j : edges_)
-      if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, along});
+      if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
   }
 
  private:
@@ -135,30 +128,27 @@ class Finder {
            (x - b_.bound_centre).norm() > b_.bound_radius + a_.rounding + distance_ + radius;
   }
   void push(const FeaturePair& pair) { found_.push_back({pair, swapped_}); }
-  /// Adds the pair if it is near. @param more  How much nearer it may come by its own [m].
-  void add(const FeaturePair& pair, double more = 0.0) {
-    if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_ + more) push(pair);
+  /// Adds the pair if it is near.
+  void add(const FeaturePair& pair) {
+    if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
   }
-  /// How far the extreme point of a rim of a, against a plane of b, slides along it while the
-  /// shapes turn by what moves them by the distance: far, if the axis is nearly along the normal.
-  [[nodiscard]] double slide(const Vec3& normal) const {
-    const double cosine = value(at_a_.vector(a_.axes.col(2))).dot(value(at_b_.vector(normal)));
-    const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), R = a_.half[0];
-    const double left = sine - distance_ / R;  // of the sine, after such a turn
-    return left > 0.0 ? std::min(2.0 * R, distance_ / left) : 2.0 * R;
-  }
-
-  /// A fixed point of a rim acts where the rim lies flat: on a plane, or on faces turned to it.
-  void rim_point(int i, const Vec3& x) {
-    if (b_.solid == Solid::half_space) {
-      add({GapKind::point_solid, i, 0, 1.0, Fade::flat});
-    } else if (b_.solid == Solid::polyhedron) {
-      if (out_of_ball(x, 0.0)) return;
-      for (int j = 0; j < static_cast<int>(b_.planes.size()); ++j)
-        if (first_of_its_plane(j)) add({GapKind::point_solid, i, j, 1.0, Fade::flat});
-    } else {
-      add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+  /// Triangles, edges and corners count as they do for a point.
+  void part_over_surface(int i) {
+    const Shape part = part_of(a_, i);
+    const Vec3 middle = in_b(part.centre);
+    const double r = reach() + part.half.maxCoeff();
+    for (int t : triangles_)
+      if (std::abs(b_.planes[t].normal.dot(middle) - b_.planes[t].offset) < r)
+        add({GapKind::part_triangle, i, t, 1.0, Fade::none});
+    for (int e : edges_) {
+      if (b_.edges[e].open) continue;
+      const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
+      const double along = std::clamp((middle - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
+      if ((middle - p - along * v).norm() < r) add({GapKind::part_edge, i, e, -1.0, Fade::none});
     }
+    for (int k : corners_)
+      if (!b_.border_corner[k] && (middle - b_.corners[k]).norm() < r)
+        add({GapKind::part_corner, i, k, 1.0, Fade::none});
   }
 
   /// Triangles, less the edges that two of them share, plus the corners those had in common.
@@ -181,12 +171,6 @@ class Finder {
     for (int k : corners_)
       if (!b_.border_corner[k] && (x - b_.corners[k]).norm() < r)
         push({GapKind::point_corner, i, k, 1.0, Fade::none});
-  }
-
-  [[nodiscard]] bool first_of_its_plane(int j) const {
-    for (int k = 0; k < j; ++k)
-      if (b_.planes[k].normal.dot(b_.planes[j].normal) > 1.0 - 1e-12) return false;
-    return true;
   }
 
   const Shape &a_, &b_;

@@ -221,16 +221,16 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
     }
     case GapKind::edge_edge:
       return edges(a, b, pair.i, pair.j, at_a, at_b);
-    case GapKind::extreme_solid: {
-      const Vec3 normal =
-          b.solid == Solid::half_space ? Vec3(b.axes.col(2)) : b.planes[pair.j].normal;
-      const V3<T> p = extreme_point(a, pair.i, at_b.vector(normal), at_a);
-      if (b.solid != Solid::surface) return point_over_solid(p, a.rounding, b, at_b);
-      const auto& c = b.triangles[pair.j];
-      const TriangleRegion r = nearest_on_triangle(at_b.to_body(value(p)), b.corners[c[0]],
-                                                   b.corners[c[1]], b.corners[c[2]]);
-      return over_triangle(p, a.rounding, b, pair.j, r, at_b);
+    case GapKind::extreme_plane: {
+      const V3<T> n = at_b.vector(b.axes.col(2));
+      return over_plane(extreme_point(a, pair.i, n, at_a), at_b.point(b.centre), n, a.rounding,
+                        b.rounding);
     }
+    case GapKind::part_solid:
+    case GapKind::part_triangle:
+    case GapKind::part_edge:
+    case GapKind::part_corner:
+      return part_gap(part_of(a, pair.i), pair, b, at_a, at_b);
     case GapKind::round_edge:
       return round_over_edge(a, b, pair.j, at_a, at_b);
     case GapKind::round_round:
@@ -247,13 +247,11 @@ FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const
   };
   if (pair.kind == GapKind::edge_edge)
     return {at_a.vector(edge(a, pair.i)), at_b.vector(edge(b, pair.j))};
-  if (pair.kind == GapKind::round_edge)
-    return {at_a.vector(a.axes.col(2)), at_b.vector(edge(b, pair.j))};
-  const Vec3 normal = b.solid == Solid::half_space ? Vec3(b.axes.col(2)) : b.planes[pair.j].normal;
   // A rim looks along the axis to its own side.
   const bool low =
       pair.kind == GapKind::point_solid && (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;
-  return {at_a.vector(low ? Vec3(-a.axes.col(2)) : Vec3(a.axes.col(2))), at_b.vector(normal)};
+  return {at_a.vector(low ? Vec3(-a.axes.col(2)) : Vec3(a.axes.col(2))),
+          at_b.vector(b.axes.col(2))};
 }
 
 template Gap<double> gap(const FeaturePair&, const Shape&, const Shape&, const Placement<double>&,

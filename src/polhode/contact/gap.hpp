@@ -13,7 +13,11 @@ enum class GapKind {
   point_edge,      ///< Corner i of a, edge j of the surface b.
   point_corner,    ///< Corner i of a, corner j of the surface b.
   edge_edge,       ///< Edge i of a, edge j of b.
-  extreme_solid,   ///< Extreme point i of the round a against plane j, the whole solid of b.
+  extreme_plane,   ///< Extreme point i of the round a, the plane b.
+  part_solid,      ///< Part i of the round a, the whole convex polyhedron b.
+  part_triangle,   ///< Part i of the round a, triangle j of the surface b.
+  part_edge,       ///< Part i of the round a, edge j of the surface b.
+  part_corner,     ///< Part i of the round a, corner j of the surface b.
   round_edge,      ///< The round solid of a, edge j of b.
   round_round,     ///< The round solids of a and b.
 };
@@ -48,6 +52,10 @@ struct Gap {
 template <class T>
 [[nodiscard]] Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b,
                          const Placement<T>& at_a, const Placement<T>& at_b);
+
+/// What of the round solid a comes near to faces, an ellipsoid: all of an ellipsoid, or of a
+/// cylinder or cone the disc at its end `which`, which bulges a little to the outside.
+[[nodiscard]] Shape part_of(const Shape& a, int which);
 
 /// The directions that a Fade compares, carried by a and b (of any length, not changing).
 template <class T>

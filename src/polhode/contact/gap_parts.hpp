@@ -45,6 +45,10 @@ template <class T>
 template <class T>
 [[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
                                   const Placement<T>& at_a);
+/// @param part  See part_of(); moves with a.
+template <class T>
+[[nodiscard]] Gap<T> part_gap(const Shape& part, const FeaturePair& pair, const Shape& b,
+                              const Placement<T>& at_a, const Placement<T>& at_b);
 template <class T>
 [[nodiscard]] Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge,
                                      const Placement<T>& at_a, const Placement<T>& at_b);

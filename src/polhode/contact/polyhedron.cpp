@@ -103,6 +103,7 @@ void take_convex_corners(Shape& shape) {
     if (e.convex) meets[e.i] = meets[e.j] = true;
   for (int i = 0; i < static_cast<int>(meets.size()); ++i)
     if (meets[i]) shape.points.push_back(i);
+  shape.face_points = shape.points;
 }
 
 double inner_size(const TriangleSurface& hull) {

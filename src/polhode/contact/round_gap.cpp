@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <polhode/contact/gap_parts.hpp>
@@ -13,6 +14,30 @@ namespace {
 /// Radius to which the corners of two cylinders or cones are rounded against each other, part of
 /// their size: their support functions are smooth then.
 constexpr double kSmooth = 1e-2;
+
+/// What the support point of a round solid is composed of: ellipsoids by their semi-axes.
+struct Parts {
+  Vec3 body;              ///< The ellipsoid, the disc of a cylinder, the base of a cone.
+  Vec3 needle;            ///< Of a cylinder, added to its disc.
+  double apex = 0.0;      ///< Of a cone, from its centre; its base is as far on the other side.
+  double softness = 0.0;  ///< Of a cone, where apex and base are equally far [m].
+
+  explicit Parts(const Shape& s) {
+    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = kSmooth;
+    if (s.solid == Solid::cylinder) {
+      // h one + r e = H along the axis and r one + h e = R across it.
+      const double one = std::sqrt(1.0 + e * e), h = one * H - e * R, r = one * R - e * H;
+      body = {r * one, r * one, r * e};
+      needle = {h * e, h * e, h * one};
+    } else if (s.solid == Solid::cone) {
+      body = {R, R, e * R};
+      apex = H - e * R;
+      softness = e * R;
+    } else {
+      body = s.half + Vec3::Constant(s.rounding);
+    }
+  }
+};
 
 /// x = centre + Σ B²n/|Bn|, the support point of a sum of ellipsoids with semi-axes B along `axes`.
 template <class T>
@@ -31,23 +56,17 @@ V3<T> of_ellipsoid(const Vec3& B, const V3<T>* axes, const T* n) {
 template <class T>
 V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& direction) {
   const T n[3] = {dot(axes[0], direction), dot(axes[1], direction), dot(axes[2], direction)};
-  const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding;
-  const double e = kSmooth, one = std::sqrt(1.0 + e * e);
-  if (s.solid == Solid::ellipsoid)
-    return of_ellipsoid<T>(s.half + Vec3::Constant(s.rounding), axes, n);
-  // h one + r e = H along the axis and r one + h e = R across it.
-  const double det = one * one - e * e, h = (one * H - e * R) / det, r = (one * R - e * H) / det;
-  const V3<T> disc = of_ellipsoid<T>({r * one, r * one, r * e}, axes, n);
-  const V3<T> needle = of_ellipsoid<T>({h * e, h * e, h * one}, axes, n);
-  if (s.solid == Solid::cylinder) return disc + needle;
-  const V3<T> apex = (H - e * R) * axes[2];
-  const V3<T> base = of_ellipsoid<T>({R, R, e * R}, axes, n) - (H - e * R) * axes[2];
-  const T more = dot(apex - base, direction);
-  const double soft = e * R;
-  const T root = sqrt(more * more + soft * soft);
-  return 0.5 * (apex + base + (more / root) * (apex - base) + (soft * soft / root) * direction);
+  const Parts parts(s);
+  const V3<T> body = of_ellipsoid<T>(parts.body, axes, n);
+  if (s.solid == Solid::ellipsoid) return body;
+  if (s.solid == Solid::cylinder) return body + of_ellipsoid<T>(parts.needle, axes, n);
+  const V3<T> apex = parts.apex * axes[2], base = body - apex, d = apex - base;
+  const double soft = parts.softness * parts.softness;
+  const T more = dot(d, direction), root = sqrt(more * more + soft);
+  return 0.5 * (apex + base + (more / root) * d + (soft / root) * direction);
 }
 
+/// Of a shape, in the world.
 template <class T>
 struct Axes {
   V3<T> axis[3];
@@ -57,25 +76,64 @@ struct Axes {
   }
 };
 
-/// Numbers only, from an Axes of any sort.
 template <class T>
-void take_values(const Axes<T>& from, V3<Dual>* to) {
-  for (int i = 0; i < 3; ++i) to[i] = constant<Dual>(value(from.axis[i]));
+Mat3 values(const Axes<T>& axes) {
+  Mat3 columns;
+  for (int i = 0; i < 3; ++i) columns.col(i) = value(axes.axis[i]);
+  return columns;
 }
 
-/// Support point and its derivative by the direction.
+/// Support point from the centre of its shape, and its derivative by the direction.
 struct Curved {
   Vec3 x;
   Mat3 D;
 };
-Curved curved_support(const Shape& s, const V3<Dual>* axes, const Vec3& n) {
-  V3<Dual> direction = constant<Dual>(n);
-  direction.x.d[0] = direction.y.d[1] = direction.z.d[2] = 1.0;
-  const V3<Dual> x = support<Dual>(s, axes, direction);
+
+/// As `of_ellipsoid`, along the axes. The derivative of B²n/|Bn| is (B² − x xᵀ)/|Bn|.
+Curved curved_ellipsoid(const Vec3& B, const Vec3& n) {
+  const Vec3 squares = B.cwiseAbs2();
+  const double length = B.cwiseProduct(n).norm();
   Curved c;
-  c.x = value(x);
-  for (int j = 0; j < 3; ++j) c.D.col(j) = Vec3(x.x.d[j], x.y.d[j], x.z.d[j]);
+  c.x = squares.cwiseProduct(n) / length;
+  c.D = (Mat3(squares.asDiagonal()) - c.x * c.x.transpose()) / length;
   return c;
+}
+
+/// As `support`, in numbers.
+Curved curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
+  const Parts parts(s);
+  const Vec3 n = axes.transpose() * direction;
+  Curved c = curved_ellipsoid(parts.body, n);
+  if (s.solid == Solid::cylinder) {
+    const Curved needle = curved_ellipsoid(parts.needle, n);
+    c = {c.x + needle.x, c.D + needle.D};
+  } else if (s.solid == Solid::cone) {
+    const Vec3 apex = parts.apex * Vec3::UnitZ(), base = c.x - apex, d = apex - base;
+    const double more = d.dot(n), soft = parts.softness * parts.softness;
+    const double root = std::sqrt(more * more + soft);
+    c.x = 0.5 * (apex + base + (more / root) * d + (soft / root) * n);
+    c.D = 0.5 * ((1.0 - more / root) * c.D + (soft / root) * Mat3::Identity() +
+                 (soft / (root * root * root)) * (d - more * n) * d.transpose());
+  }
+  return {axes * c.x, axes * c.D * axes.transpose()};
+}
+
+/// Thickest half of a needle, part of its length.
+constexpr double kSlender = 1e-3;
+
+/// An edge as a slender ellipsoid: unlike a straight line it has one place nearest to a face that
+/// it lies on. What the edge is rounded by beyond its thickness is left out.
+Shape needle(const Shape& b, int edge) {
+  const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
+  Shape s;
+  const double length = (q - p).norm(), thickness = std::min(b.rounding, kSlender * length);
+  s.solid = Solid::ellipsoid;
+  s.centre = 0.5 * (p + q);
+  s.half = {0.5 * length, thickness, thickness};
+  s.axes.col(0) = (q - p).normalized();
+  s.axes.col(1) = s.axes.col(0).unitOrthogonal();
+  s.axes.col(2) = s.axes.col(0).cross(s.axes.col(1));
+  return s;
 }
 
 /// Two unit vectors across n.
@@ -91,10 +149,12 @@ struct Separation {
   Eigen::Matrix2d M;  ///< −D of the tangential part of x_a − x_b by the two tangential moves of n.
 };
 
-Separation separate(const Shape& a, const Shape& b, const V3<Dual>* axes_a, const V3<Dual>* axes_b,
-                    const Vec3& between) {
+/// @param between  From the centre of b to that of a.
+/// @param start  A direction to begin with, of any length.
+Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
+                    const Vec3& between, const Vec3& start) {
   Separation s;
-  s.n = between.squaredNorm() > 0.0 ? Vec3(between.normalized()) : Vec3::UnitZ();
+  s.n = start.squaredNorm() > 0.0 ? Vec3(start.normalized()) : Vec3::UnitZ();
   const auto offset = [&](const Vec3& n, Mat3* D) {
     const Curved on_a = curved_support(a, axes_a, -n), on_b = curved_support(b, axes_b, n);
     if (D) *D = on_a.D + on_b.D;
@@ -109,8 +169,12 @@ Separation separate(const Shape& a, const Shape& b, const V3<Dual>* axes_a, cons
     s.M << e.dot(D * e) + F, e.dot(D * f), f.dot(D * e), f.dot(D * f) + F;
     const Eigen::Vector2d slope(e.dot(w), f.dot(w));
     if (slope.norm() <= 1e-14 * size) break;
-    const bool convex = s.M(0, 0) > 0.0 && s.M.determinant() > 0.0;
-    Eigen::Vector2d move = convex ? Eigen::Vector2d(s.M.inverse() * slope) : slope / size;
+    // Where F is not concave, each principal direction goes uphill by its own curvature.
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
+    principal.computeDirect(s.M);
+    const Eigen::Vector2d curvature = principal.eigenvalues().cwiseAbs().cwiseMax(1e-12 * size);
+    Eigen::Vector2d move = principal.eigenvectors() *
+                           (principal.eigenvectors().transpose() * slope).cwiseQuotient(curvature);
     if (move.norm() > 0.5) move *= 0.5 / move.norm();
     bool better = false;
     for (int cut = 0; cut < 40 && !better; ++cut, move *= 0.5) {
@@ -124,6 +188,33 @@ Separation separate(const Shape& a, const Shape& b, const V3<Dual>* axes_a, cons
     if (!better) break;
   }
   return s;
+}
+
+/// @param start  Roughly the direction from b to a.
+/// @param rounding  Of b, beyond its own.
+template <class T>
+Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
+                  const Placement<T>& at_b, const Vec3& start, double rounding = 0.0) {
+  const Axes<T> on_a(a, at_a), on_b(b, at_b);
+  const V3<T> between = on_a.centre - on_b.centre;
+  const Separation s = separate(a, b, values(on_a), values(on_b), value(between), start);
+  // n in T: one Newton step from the direction found in numbers.
+  Vec3 e, f;
+  tangents(s.n, e, f);
+  const V3<T> n_0 = constant<T>(s.n);
+  const V3<T> w_0 = between + support<T>(a, on_a.axis, -n_0) - support<T>(b, on_b.axis, n_0);
+  const T r_e = dot(v3(e), w_0), r_f = dot(v3(f), w_0);
+  const Eigen::Matrix2d inverse = s.M.inverse();
+  const T d_e = inverse(0, 0) * r_e + inverse(0, 1) * r_f;
+  const T d_f = inverse(1, 0) * r_e + inverse(1, 1) * r_f;
+  const V3<T> n = unit(n_0 + d_e * v3(e) + d_f * v3(f));
+  const V3<T> x = on_a.centre + support<T>(a, on_a.axis, -n);
+  const V3<T> y = on_b.centre + support<T>(b, on_b.axis, n);
+  Gap<T> g;
+  g.normal = n;
+  g.distance = dot(n, x - y) - rounding;
+  g.point = 0.5 * (x + y + rounding * n);
+  return g;
 }
 
 }  // namespace
@@ -145,73 +236,25 @@ V3<T> extreme_point(const Shape& a, int which, const V3<T>& n, const Placement<T
 template <class T>
 Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
                        const Placement<T>& at_b) {
-  const Vec3 &P = b.corners[b.edges[edge].i], &Q = b.corners[b.edges[edge].j];
-  const V3<T> p = at_b.point(P), v = at_b.between(P, Q);
-  // In coordinates of body a, with one direction of Dual for the parameter.
-  const Vec3 X = at_a.to_body(value(p)), V = at_a.to_body(value(p) + value(v)) - X;
-  const Mat3 no_turn = Mat3::Identity();
-  const Placement<Dual> still(Vec3::Zero(), no_turn, 0);
-  const auto slope = [&](double t, double& curvature) {
-    Dual along(t);
-    along.d[11] = 1.0;
-    const V3<Dual> x = constant<Dual>(X) + along * constant<Dual>(V);
-    const Gap<Dual> g = point_over_solid(x, 0.0, a, still);
-    const Dual s = dot(g.normal, constant<Dual>(V));
-    curvature = s.d[11];
-    return s.v;
-  };
-  double curvature = 0.0, low = 0.0, high = 1.0, t = 0.5;
-  if (slope(0.0, curvature) >= 0.0) {
-    t = high = 0.0;
-  } else if (slope(1.0, curvature) <= 0.0) {
-    t = low = 1.0;
-  } else {
-    for (int k = 0; k < 200; ++k) {
-      const double s = slope(t, curvature);
-      (s < 0.0 ? low : high) = t;
-      double next = curvature > 0.0 ? t - s / curvature : -1.0;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      if (std::abs(next - t) < 1e-16 || high - low < 1e-16) break;
-      t = next;
-    }
-  }
-  T at(t);
-  if (low < high && curvature > 0.0) {
-    const Gap<T> g = point_over_solid(p + t * v, 0.0, a, at_a);
-    const T rest = dot(g.normal, v);
-    at = t - (1.0 / curvature) * (rest - value(rest));
-  }
-  Gap<T> g = point_over_solid(p + at * v, b.rounding, a, at_a);
-  g.normal = -g.normal;
-  return g;
+  const Shape slender = needle(b, edge);
+  // As if a were a ball: the needle's place nearest to it is that of the edge.
+  const Vec3 X = at_b.to_body(value(at_a.point(a.centre))) - slender.centre,
+             v = slender.axes.col(0);
+  const double along = v.dot(X), length = slender.half.x(), part = along / length;
+  Vec3 start = X - along * v;
+  const double left = 1.0 - part * part;
+  if (left > 1e-6)
+    start = start.normalized() + (part / std::sqrt(left) * slender.half.y() / length) * v;
+  else
+    start += (along - std::copysign(length, along)) * v;
+  return smooth_gap(a, slender, at_a, at_b, value(at_b.vector(start)),
+                    b.rounding - slender.half.y());
 }
 
 template <class T>
 Gap<T> round_over_round(const Shape& a, const Shape& b, const Placement<T>& at_a,
                         const Placement<T>& at_b) {
-  const Axes<T> on_a(a, at_a), on_b(b, at_b);
-  V3<Dual> axes_a[3], axes_b[3];
-  take_values(on_a, axes_a);
-  take_values(on_b, axes_b);
-  const V3<T> between = on_a.centre - on_b.centre;
-  const Separation s = separate(a, b, axes_a, axes_b, value(between));
-  // n in T: one Newton step from the direction found in numbers.
-  Vec3 e, f;
-  tangents(s.n, e, f);
-  const V3<T> n_0 = constant<T>(s.n);
-  const V3<T> w_0 = between + support<T>(a, on_a.axis, -n_0) - support<T>(b, on_b.axis, n_0);
-  const T r_e = dot(v3(e), w_0), r_f = dot(v3(f), w_0);
-  const Eigen::Matrix2d inverse = s.M.inverse();
-  const T d_e = inverse(0, 0) * r_e + inverse(0, 1) * r_f;
-  const T d_f = inverse(1, 0) * r_e + inverse(1, 1) * r_f;
-  const V3<T> n = unit(n_0 + d_e * v3(e) + d_f * v3(f));
-  const V3<T> x = on_a.centre + support<T>(a, on_a.axis, -n);
-  const V3<T> y = on_b.centre + support<T>(b, on_b.axis, n);
-  Gap<T> g;
-  g.normal = n;
-  g.distance = dot(n, x - y);
-  g.point = 0.5 * (x + y);
-  return g;
+  return smooth_gap(a, b, at_a, at_b, value(at_a.point(a.centre)) - value(at_b.point(b.centre)));
 }
 
 template V3<double> extreme_point(const Shape&, int, const V3<double>&, const Placement<double>&);

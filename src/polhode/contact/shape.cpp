@@ -14,8 +14,9 @@ namespace polhode::contact {
 
 namespace {
 
-constexpr double kRounding = 1e-3;  ///< Default radius of edges, part of the size.
-constexpr int kRimPoints = 12;      ///< Fixed points on a rim, for standing on it.
+constexpr double kRounding = 1e-3;       ///< Default radius of edges, part of the size.
+constexpr int kRimPoints = 12;           ///< Fixed points on a rim, for standing on it.
+constexpr double kStandingRadius = 0.9;  ///< Of those that meet faces, part of the rim's.
 
 void check_positive(std::string_view where, std::string_view what, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -38,6 +39,7 @@ void finish_bounds(Shape& s, const Vec3& centre, double radius) {
 
 void all_corners_meet(Shape& s) {
   for (int i = 0; i < static_cast<int>(s.corners.size()); ++i) s.points.push_back(i);
+  s.face_points = s.points;
 }
 
 void bound_corners(Shape& s) {
@@ -67,12 +69,15 @@ Shape polyhedron(std::string_view where, const TriangleSurface& outside, double 
   return s;
 }
 
+/// Points of a rim, and those that hold it where it stands on a face: a little inside, so that a
+/// rim that leans rolls on its disc.
 void add_rim(Shape& s, double z) {
-  for (int k = 0; k < kRimPoints; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / kRimPoints;
-    s.corners.push_back(s.centre +
-                        s.axes * Vec3(s.half[0] * std::cos(angle), s.half[0] * std::sin(angle), z));
-  }
+  for (const double part : {1.0, kStandingRadius})
+    for (int k = 0; k < kRimPoints; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kRimPoints, R = part * s.half[0];
+      (part == 1.0 ? s.points : s.face_points).push_back(static_cast<int>(s.corners.size()));
+      s.corners.push_back(s.centre + s.axes * Vec3(R * std::cos(angle), R * std::sin(angle), z));
+    }
 }
 
 Shape round_body(Solid solid, const Vec3& half, const ShapePlace& place) {
@@ -136,7 +141,6 @@ Shape cylinder(std::string_view where, double diameter, double length, const Sha
   s.rounding = rounding;
   add_rim(s, -s.half[2]);
   add_rim(s, s.half[2]);
-  all_corners_meet(s);
   finish_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
   return s;
 }
@@ -154,8 +158,9 @@ Shape cone(std::string_view where, double diameter, double length, const ShapePl
   s.centre += 0.5 * (above_base - below_apex) * s.axes.col(2);
   s.rounding = rounding;
   add_rim(s, -s.half[2]);
+  s.points.push_back(static_cast<int>(s.corners.size()));
+  s.face_points.push_back(s.points.back());
   s.corners.push_back(s.centre + s.half[2] * s.axes.col(2));
-  all_corners_meet(s);
   finish_bounds(s, s.centre, std::hypot(radius, 0.5 * length) + below_apex);
   return s;
 }

@@ -42,7 +42,8 @@ struct Shape {
   double rounding = 0.0;  ///< ρ [m].
 
   std::vector<Vec3> corners;                       ///< Of the core.
-  std::vector<int> points;                         ///< Corners that meet other solids.
+  std::vector<int> points;                         ///< Corners that meet other solids ...
+  std::vector<int> face_points;                    ///< ... if they have faces; of a rim within it.
   std::vector<Edge> edges;                         ///< Of the core.
   std::vector<char> border_corner;                 ///< Of a surface: lies on an open edge.
   std::vector<std::array<int, 3>> triangles;       ///< Of polyhedron and surface, outward.

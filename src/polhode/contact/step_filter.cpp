@@ -21,6 +21,8 @@ constexpr double kLeastAdvance = 1e-4;
 /// Of what a point shall keep, this part may be missing in the end.
 constexpr double kMissing = 0.5;
 constexpr int kHalvings = 30;
+/// Cayley vector of the longest turn in one iteration.
+constexpr double kLongestTurn = 0.6;
 
 /// Farthest point of a feature from the origin of its body: how fast a turn moves it.
 double lever(const Shape& s, const FeaturePair& f, bool side_a) {
@@ -88,6 +90,18 @@ Gap<double> ContactSet::gap_along(const Point& p, std::span<const BodyStep> step
              Placement<double>(r_b, L_b, 6));
 }
 
+double ContactSet::sensible_part(std::span<const Vec6> increments) const {
+  double part = 1.0;
+  const auto shorten = [&](double length, double most) {
+    if (length * part > most) part = most / length;
+  };
+  for (std::size_t body = 0; body < references_.size(); ++body) {
+    shorten(increments[body].tail<3>().norm(), kLongestTurn);
+    if (reach_of_body_[body] > 0.0) shorten(increments[body].head<3>().norm(), stride_[body]);
+  }
+  return part;
+}
+
 /// What a bound of the speed finds harmless is not followed. The extreme point of a round solid
 /// also slides along its rim, as fast as it likes where the axis is along the normal: it always is.
 double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
@@ -96,11 +110,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     const int body = shapes_[shape].body;
     return body == kGround ? still : increments[body];
   };
-  double most = 1.0;
-  for (const Vec6& x : increments) {  // a turn by more than this is no step of Newton
-    const double turn = x.tail<3>().norm();
-    if (turn > 0.6) most = std::min(most, 0.6 / turn);
-  }
+  double most = sensible_part(increments);
   std::vector<Followed> closing;
   const auto ground = static_cast<int>(steps.size()) - 1;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
@@ -130,7 +140,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     }
     if (speed == 0.0) continue;
     const double room = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
-    if (most * speed <= kHarmless * room && p.data.pair.kind != GapKind::extreme_solid) continue;
+    if (most * speed <= kHarmless * room && p.data.pair.kind != GapKind::extreme_plane) continue;
     const double band = p.data.normal.reach() - p.least_gap;
     closing.push_back({i, p.least_gap + kKept * std::min(room, band)});
   }

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances between a part of a round solid and what has faces: smooth, since one of both is
+// strictly convex and the other convex.
+#include <algorithm>
+#include <limits>
+
+#include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/nearest.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// How far the disc for an end of a cylinder or cone bulges, part of its radius.
+constexpr double kBulge = 2e-3;
+
+/// What of b is nearest to a part.
+struct Nearest {
+  enum Kind { face, edge, corner } kind = face;
+  int index = 0;
+  double t = 0.0;  ///< Along an edge.
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// A part as seen from a body b that has faces.
+class SeenPart {
+ public:
+  template <class T>
+  SeenPart(const Shape& part, const Placement<T>& at_a, const Placement<T>& at_b)
+      : half_(part.half),
+        centre_(at_b.to_body(value(at_a.point(part.centre)))),
+        farthest_(part.half.maxCoeff()) {
+    const Vec3 origin = at_b.to_body(Vec3::Zero());
+    for (int i = 0; i < 3; ++i)
+      axes_.col(i) = at_b.to_body(value(at_a.vector(part.axes.col(i)))) - origin;
+  }
+  [[nodiscard]] const Vec3& centre() const { return centre_; }
+
+  /// The nearest point of a plane lies in its triangle.
+  /// @param sides  2: the triangle has two.
+  void face(const Shape& b, int triangle, int sides, Nearest& best) const {
+    const auto& c = b.triangles[triangle];
+    const Vec3 &p = b.corners[c[0]], &q = b.corners[c[1]], &r = b.corners[c[2]];
+    Vec3 n = b.planes[triangle].normal;
+    double height = n.dot(centre_ - p);
+    if (sides == 2 && height < 0.0) n = -n, height = -height;
+    const Vec3 local = half_.cwiseProduct(axes_.transpose() * n);
+    const double reach = local.norm(), distance = height - reach;
+    if (!(distance > 0.0 && distance < best.distance)) return;
+    const Vec3 x = centre_ - axes_ * half_.cwiseProduct(local) / reach;
+    const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
+    const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
+    if (s < 0.0 || t < 0.0 || s + t > 1.0) return;
+    best = {Nearest::face, triangle, 0.0, distance};
+  }
+
+  void edge(const Shape& b, int index, Nearest& best) const {
+    const Vec3 &p = b.corners[b.edges[index].i], v = b.corners[b.edges[index].j] - p;
+    const double middle = std::clamp((centre_ - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
+    if ((centre_ - p - middle * v).norm() - farthest_ > best.distance) return;
+    const Vec3 X = axes_.transpose() * (p - centre_), V = axes_.transpose() * v;
+    const auto at = [&](double t, double& distance) {
+      const Vec3 y = X + t * V;
+      const double root = nearest_on_ellipsoid(half_, y);
+      const Vec3 n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
+      distance = n.dot(y) - half_.cwiseProduct(n).norm();
+      return n.dot(V);
+    };
+    // The distance is convex along the edge: its slope changes sign once.
+    double low = 0.0, high = 1.0, d_low = 0.0, d_high = 0.0;
+    double s_low = at(low, d_low), s_high = at(high, d_high);
+    const auto take = [&](Nearest::Kind kind, int which, double t, double distance) {
+      if (distance < best.distance) best = {kind, which, t, distance};
+    };
+    if (s_low >= 0.0) return take(Nearest::corner, b.edges[index].i, 0.0, d_low);
+    if (s_high <= 0.0) return take(Nearest::corner, b.edges[index].j, 0.0, d_high);
+    double t = 0.5, distance = 0.0;
+    const double enough = 1e-13 * v.norm();
+    for (int k = 0, side = 0; k < 100 && high - low > 1e-15; ++k) {  // Illinois
+      t = k % 8 == 7 ? 0.5 * (low + high) : (low * s_high - high * s_low) / (s_high - s_low);
+      const double s = at(t, distance);
+      if (std::abs(s) < enough) break;
+      if (s < 0.0) {
+        low = t, s_low = s;
+        if (side == -1) s_high *= 0.5;
+        side = -1;
+      } else {
+        high = t, s_high = s;
+        if (side == 1) s_low *= 0.5;
+        side = 1;
+      }
+    }
+    take(Nearest::edge, index, t, distance);
+  }
+
+ private:
+  Vec3 half_, centre_;
+  Mat3 axes_;
+  double farthest_;
+};
+
+Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
+  Nearest best;
+  switch (pair.kind) {
+    case GapKind::part_corner:
+      best.kind = Nearest::corner;
+      best.index = pair.j;
+      return best;
+    case GapKind::part_edge:
+      part.edge(b, pair.j, best);
+      return best;
+    case GapKind::part_triangle:
+      part.face(b, pair.j, 2, best);
+      if (best.distance < std::numeric_limits<double>::infinity()) return best;
+      for (const int e : b.triangle_edges[pair.j]) part.edge(b, e, best);
+      return best;
+    default:
+      break;
+  }
+  for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t) part.face(b, t, 1, best);
+  if (best.distance < std::numeric_limits<double>::infinity()) return best;
+  for (int e = 0; e < static_cast<int>(b.edges.size()); ++e) part.edge(b, e, best);
+  return best;
+}
+
+template <class T>
+Gap<T> turned_round(Gap<T> g, int feature) {
+  g.normal = -g.normal;
+  g.feature = feature;
+  return g;
+}
+
+template <class T>
+Gap<T> over_face(const Shape& part, const Shape& b, int triangle, bool behind,
+                 const Placement<T>& at_a, const Placement<T>& at_b) {
+  const V3<T> n =
+      at_b.vector(behind ? Vec3(-b.planes[triangle].normal) : b.planes[triangle].normal);
+  return over_plane(extreme_point(part, 0, n, at_a),
+                    at_b.point(b.corners[b.triangles[triangle][0]]), n, part.rounding, b.rounding);
+}
+
+/// The place along the edge gets its derivatives by a Newton step. The distance does not depend on
+/// them, nor on the last digits of the place.
+template <class T>
+Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Placement<T>& at_a,
+                 const Placement<T>& at_b) {
+  const Vec3 &P = b.corners[b.edges[edge].i], &Q = b.corners[b.edges[edge].j];
+  const V3<T> p = at_b.point(P), v = at_b.between(P, Q);
+  T at(t);
+  if constexpr (std::is_same_v<T, Dual>) {
+    const Mat3 no_turn = Mat3::Identity();
+    const Placement<Dual> still(Vec3::Zero(), no_turn, 0);
+    const Vec3 X = at_a.to_body(value(p)), V = at_a.to_body(value(p) + value(v)) - X;
+    Dual along(t);
+    along.d[11] = 1.0;
+    const Gap<Dual> g =
+        point_over_solid(constant<Dual>(X) + along * constant<Dual>(V), 0.0, part, still);
+    const double curvature = dot(g.normal, constant<Dual>(V)).d[11];
+    if (curvature > 0.0) {
+      const T slope = dot(point_over_solid(p + t * v, 0.0, part, at_a).normal, v);
+      at = t - (1.0 / curvature) * (slope - value(slope));
+    }
+  }
+  return turned_round(point_over_solid(p + at * v, b.rounding, part, at_a), 1 + edge);
+}
+
+}  // namespace
+
+Shape part_of(const Shape& a, int which) {
+  Shape part;
+  part.solid = Solid::ellipsoid;
+  part.rounding = a.rounding;
+  part.axes = a.axes;
+  part.centre = a.centre;
+  part.half = a.half;
+  if (a.solid == Solid::ellipsoid) return part;
+  const double bulge = std::min(kBulge * a.half[0], 0.5 * a.half[2]);
+  part.half[2] = bulge;
+  part.centre += (which == 0 ? bulge - a.half[2] : a.half[2] - bulge) * a.axes.col(2);
+  return part;
+}
+
+template <class T>
+Gap<T> part_gap(const Shape& part, const FeaturePair& pair, const Shape& b,
+                const Placement<T>& at_a, const Placement<T>& at_b) {
+  const SeenPart seen(part, at_a, at_b);
+  const Nearest n = nearest_of(pair, b, seen);
+  switch (n.kind) {
+    case Nearest::face: {
+      const auto& plane = b.planes[n.index];
+      return over_face(part, b, n.index, plane.normal.dot(seen.centre()) < plane.offset, at_a,
+                       at_b);
+    }
+    case Nearest::edge:
+      return over_edge(part, b, n.index, n.t, at_a, at_b);
+    case Nearest::corner:
+      break;
+  }
+  return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
+                      -1 - n.index);
+}
+
+template Gap<double> part_gap(const Shape&, const FeaturePair&, const Shape&,
+                              const Placement<double>&, const Placement<double>&);
+template Gap<Dual> part_gap(const Shape&, const FeaturePair&, const Shape&, const Placement<Dual>&,
+                            const Placement<Dual>&);
+template Gap<Fine> part_gap(const Shape&, const FeaturePair&, const Shape&, const Placement<Fine>&,
+                            const Placement<Fine>&);
+
+}  // namespace polhode::contact

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of round solids over faces and edges, against samples of many points.
+#include <gtest/gtest.h>
+
+#include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/normal_law.hpp>
+
+#include "shapes_for_tests.hpp"
+
+namespace polhode {
+namespace {
+
+using namespace contact;
+using namespace test;
+
+std::vector<NamedShape> round_shapes() {
+  const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
+  return {{"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
+          {"cone", cone("cone", 0.8, 0.9, place)},
+          {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)}};
+}
+
+/// Least distance of points spread over an ellipsoid from a solid: at most the true one more by
+/// what lies between the points.
+double sampled(const Shape& part, const Shape& b, const Placement<double>& at_a,
+               const Placement<double>& at_b) {
+  double least = 1e9;
+  const int n = 300;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double u = std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / n;
+      const Vec3 on_ball(std::sin(u) * std::cos(v), std::sin(u) * std::sin(v), std::cos(u));
+      const Vec3 X = part.centre + part.axes * part.half.cwiseProduct(on_ball);
+      const Gap<double> g = point_over_solid(at_a.point(X), part.rounding, b, at_b);
+      least = std::min(least, g.distance);
+    }
+  return least;
+}
+
+TEST(PartGap, IsTheLeastOfManyPoints) {
+  Random random(31);
+  for (const NamedShape& round : round_shapes())
+    for (const Shape& b : {box("box", {0.8, 0.7, 0.5}), hull("hull", stone(5))}) {
+      int met = 0;
+      for (int trial = 0; trial < 12; ++trial) {
+        const BodyMotion m = random.motion();
+        const Mat3 L_a = m.q.toRotationMatrix(), L_b = Random(trial).frame();
+        const Vec3 r = 1.1 * random.direction();
+        const Placement<double> at_a(r, L_a, 0), at_b(Vec3::Zero(), L_b, 6);
+        for (int which = 0; which < (round.name == "cylinder" ? 2 : 1); ++which) {
+          const Shape part = part_of(round.shape, which);
+          const double expected = sampled(part, b, at_a, at_b);
+          if (expected < 0.0) continue;
+          const Gap<double> g =
+              gap({GapKind::part_solid, which, 0, 1.0, Fade::none}, round.shape, b, at_a, at_b);
+          EXPECT_LT(g.distance, expected + 1e-12) << round.name << " " << trial;
+          EXPECT_GT(g.distance, expected - 2e-3) << round.name << " " << trial;
+          EXPECT_NEAR(value(g.normal).norm(), 1.0, 1e-14);
+          ++met;
+        }
+      }
+      EXPECT_GT(met, 5) << round.name;
+    }
+}
+
+/// An edge meets the round solid with its rims rounded by a hundredth.
+TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
+  Random random(32);
+  const Shape with_edges[] = {box("box", {0.8, 0.7, 0.5}), capsule("capsule", 0.3, 0.8)};
+  for (const NamedShape& round : round_shapes())
+    for (const Shape& b : with_edges)
+      for (int trial = 0; trial < 40; ++trial) {
+        const BodyMotion m = random.motion();
+        const Mat3 L_a = m.q.toRotationMatrix(), L_b = Random(trial).frame();
+        const Placement<double> at_a(0.8 * random.direction(), L_a, 0);
+        const Placement<double> at_b(Vec3::Zero(), L_b, 6);
+        for (int e = 0; e < static_cast<int>(b.edges.size()); ++e) {
+          double expected = 1e9;
+          const Vec3 &p = b.corners[b.edges[e].i], &q = b.corners[b.edges[e].j];
+          for (int k = 0; k <= 400; ++k) {
+            const V3<double> x = at_b.point(p + k / 400.0 * (q - p));
+            expected =
+                std::min(expected, point_over_solid(x, b.rounding, round.shape, at_a).distance);
+          }
+          if (expected < 0.0) continue;
+          const Gap<double> g =
+              gap({GapKind::round_edge, 0, e, 1.0, Fade::none}, round.shape, b, at_a, at_b);
+          EXPECT_GT(g.distance, expected - 4e-3) << round.name << " " << e;
+          EXPECT_LT(g.distance, expected + 8e-3) << round.name << " " << e;
+        }
+      }
+}
+
+/// On a plane that is cut into triangles, edges and corners take back what triangles count twice.
+/// @tests{contact-sum-of-features}
+TEST(PartGap, SumsOverTrianglesOfAPlaneToThePlane) {
+  Random random(33);
+  const Shape field = height_field("field", 15, 0.15, std::vector<double>(225, 0.0));
+  NormalLaw law;
+  law.stiffness = 1e5;
+  law.tolerance = 2e-4;
+  for (const NamedShape& round : round_shapes())
+    for (int trial = 0; trial < 40; ++trial) {
+      const Mat3 L = random.frame(), none = Mat3::Identity();
+      const Placement<double> ground(Vec3::Zero(), none, 6);
+      Vec3 r(0.15 * random.vector(1.0).x(), 0.15 * random.vector(1.0).y(), 1.0);
+      const auto least = [&](int which) {
+        const Shape part = part_of(round.shape, which);
+        const Placement<double> at(r, L, 0);
+        const V3<double> x = extreme_point(part, 0, v3(Vec3::UnitZ()), at);
+        return x.z - part.rounding - field.rounding - field.corners[0].z();
+      };
+      const int parts = round.name == "cylinder" ? 2 : 1;
+      r.z() -= parts == 2 ? std::min(least(0), least(1)) : least(0);
+      std::vector<OrderedPair> found;
+      const Placement<double> at(r, L, 0);
+      near_feature_pairs(round.shape, field, at, ground, 1e-3, found);
+      double sum = 0.0, expected = 0.0;
+      for (const OrderedPair& p : found) {
+        if (p.swapped || p.pair.kind < GapKind::part_solid || p.pair.kind > GapKind::part_corner)
+          continue;
+        sum += p.pair.weight * law.energy(gap(p.pair, round.shape, field, at, ground).distance);
+      }
+      for (int which = 0; which < parts; ++which) expected += law.energy(least(which));
+      EXPECT_NEAR(sum, expected, 1e-9 * expected) << round.name << " " << trial;
+      EXPECT_GT(expected, 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace polhode
