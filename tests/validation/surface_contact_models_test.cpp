@@ -206,6 +206,36 @@ analysis: {type: statics}
   EXPECT_NEAR(farthest / a, 1.0, 0.1);
 }
 
+/// A cube of solid flies against a body that spins freely.
+TEST(SurfaceContactModel, KeepsEnergyAndMomentaOnConesEllipsoidsAndHulls) {
+  for (const std::string shape :
+       {"{cone: [0.12, 0.15]}", "{ellipsoid: [0.1, 0.14, 0.2]}",
+        "{hull: {points: [[0.08, 0, 0], [-0.04, 0.07, 0], [-0.04, -0.07, 0], [0, 0, 0.1], "
+        "[0.02, 0.01, -0.08]]}}"}) {
+    Simulation simulation(read_model_text(R"(
+format: 1
+bodies:
+  stone: {density: 500, position: [0.16, 0.01, 0.02], velocity: [-1, 0, 0], angular_velocity: [2, 3, 1], shape: )" +
+                                              shape + R"(}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  cube:
+    mesh: {block: {size: [0.1, 0.1, 0.1], cells: [3, 3, 3]}}
+    material: rubber
+    velocity: [0.5, 0, 0]
+contacts: {default: {restitution: 1}}
+analysis: {duration: 0.15 s, step: 0.5 ms}
+)",
+                                          "stone.yaml"));
+    const RunSummary summary = simulation.run();
+    ASSERT_EQ(summary.end, RunEnd::finished) << shape << summary.message;
+    EXPECT_GT(simulation.contact(0).impulse, 0.1) << shape;
+    EXPECT_LT(summary.energy_drift, 1e-11) << shape;
+    EXPECT_LT(summary.linear_momentum_drift, 1e-12) << shape;
+    EXPECT_LT(summary.angular_momentum_drift, 1e-12) << shape;
+  }
+}
+
 /// A cube of rubber is shot at a plate that it would pass in a twentieth of a step.
 TEST(SurfaceContactModel, NothingPassesThroughAThinPlate) {
   for (const char* shape : {"{box: [1, 1, 0.005]}", "{cylinder: [1, 0.005]}"}) {

@@ -53,6 +53,11 @@ template <class T>
 [[nodiscard]] Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b,
                          const Placement<T>& at_a, const Placement<T>& at_b);
 
+/// A point x with a ball of radius rho around it against the whole convex solid of b.
+template <class T>
+[[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho, const Shape& b,
+                                      const Placement<T>& at_b);
+
 /// What of the round solid a comes near to faces, an ellipsoid: all of an ellipsoid, or of a
 /// cylinder or cone the disc at its end `which`, which bulges a little to the outside.
 [[nodiscard]] Shape part_of(const Shape& a, int which);

@@ -36,11 +36,6 @@ template <class T>
   return q + (dot(x - q, v) / dot(v, v)) * v;
 }
 
-/// Point x of a core against the whole convex solid of b.
-template <class T>
-[[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b,
-                                      const Placement<T>& at_b);
-
 /// Kinds of gap with a round solid on side a.
 template <class T>
 [[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,

@@ -145,11 +145,13 @@ Shape cylinder(std::string_view where, double diameter, double length, const Sha
   return s;
 }
 
-Shape cone(std::string_view where, double diameter, double length, const ShapePlace& place) {
+Shape cone(std::string_view where, double diameter, double length, const ShapePlace& place,
+           double rounding) {
   check_positive(where, "diameter", diameter);
   check_positive(where, "length", length);
   const double radius = 0.5 * diameter;
-  const double rounding = 0.5 * kRounding * std::min(radius, length);
+  check_rounding(where, rounding, 0.25 * std::min(radius, length));
+  if (rounding == 0.0) rounding = 0.5 * kRounding * std::min(radius, length);
   // The cone whose base and flank lie deeper by the rounding.
   const double above_base = rounding, below_apex = rounding * std::hypot(radius, length) / radius;
   const double core_length = length - above_base - below_apex;

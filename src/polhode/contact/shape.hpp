@@ -78,7 +78,7 @@ struct Shape {
                              const ShapePlace& place = {});
 /// Base at −length/2, apex at +length/2 of z.
 [[nodiscard]] Shape cone(std::string_view where, double diameter, double length,
-                         const ShapePlace& place = {});
+                         const ShapePlace& place = {}, double rounding = 0.0);
 /// @param size  Full lengths of the axes.
 [[nodiscard]] Shape ellipsoid(std::string_view where, const Vec3& size,
                               const ShapePlace& place = {});

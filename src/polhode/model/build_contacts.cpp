@@ -10,6 +10,7 @@
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/model/beam_contact.hpp>
 #include <polhode/model/build_contacts.hpp>
+#include <polhode/model/contact_shapes.hpp>
 #include <polhode/model/contact_sides.hpp>
 #include <polhode/model/nonsmooth_contacts.hpp>
 #include <polhode/model/shape_surface.hpp>
@@ -17,35 +18,6 @@
 namespace polhode {
 
 namespace {
-
-/// Triangles around a tube, which touches as a mesh.
-constexpr int kTubeSegments = 48;
-
-contact::Shape contact_shape(const std::string& where, const BodySpec& body,
-                             const ShapeSpec& shape) {
-  contact::ShapePlace place = shape_place(body, shape);
-  const std::vector<double>& size = shape.sizes;
-  const std::string& type = shape.type;
-  if (type == "sphere") return contact::sphere(where, size[0], place);
-  if (type == "capsule") {
-    const double straight = size[1] - size[0];
-    return straight > 1e-12 * size[1] ? contact::capsule(where, size[0], straight, place)
-                                      : contact::sphere(where, size[0], place);
-  }
-  if (type == "box") return contact::box(where, {size[0], size[1], size[2]}, place);
-  if (type == "ellipsoid") return contact::ellipsoid(where, {size[0], size[1], size[2]}, place);
-  if (type == "cylinder") return contact::cylinder(where, size[0], size[1], place);
-  if (type == "cone") {
-    // The model file counts from the centroid, a quarter of the length above the base.
-    place.origin += 0.25 * size[1] * place.axes.col(2);
-    return contact::cone(where, size[0], size[1], place);
-  }
-  if (type == "plane") return contact::plane(place);
-  if (type == "hull") return contact::hull(where, hull_points(shape), place);
-  if (type == "height_field")
-    return contact::height_field(where, shape.columns, shape.spacing, shape.heights, place);
-  return contact::mesh(where, shape_surface(where, shape, kTubeSegments), place);
-}
 
 contact::ContactLaw contact_law(const ContactLawSpec& spec) {
   contact::ContactLaw law;
@@ -116,7 +88,8 @@ class ContactsBuilder {
         placed.body = bodies_[b];
         placed.owner = static_cast<int>(b);
         placed.name = body.shapes.size() > 1 ? format("{}.{}", body.name, s) : body.name;
-        placed.shape = contact_shape(shape_path(body, s), body, body.shapes[s]);
+        placed.shape =
+            contact_shape(shape_path(body, s), shape_place(body, body.shapes[s]), body.shapes[s]);
         placed.groups = groups.of(side);
         placed.meets = groups.met_by(side);
         placed.material = surface(side, static_cast<int>(b));
@@ -258,7 +231,7 @@ void check_contact_shapes(const Model& model, std::vector<InputError>& faults) {
       if (!contact_side(body, s).touches) continue;
       const std::string path = shape_path(body, s);
       try {
-        static_cast<void>(contact_shape(path, body, body.shapes[s]));
+        static_cast<void>(contact_shape(path, shape_place(body, body.shapes[s]), body.shapes[s]));
       } catch (const InputError& e) {
         const bool of_file = e.where() != path;
         faults.emplace_back(path, (of_file ? e.where() + ": " : "") + e.what_is_wrong(),

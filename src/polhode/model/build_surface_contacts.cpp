@@ -4,11 +4,15 @@
 #include <limits>
 #include <set>
 
+#include <Eigen/Geometry>
+
 #include <polhode/base/format.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
+#include <polhode/model/contact_shapes.hpp>
 #include <polhode/model/contact_sides.hpp>
+#include <polhode/model/shape_surface.hpp>
 #include <polhode/model/solid_parts.hpp>
 
 namespace polhode {
@@ -21,10 +25,12 @@ constexpr double kTolerance = 1e-3;
 constexpr double kPressure = 0.02;
 /// Part of the smallest half size by which edges of boxes and cylinders are rounded, at least.
 constexpr double kRounding = 1e-3;
+/// The same of cones and hulls, at most.
+constexpr double kMostRounding = 0.2;
 
 bool is_known(const std::string& shape) {
   return shape == "plane" || shape == "sphere" || shape == "capsule" || shape == "box" ||
-         shape == "cylinder";
+         shape == "cylinder" || shape == "cone" || shape == "ellipsoid" || shape == "hull";
 }
 
 /// What a law asks for that surfaces of solids cannot do; empty if nothing. Constants of the force
@@ -84,11 +90,12 @@ class Planner {
     const BodySpec& spec = model_.bodies[static_cast<std::size_t>(body)];
     const std::string& name = model_.solids[static_cast<std::size_t>(solid)].name;
     if (!is_known(spec.shapes[shape].type))
-      fault(shape_path(spec, shape),
-            format("the surface of '{}' meets it, which surfaces of solids cannot do with a {}",
-                   name, spec.shapes[shape].type),
-            "They can with plane, sphere, capsule, box and cylinder. Exclude the pair, or set "
-            "contact: {touches: false}");
+      fault(
+          shape_path(spec, shape),
+          format("the surface of '{}' meets it, which surfaces of solids cannot do with a {}", name,
+                 spec.shapes[shape].type),
+          "They can with plane, sphere, capsule, box, cylinder, cone, ellipsoid and hull. Exclude "
+          "the pair, or set contact: {touches: false}");
     const StatedLaw stated =
         law_between(model_.contacts, {material_of(model_.contacts, of_solid), side_of_solid(solid)},
                     {material_of(model_.contacts, of_shape), body});
@@ -163,7 +170,16 @@ class Planner {
   std::vector<SurfacePair> list_;
 };
 
-RigidSurface rigid_surface(const ShapeSpec& shape, double tolerance) {
+/// Half the smallest extent of a shape; infinite for a plane.
+double radius_of(const ShapeSpec& shape) {
+  if (shape.type == "plane") return std::numeric_limits<double>::infinity();
+  if (shape.type != "hull") return 0.5 * *std::min_element(shape.sizes.begin(), shape.sizes.end());
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : hull_points(shape)) box.extend(x);
+  return 0.5 * box.sizes().minCoeff();
+}
+
+RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {
   RigidSurface s;
   const std::vector<double>& size = shape.sizes;
   const auto rounding = [&] {
@@ -185,14 +201,13 @@ RigidSurface rigid_surface(const ShapeSpec& shape, double tolerance) {
     s.kind = RigidSurface::Kind::box;
     s.half = 0.5 * Vec3(size[0], size[1], size[2]);
     s.rounding = rounding();
+  } else if (shape.type != "plane") {
+    s.kind = RigidSurface::Kind::convex;
+    const double radius = radius_of(shape);
+    s.solid = std::make_shared<contact::Shape>(contact_shape(
+        where, {}, shape, std::clamp(tolerance, kRounding * radius, kMostRounding * radius)));
   }
   return s;
-}
-
-/// Half the smallest extent of a shape; infinite for a plane.
-double radius_of(const ShapeSpec& shape) {
-  if (shape.type == "plane") return std::numeric_limits<double>::infinity();
-  return 0.5 * *std::min_element(shape.sizes.begin(), shape.sizes.end());
 }
 
 /// Young's modulus of small strains [Pa].
@@ -243,7 +258,8 @@ class SurfacesBuilder {
         continue;  // everything there is bonded to the body
       }
       const int group = system_.add_elements(std::make_unique<SurfaceContact>(
-          where, std::move(points), X, rigid_surface(shape, law.normal.tolerance), place, law));
+          where, std::move(points), X, rigid_surface(where, shape, law.normal.tolerance), place,
+          law));
       map_.surfaces.push_back({pair.solid, pair.side, pair.shape, group});
     }
   }

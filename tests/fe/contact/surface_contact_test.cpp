@@ -50,6 +50,18 @@ struct Case {
   Vec3 near;  ///< A point of its surface.
 };
 
+RigidSurface around(const contact::Shape& shape) {
+  return {.kind = RigidSurface::Kind::convex, .solid = std::make_shared<contact::Shape>(shape)};
+}
+
+/// The box of the cases as a convex hull.
+contact::Shape brick() {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back(k & 1 ? 2.0 : -2.0, k & 2 ? 3.0 : -3.0, k & 4 ? 2.5 : -2.5);
+  return contact::hull("brick", corners, {}, kTolerance);
+}
+
 std::vector<Case> cases() {
   using enum RigidSurface::Kind;
   return {{"plane", {.kind = plane}, Vec3(0.3, 0.2, 0.0)},
@@ -67,7 +79,12 @@ std::vector<Case> cases() {
            Vec3(2.0, 0.5, 0.2)},
           {"box_edge",
            {.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = kTolerance},
-           Vec3(1.85, 2.85, 0.2)}};
+           Vec3(1.85, 2.85, 0.2)},
+          {"ellipsoid", around(contact::ellipsoid("e", {4.0, 6.0, 5.0})), Vec3(1.2, 0.0, 2.0)},
+          {"cone_flank", around(contact::cone("c", 6.0, 6.0, {}, kTolerance)), Vec3(0.9, 1.2, 0.0)},
+          {"cone_base", around(contact::cone("c", 6.0, 6.0, {}, kTolerance)), Vec3(0.6, 0.8, -3.0)},
+          {"hull_face", around(brick()), Vec3(2.0, 0.5, 0.2)},
+          {"hull_edge", around(brick()), Vec3(1.85, 2.85, 0.2)}};
 }
 
 struct Scene {
@@ -317,6 +334,35 @@ TEST(SurfaceContact, LeavesOutWhatItIsToldTo) {
   EXPECT_THROW(static_cast<void>(surface_points("c", {"quad4", {0, 1, 2, 3}}, X, {0, 1, 2, 3})),
                InputError);
   EXPECT_EQ(median_edge({"quad4", {0, 1, 2, 3}}, X), 3.0);
+}
+
+/// Hulls, cones and ellipsoids have the gaps of boxes, flanks and spheres.
+TEST(ConvexSurface, HasTheGapOfTheShapeThatItIs) {
+  using enum RigidSurface::Kind;
+  Random random(41);
+  const RigidSurface plate{.kind = box, .half = {2.0, 3.0, 2.5}, .rounding = kTolerance};
+  const RigidSurface ball{.kind = sphere, .radius = 2.0};
+  const RigidSurface hull = around(brick());
+  const RigidSurface round = around(contact::ellipsoid("ball", {4.0, 4.0, 4.0}));
+  const RigidSurface spike = around(contact::cone("spike", 4.0, 6.0, {}, 0.1));
+  const auto compare = [](const RigidSurface& a, const RigidSurface& b, const Vec3& y) {
+    const RigidSurface::Gap g = a.gap(y), h = b.gap(y);
+    EXPECT_NEAR(g.value, h.value, 1e-13);
+    EXPECT_LT((g.normal - h.normal).norm(), 1e-11);
+    EXPECT_LT((g.curvature - h.curvature).norm(), 1e-9);
+    EXPECT_NEAR(b.distance(y), h.value, 1e-14);
+  };
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 y = 4.0 * random.direction();
+    compare(plate, hull, y);
+    compare(ball, round, y);
+    // The flank from (2, −3) to (0, 3): normal (6, 2)/√40 in the half plane of the point.
+    const double part = 0.1 + 0.004 * k, out = 0.05;
+    const Vec3 across = random.direction().cross(Vec3::UnitZ()).normalized();
+    const double q = 2.0 * (1.0 - part) + out * 6.0 / std::sqrt(40.0);
+    const double h = -3.0 + 6.0 * part + out * 2.0 / std::sqrt(40.0);
+    EXPECT_NEAR(spike.distance(q * across + h * Vec3::UnitZ()), out, 1e-12);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <polhode/contact/gap.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
 
 namespace polhode {
@@ -41,7 +42,31 @@ RigidSurface::Gap inside(const Vec3& depth, const Vec3 (&normals)[3], double off
   return {-least - offset, normals[face], Mat3::Zero()};
 }
 
+using contact::Dual;
+using contact::Placement;
+using contact::V3;
+
+RigidSurface::Gap over(const contact::Shape& solid, const Vec3& y) {
+  V3<Dual> x = contact::constant<Dual>(y);
+  x.x.d[0] = x.y.d[1] = x.z.d[2] = 1.0;
+  const Mat3 still = Mat3::Identity();
+  const contact::Gap<Dual> g =
+      contact::point_over_solid(x, 0.0, solid, Placement<Dual>(Vec3::Zero(), still, 6));
+  RigidSurface::Gap gap{g.distance.v, contact::value(g.normal), Mat3::Zero()};
+  for (int j = 0; j < 3; ++j)
+    gap.curvature.col(j) = Vec3(g.normal.x.d[j], g.normal.y.d[j], g.normal.z.d[j]);
+  return gap;
+}
+
 }  // namespace
+
+double RigidSurface::distance(const Vec3& y) const {
+  if (kind != Kind::convex) return gap(y).value;
+  const Mat3 still = Mat3::Identity();
+  return contact::point_over_solid(contact::v3(y), 0.0, *solid,
+                                   Placement<double>(Vec3::Zero(), still, 6))
+      .distance;
+}
 
 /// With c the nearest point of the core, d = |y − c|, n = (y − c)/d: the gap d
 /// − radius has the Hessian (I − Dc − n nᵀ)/d. @eq{surface-gap}
@@ -51,6 +76,8 @@ RigidSurface::Gap RigidSurface::gap(const Vec3& y) const {
   switch (kind) {
     case Kind::plane:
       return {y[2], Vec3::UnitZ(), Mat3::Zero()};
+    case Kind::convex:
+      return over(*solid, y);
     case Kind::sphere:
       break;
     case Kind::hollow_sphere: {

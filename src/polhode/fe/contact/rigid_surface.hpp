@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/base/types.hpp>
+#include <memory>
+
+#include <polhode/contact/shape.hpp>
 
 namespace polhode {
 
@@ -12,17 +14,19 @@ namespace polhode {
 /// `rounding`.
 struct RigidSurface {
   enum class Kind : unsigned char {
-    plane,         ///< z = 0, the free side above.
-    sphere,        ///< About the origin.
-    capsule,       ///< About the z axis, ends of its axis at ±half[2].
-    cylinder,      ///< About the z axis, from −half[2] to half[2].
-    box,           ///< From −half to half.
-    hollow_sphere  ///< What lies inside a sphere about the origin is free.
+    plane,          ///< z = 0, the free side above.
+    sphere,         ///< About the origin.
+    capsule,        ///< About the z axis, ends of its axis at ±half[2].
+    cylinder,       ///< About the z axis, from −half[2] to half[2].
+    box,            ///< From −half to half.
+    hollow_sphere,  ///< What lies inside a sphere about the origin is free.
+    convex          ///< `solid`: an ellipsoid, cone or convex hull.
   };
   Kind kind = Kind::plane;
   double radius = 0.0;       ///< [m]
   Vec3 half = Vec3::Zero();  ///< [m]
   double rounding = 0.0;     ///< Of the edges of boxes and cylinders [m].
+  std::shared_ptr<const contact::Shape> solid = nullptr;
 
   /// Gap [m], its gradient [-] and Hessian [1/m].
   struct Gap {
@@ -32,7 +36,7 @@ struct RigidSurface {
   };
   [[nodiscard]] Gap gap(const Vec3& y) const;
   /// The value alone.
-  [[nodiscard]] double distance(const Vec3& y) const { return gap(y).value; }
+  [[nodiscard]] double distance(const Vec3& y) const;
 };
 
 }  // namespace polhode
