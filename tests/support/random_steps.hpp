@@ -24,12 +24,16 @@ class Random {
     while (d.norm() < 0.1) d = vector();
     return d.normalized();
   }
-  Quat orientation() { return quaternion_from_rotation_vector(2.5 * direction() * number()); }
+  // One call after the other: compilers differ in the order in which they evaluate operands.
+  Quat orientation() {
+    const double angle = number();
+    return quaternion_from_rotation_vector(2.5 * direction() * angle);
+  }
   Mat3 frame() { return orientation().toRotationMatrix(); }
   Mat3 inertia() {
     const Mat3 R = frame();
-    return R * Vec3(1.0 + 0.3 * number(), 1.2 + 0.3 * number(), 1.5 + 0.3 * number()).asDiagonal() *
-           R.transpose();
+    const double c = number(), b = number(), a = number();
+    return R * Vec3(1.0 + 0.3 * a, 1.2 + 0.3 * b, 1.5 + 0.3 * c).asDiagonal() * R.transpose();
   }
   BodyMotion motion() {
     BodyMotion m;
