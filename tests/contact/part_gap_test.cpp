@@ -63,6 +63,28 @@ TEST(PartGap, IsTheLeastOfManyPoints) {
     }
 }
 
+/// A part that reaches through a face, however far from its edges, overlaps by what it reaches in.
+TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
+  const Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}), crate = box("crate", {2.0, 2.0, 2.0});
+  const Shape field = height_field("field", 5, 1.0, std::vector<double>(25, 0.0));
+  const Mat3 upright = Mat3::Identity();
+  const auto gap_at = [&](double z, const Shape& b, const FeaturePair& pair) {
+    return gap(pair, egg, b, Placement<double>({0.2, 0.3, z}, upright, 0),
+               Placement<double>(Vec3::Zero(), upright, 6))
+        .distance;
+  };
+  for (const double depth : {-0.1, -1e-3, 1e-3, 0.05, 0.15, 0.3, 0.7}) {
+    EXPECT_NEAR(gap_at(1.2 - depth, crate, {GapKind::part_solid, 0, 0, 1.0, Fade::none}), -depth,
+                1e-12);
+    double least = 1e9;
+    if (depth > 0.19) continue;  // the middle of the egg is still above the field
+    for (int t = 0; t < static_cast<int>(field.triangles.size()); ++t)
+      least = std::min(least,
+                       gap_at(0.2 - depth, field, {GapKind::part_triangle, 0, t, 1.0, Fade::none}));
+    EXPECT_NEAR(least, -depth, 1e-12);
+  }
+}
+
 /// An edge meets the round solid with its rims rounded by a hundredth.
 TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
   Random random(32);

@@ -16,7 +16,7 @@ constexpr double kBulge = 2e-3;
 
 /// What of b is nearest to a part.
 struct Nearest {
-  enum Kind { face, edge, corner } kind = face;
+  enum Kind { none, face, edge, corner } kind = none;
   int index = 0;
   double t = 0.0;  ///< Along an edge.
   double distance = std::numeric_limits<double>::infinity();
@@ -36,9 +36,11 @@ class SeenPart {
   }
   [[nodiscard]] const Vec3& centre() const { return centre_; }
 
-  /// The nearest point of a plane lies in its triangle.
+  /// The nearest point of a plane lies in its triangle; or, where the part reaches through the
+  /// plane, the middle of what the plane cuts out of it does.
   /// @param sides  2: the triangle has two.
-  void face(const Shape& b, int triangle, int sides, Nearest& best) const {
+  /// @returns the signed distance of the part from the plane.
+  double face(const Shape& b, int triangle, int sides, Nearest& best) const {
     const auto& c = b.triangles[triangle];
     const Vec3 &p = b.corners[c[0]], &q = b.corners[c[1]], &r = b.corners[c[2]];
     Vec3 n = b.planes[triangle].normal;
@@ -46,12 +48,16 @@ class SeenPart {
     if (sides == 2 && height < 0.0) n = -n, height = -height;
     const Vec3 local = half_.cwiseProduct(axes_.transpose() * n);
     const double reach = local.norm(), distance = height - reach;
-    if (!(distance > 0.0 && distance < best.distance)) return;
-    const Vec3 x = centre_ - axes_ * half_.cwiseProduct(local) / reach;
+    if (height < 0.0) return distance;
+    const Vec3 to_nearest = -axes_ * half_.cwiseProduct(local) / reach;
+    const Vec3 x = centre_ + std::min(1.0, height / reach) * to_nearest;
     const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
     const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
-    if (s < 0.0 || t < 0.0 || s + t > 1.0) return;
-    best = {Nearest::face, triangle, 0.0, distance};
+    if (s < 0.0 || t < 0.0 || s + t > 1.0) return distance;
+    // Of several faces that it reaches through, the one that is easiest to leave by.
+    if (best.kind != Nearest::face || !(best.distance > distance))
+      best = {Nearest::face, triangle, 0.0, distance};
+    return distance;
   }
 
   void edge(const Shape& b, int index, Nearest& best) const {
@@ -111,14 +117,21 @@ Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part
       return best;
     case GapKind::part_triangle:
       part.face(b, pair.j, 2, best);
-      if (best.distance < std::numeric_limits<double>::infinity()) return best;
+      if (best.kind == Nearest::face) return best;
       for (const int e : b.triangle_edges[pair.j]) part.edge(b, e, best);
       return best;
     default:
       break;
   }
-  for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t) part.face(b, t, 1, best);
-  if (best.distance < std::numeric_limits<double>::infinity()) return best;
+  Nearest shallowest{Nearest::face, 0, 0.0, -std::numeric_limits<double>::infinity()};
+  bool inside = true;
+  for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t) {
+    const double distance = part.face(b, t, 1, best);
+    inside = inside && b.planes[t].normal.dot(part.centre()) < b.planes[t].offset;
+    if (distance > shallowest.distance) shallowest = {Nearest::face, t, 0.0, distance};
+  }
+  if (inside) return shallowest;
+  if (best.kind == Nearest::face) return best;
   for (int e = 0; e < static_cast<int>(b.edges.size()); ++e) part.edge(b, e, best);
   return best;
 }
@@ -188,12 +201,14 @@ Gap<T> part_gap(const Shape& part, const FeaturePair& pair, const Shape& b,
   switch (n.kind) {
     case Nearest::face: {
       const auto& plane = b.planes[n.index];
-      return over_face(part, b, n.index, plane.normal.dot(seen.centre()) < plane.offset, at_a,
-                       at_b);
+      const bool behind =
+          b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
+      return over_face(part, b, n.index, behind, at_a, at_b);
     }
     case Nearest::edge:
       return over_edge(part, b, n.index, n.t, at_a, at_b);
     case Nearest::corner:
+    case Nearest::none:
       break;
   }
   return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
