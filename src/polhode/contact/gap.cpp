@@ -124,7 +124,10 @@ Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placem
     Y[i] = value(y[i]);
   }
   T t(nearest_on_ellipsoid(b.half, Y));
-  for (int step = 0; step < (std::is_same_v<T, Fine> ? 2 : 1); ++step) {
+  // In the middle of the shortest axis the root is double: a step might leave on the wrong side.
+  const double shortest = b.half.minCoeff();
+  const bool double_root = value(t) < -(1.0 - 1e-6) * shortest * shortest;
+  for (int step = double_root ? 2 : 0; step < (std::is_same_v<T, Fine> ? 2 : 1); ++step) {
     T f(-1.0);
     double slope = 0.0;
     for (int i = 0; i < 3; ++i) {
