@@ -127,10 +127,10 @@ TEST(ContactSoak, RandomScenesKeepTheirBalances) {
   }
 }
 
-/// What longer runs have found: a cone that rolls onto another face of a hull, and a cylinder on a
-/// hull (points on their rims came too late), with a floor and joints.
+/// What longer runs have found: a cylinder that rolls over the edges of a bowl, and the rim of a
+/// cone on a hull.
 TEST(ContactSoak, ScenesThatOnceFailed) {
-  for (const unsigned seed : {35U, 139U}) {
+  for (const unsigned seed : {10U, 20U}) {
     const Outcome o = soak(seed, 1.1);
     EXPECT_TRUE(o.finished) << "scene " << seed << ": " << o.message;
     EXPECT_LT(o.rise, 1e-12) << "scene " << seed;
