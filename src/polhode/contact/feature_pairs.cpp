@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -37,7 +38,9 @@ class Finder {
     for (int i : faces ? a_.face_points : a_.points) {
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
-        point_over_surface(i, x);
+        if (!out_of_ball(x, 0.0) && in_region({x}))
+          over_surface({GapKind::point_triangle, GapKind::point_edge, GapKind::point_corner}, i, x,
+                       0.0);
         continue;
       }
       // A fixed point of a rim acts on a plane where the rim lies flat.
@@ -77,11 +80,15 @@ class Finder {
     }
     if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
     for (int i = 0; i < parts; ++i)
-      if (b_.solid == Solid::surface)
-        part_over_surface(i);
-      else if (b_.solid == Solid::polyhedron)
+      if (b_.solid == Solid::surface) {
+        const Shape part = part_of(a_, i);
+        over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
+                     in_b(part.centre), part.half.maxCoeff());
+      } else if (b_.solid == Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, 1.0, Fade::none});
-    // What lies between both ends; on a ball's or a capsule's core nothing else does.
+      }
+    // Edges meet the flank between both ends. All of an ellipsoid is a part already; only capsules
+    // have an edge without faces.
     if (a_.solid == Solid::ellipsoid && b_.solid != Solid::segment) return;
     for (int j : edges_)
       if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
@@ -132,45 +139,30 @@ class Finder {
   void add(const FeaturePair& pair) {
     if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
   }
-  /// Triangles, edges and corners count as they do for a point.
-  void part_over_surface(int i) {
-    const Shape part = part_of(a_, i);
-    const Vec3 middle = in_b(part.centre);
-    const double r = reach() + part.half.maxCoeff();
-    for (int t : triangles_)
-      if (std::abs(b_.planes[t].normal.dot(middle) - b_.planes[t].offset) < r)
-        add({GapKind::part_triangle, i, t, 1.0, Fade::none});
-    for (int e : edges_) {
-      if (b_.edges[e].open) continue;
-      const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
-      const double along = std::clamp((middle - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
-      if ((middle - p - along * v).norm() < r) add({GapKind::part_edge, i, e, -1.0, Fade::none});
-    }
-    for (int k : corners_)
-      if (!b_.border_corner[k] && (middle - b_.corners[k]).norm() < r)
-        add({GapKind::part_corner, i, k, 1.0, Fade::none});
-  }
-
-  /// Triangles, less the edges that two of them share, plus the corners those had in common.
-  void point_over_surface(int i, const Vec3& x) {
-    if (out_of_ball(x, 0.0) || !in_region({x})) return;
-    const double r = reach();
+  /// Feature i of a against triangles, less the edges that two of them share, plus the corners
+  /// those had in common.
+  /// @param kinds  Against a triangle, an edge, a corner.
+  /// @param x, radius  A ball around the feature, in body coordinates of b; 0: a point.
+  void over_surface(const std::array<GapKind, 3>& kinds, int i, const Vec3& x, double radius) {
+    const double r = reach() + radius;
+    const auto take = [&](const Vec3& nearest, int kind, int j, double weight) {
+      if (!((x - nearest).norm() < r)) return;
+      const FeaturePair pair{kinds[kind], i, j, weight, Fade::none};
+      radius > 0.0 ? add(pair) : push(pair);
+    };
     for (int t : triangles_) {
       const auto& c = b_.triangles[t];
       if (std::abs(b_.planes[t].normal.dot(x) - b_.planes[t].offset) > r) continue;
-      const TriangleRegion n =
-          nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]);
-      if ((x - n.nearest).norm() < r) push({GapKind::point_triangle, i, t, 1.0, Fade::none});
+      take(nearest_on_triangle(x, b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]).nearest, 0,
+           t, 1.0);
     }
     for (int e : edges_) {
       if (b_.edges[e].open) continue;
       const Vec3 &p = b_.corners[b_.edges[e].i], v = b_.corners[b_.edges[e].j] - p;
-      const double along = std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
-      if ((x - p - along * v).norm() < r) push({GapKind::point_edge, i, e, -1.0, Fade::none});
+      take(p + std::clamp((x - p).dot(v) / v.squaredNorm(), 0.0, 1.0) * v, 1, e, -1.0);
     }
     for (int k : corners_)
-      if (!b_.border_corner[k] && (x - b_.corners[k]).norm() < r)
-        push({GapKind::point_corner, i, k, 1.0, Fade::none});
+      if (!b_.border_corner[k]) take(b_.corners[k], 2, k, 1.0);
   }
 
   const Shape &a_, &b_;

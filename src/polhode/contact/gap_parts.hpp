@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas of distances between parts of features, for gap.cpp and round_gap.cpp only.
+// Formulas of distances between parts of features, for the sources of gaps and their tests.
 #pragma once
 
 #include <polhode/contact/gap.hpp>
