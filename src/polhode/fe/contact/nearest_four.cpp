@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <polhode/contact/nearest.hpp>
 #include <polhode/fe/contact/nearest_four.hpp>
 
 namespace polhode {
 
 namespace {
+
+/// Edges with a smaller squared sine between them have no unique nearest points.
+constexpr double kParallel = 1e-8;
 
 void measure(const Vec3 (&x)[4], NearestFour& n) {
   Vec3 y = Vec3::Zero();
@@ -76,6 +81,35 @@ NearestFour nearest_of_triangle(const Vec3 (&x)[4]) {
     n.free[1] << 0.0, 1.0, 0.0, -1.0;
     n.free_count = 2;
   }
+  measure(x, n);
+  return n;
+}
+
+NearestFour nearest_of_edges(const Vec3 (&x)[4], int e_end, int f_end) {
+  const Vec3 e = x[1] - x[0], f = x[3] - x[2];
+  double a = e_end, b = f_end;
+  bool a_free = false, b_free = false;
+  // The part of an edge of squared length l, from `from` along `to`, that is nearest to p.
+  const auto project = [](const Vec3& p, const Vec3& from, const Vec3& along, double& part) {
+    const double t = (p - from).dot(along) / along.squaredNorm();
+    part = std::clamp(t, 0.0, 1.0);
+    return part == t;
+  };
+  if (e_end < 0 && f_end < 0) {
+    const contact::SegmentsRegion r = contact::nearest_on_segments(x[0], e, x[2], f);
+    a = r.s, b = r.t;
+    a_free = r.s_free, b_free = r.t_free;
+    if (a_free && b_free)
+      a_free = e.cross(f).squaredNorm() > kParallel * e.squaredNorm() * f.squaredNorm();
+  } else if (e_end < 0) {
+    a_free = project(x[2 + f_end], x[0], e, a);
+  } else if (f_end < 0) {
+    b_free = project(x[e_end], x[2], f, b);
+  }
+  NearestFour n;
+  n.c << 1.0 - a, a, b - 1.0, -b;
+  if (a_free) n.free[n.free_count++] << 1.0, -1.0, 0.0, 0.0;
+  if (b_free) n.free[n.free_count++] << 0.0, 0.0, 1.0, -1.0;
   measure(x, n);
   return n;
 }

@@ -5,8 +5,8 @@
 
 namespace polhode {
 
-/// The vector y = Σ c_i x_i from the nearest point of a triangle to a point, c = (1, −w): four
-/// points.
+/// The vector y = Σ c_i x_i between the nearest points of two features with four points in all:
+/// a point and a triangle, c = (1, −w), or two edges, c = (1 − a, a, b − 1, −b).
 ///
 /// With s_ij = |x_i − x_j|² the distance is |y|² = −Σ_{i<j} c_i c_j s_ij. As the c of the nearest
 /// points make it least, its derivative by s_ij is −c_i c_j alone: forces between the four points
@@ -31,5 +31,9 @@ struct NearestFour {
 
 /// x_0 and the triangle of the others.
 [[nodiscard]] NearestFour nearest_of_triangle(const Vec3 (&x)[4]);
+
+/// The edges x_0 x_1 and x_2 x_3, or one end of them.
+/// @param e_end, f_end  0 or 1: only this end of the first, the second edge; −1: all of it.
+[[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], int e_end = -1, int f_end = -1);
 
 }  // namespace polhode

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Friction of two edges that cross.
+#include <polhode/fe/contact/edge_pair.hpp>
+
+namespace polhode {
+
+namespace {
+
+using contact::V3;
+
+template <class T>
+struct EdgeOnEdge {
+  V3<T> force[4], slid;
+  PlaneRub<T> rub;
+};
+
+/// c of the nearest points in numbers of sort T: where it is free, the derivatives of |Σ c x|² by
+/// its directions vanish.
+template <class T>
+void weights(const NearestFour& nearest, const V3<T> (&x)[4], T (&c)[4]) {
+  for (int k = 0; k < 4; ++k) c[k] = T(nearest.c[k]);
+  if constexpr (std::is_same_v<T, double>) {
+    return;
+  } else {
+    const auto sum = [&](const auto& a) {
+      V3<T> s = a[0] * (x[0] - x[3]);
+      for (int k = 1; k < 3; ++k) s = s + a[k] * (x[k] - x[3]);
+      return s;
+    };
+    const V3<T> y = sum(c);
+    V3<T> way[2];
+    for (int i = 0; i < nearest.free_count; ++i) way[i] = sum(nearest.free[i]);
+    // One Newton step from values that already solve it leaves them and gives the derivatives.
+    T step[2];
+    if (nearest.free_count == 1) {
+      step[0] = -dot(way[0], y) / dot(way[0], way[0]);
+    } else if (nearest.free_count == 2) {
+      const T a = dot(way[0], way[0]), b = dot(way[0], way[1]), d = dot(way[1], way[1]);
+      const T p = dot(way[0], y), q = dot(way[1], y), scale = 1.0 / (a * d - b * b);
+      step[0] = scale * (b * q - d * p);
+      step[1] = scale * (b * p - a * q);
+    }
+    for (int i = 0; i < nearest.free_count; ++i)
+      for (int k = 0; k < 4; ++k) c[k] = c[k] + nearest.free[i][k] * step[i];
+  }
+}
+
+/// The nearest points of the middle of the step slide on each other in the plane of both edges; how
+/// they move as the two edges turn is taken off, with the rotation of the pair
+///
+///   ω = ((n·Δf) e − (n·Δe) f + ½ (f·Δe − e·Δf) n)/|e × f|
+///
+/// so that what turns as a whole does not slide, and the forces conjugate to that leave no moment.
+/// @eq{edge-friction}
+template <class T>
+EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
+                       const T& pressure, const Vec3& kept, bool seeded) {
+  const FourPoints<T> at(moves, alpha, seeded);
+  Vec3 middle[4];
+  moves.at(alpha, middle);
+  T c[4];
+  weights(nearest_of_edges(middle), at.x, c);
+  const V3<T> e = at.x[1] - at.x[0], f = at.x[3] - at.x[2];
+  const V3<T> du_e = at.u[1] - at.u[0], du_f = at.u[3] - at.u[2];
+  const V3<T> across = cross(e, f);
+  const T per = 1.0 / norm(across);
+  const V3<T> n = per * across;
+  V3<T> y = c[0] * (at.x[0] - at.x[3]), way = c[0] * at.u[0];
+  for (int k = 1; k < 4; ++k) {
+    y = y + c[k] * (at.x[k] - at.x[3]);
+    way = way + c[k] * at.u[k];
+  }
+  const V3<T> omega =
+      per * (dot(n, du_f) * e - dot(n, du_e) * f + (0.5 * (dot(f, du_e) - dot(e, du_f))) * n);
+  way = way - cross(omega, y);
+  const V3<T> slid = way - dot(n, way) * n;
+  const auto direction = [&](int from, int to) { return contact::v3(at.x_n[to] - at.x_n[from]); };
+  EdgeOnEdge<T> r{{},
+                  slid,
+                  {SlidePlane<T>(e, f), SlidePlane<double>(direction(0, 1), direction(2, 3)), law,
+                   pressure, kept, slid, alpha}};
+  const V3<T>& h = r.rub.friction;
+  const V3<T> moment = cross(y, h);
+  const T on_n = dot(n, moment);
+  const V3<T> on_e = per * (dot(f, moment) * n - (0.5 * on_n) * f);
+  const V3<T> on_f = per * ((0.5 * on_n) * e - dot(e, moment) * n);
+  r.force[0] = c[0] * h - on_e;
+  r.force[1] = c[1] * h + on_e;
+  r.force[2] = c[2] * h - on_f;
+  r.force[3] = c[3] * h + on_f;
+  return r;
+}
+
+}  // namespace
+
+FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
+  const auto rub = [&](const auto& p, bool seeded) {
+    return friction(moves_, alpha_, law_, p, kept, seeded);
+  };
+  const auto& x = moves_.x_n1;
+  return FourSlide(rub, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),
+                   std::max(0.0, pressure_), tangent);
+}
+
+}  // namespace polhode
