@@ -171,7 +171,7 @@ EdgePair::Force EdgePair::mean_m_slope() const {
 
 EdgePair::Stiffness EdgePair::stiffness() const {
   Stiffness K = Stiffness::Zero(12, 12);
-  by_angle(&K);
+  (void)by_angle(&K);
   const Force m_slope = mean_m_slope();
   for (const Part& p : parts_) {
     K += p.sign * m_ * p.gap.stiffness(p.pressure);

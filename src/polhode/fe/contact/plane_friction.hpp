@@ -14,7 +14,7 @@ namespace polhode {
 template <class T>
 struct SlidePlane {
   contact::V3<T> e, f, grad_e, grad_f;
-  SlidePlane(const contact::V3<T>& e, const contact::V3<T>& f) : e(e), f(f) {
+  SlidePlane(const contact::V3<T>& one, const contact::V3<T>& other) : e(one), f(other) {
     const T ee = dot(e, e), ef = dot(e, f), ff = dot(f, f);
     const T scale = 1.0 / (ee * ff - ef * ef);
     grad_e = scale * (ff * e - ef * f);
