@@ -15,21 +15,7 @@ SolidContact::SolidContact(std::string name, std::vector<MeshPoint> points, Mesh
       surface_(std::move(surface)),
       law_(law),
       self_(start.self),
-      edge_(start.edge),
-      way_(start.way) {
-  const auto add = [&](const std::vector<MeshPoint>& list) {
-    for (const MeshPoint& p : list) reach_.insert(reach_.end(), p.node, p.node + p.count);
-  };
-  add(points_);
-  add(surface_.vertices);
-  std::sort(reach_.begin(), reach_.end());
-  reach_.erase(std::unique(reach_.begin(), reach_.end()), reach_.end());
-  for (const int i : reach_) {
-    const Vec3& x = start.X[static_cast<std::size_t>(i)];
-    start_.insert(start_.end(), x.begin(), x.end());
-    carriers_.push_back(start.carriers[static_cast<std::size_t>(i)]);
-  }
-}
+      nodes_({&points_, &surface_.vertices}, start) {}
 
 const MeshPoint& SolidContact::corner(int point, int triangle, int k) const {
   if (k == 0) return points_[static_cast<std::size_t>(point)];
@@ -94,7 +80,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
   if (s.triangle.empty()) return {};
   const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1);
   const std::vector<double> still(
-      step.x_n == step.x_n1 ? 3 * static_cast<std::size_t>(reach_.back() + 1) : 0);
+      step.x_n == step.x_n1 ? 3 * static_cast<std::size_t>(reach().back() + 1) : 0);
   const Field u(surface_, still.empty() ? step.u : still.data());
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
@@ -121,7 +107,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
       const CentralGap::Stiffness K = gap.stiffness(a.pressure);
       for (int i = 0; i < gap.points(); ++i)
         for (int j = 0; j < gap.points(); ++j)
-          add_blocks(s, at(i), at(j), area * K.block<3, 3>(3 * i, 3 * j), sink.tangent);
+          nodes_.add(s.blocks, at(i), at(j), area * K.block<3, 3>(3 * i, 3 * j), sink.tangent);
     }
     if (law_.mu == 0.0 || step.context.dt == 0.0) continue;
     const Slide slide =
@@ -133,10 +119,10 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
     for (int i = 0; i < 4; ++i) {
       const MeshPoint& row = corner(p, slide.triangle, i);
       for (int j = 0; j < 4; ++j)
-        add_blocks(s, row, corner(p, slide.triangle, j), area * slide.K.block<3, 3>(3 * i, 3 * j),
-                   sink.tangent);
+        nodes_.add(s.blocks, row, corner(p, slide.triangle, j),
+                   area * slide.K.block<3, 3>(3 * i, 3 * j), sink.tangent);
       for (int j = 0; j < gap.points(); ++j)
-        add_blocks(s, row, at(j),
+        nodes_.add(s.blocks, row, at(j),
                    area * slide.by_pressure.segment<3>(3 * i) * by_x.segment<3>(3 * j).transpose(),
                    sink.tangent);
     }

@@ -7,30 +7,19 @@
 
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/element_group.hpp>
-#include <polhode/assembly/moving_pattern.hpp>
 #include <polhode/fe/contact/central_gap.hpp>
-#include <polhode/fe/contact/mesh_surface.hpp>
+#include <polhode/fe/contact/meeting_nodes.hpp>
 #include <polhode/fe/contact/surface_totals.hpp>
 
 namespace polhode {
-
-/// What a contact of surfaces of solids starts from.
-struct SolidContactStart {
-  const std::vector<Vec3>& X;        ///< Positions by the system's node numbers [m].
-  const std::vector<int>& carriers;  ///< Body of each node, as NodeData::body.
-  double edge = 1.0;                 ///< Typical edge of the faces [m].
-  double way = 0.0;                  ///< That surfaces may go against each other in a step [m].
-  bool self = false;  ///< Both are one surface: what is near from the start is not met.
-};
 
 /// Points of the surface of a solid against the triangles of another one's, or of its own: the
 /// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
 ///
 /// d is never negative: surfaces keep apart, by 2 g_tol where they do not press. Forces act along
 /// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
-/// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet:
-/// they are looked for anew when nodes have moved against each other by a good part of what was
-/// looked at, and no step may take them farther than that. @eq{mesh-contact}
+/// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet,
+/// see MeetingNodes. @eq{mesh-contact}
 class SolidContact final : public ElementGroup,
                            public BarrierPoints,
                            public MovingPattern,
@@ -50,8 +39,10 @@ class SolidContact final : public ElementGroup,
   std::size_t history_size() const override;
   void initialize(double* history) const override;
 
-  const std::vector<int>& reach() const override { return reach_; }
-  const NodeBlocks& blocks(const double* history) const override { return search(history).blocks; }
+  const std::vector<int>& reach() const override { return nodes_.numbers(); }
+  const NodeBlocks& blocks(const double* history) const override {
+    return search(history).blocks.blocks;
+  }
   void clearances(const NodeStep& step, const double* history,
                   std::vector<double>& list) const override;
   double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
@@ -81,8 +72,7 @@ class SolidContact final : public ElementGroup,
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<int> first, triangle;
-    NodeBlocks blocks;
-    std::vector<int> row_start;  ///< By node of reach_: into blocks.
+    MeetingNodes::Blocks blocks;
   };
   /// The nearest triangle of a point.
   struct Nearest {
@@ -100,9 +90,8 @@ class SolidContact final : public ElementGroup,
     double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
   };
 
-  [[nodiscard]] std::size_t places_size() const { return 3 * reach_.size() + 1; }
   [[nodiscard]] const double* memory(const double* history, int point) const {
-    return history + places_size() + kMemory * static_cast<std::size_t>(point);
+    return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(point);
   }
   [[nodiscard]] const Search& search(const double* history) const;
   void find(Search& s) const;
@@ -120,23 +109,15 @@ class SolidContact final : public ElementGroup,
                             const double* memory, bool tangent) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
                                   const double* memory) const;
-  void add_blocks(const Search& s, const MeshPoint& row, const MeshPoint& column, const Mat3& K,
-                  double* tangent) const;
-  /// How far node k of reach_ has moved since the search, beside what all have.
-  void deviations(const double* x, const double* places, std::vector<double>& far) const;
   void note_gap_at_start(double* history) const;
-  void renew_search(const NodeStep& step, double* history) const;
 
   std::string name_;
   std::vector<MeshPoint> points_;
   MeshSurface surface_;
   SurfaceLaw law_;
   bool self_ = false;
-  double edge_ = 1.0, way_ = 0.0;
-  std::vector<int> reach_;     ///< Nodes, ascending.
-  std::vector<double> start_;  ///< Their places at the start.
-  std::vector<int> carriers_;  ///< By node of reach_: a body, or kFreeNode.
-  mutable Search search_;      ///< Of the last history asked for.
+  MeetingNodes nodes_;
+  mutable Search search_;  ///< Of the last history asked for.
 };
 
 }  // namespace polhode

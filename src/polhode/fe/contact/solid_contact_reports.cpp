@@ -59,7 +59,7 @@ Work SolidContact::work(const NodeStep& step, const double* history,
 }
 
 void SolidContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
-  double* const numbers = history + places_size() + kMemory * points_.size();
+  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
   SurfaceTotals t{};
   std::copy_n(numbers, 3, &t.impulse);
   t.gap = std::numeric_limits<double>::infinity();
@@ -120,17 +120,18 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     t.point[k] = moment[k];
   }
   std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
-  renew_search(step, history);
+  nodes_.renew(step, history);
 }
 
 /// NaN where nothing is near.
 void SolidContact::note_gap_at_start(double* history) const {
-  double* const numbers = history + places_size() + kMemory * points_.size();
-  std::vector<double> x(3 * static_cast<std::size_t>(reach_.back() + 1));
-  for (std::size_t k = 0; k < reach_.size(); ++k)
-    for (int c = 0; c < 3; ++c)
-      x[3 * static_cast<std::size_t>(reach_[k]) + static_cast<std::size_t>(c)] =
-          start_[3 * k + static_cast<std::size_t>(c)];
+  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
+  std::vector<double> x(3 * static_cast<std::size_t>(reach().back() + 1));
+  const double* place = history;
+  for (const int i : reach()) {
+    std::copy_n(place, 3, x.begin() + 3 * i);
+    place += 3;
+  }
   const Search& s = search(history);
   const Field start(surface_, x.data());
   double least = std::numeric_limits<double>::infinity();
@@ -141,7 +142,7 @@ void SolidContact::note_gap_at_start(double* history) const {
 }
 
 SurfaceReport SolidContact::report(const double* history) const {
-  return SurfaceTotals::report(history + places_size() + kMemory * points_.size());
+  return SurfaceTotals::report(history + nodes_.key_size() + kMemory * points_.size());
 }
 
 std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& instant,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <polhode/assembly/nodes.hpp>
 #include <polhode/contact/broad_phase.hpp>
 #include <polhode/contact/nearest.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
@@ -15,16 +14,8 @@ namespace polhode {
 
 namespace {
 
-/// Triangles are looked for as far as this part of an edge, at least, ...
-constexpr double kLook = 0.3;
-/// ... and as far as surfaces went against each other in this many steps like the last one.
-constexpr double kLookSteps = 5.0;
-/// They are looked for again if fewer steps like the last one are left.
-constexpr double kStepsLeft = 2.0;
 /// What is left in front of a surface at the end of a way, of what there was at its start.
 constexpr double kLeave = 0.1;
-/// Ways are followed by advances of the distance's own size, at most so many.
-constexpr int kMostAdvances = 200;
 /// Less deep than this part of the tolerance is rounding: surfaces touch.
 constexpr double kRounding = 1e-6;
 /// Clearances beyond this many bands are all alike.
@@ -39,7 +30,7 @@ double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 std::size_t SolidContact::history_size() const {
-  return places_size() + kMemory * points_.size() + SurfaceTotals::kCount;
+  return nodes_.key_size() + kMemory * points_.size() + SurfaceTotals::kCount;
 }
 
 std::span<const int> SolidContact::found(const Search& s, int point) const {
@@ -54,7 +45,7 @@ int SolidContact::candidates(const double* history) const {
 }
 
 const SolidContact::Search& SolidContact::search(const double* history) const {
-  const std::size_t n = places_size();
+  const std::size_t n = nodes_.key_size();
   if (search_.key.size() != n || !std::equal(history, history + n, search_.key.begin())) {
     search_.key.assign(history, history + n);
     find(search_);
@@ -66,49 +57,22 @@ const SolidContact::Search& SolidContact::search(const double* history) const {
 /// together from the start.
 bool SolidContact::may_meet(int point, int triangle) const {
   const MeshPoint& p = points_[static_cast<std::size_t>(point)];
-  bool carried = true;
-  int carrier = 0, count = 0;
-  const auto look = [&](const MeshPoint& at) {
-    for (int a = 0; a < at.count; ++a) {
-      const auto k = std::lower_bound(reach_.begin(), reach_.end(), at.node[a]) - reach_.begin();
-      const int body = carriers_[static_cast<std::size_t>(k)];
-      if (count++ == 0) carrier = body;
-      carried = carried && body == carrier && body != kFreeNode;
-    }
-  };
-  look(p);
-  for (int k = 1; k < 4; ++k) look(corner(point, triangle, k));
-  if (carried) return false;
+  const auto corner = [&](int k) -> const MeshPoint& { return this->corner(point, triangle, k); };
+  if (nodes_.carried_together({&p, &corner(1), &corner(2), &corner(3)})) return false;
   if (!self_) return true;
-  for (int k = 1; k < 4; ++k) {
-    const MeshPoint& v = corner(point, triangle, k);
-    for (int a = 0; a < p.count; ++a)
-      for (int b = 0; b < v.count; ++b)
-        if (p.node[a] == v.node[b]) return false;
-  }
   Vec3 x[4];
   for (int k = 0; k < 4; ++k) {
-    const MeshPoint& at = corner(point, triangle, k);
-    x[k].setZero();
-    for (int a = 0; a < at.count; ++a) {
-      const auto n = std::lower_bound(reach_.begin(), reach_.end(), at.node[a]) - reach_.begin();
-      x[k] += at.N[a] * NodeStep::at(start_.data(), static_cast<int>(n));
-    }
+    x[k] = nodes_.start(corner(k));
+    for (int a = 0; k > 0 && a < p.count; ++a)
+      for (int b = 0; b < corner(k).count; ++b)
+        if (p.node[a] == corner(k).node[b]) return false;
   }
   return distance_to(x[0], x[1], x[2], x[3]) >= kTogether * law_.normal.tolerance;
 }
 
-/// The key holds the places of the nodes of reach_, then how far is looked.
 void SolidContact::find(Search& s) const {
-  const double look = s.key.back() + 2.0 * law_.normal.tolerance;
-  const auto place = [&](const MeshPoint& at) {
-    Vec3 x = Vec3::Zero();
-    for (int a = 0; a < at.count; ++a) {
-      const auto k = std::lower_bound(reach_.begin(), reach_.end(), at.node[a]) - reach_.begin();
-      x += at.N[a] * NodeStep::at(s.key.data(), static_cast<int>(k));
-    }
-    return x;
-  };
+  const double look = nodes_.look(s.key.data()) + 2.0 * law_.normal.tolerance;
+  const auto place = [&](const MeshPoint& at) { return nodes_.place(at, s.key.data()); };
   std::vector<Vec3> vertices;
   for (const MeshPoint& v : surface_.vertices) vertices.push_back(place(v));
   const auto triangles = static_cast<int>(surface_.triangles.size());
@@ -144,12 +108,11 @@ void SolidContact::find(Search& s) const {
 
   s.first.assign(points_.size() + 1, 0);
   s.triangle.clear();
-  std::vector<std::vector<int>> columns(reach_.size());
-  std::vector<int> together;
+  std::vector<std::vector<int>> sets;
   for (std::size_t p = 0, k = 0; p < points_.size(); ++p) {
-    together.clear();
+    std::vector<int> together;
     const auto add = [&](const MeshPoint& m) {
-      for (int a = 0; a < m.count; ++a) together.push_back(m.node[a]);
+      together.insert(together.end(), m.node, m.node + m.count);
     };
     for (; k < met.size() && met[k].first == static_cast<int>(p); ++k) {
       if (together.empty()) add(points_[p]);
@@ -157,75 +120,15 @@ void SolidContact::find(Search& s) const {
       for (int c = 1; c < 4; ++c) add(corner(static_cast<int>(p), met[k].second, c));
     }
     s.first[p + 1] = static_cast<int>(s.triangle.size());
-    std::sort(together.begin(), together.end());
-    together.erase(std::unique(together.begin(), together.end()), together.end());
-    for (const int i : together) {
-      auto& row = columns[static_cast<std::size_t>(
-          std::lower_bound(reach_.begin(), reach_.end(), i) - reach_.begin())];
-      row.insert(row.end(), together.begin(), together.end());
-    }
+    if (!together.empty()) sets.push_back(std::move(together));
   }
-  s.blocks = {};
-  s.row_start.assign(1, 0);
-  for (std::size_t r = 0; r < reach_.size(); ++r) {
-    std::sort(columns[r].begin(), columns[r].end());
-    columns[r].erase(std::unique(columns[r].begin(), columns[r].end()), columns[r].end());
-    s.blocks.row.insert(s.blocks.row.end(), columns[r].size(), reach_[r]);
-    s.blocks.column.insert(s.blocks.column.end(), columns[r].begin(), columns[r].end());
-    s.row_start.push_back(static_cast<int>(s.blocks.column.size()));
-  }
-}
-
-void SolidContact::add_blocks(const Search& s, const MeshPoint& row, const MeshPoint& column,
-                              const Mat3& K, double* tangent) const {
-  for (int a = 0; a < row.count; ++a) {
-    const auto r = static_cast<std::size_t>(
-        std::lower_bound(reach_.begin(), reach_.end(), row.node[a]) - reach_.begin());
-    const auto first = s.blocks.column.begin() + s.row_start[r],
-               last = s.blocks.column.begin() + s.row_start[r + 1];
-    for (int b = 0; b < column.count; ++b) {
-      const auto slot = std::lower_bound(first, last, column.node[b]) - s.blocks.column.begin();
-      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(tangent + 9 * slot);
-      block += row.N[a] * column.N[b] * K;
-    }
-  }
-}
-
-void SolidContact::deviations(const double* x, const double* places,
-                              std::vector<double>& far) const {
-  const auto n = static_cast<int>(reach_.size());
-  const auto moved = [&](int k) -> Vec3 {
-    return NodeStep::at(x, reach_[static_cast<std::size_t>(k)]) - NodeStep::at(places, k);
-  };
-  Vec3 mean = Vec3::Zero();
-  for (int k = 0; k < n; ++k) mean += moved(k);
-  mean /= n;
-  far.clear();
-  for (int k = 0; k < n; ++k) far.push_back((moved(k) - mean).norm());
+  s.blocks = nodes_.blocks(sets);
 }
 
 void SolidContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
-  std::copy(start_.begin(), start_.end(), history);
-  history[start_.size()] = std::max(kLook * edge_, kLookSteps * way_);
+  nodes_.write_start(history);
   note_gap_at_start(history);
-}
-
-void SolidContact::renew_search(const NodeStep& step, double* history) const {
-  std::vector<double> far, last;
-  deviations(step.x_n1, history, far);
-  std::vector<double> before;
-  for (const int i : reach_)
-    for (int c = 0; c < 3; ++c) before.push_back(step.x_n[3 * i + c]);
-  deviations(step.x_n1, before.data(), last);
-  const double moved = *std::max_element(far.begin(), far.end());
-  const double way = *std::max_element(last.begin(), last.end());
-  double& look = history[start_.size()];
-  if (moved + kStepsLeft * way <= 0.5 * look) return;
-  for (std::size_t k = 0; k < reach_.size(); ++k)
-    for (int c = 0; c < 3; ++c)
-      history[3 * k + static_cast<std::size_t>(c)] = step.x_n1[3 * reach_[k] + c];
-  look = std::max(kLook * edge_, kLookSteps * way);
 }
 
 void SolidContact::clearances(const NodeStep& step, const double* history,
@@ -247,15 +150,7 @@ void SolidContact::clearances(const NodeStep& step, const double* history,
 /// triangle's corners against the point.
 double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
                                const double* history) const {
-  double most = 1.0;
-  std::vector<double> far_from, far_to;
-  deviations(from.x_n1, history, far_from);
-  deviations(to.x_n1, history, far_to);
-  const double room_to_move = 0.5 * history[start_.size()];
-  for (std::size_t k = 0; k < far_to.size(); ++k)
-    if (far_to[k] > room_to_move && far_to[k] > far_from[k])
-      most = std::min(most, std::max(0.0, room_to_move - far_from[k]) / (far_to[k] - far_from[k]));
-
+  double most = nodes_.free_part(from.x_n1, to.x_n1, history);
   const Search& s = search(history);
   if (s.triangle.empty()) return most;
   const Field x(surface_, from.x_n1), x_to(surface_, to.x_n1);
@@ -270,37 +165,29 @@ double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
         const auto k = static_cast<std::size_t>(v);
         length = std::max(length, (x_to.vertices[k] - x.vertices[k] - way).norm());
       }
-    double room = nearest(x, triangles, p).four.distance;
+    const double room = nearest(x, triangles, p).four.distance;
     const double least = kLeave * std::min(room, 2.0 * law_.normal.tolerance);
-    if (room - least >= length * most) continue;
-    double part = 0.0;
-    for (int k = 0; k < kMostAdvances && part < most; ++k) {
-      part += (room - least) / length;
-      const double a = std::min(part, most);
-      room = std::numeric_limits<double>::infinity();
+    most = free_way(most, room, least, length, [&](double part) {
+      double distance = std::numeric_limits<double>::infinity();
       for (const int t : triangles) {
-        const auto& v = surface_.triangles[static_cast<std::size_t>(t)];
-        Vec3 corner[3];
+        Vec3 at[3];
         for (std::size_t c = 0; c < 3; ++c) {
-          const auto i = static_cast<std::size_t>(v[c]);
-          corner[c] = x.vertices[i] + a * (x_to.vertices[i] - x.vertices[i]);
+          const auto i =
+              static_cast<std::size_t>(surface_.triangles[static_cast<std::size_t>(t)][c]);
+          at[c] = x.vertices[i] + part * (x_to.vertices[i] - x.vertices[i]);
         }
-        room = std::min(room, distance_to(Vec3(start + a * way), corner[0], corner[1], corner[2]));
+        distance = std::min(distance, distance_to(Vec3(start + part * way), at[0], at[1], at[2]));
       }
-      if (room <= least) break;
-    }
-    most = std::min(most, part);
+      return distance;
+    });
   }
   return most;
 }
 
 /// A point that is behind the triangle nearest to it is in the other solid.
 double SolidContact::overlap(const NodeStep& instant) const {
-  std::vector<double> history(places_size());
-  for (std::size_t k = 0; k < reach_.size(); ++k)
-    for (int c = 0; c < 3; ++c)
-      history[3 * k + static_cast<std::size_t>(c)] = instant.x_n1[3 * reach_[k] + c];
-  history.back() = kLook * edge_;
+  std::vector<double> history(nodes_.key_size());
+  nodes_.write_instant(instant.x_n1, history.data());
   const Search& s = search(history.data());
   const Field x(surface_, instant.x_n1);
   double deepest = -1.0;
