@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <string>
 
 #include <polhode/base/error.hpp>
@@ -213,6 +214,81 @@ TEST(SolidContactModel, ARingThatCollapsesDoesNotPassThroughItself) {
   EXPECT_GT(least[0], 0.0);
   EXPECT_LT(least[0], 0.01) << "it did collapse";
   EXPECT_LT(least[1], 0.0) << "without self: true it passes";
+}
+
+/// Two bars of one element, each on an edge, cross in their middles, where neither has a node.
+Model crossing_edges(const std::string& law, const std::string& spin) {
+  return read_model_text(R"(
+format: 1
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  below:
+    mesh: {block: {size: [0.4, 0.1, 0.1], cells: [1, 1, 1]}, position: [0, 0, 0], orientation: {axis: x, angle: 45 deg}}
+    material: rubber
+    velocity: [0, 0, 0.5]
+  above:
+    mesh: {block: {size: [0.1, 0.4, 0.1], cells: [1, 1, 1]}, position: [0.01, 0.03, 0.1454], orientation: {axis: y, angle: 45 deg}}
+    material: rubber
+    velocity: [0.05, 0.1, -0.5]
+    angular_velocity: )" + spin +
+                             R"(
+contacts: {default: {)" + law +
+                             R"(}}
+analysis: {duration: 0.2 s, step: 0.5 ms}
+)",
+                         "edges.yaml");
+}
+
+/// The highest edge of the lower bar and the lowest one of the upper bar at the start.
+struct Crossing {
+  std::size_t ends[4];
+
+  explicit Crossing(const Simulation& s) {
+    for (int solid = 0; solid < 2; ++solid) {
+      const std::vector<Vec3> at = s.solid(solid).position;
+      std::vector<std::size_t> order(at.size());
+      std::iota(order.begin(), order.end(), 0U);
+      std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return solid == 0 ? at[a].z() > at[b].z() : at[a].z() < at[b].z();
+      });
+      std::copy_n(order.begin(), 2, ends + 2 * solid);
+    }
+  }
+  /// Of the second above the first one.
+  [[nodiscard]] double height(const Simulation& s) const {
+    const std::vector<Vec3> below = s.solid(0).position, above = s.solid(1).position;
+    const Vec3 &a = below[ends[0]], &c = above[ends[2]];
+    const Vec3 n = (below[ends[1]] - a).cross(above[ends[3]] - c).normalized();
+    return (n.z() < 0.0 ? -n : n).dot(c - a);
+  }
+};
+
+// @tests{edge-potential}
+TEST(SolidContactModel, EdgesThatCrossBetweenTheirNodesDoNotPass) {
+  for (const std::string law :
+       {"restitution: 1", "restitution: 1, friction: 0.4", "restitution: 0"}) {
+    SCOPED_TRACE(law);
+    Simulation simulation(crossing_edges(law, law == "restitution: 1" ? "[0, 0, 3]" : "[0, 0, 0]"));
+    const Crossing edges(simulation);
+    double least = 1.0, energy = 1e9, rise = 0.0;
+    const RunSummary summary = simulation.run({}, [&](Simulation& s) {
+      least = std::min(least, edges.height(s));
+      const Balance held = s.balance();
+      const double now = held.kinetic + held.potential;
+      rise = std::max(rise, now - energy);
+      energy = now;
+    });
+    ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+    EXPECT_GT(least, 0.0);
+    EXPECT_LT(least, 2e-4) << "they met";
+    EXPECT_GT(simulation.contact(0).impulse, 1.0);
+    EXPECT_LT(summary.energy_drift, 1e-11);
+    EXPECT_LT(rise, 1e-11);
+    EXPECT_LT(summary.linear_momentum_drift, 1e-12);
+    EXPECT_LT(summary.angular_momentum_drift, 1e-11);
+    EXPECT_EQ(summary.contacts->lost_in_impacts > 1e-3, law == "restitution: 0");
+    EXPECT_EQ(simulation.contact_losses().friction > 1e-4, law.ends_with("0.4"));
+  }
 }
 
 TEST(SolidContactModel, NamesSolidsThatTouchAtTheStart) {

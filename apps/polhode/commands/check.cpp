@@ -5,7 +5,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/base/names.hpp>
-#include <polhode/fe/contact/solid_contact.hpp>
+#include <polhode/fe/contact/edge_contact.hpp>
 #include <polhode/solve/rank_report.hpp>
 #include <polhode/solve/tangent_check.hpp>
 
@@ -135,15 +135,14 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
 struct TouchingGroup {
   std::string name;
   const SurfaceLaw& law;
-  std::size_t points;
+  std::size_t places;
+  bool edges;
 };
 
 TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Surface& s) {
   const ElementGroup& group = simulation.system().nodes().group(s.group);
-  if (const auto* on_solid = dynamic_cast<const SolidContact*>(&group))
-    return {group.name(), on_solid->law(), on_solid->points().size()};
-  return {group.name(), dynamic_cast<const SurfaceContact&>(group).law(),
-          static_cast<std::size_t>(group.size())};
+  const auto& surface = dynamic_cast<const TouchingSurface&>(group);
+  return {group.name(), surface.law(), surface.places(), group.kind() == EdgeContact::kKind};
 }
 
 /// What a surface of a solid meets, and how.
@@ -154,7 +153,7 @@ nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
     const TouchingGroup group = touching_group(simulation, s);
     list.push_back({{"solid", model.solids[static_cast<std::size_t>(s.solid)].name},
                     {is_solid_side(s.side) ? "on_solid" : "body", model.side_name(s.side)},
-                    {"points", group.points},
+                    {group.edges ? "edges" : "points", group.places},
                     {"gap_tolerance", group.law.normal.tolerance},
                     {"stiffness_per_area", group.law.normal.stiffness},
                     {"friction", group.law.mu}});
@@ -165,7 +164,9 @@ nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
 void add_surface_rows(const Simulation& simulation, std::vector<std::vector<std::string>>& rows) {
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
     const TouchingGroup group = touching_group(simulation, s);
-    rows.push_back({format("surface {}", group.name), counted(group.points, "point", "points"),
+    rows.push_back({format("surface {}", group.name),
+                    group.edges ? counted(group.places, "edge", "edges")
+                                : counted(group.places, "point", "points"),
                     format("gap tolerance {:.3g} m, stiffness {:.3g} Pa/m, friction {:g}",
                            group.law.normal.tolerance, group.law.normal.stiffness, group.law.mu)});
   }

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <polhode/base/format.hpp>
+#include <polhode/fe/contact/edge_contact.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
@@ -25,6 +26,9 @@ constexpr double kTolerance = 1e-3;
 constexpr double kPressure = 0.02;
 /// Part of the smallest half size by which edges of boxes and cylinders are rounded, at least.
 constexpr double kRounding = 1e-3;
+/// Of the band of faces, that of edges: faces that lie on each other keep their edges farther apart
+/// than that, so that these add nothing to a pressure.
+constexpr double kEdgeBand = 0.25;
 /// The same of cones and hulls, at most.
 constexpr double kMostRounding = 0.2;
 
@@ -295,23 +299,33 @@ class SurfacesBuilder {
     std::vector<int> carriers;
     carriers.reserve(system_.nodes().count());
     for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
+    const auto& name = [&](int side) -> const std::string& {
+      return model_.solids[static_cast<std::size_t>(solids[side])].name;
+    };
+    const SolidContactStart start{.X = X,
+                                  .carriers = carriers,
+                                  .edge = least,
+                                  .way = way_of_step(solids[0], solids[1]),
+                                  .self = self};
     for (int k = 0; k < (self ? 1 : 2); ++k) {
-      const auto& name = [&](int side) -> const std::string& {
-        return model_.solids[static_cast<std::size_t>(solids[side])].name;
-      };
       const std::string where = format("{} on {}", name(k), name(1 - k));
       std::vector<MeshPoint> points =
           contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
       for (MeshPoint& p : points) p.area *= 0.5;
-      const SolidContactStart start{.X = X,
-                                    .carriers = carriers,
-                                    .edge = least,
-                                    .way = way_of_step(solids[0], solids[1]),
-                                    .self = self};
       const int group = system_.add_elements(
           std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start));
       map_.surfaces.push_back({solids[k], side_of_solid(solids[1 - k]), 0, group});
     }
+    EdgeContact::Sides sides{sharp_edges(surfaces[0], X), sharp_edges(surfaces[1], X),
+                             least * least};
+    if (sides.first.edges.empty() || sides.second.edges.empty()) return;
+    SurfaceLaw of_edges = law;
+    of_edges.normal.tolerance *= kEdgeBand;
+    of_edges.normal.stiffness /= kEdgeBand;
+    const int group = system_.add_elements(std::make_unique<EdgeContact>(
+        format("edges of {} on {}", name(0), self ? "itself" : name(1)), std::move(sides), of_edges,
+        start));
+    map_.surfaces.push_back({solids[0], side_of_solid(solids[1]), 0, group});
   }
 
   /// How far nodes of two solids go against each other in the first step [m].

@@ -9,6 +9,11 @@
 
 namespace polhode {
 
+/// What is left in front of a surface at the end of a way, of what there was at its start.
+inline constexpr double kLeave = 0.1;
+/// Of one surface, places nearer than so many gap tolerances from the start on do not meet.
+inline constexpr double kTogether = 4.0;
+
 /// What a contact of surfaces of solids starts from.
 struct SolidContactStart {
   const std::vector<Vec3>& X;        ///< Positions by the system's node numbers [m].

@@ -52,7 +52,8 @@ class SolidContact final : public ElementGroup,
   void commit(const NodeStep& step, double* history, const double* scratch) const override;
   Work work(const NodeStep& step, const double* history, const double* scratch) const override;
 
-  [[nodiscard]] const SurfaceLaw& law() const { return law_; }
+  const SurfaceLaw& law() const override { return law_; }
+  std::size_t places() const override { return points_.size(); }
   [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
   /// Pairs of a point and a triangle that are looked at.
   [[nodiscard]] int candidates(const double* history) const;

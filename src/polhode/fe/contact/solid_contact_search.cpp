@@ -14,14 +14,10 @@ namespace polhode {
 
 namespace {
 
-/// What is left in front of a surface at the end of a way, of what there was at its start.
-constexpr double kLeave = 0.1;
 /// Less deep than this part of the tolerance is rounding: surfaces touch.
 constexpr double kRounding = 1e-6;
 /// Clearances beyond this many bands are all alike.
 constexpr double kFar = 10.0;
-/// Of one surface, places nearer than so many gap tolerances from the start on do not meet.
-constexpr double kTogether = 4.0;
 
 double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return (p - contact::nearest_on_triangle(p, a, b, c).nearest).norm();

@@ -68,7 +68,8 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   void commit(const NodeStep& step, double* history, const double* scratch) const override;
   Work work(const NodeStep& step, const double* history, const double* scratch) const override;
 
-  [[nodiscard]] const SurfaceLaw& law() const { return law_; }
+  const SurfaceLaw& law() const override { return law_; }
+  std::size_t places() const override { return points_.points.size(); }
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;

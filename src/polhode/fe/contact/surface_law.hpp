@@ -46,6 +46,8 @@ struct SurfacePointReport {
 class TouchingSurface {
  public:
   virtual ~TouchingSurface() = default;
+  [[nodiscard]] virtual const SurfaceLaw& law() const = 0;
+  [[nodiscard]] virtual std::size_t places() const = 0;  ///< Points or edges that may touch.
   [[nodiscard]] virtual SurfaceReport report(const double* history) const = 0;
   /// Points that acted in the last step, where they are at its end.
   [[nodiscard]] virtual std::vector<SurfacePointReport> point_reports(
