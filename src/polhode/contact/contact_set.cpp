@@ -14,7 +14,7 @@ namespace {
 
 /// The barrier stops an impact that rebounds with at least this part of its band left. Deeper,
 /// where it is stopped within a step, the last digit of a displacement would be worth energy.
-constexpr double kDeepest = 1e-3;
+constexpr double kDeepest = 1e-2;
 /// Candidates are found anew when their margin is so many times what is needed, as after an
 /// iteration that went astray.
 constexpr double kWideMargin = 8.0;

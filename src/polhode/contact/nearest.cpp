@@ -7,6 +7,13 @@
 
 namespace polhode::contact {
 
+namespace {
+
+/// Steps of a root below this part of it are rounding.
+constexpr double kRootDigits = 1e-15;
+
+}  // namespace
+
 /// The regions of Voronoi of a triangle, see Ericson, Real-Time Collision Detection, 5.1.5. On the
 /// boundary of regions the face is preferred.
 TriangleRegion nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -96,8 +103,9 @@ double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
     const double f = sum(t, slope);
     (f > 0.0 ? low : high) = t;
     double next = slope < 0.0 ? t - f / slope : 0.5 * (low + high);
+    // Before the guard: at the root rounding puts the next one beside the bracket.
+    if (std::abs(next - t) <= kRootDigits * (a_min * a_min + std::abs(t))) return next;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - t) <= 2e-16 * (a_min * a_min + std::abs(next))) return next;
     t = next;
   }
   return t;
