@@ -28,6 +28,29 @@ double NormalLaw::energy(double gap) const {
   return 0.0;
 }
 
+double NormalLaw::gap_of(double energy) const {
+  if (!(energy > 0.0)) return reach();
+  switch (potential) {
+    case NormalPotential::barrier: {
+      // (1 − s)³ = v s: decreasing and convex on the left, so Newton climbs to s from 0.
+      const double band = 2.0 * tolerance, v = 3.0 * energy / (stiffness * band * band);
+      double s = 0.0;
+      for (int k = 0; k < 100; ++k) {
+        const double rest = 1.0 - s;
+        const double step = (rest * rest * rest - v * s) / (3.0 * rest * rest + v);
+        s += step;
+        if (!(step > 1e-16 * s)) break;
+      }
+      return band * s - tolerance;
+    }
+    case NormalPotential::linear:
+      return -std::sqrt(2.0 * energy / stiffness);
+    case NormalPotential::hertz:
+      return -std::pow(2.5 * energy / stiffness, 0.4);
+  }
+  return 0.0;
+}
+
 NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {
   if (gap >= reach()) return {0.0, 0.0};
   switch (potential) {

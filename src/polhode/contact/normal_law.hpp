@@ -33,7 +33,8 @@ struct NormalLaw {
   /// No step may bring the gap to this [m]; −∞ if the law lets bodies overlap.
   [[nodiscard]] double floor() const;
 
-  [[nodiscard]] double energy(double gap) const;  ///< b [J]
+  [[nodiscard]] double energy(double gap) const;     ///< b [J]
+  [[nodiscard]] double gap_of(double energy) const;  ///< Where b is that; reach() if it is zero.
   template <class T>
   [[nodiscard]] T force(const T& gap) const;  ///< f = −b' [N]
   template <class T>

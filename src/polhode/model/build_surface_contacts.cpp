@@ -4,16 +4,13 @@
 #include <limits>
 #include <set>
 
-#include <Eigen/Geometry>
-
 #include <polhode/base/format.hpp>
 #include <polhode/fe/contact/edge_contact.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
-#include <polhode/model/contact_shapes.hpp>
 #include <polhode/model/contact_sides.hpp>
-#include <polhode/model/shape_surface.hpp>
+#include <polhode/model/rigid_surfaces.hpp>
 #include <polhode/model/solid_parts.hpp>
 
 namespace polhode {
@@ -24,18 +21,9 @@ namespace {
 constexpr double kTolerance = 1e-3;
 /// Part of Young's modulus that a pressure at gap zero is, at least.
 constexpr double kPressure = 0.02;
-/// Part of the smallest half size by which edges of boxes and cylinders are rounded, at least.
-constexpr double kRounding = 1e-3;
 /// Of the band of faces, that of edges: faces that lie on each other keep their edges farther apart
 /// than that, so that these add nothing to a pressure.
 constexpr double kEdgeBand = 0.25;
-/// The same of cones and hulls, at most.
-constexpr double kMostRounding = 0.2;
-
-bool is_known(const std::string& shape) {
-  return shape == "plane" || shape == "sphere" || shape == "capsule" || shape == "box" ||
-         shape == "cylinder" || shape == "cone" || shape == "ellipsoid" || shape == "hull";
-}
 
 /// What a law asks for that surfaces of solids cannot do; empty if nothing. Constants of the force
 /// of a point, which surfaces choose for themselves, do not matter.
@@ -93,18 +81,12 @@ class Planner {
            const ContactSide& of_shape) {
     const BodySpec& spec = model_.bodies[static_cast<std::size_t>(body)];
     const std::string& name = model_.solids[static_cast<std::size_t>(solid)].name;
-    if (!is_known(spec.shapes[shape].type))
-      fault(
-          shape_path(spec, shape),
-          format("the surface of '{}' meets it, which surfaces of solids cannot do with a {}", name,
-                 spec.shapes[shape].type),
-          "They can with plane, sphere, capsule, box, cylinder, cone, ellipsoid and hull. Exclude "
-          "the pair, or set contact: {touches: false}");
     const StatedLaw stated =
         law_between(model_.contacts, {material_of(model_.contacts, of_solid), side_of_solid(solid)},
                     {material_of(model_.contacts, of_shape), body});
     const std::string where =
         stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts.default";
+    check_tolerance(where, name, spec, shape, stated.law);
     if (const std::string key = strange_key(stated.law); !key.empty())
       fault(where,
             format("'{}' and '{}' meet by a law with {}, which surfaces of solids do not know",
@@ -117,6 +99,20 @@ class Planner {
           format("'{}' and '{}' meet with friction, which statics does not know", name, spec.name),
           "Set friction: 0, or let the model come to rest in dynamics");
     list_.push_back({solid, body, shape, stated.law});
+  }
+
+  /// A band that is wide against the triangles of a shape would reach through them.
+  void check_tolerance(const std::string& where, const std::string& solid, const BodySpec& body,
+                       std::size_t k, const ContactLawSpec& law) {
+    const ShapeSpec& shape = body.shapes[k];
+    if (!(law.gap_tolerance > 0.0) || law.potential == "linear") return;
+    const double most = widest_tolerance(shape);
+    if (law.gap_tolerance > most)
+      fault(where,
+            format("'{}' meets the {} of '{}' with a gap_tolerance of {:.3g} m, above a quarter of "
+                   "the median edge of its triangles, {:.3g} m",
+                   solid, shape.type, body.name, law.gap_tolerance, most),
+            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
   }
 
   /// Two solids; or one with itself, if it says so.
@@ -174,46 +170,6 @@ class Planner {
   std::vector<SurfacePair> list_;
 };
 
-/// Half the smallest extent of a shape; infinite for a plane.
-double radius_of(const ShapeSpec& shape) {
-  if (shape.type == "plane") return std::numeric_limits<double>::infinity();
-  if (shape.type != "hull") return 0.5 * *std::min_element(shape.sizes.begin(), shape.sizes.end());
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : hull_points(shape)) box.extend(x);
-  return 0.5 * box.sizes().minCoeff();
-}
-
-RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {
-  RigidSurface s;
-  const std::vector<double>& size = shape.sizes;
-  const auto rounding = [&] {
-    return std::clamp(tolerance, kRounding * s.half.minCoeff(), 0.5 * s.half.minCoeff());
-  };
-  if (shape.type == "sphere") {
-    s.kind = RigidSurface::Kind::sphere;
-    s.radius = 0.5 * size[0];
-  } else if (shape.type == "capsule") {
-    s.kind = RigidSurface::Kind::capsule;
-    s.radius = 0.5 * size[0];
-    s.half[2] = 0.5 * std::max(0.0, size[1] - size[0]);
-  } else if (shape.type == "cylinder") {
-    s.kind = RigidSurface::Kind::cylinder;
-    s.radius = 0.5 * size[0];
-    s.half = Vec3(s.radius, s.radius, 0.5 * size[1]);
-    s.rounding = rounding();
-  } else if (shape.type == "box") {
-    s.kind = RigidSurface::Kind::box;
-    s.half = 0.5 * Vec3(size[0], size[1], size[2]);
-    s.rounding = rounding();
-  } else if (shape.type != "plane") {
-    s.kind = RigidSurface::Kind::convex;
-    const double radius = radius_of(shape);
-    s.solid = std::make_shared<contact::Shape>(contact_shape(
-        where, {}, shape, std::clamp(tolerance, kRounding * radius, kMostRounding * radius)));
-  }
-  return s;
-}
-
 /// Young's modulus of small strains [Pa].
 double modulus(const Model& model, const SolidSpec& solid) {
   const MaterialSpec& spec =
@@ -254,7 +210,8 @@ class SurfacesBuilder {
           format("{} on {}", model_.solids[static_cast<std::size_t>(pair.solid)].name,
                  body.shapes.size() > 1 ? format("{}.{}", body.name, pair.shape) : body.name);
       const double edge = median_edge(block, X);
-      const SurfaceLaw law = law_of(pair.law, {pair.solid}, edge, std::min(edge, radius_of(shape)));
+      const SurfaceLaw law =
+          law_of(pair.law, {pair.solid}, edge, std::min(edge, smallest_detail(shape)));
       SurfacePoints points;
       try {
         points = surface_points(where, block, X, left_out);
@@ -353,7 +310,7 @@ class SurfacesBuilder {
     place.origin = own.origin;
     place.axes = own.axes;
     if (carrier == kGround) return place;
-    const double radius = radius_of(shape);
+    const double radius = half_size(shape);
     place.size = std::isfinite(radius) ? 2.0 * radius : 1.0;
     const Quat q = body.orientation.normalized();
     for (int k = 0; k < 4; ++k) {

@@ -4,13 +4,6 @@
 
 namespace polhode {
 
-namespace {
-
-/// Triangles around a tube, which touches as a mesh.
-constexpr int kTubeSegments = 48;
-
-}  // namespace
-
 contact::Shape contact_shape(const std::string& where, contact::ShapePlace place,
                              const ShapeSpec& shape, double rounding) {
   const std::vector<double>& size = shape.sizes;
@@ -32,8 +25,9 @@ contact::Shape contact_shape(const std::string& where, contact::ShapePlace place
   if (type == "plane") return contact::plane(place);
   if (type == "hull") return contact::hull(where, hull_points(shape), place, rounding);
   if (type == "height_field")
-    return contact::height_field(where, shape.columns, shape.spacing, shape.heights, place);
-  return contact::mesh(where, shape_surface(where, shape, kTubeSegments), place);
+    return contact::height_field(where, shape.columns, shape.spacing, shape.heights, place,
+                                 rounding);
+  return contact::mesh(where, shape_surface(where, shape, kTubeSegments), place, rounding);
 }
 
 }  // namespace polhode

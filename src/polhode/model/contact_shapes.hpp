@@ -8,9 +8,13 @@
 
 namespace polhode {
 
+/// Triangles around a tube, which touches as a mesh.
+inline constexpr int kTubeSegments = 48;
+
 /// A shape of the model file as contact knows it.
 /// @param place  Of the shape, see shape_place().
-/// @param rounding  Of edges and corners of boxes, cones and hulls [m]; 0: contact's own.
+/// @param rounding  Of edges and corners of boxes, cones, hulls and triangles [m]; 0: contact's
+/// own.
 /// @throws InputError if contact refuses it.
 [[nodiscard]] contact::Shape contact_shape(const std::string& where, contact::ShapePlace place,
                                            const ShapeSpec& shape, double rounding = 0.0);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <polhode/base/error.hpp>
+#include <polhode/contact/hull.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
 #include <polhode/so3/cayley.hpp>
 #include <polhode/so3/hat.hpp>
@@ -55,11 +56,28 @@ RigidSurface around(const contact::Shape& shape) {
 }
 
 /// The box of the cases as a convex hull.
-contact::Shape brick() {
+std::vector<Vec3> brick_corners() {
   std::vector<Vec3> corners;
   for (int k = 0; k < 8; ++k)
     corners.emplace_back(k & 1 ? 2.0 : -2.0, k & 2 ? 3.0 : -3.0, k & 4 ? 2.5 : -2.5);
-  return contact::hull("brick", corners, {}, kTolerance);
+  return corners;
+}
+contact::Shape brick() { return contact::hull("brick", brick_corners(), {}, kTolerance); }
+
+RigidSurface of_triangles(const contact::Shape& shape) {
+  return {.kind = RigidSurface::Kind::mesh, .triangles = std::make_shared<RigidMesh>(shape)};
+}
+
+RigidSurface brick_of_triangles() {
+  return of_triangles(
+      contact::mesh("brick", contact::convex_hull("brick", brick_corners()), {}, kTolerance));
+}
+
+/// A valley along y between two slopes of 1:2.
+RigidSurface valley() {
+  std::vector<double> heights;
+  for (int i = 0; i < 25; ++i) heights.push_back(1.5 * std::abs(i % 5 - 2));
+  return of_triangles(contact::height_field("valley", 5, 3.0, heights, {}, kTolerance));
 }
 
 std::vector<Case> cases() {
@@ -84,7 +102,12 @@ std::vector<Case> cases() {
           {"cone_flank", around(contact::cone("c", 6.0, 6.0, {}, kTolerance)), Vec3(0.9, 1.2, 0.0)},
           {"cone_base", around(contact::cone("c", 6.0, 6.0, {}, kTolerance)), Vec3(0.6, 0.8, -3.0)},
           {"hull_face", around(brick()), Vec3(2.0, 0.5, 0.2)},
-          {"hull_edge", around(brick()), Vec3(1.85, 2.85, 0.2)}};
+          {"hull_edge", around(brick()), Vec3(1.85, 2.85, 0.2)},
+          {"mesh_face", brick_of_triangles(), Vec3(2.0, 0.5, 0.2)},
+          {"mesh_edge", brick_of_triangles(), Vec3(1.85, 2.85, 0.2)},
+          {"mesh_corner", brick_of_triangles(), Vec3(1.75, 2.75, 2.25)},
+          {"valley_slope", valley(), Vec3(1.5, 0.4, 0.75)},
+          {"valley_bottom", valley(), Vec3(0.02, 0.4, 0.05)}};
 }
 
 struct Scene {
@@ -346,7 +369,8 @@ TEST(ConvexSurface, HasTheGapOfTheShapeThatItIs) {
   const RigidSurface round = around(contact::ellipsoid("ball", {4.0, 4.0, 4.0}));
   const RigidSurface spike = around(contact::cone("spike", 4.0, 6.0, {}, 0.1));
   const auto compare = [](const RigidSurface& a, const RigidSurface& b, const Vec3& y) {
-    const RigidSurface::Gap g = a.gap(y), h = b.gap(y);
+    const contact::NormalLaw any;
+    const RigidSurface::Gap g = a.gap(y, {any}), h = b.gap(y, {any});
     EXPECT_NEAR(g.value, h.value, 1e-13);
     EXPECT_LT((g.normal - h.normal).norm(), 1e-11);
     EXPECT_LT((g.curvature - h.curvature).norm(), 1e-9);

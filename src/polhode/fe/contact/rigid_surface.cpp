@@ -60,8 +60,13 @@ RigidSurface::Gap over(const contact::Shape& solid, const Vec3& y) {
 
 }  // namespace
 
-double RigidSurface::distance(const Vec3& y) const {
-  if (kind != Kind::convex) return gap(y).value;
+RigidSurface::Gap RigidSurface::gap(const Vec3& y, const GapQuestion& question) const {
+  return kind == Kind::mesh ? triangles->gap(y, question) : plain_gap(y);
+}
+
+double RigidSurface::distance(const Vec3& y, double at_most, bool sided) const {
+  if (kind == Kind::mesh) return triangles->distance(y, at_most, sided);
+  if (kind != Kind::convex) return plain_gap(y).value;
   const Mat3 still = Mat3::Identity();
   return contact::point_over_solid(contact::v3(y), 0.0, *solid,
                                    Placement<double>(Vec3::Zero(), still, 6))
@@ -70,7 +75,7 @@ double RigidSurface::distance(const Vec3& y) const {
 
 /// With c the nearest point of the core, d = |y − c|, n = (y − c)/d: the gap d
 /// − radius has the Hessian (I − Dc − n nᵀ)/d. @eq{surface-gap}
-RigidSurface::Gap RigidSurface::gap(const Vec3& y) const {
+RigidSurface::Gap RigidSurface::plain_gap(const Vec3& y) const {
   Nearest core;
   double offset = radius;
   switch (kind) {
@@ -79,6 +84,7 @@ RigidSurface::Gap RigidSurface::gap(const Vec3& y) const {
     case Kind::convex:
       return over(*solid, y);
     case Kind::sphere:
+    case Kind::mesh:
       break;
     case Kind::hollow_sphere: {
       const double d = y.norm();

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <polhode/contact/shape.hpp>
+#include <polhode/fe/contact/rigid_mesh.hpp>
 
 namespace polhode {
 
@@ -11,7 +11,7 @@ namespace polhode {
 ///
 /// Gaps are distances to a convex core (plane, point, segment, disc, box) less
 /// a radius, so they and their gradients are continuous; edges are rounded by
-/// `rounding`.
+/// `rounding`. What is not convex is a surface of triangles, see RigidMesh.
 struct RigidSurface {
   enum class Kind : unsigned char {
     plane,          ///< z = 0, the free side above.
@@ -20,23 +20,26 @@ struct RigidSurface {
     cylinder,       ///< About the z axis, from −half[2] to half[2].
     box,            ///< From −half to half.
     hollow_sphere,  ///< What lies inside a sphere about the origin is free.
-    convex          ///< `solid`: an ellipsoid, cone or convex hull.
+    convex,         ///< `solid`: an ellipsoid, cone or convex hull.
+    mesh            ///< `triangles`: of a closed surface or a field of heights.
   };
   Kind kind = Kind::plane;
   double radius = 0.0;       ///< [m]
   Vec3 half = Vec3::Zero();  ///< [m]
   double rounding = 0.0;     ///< Of the edges of boxes and cylinders [m].
   std::shared_ptr<const contact::Shape> solid = nullptr;
+  std::shared_ptr<const RigidMesh> triangles = nullptr;
 
-  /// Gap [m], its gradient [-] and Hessian [1/m].
-  struct Gap {
-    double value = 0.0;
-    Vec3 normal = Vec3::UnitZ();
-    Mat3 curvature = Mat3::Zero();
-  };
-  [[nodiscard]] Gap gap(const Vec3& y) const;
-  /// The value alone.
-  [[nodiscard]] double distance(const Vec3& y) const;
+  using Gap = SurfaceGap;
+  [[nodiscard]] Gap gap(const Vec3& y, const GapQuestion& question) const;
+  /// How far the surface is: the gap, of several features the least one.
+  /// @param at_most  As in GapQuestion, like `sided`.
+  [[nodiscard]] double distance(const Vec3& y,
+                                double at_most = std::numeric_limits<double>::infinity(),
+                                bool sided = false) const;
+
+ private:
+  [[nodiscard]] Gap plain_gap(const Vec3& y) const;
 };
 
 }  // namespace polhode

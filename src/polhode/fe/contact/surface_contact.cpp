@@ -94,15 +94,43 @@ T with_derivative(double value, const Vec3& D) {
 
 }  // namespace
 
+namespace {
+
+/// Weights of forces this close to the end of the barrier, as part of its band, are those there:
+/// only iterates get nearer.
+constexpr double kDeep = 1e-9;
+
+/// The force at the end of a step as a weight for its direction.
+template <class T>
+T weight(const contact::NormalLaw& law, double gap, const Vec3& normal) {
+  const double least = law.floor() + 2.0 * kDeep * law.tolerance;
+  const auto f = law.force_and_slope(std::max(gap, least));
+  return with_derivative<T>(f.value, gap < least ? Vec3(Vec3::Zero()) : Vec3(f.slope * normal));
+}
+
+/// The mean of the gap's gradients at both ends by the forces there. An end where nothing acts
+/// does not matter: what is nearest there may be another part of the surface.
+template <class T>
+V3<T> mean_normal(const contact::NormalLaw& law, double alpha, const RigidSurface::Gap& g_n,
+                  const RigidSurface::Gap& g_n1) {
+  const T from = T((1.0 - alpha) * weight<double>(law, g_n.value, g_n.normal));
+  const T to = alpha * weight<T>(law, g_n1.value, g_n1.normal);
+  const V3<T> n_1 = with_derivative<T>(g_n1.normal, g_n1.curvature);
+  if (!(contact::value(from + to) > 0.0)) return n_1;
+  return (T(1.0) / (from + to)) * (from * contact::v3(g_n.normal) + to * n_1);
+}
+
+}  // namespace
+
 /// Everything that depends on y_{n+1}, with or without its derivatives.
 template <class T>
 struct SurfaceContact::Terms {
   V3<T> h, friction, bristle, slid;
-  T pressure{};
+  T lambda{}, pressure{};
 
-  Terms(const RigidSurface& surface, const SurfaceLaw& law, const NodeStep& step,
-        const Place& place, const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1,
-        const double* memory, bool& slips) {
+  Terms(const SurfaceLaw& law, const NodeStep& step, const Place& place,
+        const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1, const double* memory,
+        bool& slips) {
     const StepContext& context = step.context;
     const double alpha = step.alpha_f;
     const Vec3 dy = place.at_n1 - place.at_n;
@@ -111,23 +139,21 @@ struct SurfaceContact::Terms {
                                                         .alpha_f = alpha,
                                                         .conserving = context.conserving,
                                                         .end_share = law.end_share});
-    pressure = with_derivative<T>(force.value, force.slope * g_n1.normal);
-    // Where the normal is taken: the middle, where the correction makes it a
-    // discrete gradient.
-    const double weight = context.conserving ? 0.5 : alpha;
-    const RigidSurface::Gap g_m = surface.gap(Vec3(place.at_n + weight * dy));
-    const V3<T> n = with_derivative<T>(g_m.normal, Mat3(weight * g_m.curvature));
+    lambda = with_derivative<T>(force.value, force.slope * g_n1.normal);
     const V3<T> u = with_derivative<T>(dy, Mat3::Identity());
-    V3<T> N = n;
+    const V3<T> mean = mean_normal<T>(law.normal, alpha, g_n, g_n1);
+    V3<T> N = mean;
     if (context.conserving && dy.norm() > kNoDirection * law.normal.tolerance) {
+      const V3<T> middle = alpha == 0.5 ? mean : mean_normal<T>(law.normal, 0.5, g_n, g_n1);
       const T change = with_derivative<T>(g_n1.value - g_n.value, g_n1.normal);
-      N = N + ((change - dot(n, u)) / dot(u, u)) * u;
+      N = N + ((change - dot(middle, u)) / dot(u, u)) * u;
     }
-    if (context.conserving && alpha != 0.5)
-      N = N + (alpha - 0.5) *
-                  (with_derivative<T>(g_n1.normal, g_n1.curvature) - contact::v3(g_n.normal));
-    h = pressure * N;
+    h = lambda * N;
+    if (!(contact::value(mean).norm() > 0.0)) return;  // round a sharp edge, from front to back
+    const T length = norm(mean);
+    pressure = lambda * length;
     if (law.mu == 0.0 || context.dt == 0.0) return;
+    const V3<T> n = (T(1.0) / length) * mean;
     const V3<double> kept{memory[0], memory[1], memory[2]};
     contact::Cone<T> cone;
     cone.radius = (law.mu / law.bristle) * pressure;
@@ -144,31 +170,38 @@ struct SurfaceContact::Terms {
 SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& place,
                                            const double* memory, bool tangent) const {
   Action a;
-  const RigidSurface::Gap g_n = surface_.gap(place.at_n), g_n1 = surface_.gap(place.at_n1);
+  const double reach = law_.normal.reach();
+  const Vec3 way = place.at_n1 - place.at_n;
+  // Of a gap that acts at the other end of the step only, the value matters as well.
+  const GapQuestion question{law_.normal, reach + way.norm(), sided(step)};
+  const RigidSurface::Gap g_n1 = surface_.gap(place.at_n1, question);
+  const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : surface_.gap(place.at_n, question);
   a.gap_n = g_n.value;
   a.gap_n1 = g_n1.value;
-  const double reach = law_.normal.reach();
   if (g_n.value >= reach && g_n1.value >= reach) return a;
   a.acts = true;
   if (step.context.dt == 0.0) {  // an instant
-    a.pressure = law_.normal.force(g_n1.value);
+    a.lambda = law_.normal.force(g_n1.value);
+    a.pressure = a.lambda * g_n1.normal.norm();
     if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory[0], memory[1], memory[2]);
-    a.h = a.pressure * g_n1.normal + a.friction;
+    a.h = a.lambda * g_n1.normal + a.friction;
     a.slips = memory[3] != 0.0;
     return a;
   }
   if (!tangent) {
-    const Terms<double> t(surface_, law_, step, place, g_n, g_n1, memory, a.slips);
+    const Terms<double> t(law_, step, place, g_n, g_n1, memory, a.slips);
     a.h = contact::value(t.h);
     a.friction = contact::value(t.friction);
     a.bristle = contact::value(t.bristle);
     a.slid = contact::value(t.slid);
+    a.lambda = t.lambda;
     a.pressure = t.pressure;
     return a;
   }
-  const Terms<Dual> t(surface_, law_, step, place, g_n, g_n1, memory, a.slips);
+  const Terms<Dual> t(law_, step, place, g_n, g_n1, memory, a.slips);
   a.h = contact::value(t.h);
   for (int j = 0; j < 3; ++j) a.D.col(j) << t.h.x.d[j], t.h.y.d[j], t.h.z.d[j];
+  a.lambda = t.lambda.v;
   a.pressure = t.pressure.v;
   return a;
 }

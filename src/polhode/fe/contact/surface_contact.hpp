@@ -91,7 +91,8 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
     Vec3 friction = Vec3::Zero();  ///< Part of h.
     Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
     Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
-    double pressure = 0.0;
+    double lambda = 0.0;           ///< Conjugate to the gap.
+    double pressure = 0.0;         ///< Of the normal force.
     double gap_n = 0.0, gap_n1 = 0.0;
     bool acts = false, slips = false;
   };
@@ -107,6 +108,10 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   [[nodiscard]] Mat3 axes(const double* x) const;
   [[nodiscard]] Place place(const NodeStep& step, int point) const {
     return {local(step.x_n, point), local(step.x_n1, point)};
+  }
+  /// Whether points may get within surfaces, as iterates of statics do, see GapQuestion.
+  [[nodiscard]] bool sided(const NodeStep& step) const {
+    return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }
   [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
                            bool tangent) const;

@@ -14,16 +14,17 @@ namespace {
 constexpr double kLeave = 0.1;
 /// Ways are followed by advances of the gap's own size, at most so many.
 constexpr int kMostAdvances = 200;
+/// Clearances beyond this many bands are all alike.
+constexpr double kFar = 10.0;
 
 }  // namespace
 
 void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
                                 std::vector<double>& list) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return;
-  for (int i = 0; i < size(); ++i) {
-    const double gap = surface_.distance(local(step.x_n1, i)) - law_.normal.floor();
-    list.push_back(gap / (2.0 * law_.normal.tolerance));
-  }
+  const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
+  for (int i = 0; i < size(); ++i)
+    list.push_back((surface_.distance(local(step.x_n1, i), floor + kFar * band) - floor) / band);
 }
 
 /// The gap changes by no more than the way in the surface's coordinates.
@@ -31,17 +32,21 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
                                  const double* /*history*/) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
   double most = 1.0;
+  const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i) {
     const Vec3 start = local(from.x_n1, i), way = local(to.x_n1, i) - start;
     const double length = way.norm();
-    double room = surface_.distance(start) - law_.normal.floor();
-    const double least = kLeave * std::min(room, 2.0 * law_.normal.tolerance);
+    const auto room_at = [&](const Vec3& y) {
+      return surface_.distance(y, floor + length + band) - floor;
+    };
+    double room = room_at(start);
+    const double least = kLeave * std::min(room, band);
     if (room <= 0.0 || room - least >= length * most) continue;
     double part = 0.0;
     for (int k = 0; k < kMostAdvances && part < most; ++k) {
       const double advance = (room - least) / length;
       part += advance;
-      room = surface_.distance(start + std::min(part, most) * way) - law_.normal.floor();
+      room = room_at(start + std::min(part, most) * way);
       if (room <= least) break;
     }
     most = std::min(most, part);
@@ -52,7 +57,7 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
 double SurfaceContact::overlap(const NodeStep& instant) const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size(); ++i)
-    least = std::min(least, surface_.distance(local(instant.x_n1, i)));
+    least = std::min(least, surface_.distance(local(instant.x_n1, i), least, true));
   return least > -law_.normal.tolerance ? -1.0 : -least;
 }
 
@@ -68,7 +73,7 @@ SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Ac
   e.by_friction = std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 + half_k * kept.squaredNorm());
   if (law_.end_share > 0.0 || step.alpha_f != 0.5)
     e.by_pressure =
-        std::max(0.0, -a.pressure * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+        std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
   return e;
 }
 
@@ -76,13 +81,14 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
                           const double* /*scratch*/) const {
   Work w;
   const bool instant = step.x_n == step.x_n1;
+  const GapQuestion question{law_.normal, law_.normal.reach(), false};
   for (int i = 0; i < size(); ++i) {
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
       const Vec3 kept(memory[0], memory[1], memory[2]);
-      w.stored += area * (law_.normal.energy(surface_.distance(local(step.x_n1, i))) +
-                          0.5 * law_.bristle * kept.squaredNorm());
+      const double gap = surface_.gap(local(step.x_n1, i), question).value;
+      w.stored += area * (law_.normal.energy(gap) + 0.5 * law_.bristle * kept.squaredNorm());
       continue;
     }
     const Action a = act(step, place(step, i), memory, false);
@@ -113,7 +119,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
     double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     const Action a = act(step, place(step, i), memory, false);
-    t.gap = std::min(t.gap, a.gap_n1);
+    t.gap = std::min(t.gap, a.acts ? a.gap_n1 : surface_.distance(local(step.x_n1, i), t.gap));
     if (a.acts && !instant) {
       const Energies e = energies(step, a, memory);
       t.friction_loss += area * e.by_friction;
@@ -159,9 +165,9 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     if (!(memory[10] > 0.0)) continue;
     const double area = points_.points[static_cast<std::size_t>(i)].area;
-    const RigidSurface::Gap gap = surface_.gap(local(instant.x_n1, i));
+    const RigidSurface::Gap gap = surface_.gap(local(instant.x_n1, i), {law_.normal});
     list.push_back({.point = position(instant.x_n1, i),
-                    .normal = R * gap.normal,
+                    .normal = R * gap.normal.normalized(),
                     .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
                     .friction = area * (R * Vec3(memory[7], memory[8], memory[9])),
                     .gap = gap.value,

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <polhode/contact/nearest.hpp>
+
+namespace polhode::contact {
+
+/// Boxes around triangles in a tree: which of many triangles are near a point. The answers depend
+/// on the triangles alone.
+class TriangleTree {
+ public:
+  TriangleTree(const std::vector<Vec3>& corners, const std::vector<std::array<int, 3>>& triangles);
+
+  /// The triangle nearest to a point; of several the first in the tree.
+  struct Hit {
+    int triangle = -1;  ///< None is nearer than was asked for.
+    TriangleRegion region;
+    double distance = std::numeric_limits<double>::infinity();  ///< [m]
+  };
+  /// @param at_most  Triangles farther away do not matter [m].
+  [[nodiscard]] Hit nearest(const Vec3& x, double at_most) const;
+
+  /// Triangles whose boxes come as near to a point as `distance`, and perhaps others.
+  [[nodiscard]] std::vector<int> near(const Vec3& x, double distance) const;
+
+  [[nodiscard]] const Vec3& low() const { return nodes_.front().low; }  ///< Of all triangles [m].
+  [[nodiscard]] const Vec3& high() const { return nodes_.front().high; }
+
+ private:
+  struct Node {
+    Vec3 low, high;
+    int first = 0, count = 0;  ///< Of a leaf: into order_.
+    int second_child = 0;      ///< Else: the first one follows.
+    [[nodiscard]] double squared_distance(const Vec3& x) const {
+      return (low - x).cwiseMax(x - high).cwiseMax(0.0).squaredNorm();
+    }
+  };
+  void build(const std::vector<Vec3>& middles, int first, int last);
+
+  std::vector<std::array<Vec3, 3>> triangles_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace polhode::contact

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/fe/contact/rigid_surface.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// Half the smallest extent of a shape [m]; infinite for a plane.
+[[nodiscard]] double half_size(const ShapeSpec& shape);
+
+/// The length that a tolerance of the gap is to be small against: half the smallest extent, of
+/// surfaces of triangles their median edge [m].
+[[nodiscard]] double smallest_detail(const ShapeSpec& shape);
+
+/// The widest tolerance that does not reach through the triangles of a shape [m]; others have no
+/// limit.
+[[nodiscard]] double widest_tolerance(const ShapeSpec& shape);
+
+/// A shape as surfaces of solids meet it, in its own coordinates. Its edges are rounded by the
+/// tolerance of the gap, as far as the shape allows.
+[[nodiscard]] RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
+                                         double tolerance);
+
+}  // namespace polhode

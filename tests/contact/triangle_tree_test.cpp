@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <polhode/contact/triangle_tree.hpp>
+
+#include "shapes_for_tests.hpp"
+
+namespace polhode::test {
+namespace {
+
+using contact::TriangleTree;
+
+TEST(TriangleTree, FindsWhatALookAtAllTrianglesFinds) {
+  const TriangleSurface ring = torus(0.35, 0.15);
+  const TriangleTree tree(ring.points, ring.triangles);
+  Random random(5);
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 x = random.vector(0.8);
+    double least = 1e9;
+    std::vector<int> near;
+    for (int t = 0; t < static_cast<int>(ring.triangles.size()); ++t) {
+      const auto& c = ring.triangles[static_cast<std::size_t>(t)];
+      const auto at = [&](std::size_t i) { return ring.points[static_cast<std::size_t>(c[i])]; };
+      const double d = (x - contact::nearest_on_triangle(x, at(0), at(1), at(2)).nearest).norm();
+      least = std::min(least, d);
+      if (d <= 0.1) near.push_back(t);
+    }
+    EXPECT_EQ(tree.nearest(x, 10.0).distance, least);
+    EXPECT_EQ(tree.nearest(x, 1.001 * least).distance, least);
+    EXPECT_EQ(tree.nearest(x, 0.999 * least).triangle, -1) << "none is as near as that";
+    std::vector<int> found = tree.near(x, 0.1);
+    std::sort(found.begin(), found.end());
+    EXPECT_TRUE(std::includes(found.begin(), found.end(), near.begin(), near.end()));
+    EXPECT_LT(found.size(), ring.triangles.size() / 2);
+    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+  }
+}
+
+}  // namespace
+}  // namespace polhode::test

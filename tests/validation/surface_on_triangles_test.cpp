@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces of solids on rigid meshes, fields of heights and tubes, from model files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include <contact/shapes_for_tests.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/checkpoint.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/simulation.hpp>
+#include <support/scratch.hpp>
+
+namespace polhode::test {
+namespace {
+
+using testing::HasSubstr;
+
+void write_obj(const std::string& file, const TriangleSurface& surface) {
+  std::ofstream out(file);
+  for (const Vec3& x : surface.points)
+    out << format("v {:.17g} {:.17g} {:.17g}\n", x[0], x[1], x[2]);
+  for (const auto& t : surface.triangles)
+    out << format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+}
+
+/// A box about the origin with n × n × 1 cells.
+TriangleSurface plate(const Vec3& size, int n) {
+  TriangleSurface s;
+  const int m = n + 1;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i)
+        s.points.push_back(size.cwiseProduct(
+            Vec3(static_cast<double>(i) / n, static_cast<double>(j) / n, k) - Vec3::Constant(0.5)));
+  const auto at = [&](int i, int j, int k) { return (k * m + j) * m + i; };
+  const auto quad = [&](int a, int b, int c, int d) {
+    s.triangles.push_back({a, b, c});
+    s.triangles.push_back({a, c, d});
+  };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      quad(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
+      quad(at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0));
+    }
+  for (int i = 0; i < n; ++i) {
+    quad(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1));
+    quad(at(i, n, 0), at(i, n, 1), at(i + 1, n, 1), at(i + 1, n, 0));
+    quad(at(0, i, 0), at(0, i, 1), at(0, i + 1, 1), at(0, i + 1, 0));
+    quad(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
+  }
+  return s;
+}
+
+std::string flat_field(int n, double spacing) {
+  std::string row;
+  for (int i = 0; i < n; ++i) row += i > 0 ? ", 0" : "0";
+  std::string rows;
+  for (int i = 0; i < n; ++i) rows += (i > 0 ? ", [" : "[") + row + "]";
+  return format("{{height_field: {{spacing: {}, heights: [{}]}}}}", spacing, rows);
+}
+
+/// A cube of rubber and a body that spins freely, in space.
+Model meeting(const std::string& shape, const std::string& law, const std::string& duration) {
+  return read_model_text(R"(
+format: 1
+bodies:
+  ring: {density: 500, position: [0.19, 0.01, 0.02], velocity: [-1, 0, 0], angular_velocity: [2, 3, 1], shape: )" +
+                             shape + R"(}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  cube:
+    mesh: {block: {size: [0.1, 0.1, 0.1], cells: [3, 3, 3]}}
+    material: rubber
+    velocity: [0.5, 0, 0]
+contacts: {default: {)" + law +
+                             R"(}}
+analysis: {duration: )" + duration +
+                             R"(, step: 0.5 ms}
+)",
+                         "meeting.yaml");
+}
+
+TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
+  const Scratch folder;
+  const std::string file = folder / "ring.obj";
+  write_obj(file, torus(0.07, 0.03));
+  for (const std::string& shape :
+       {format("{{mesh: {}}}", file), std::string("{tube: [0.16, 0.08, 0.1]}")}) {
+    Simulation simulation(meeting(shape, "restitution: 1", "0.15 s"));
+    const RunSummary summary = simulation.run();
+    ASSERT_EQ(summary.end, RunEnd::finished) << shape << summary.message;
+    EXPECT_GT(simulation.contact(0).impulse, 0.1) << shape;
+    EXPECT_LT(summary.energy_drift, 1e-11) << shape;
+    EXPECT_LT(summary.linear_momentum_drift, 1e-12) << shape;
+    EXPECT_LT(summary.angular_momentum_drift, 1e-12) << shape;
+  }
+}
+
+TEST(SurfaceOnTriangles, GoesOnFromACheckpointInTheSameBits) {
+  const Scratch folder;
+  write_obj(folder / "ring.obj", torus(0.07, 0.03));
+  const Model model = meeting(format("{{mesh: {}}}", folder / "ring.obj"),
+                              "restitution: 0.5, friction: 0.5", "80 ms");
+  const std::string file = folder / "checkpoint.pst";
+  Simulation straight(model);
+  int touched = 0;
+  const RunSummary summary = straight.run({}, [&](Simulation& s) {
+    if (s.contact(0).points == 0 || ++touched != 3) return;
+    write_checkpoint(file, model, s.system(), s.state());
+  });
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  ASSERT_GT(touched, 3);
+  EXPECT_LT(summary.linear_momentum_drift, 1e-12);
+  Simulation continued(model, read_checkpoint(file, model, straight.system()));
+  EXPECT_LT(continued.time(), straight.time());
+  ASSERT_EQ(continued.run().end, RunEnd::finished);
+  EXPECT_EQ(continued.state_hash(), straight.state_hash());
+}
+
+/// Places of the nodes of a block after a run on a body.
+std::vector<Vec3> after_run(const std::string& body, const std::string& block,
+                            const std::string& duration) {
+  Simulation simulation(read_model_text(R"(
+format: 1
+gravity: [0, 0, -9.81]
+bodies: {base: {fixed: true, )" + body + R"(}}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 2 ms}}}
+solids:
+  block: {material: rubber, )" + block +
+                                            R"(}
+contacts: {default: {friction: 0.2, gap_tolerance: 0.5 mm, reference_pressure: 20 kPa}}
+analysis: {duration: )" + duration +
+                                            R"(, step: 2 ms}
+)",
+                                        "slide.yaml"));
+  const RunSummary summary = simulation.run();
+  EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
+  EXPECT_GT(simulation.contact(0).impulse, 0.1);
+  return simulation.solid(0).position;
+}
+
+double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, (a[k] - b[k]).norm());
+  return most;
+}
+
+/// Triangles in a plane are that plane: a block slides across their edges and corners as if there
+/// were none.
+TEST(SurfaceOnTriangles, SlidesDownAFieldAsDownAPlane) {
+  const double slope = 20.0 / 180.0 * std::acos(-1.0);
+  const std::string turned = "orientation: {axis: y, angle: 20 deg}";
+  const Vec3 up(std::sin(slope), 0.0, std::cos(slope)),
+      down(std::cos(slope), 0.0, -std::sin(slope));
+  const Vec3 start = 0.0503 * up + 0.013 * Vec3::UnitY();
+  const std::string block = format(
+      "mesh: {{block: {{size: [0.2, 0.2, 0.1], cells: [3, 3, 2]}}, position: [{:.17g}, "
+      "{:.17g}, {:.17g}], {}}}",
+      start[0], start[1], start[2], turned);
+  const std::vector<Vec3> on_field =
+      after_run(turned + ", shape: " + flat_field(41, 0.0625), block, "0.6 s");
+  const std::vector<Vec3> on_plane = after_run(turned + ", shape: {plane: z}", block, "0.6 s");
+  EXPECT_LT(farthest(on_field, on_plane), 1e-9);
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : on_field) middle += x / static_cast<double>(on_field.size());
+  const double way = 0.5 * 9.81 * (std::sin(slope) - 0.2 * std::cos(slope)) * 0.36;
+  // It lands with four times its weight, and bristles take 3 ms to hold against that.
+  EXPECT_NEAR(down.dot(middle - start) / way, 1.0, 0.02);
+}
+
+/// Edges and corners included, if they are rounded alike.
+TEST(SurfaceOnTriangles, FallsOnABoxOfTrianglesAsOnABox) {
+  const Scratch folder;
+  write_obj(folder / "box.obj", plate({0.3, 0.3, 0.2}, 3));
+  const std::string block =
+      "mesh: {block: {size: [0.1, 0.1, 0.1], cells: [2, 2, 2]}, position: [0.143, 0.137, 0.18], "
+      "orientation: {axis: [1, 2, 0], angle: 35 deg}}, velocity: [0, 0, -1]";
+  const std::vector<Vec3> on_box = after_run("shape: {box: [0.3, 0.3, 0.2]}", block, "0.3 s");
+  const std::vector<Vec3> on_mesh =
+      after_run(format("shape: {{mesh: {}}}", folder / "box.obj"), block, "0.3 s");
+  EXPECT_LT(farthest(on_box, on_mesh), 1e-7);
+  EXPECT_GT(farthest(on_box, {on_box.size(), Vec3(0.143, 0.137, 0.1)}), 0.1) << "it fell off";
+}
+
+/// A cube of rubber is shot at what it would pass in a twentieth of a step.
+TEST(SurfaceOnTriangles, NothingPassesThroughThinWalls) {
+  const Scratch folder;
+  write_obj(folder / "plate.obj", plate({1.0, 1.0, 0.005}, 6));
+  const std::string mesh = format("{{mesh: {}}}", folder / "plate.obj");
+  for (const std::string& shape : {mesh, flat_field(9, 0.125),
+                                   std::string("{tube: [1.5, 1.49, 0.5], position: [0, 0, -0.75], "
+                                               "orientation: {axis: x, angle: 90 deg}}")}) {
+    Simulation simulation(read_model_text(R"(
+format: 1
+bodies: {wall: {fixed: true, shape: )" + shape +
+                                              R"(}}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000, viscosity: {relaxation_time: 1 ms}}}
+solids:
+  cube:
+    mesh: {block: {size: [0.1, 0.1, 0.1], cells: [2, 2, 2]}, position: [0.02, 0.01, 0.33], orientation: {axis: [1, 2, 0], angle: 20 deg}}
+    material: rubber
+    velocity: [0.3, 0, -20]
+contacts: {default: {friction: 0.3}}
+analysis: {duration: 40 ms, step: 5 ms}
+)",
+                                          "shot.yaml"));
+    double energy = simulation.balance().kinetic, rise = 0.0;
+    const RunSummary summary = simulation.run({}, [&](Simulation& s) {
+      const Balance b = s.balance();
+      rise = std::max(rise, b.kinetic + b.potential - energy);
+      energy = b.kinetic + b.potential;
+      for (const Vec3& x : s.solid(0).position) EXPECT_GT(x[2], -0.02) << "at " << s.time();
+    });
+    ASSERT_EQ(summary.end, RunEnd::finished) << shape << summary.message;
+    EXPECT_GT(simulation.contact(0).impulse, 20.0) << shape << ": it was stopped";
+    EXPECT_LT(rise, 1e-9 * 200.0) << shape;
+  }
+}
+
+/// The pressure arrives at every node, over corners and edges of the field, too.
+TEST(SurfaceOnTriangles, PassesThePatchTestOnAField) {
+  Simulation simulation(read_model_text(R"(
+format: 1
+bodies: {floor: {fixed: true, shape: )" + flat_field(9, 0.25) +
+                                            R"(}}
+materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
+solids:
+  block:
+    mesh: {block: {size: [1, 1, 0.8], cells: [3, 2, 2]}, position: [0, 0, 0.4]}
+    element: hex8_standard
+    material: m
+    contact: {surface: zmin}
+    prescribed: {x: {nodes: xmin, x: 0}, y: {nodes: ymin, y: 0}}
+loads: {p: {type: pressure, solid: block, surface: zmax, pressure: 30, follower: false}}
+contacts: {default: {gap_tolerance: 1 mm}}
+analysis: {type: statics}
+)",
+                                        "patch.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  const std::vector<SurfacePointReport> points = simulation.surface_points(0);
+  ASSERT_EQ(points.size(), 12U);
+  for (const SurfacePointReport& point : points) EXPECT_NEAR(point.pressure / 30.0, 1.0, 1e-10);
+  EXPECT_NEAR(simulation.contact(0).force[2], 30.0, 1e-8);
+}
+
+TEST(SurfaceOnTriangles, RefusesStartsWithin) {
+  const Scratch folder;
+  write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
+  const auto told = [](const std::string& body, const std::string& law = "") -> std::string {
+    try {
+      Simulation(read_model_text(R"(
+format: 1
+bodies: {rock: {fixed: true, )" + body +
+                                     R"(}}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  pad: {mesh: {block: {size: [0.1, 0.1, 0.1], cells: [1, 1, 1]}}, material: rubber}
+contacts: {)" + law + R"(}
+analysis: {duration: 1 ms, step: 1 ms}
+)",
+                                 "start.yaml"))
+          .run();
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const std::string box = format("shape: {{mesh: {}}}", folder / "box.obj");
+  EXPECT_THAT(told(box), HasSubstr("pad in rock by 0.2 m")) << "all of it is within";
+  EXPECT_THAT(told(box + ", position: [0.28, 0, 0]"), HasSubstr("pad in rock by 0.02 m"));
+  EXPECT_EQ(told(box + ", position: [0.3001, 0, 0]"), "");
+  const std::string field = "shape: " + flat_field(5, 0.1);
+  EXPECT_THAT(told(field + ", position: [0, 0, 1]"), HasSubstr("pad in rock by 1.05 m"));
+  EXPECT_EQ(told(field + ", position: [0, 0, -0.0501]"), "");
+  EXPECT_EQ(told(field + ", position: [1, 0, 1]"), "") << "beside it";
+  EXPECT_THAT(told(box + ", position: [1, 0, 0]", "default: {gap_tolerance: 0.1}"),
+              HasSubstr("a gap_tolerance of 0.1 m, above a quarter of the median edge of its "
+                        "triangles, 0.0884 m"));
+}
+
+}  // namespace
+}  // namespace polhode::test
