@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <polhode/assembly/node_step.hpp>
+
 namespace polhode {
 
 /// Blocks of the nodes' tangent by row and column, ascending.
@@ -22,6 +24,10 @@ class MovingPattern {
   /// The blocks it may fill during a step. They follow from the group's history alone, so that a
   /// run that goes on from a saved state factors the same matrix.
   [[nodiscard]] virtual const NodeBlocks& blocks(const double* history) const = 0;
+  /// Looks anew for what may meet, if nodes have gone far since that was done: beside at the end of
+  /// a step, in statics after every iteration.
+  /// @param step  From where nodes were before the last move to where they are.
+  virtual void renew(const NodeStep& step, double* history) const = 0;
 };
 
 }  // namespace polhode

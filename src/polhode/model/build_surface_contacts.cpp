@@ -131,10 +131,9 @@ class Planner {
         stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
     const std::string who = s == t ? format("'{}' meets itself", one.name)
                                    : format("'{}' and '{}' meet", one.name, two.name);
-    const std::string mend = s == t ? "leave out contact: {self: true}" : "exclude the pair";
-    if (model_.analysis.type != "dynamics")
-      fault(where, format("{}, which surfaces of solids can do in dynamics only", who),
-            format("Use type: dynamics and let the model come to rest, or {}", mend));
+    if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
+      fault(where, format("{} with friction, which statics does not know", who),
+            "Set friction: 0, or let the model come to rest in dynamics");
     if (const std::string key = strange_key(stated.law); !key.empty())
       fault(where, format("{} by a law with {}, which surfaces of solids do not know", who, key),
             "Give the pair a law of its own in contacts.pairs, without it or with one that is as "

@@ -110,6 +110,7 @@ class Matrices {
     for (std::size_t k = 0; k < nodes.mass().size(); ++k)
       for (int c = 0; c < 3; ++c) blocks[9 * k + 4 * c] = nodes.mass()[k];
     mass_.place_like(K());
+    shifted_.place_like(K());
     mass_.set(values, blocks, nullptr, 1.0);
   }
 

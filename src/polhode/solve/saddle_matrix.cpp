@@ -36,6 +36,11 @@ SaddleMatrix::SaddleMatrix(const System& system, const KktTopology& topology)
       c.P(k, c.count++) = 1.0;
     }
   }
+  find_entries();
+}
+
+void SaddleMatrix::find_entries() {
+  for (std::vector<int>* list : {&row_, &column_, &lower_row_, &lower_column_}) list->clear();
   for_each(nullptr, nullptr, nullptr, 1.0, [&](int i, int j, double) {
     row_.push_back(i);
     column_.push_back(j);
@@ -44,6 +49,13 @@ SaddleMatrix::SaddleMatrix(const System& system, const KktTopology& topology)
   });
   values_.resize(row_.size());
   lower_.resize(row_.size());
+}
+
+bool SaddleMatrix::set_moving(const NodeBlocks& moving) {
+  if (moving_ == moving) return false;
+  moving_ = moving;
+  find_entries();
+  return true;
 }
 
 /// Calls put(row, column, value) for every entry, in an order that depends on the model alone.
@@ -80,23 +92,28 @@ void SaddleMatrix::for_each(const KktValues* bodies, const std::vector<double>* 
     }
   }
   using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  const auto put_block = [&](int i, int j, std::size_t k) {
+    const Carrier &a = carrier_[i], &b = carrier_[j];
+    if (a.count == 0 || b.count == 0) return;
+    Mat6 K = Mat6::Zero();
+    if (blocks && 9 * k < blocks->size())
+      K = s * a.P.transpose() * Block(blocks->data() + 9 * k) * b.P;
+    for (int r = 0; r < a.count; ++r)
+      for (int c = 0; c < b.count; ++c) put(a.unknown[r], b.unknown[c], K(r, c));
+  };
   for (int i = 0; i < nodes.count(); ++i) {
     const Carrier& a = carrier_[i];
     if (a.count == 0) continue;
-    for (int k = nodes.row_start()[i]; k < nodes.row_start()[i + 1]; ++k) {
-      const Carrier& b = carrier_[nodes.column()[k]];
-      if (b.count == 0) continue;
-      Mat6 K = Mat6::Zero();
-      if (blocks) K = s * a.P.transpose() * Block(blocks->data() + 9 * std::size_t(k)) * b.P;
-      for (int r = 0; r < a.count; ++r)
-        for (int c = 0; c < b.count; ++c) put(a.unknown[r], b.unknown[c], K(r, c));
-    }
+    for (int k = nodes.row_start()[i]; k < nodes.row_start()[i + 1]; ++k)
+      put_block(i, nodes.column()[k], static_cast<std::size_t>(k));
     if (nodes[i].body < 0) continue;
     Mat3 D = Mat3::Zero();  // The arm turns as well. @eq{ga-z-tangent}
     if (forces) D = s * hat(Eigen::Map<const Vec3>(forces + 3 * i)) * hat(arm_[i]);
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) put(a.unknown[3 + r], a.unknown[3 + c], D(r, c));
   }
+  for (std::size_t k = 0; k < moving_.row.size(); ++k)
+    put_block(moving_.row[k], moving_.column[k], nodes.column().size() + k);
 }
 
 void SaddleMatrix::place(const Trial& trial) {

@@ -34,14 +34,20 @@ class SaddleMatrix {
   [[nodiscard]] const std::vector<int>& lower_row() const { return lower_row_; }
   [[nodiscard]] const std::vector<int>& lower_column() const { return lower_column_; }
 
+  /// Blocks beside the graph of nodes, see NodeSystem::moving(). @returns whether the entries are
+  /// others than before.
+  bool set_moving(const NodeBlocks& moving);
   /// Takes the arms of the bonded nodes from the trial.
   void place(const Trial& trial);
   /// The same as another matrix of this system.
-  void place_like(const SaddleMatrix& other) { carrier_ = other.carrier_, arm_ = other.arm_; }
+  void place_like(const SaddleMatrix& other) {
+    carrier_ = other.carrier_, arm_ = other.arm_;
+    set_moving(other.moving_);
+  }
   /// A + factor·B, of the same system and topology.
   void combine(const SaddleMatrix& A, double factor, const SaddleMatrix& B);
   /// @param bodies  Values and rows of bodies and joints, scaled by s already.
-  /// @param blocks  3×3 blocks of the graph of nodes, row by row.
+  /// @param blocks  3×3 blocks of the graph of nodes, row by row, then those beside it, or none.
   /// @param forces  Residual of the nodes [N], whose arms turn; null: none.
   void set(const KktValues& bodies, const std::vector<double>& blocks, const double* forces,
            double s);
@@ -70,6 +76,7 @@ class SaddleMatrix {
     int unknown[6];
     Eigen::Matrix<double, 3, 6> P;
   };
+  void find_entries();
   template <class Put>
   void for_each(const KktValues* bodies, const std::vector<double>* blocks, const double* forces,
                 double s, Put&& put) const;
@@ -77,6 +84,7 @@ class SaddleMatrix {
   const System* system_;
   KktTopology topology_;
   int movable_, rows_;
+  NodeBlocks moving_;
   std::vector<Carrier> carrier_;  ///< By node.
   std::vector<Vec3> arm_;         ///< By node, of bonded ones.
   std::vector<int> row_, column_, lower_row_, lower_column_;

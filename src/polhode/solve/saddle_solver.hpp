@@ -19,6 +19,8 @@ class SaddleSolver {
   [[nodiscard]] bool factor(SaddleMatrix& matrix, bool symmetric,
                             const std::vector<double>& diagonal = {});
   void solve(Vec& x) const;
+  /// The matrix has other entries than before.
+  void forget() { lu_.reset(), ldl_.reset(); }
   /// After a symmetric factorisation.
   [[nodiscard]] int negative_pivots() const { return ldl_->negative_pivots(); }
   [[nodiscard]] bool symmetric() const { return symmetric_; }

@@ -66,6 +66,10 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
     const InteractionGroup& group = system.group(ref.group);
     if (group.history_size(ref.item) > 0 && group.lazy_history(ref.item)) turns_.push_back(i);
   }
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* pattern = dynamic_cast<const MovingPattern*>(&nodes.group(g)))
+      meetings_.push_back({pattern, &dynamic_cast<const BarrierPoints&>(nodes.group(g)),
+                           static_cast<std::size_t>(nodes.first_history(g))});
 }
 
 void StaticNewton::enter(double load_factor) {
@@ -94,8 +98,10 @@ ElementReport StaticNewton::assemble() {
   if (!system_->nodes().empty()) {
     follow_bodies(*system_, work_, trial_);
     std::fill(trial_.node_u.begin(), trial_.node_u.end(), 0.0);
+    look_for_meetings();
     report = nodes_.assemble(work_, trial_, true, here_);
     if (!(report.least_volume > 0.0)) return report;
+    if (matrix_.set_moving(nodes_.moving())) solver_.forget();
   }
   newton_.assemble(work_, trial_, true);
   const double s = scale();
@@ -326,7 +332,9 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   StaticStep step;
   step.load_factor = load_factor;
   enter(load_factor);
+  if (start && free_part(state, state.node_x.data(), start->node_x.data()) < 1.0) start = nullptr;
   work_ = start ? *start : state;
+  x_before_.clear();
   start_scratch(work_);
   choose_scale();
   const auto fail = [&](std::string reason) {
@@ -372,7 +380,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     double turn = 0.0;
     for (int b = 0; b < system_->body_count(); ++b)
       turn = std::max(turn, x_.segment<3>(6 * b + 3).norm());
-    part = turn > kRotationCap ? kRotationCap / turn : 1.0;
+    part = std::min(turn > kRotationCap ? kRotationCap / turn : 1.0, free_part_of_increment());
     if (!system_->nodes().empty()) {
       before = work_;
       unknowns_before = element_unknowns(*system_, trial_);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/assembly/barrier_points.hpp>
 #include <polhode/solve/newton_system.hpp>
 #include <polhode/solve/saddle_solver.hpp>
 
@@ -66,6 +67,9 @@ class StaticNewton {
   [[nodiscard]] bool nearly_singular() const;
   void name_free_motions(StaticStep& step);
   void aim(std::vector<double>& du) const;
+  void look_for_meetings();
+  [[nodiscard]] double free_part(const State& at, const double* from, const double* to) const;
+  [[nodiscard]] double free_part_of_increment();
   double apply(double part, StaticStep& step);
   void commit(State& state, double load_factor);
   [[nodiscard]] std::string refused(StaticStep& step) const;
@@ -85,8 +89,16 @@ class StaticNewton {
   Vec x_, rhs_, noise_;        ///< Increment; minus the residual; its rounding. All scaled.
   std::vector<Vec6> moments_;  ///< Residual of bodies with what they carry, scaled.
   std::vector<double> du_, forces_, given_, held_;
-  double force_ = 0.0;      ///< Largest force of the last assembly [N].
-  std::vector<int> turns_;  ///< Interactions whose history counts turns.
+  /// Surfaces of solids that may meet each other.
+  struct Meeting {
+    const MovingPattern* pattern;
+    const BarrierPoints* points;
+    std::size_t first_history;
+  };
+  std::vector<Meeting> meetings_;
+  std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
+  double force_ = 0.0;            ///< Largest force of the last assembly [N].
+  std::vector<int> turns_;        ///< Interactions whose history counts turns.
 };
 
 }  // namespace polhode

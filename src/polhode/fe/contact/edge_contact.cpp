@@ -82,9 +82,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
       moves.x_n1[k] = p.at(step.x_n1);
       moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
     }
-    Touch t{
-        e, f, -1, -1, {moves, data(e, f), law_, step.alpha_f, step.context.conserving || instant},
-        {}};
+    Touch t{e, f, -1, -1, {moves, data(e, f), law_, step.alpha_f, step.context.conserving}, {}};
     if (!t.pair.acts()) continue;
     const int first = e, second = slot_of_second(f);
     if (memory(history, first)[0] == f + 1.0)
@@ -169,7 +167,7 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     const double normal = sides_.area * std::max(0.0, t.pair.pressure());
     sums.friction_loss += sides_.area * t.by_friction;
     sums.normal_loss += sides_.area * taken_by_pressure(step, t);
-    sums.impulse += normal * step.context.dt;
+    if (step.x_n != step.x_n1) sums.impulse += normal * step.context.dt;  // else statics
     if (normal > 0.0) {
       sums.normal_force += normal;
       (t.slide.slips ? sums.slipping : sums.sticking) += 1.0;

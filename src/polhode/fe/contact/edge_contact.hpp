@@ -48,6 +48,7 @@ class EdgeContact final : public ElementGroup,
   const NodeBlocks& blocks(const double* history) const override {
     return search(history).blocks.blocks;
   }
+  void renew(const NodeStep& step, double* history) const override { nodes_.renew(step, history); }
   void clearances(const NodeStep& step, const double* history,
                   std::vector<double>& list) const override;
   double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;

@@ -91,7 +91,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       const Energies e = energies(step, a, slide, kept);
       t.friction_loss += point.area * e.by_friction;
       t.normal_loss += point.area * e.by_pressure;
-      t.impulse += point.area * a.pressure.value * step.context.dt;
+      if (step.x_n != step.x_n1) t.impulse += point.area * a.pressure.value * step.context.dt;
     }
     const double pressure = a.acts ? a.pressure.value : 0.0;
     if (pressure > 0.0) {

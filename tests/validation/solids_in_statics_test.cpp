@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Equilibria of solids that touch each other, from model files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode::test {
+namespace {
+
+/// Three by three elements below, four by four above, which nothing but the contact holds.
+TEST(SolidsInStatics, PassThePatchTestWithMeshesThatDoNotMatch) {
+  const double p = 30.0;
+  Simulation simulation(read_model_text(R"(
+format: 1
+materials: {m: {type: st_venant_kirchhoff, youngs_modulus: 2000, poisson_ratio: 0.3, density: 1}}
+solids:
+  lower:
+    mesh: {block: {size: [1, 1, 0.5], cells: [3, 3, 2]}, position: [0.5, 0.5, 0.25]}
+    element: hex8_standard
+    material: m
+    contact: {surface: zmax}
+    prescribed: {x: {nodes: [xmin, xmax], x: 0}, y: {nodes: [ymin, ymax], y: 0}, z: {nodes: zmin, z: 0}}
+  upper:
+    mesh: {block: {size: [1, 1, 0.5], cells: [4, 4, 2]}, position: [0.5, 0.5, 0.751]}
+    element: hex8_standard
+    material: m
+    contact: {surface: zmin}
+    prescribed: {x: {nodes: [xmin, xmax], x: 0}, y: {nodes: [ymin, ymax], y: 0}}
+loads: {p: {type: pressure, solid: upper, surface: zmax, pressure: 30, follower: false}}
+contacts: {default: {gap_tolerance: 1 mm}}
+analysis: {type: statics}
+)",
+                                        "patch.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  for (int s = 0; s < 2; ++s) {
+    double area = 0.0;
+    for (const SurfacePointReport& point : simulation.surface_points(s)) {
+      EXPECT_NEAR(point.pressure / p, 1.0, 1e-10);
+      area += point.force.norm() / p;
+    }
+    EXPECT_NEAR(area, 0.5, 1e-10) << "each side carries half";
+    for (const ElementSample& e : simulation.solid(s).elements)
+      EXPECT_NEAR(e.cauchy(2, 2) / p, -1.0, 1e-9);
+  }
+  EXPECT_NEAR(simulation.contact(0).normal_force, p, 1e-9);
+}
+
+/// A small block is pushed across a large one, farther than is looked for partners at a time.
+TEST(SolidsInStatics, FindTheirPartnersWhereTheyGo) {
+  const auto pressed = [](double start, double way) {
+    Simulation simulation(read_model_text(format(R"(
+format: 1
+variables: {{T: 1 s, way: {} m}}
+materials: {{m: {{type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}}}
+solids:
+  table:
+    mesh: {{block: {{size: [2, 0.5, 0.2], cells: [20, 5, 2]}}, position: [0, 0, -0.1]}}
+    material: m
+    contact: {{surface: zmax}}
+    prescribed: {{z: {{nodes: zmin, x: 0, y: 0, z: 0}}}}
+  block:
+    mesh: {{block: {{size: [0.23, 0.23, 0.1], cells: [3, 3, 2]}}, position: [{}, 0, 0.0504]}}
+    material: m
+    contact: {{surface: zmin}}
+    prescribed: {{top: {{nodes: zmax, x: "way*t/T", y: 0, z: "-2e-3*t/T"}}}}
+contacts: {{default: {{gap_tolerance: 0.2 mm}}}}
+analysis: {{type: statics, load_steps: 8}}
+)",
+                                                 way, start),
+                                          "pushed.yaml"));
+    const RunSummary summary = simulation.run();
+    EXPECT_EQ(summary.end, RunEnd::finished) << summary.message;
+    return simulation.contact(0).normal_force;
+  };
+  const double stays = pressed(0.35, 0.0), goes = pressed(-0.35, 0.7);
+  EXPECT_GT(stays, 100.0);
+  EXPECT_NEAR(goes / stays, 1.0, 0.03) << "its mesh meets that of the table in other places";
+}
+
+}  // namespace
+}  // namespace polhode::test
