@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes one reader: tests/fuzz/run.sh [seconds, default 600] [build folder] [reader: model (default),
-# gmsh, vtu, abaqus]. Inputs that break it are left in <build folder>/crashes and make the script
+# gmsh, vtu, abaqus, stl, obj]. Inputs that break it are left in <build folder>/crashes and make the script
 # fail.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -17,8 +17,11 @@ case $reader in
   gmsh | vtu | abaqus)
     corpus="$meshes $root/tests/fuzz/found_in_meshes"
     words=mesh.dict ;;
+  stl | obj)
+    corpus="$root/tests/body/data $root/tests/fuzz/found_in_surfaces"
+    words=surface.dict ;;
   *)
-    echo "There is no reader '$reader': model, gmsh, vtu or abaqus." >&2
+    echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl or obj." >&2
     exit 2 ;;
 esac
 
@@ -26,7 +29,8 @@ CC=clang CXX=clang++ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Re
   -DPOLHODE_BUILD_FUZZERS=ON -DPOLHODE_BUILD_APPS=OFF > /dev/null
 cmake --build "$build" --target "read_${reader}_fuzzer"
 
-mkdir -p "$build/found_$reader" "$build/crashes" "$root/tests/fuzz/found_in_meshes"
+mkdir -p "$build/found_$reader" "$build/crashes" "$root/tests/fuzz/found_in_meshes" \
+  "$root/tests/fuzz/found_in_surfaces"
 fuzzer=$(find "$build" -name "read_${reader}_fuzzer" -type f | head -n 1)
 # shellcheck disable=SC2086
 "$fuzzer" "$build/found_$reader" $corpus \

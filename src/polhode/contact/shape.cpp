@@ -58,6 +58,57 @@ TriangleSurface placed(TriangleSurface surface, const ShapePlace& place) {
   return surface;
 }
 
+/// Beyond these sizes products of lengths leave the numbers [m].
+constexpr double kLeastSize = 1e-15, kLargestSize = 1e15;
+/// Area of a triangle over the square of its longest edge, below which its corners lie on a line.
+constexpr double kNoArea = 1e-10;
+
+/// Thickness of a hull over its extent, below which it is flat.
+constexpr double kFlat = 1e-9;
+
+/// Refuses points of which no shape can be made. @returns their extent [m].
+double check_extent(std::string_view where, std::span<const Vec3> points) {
+  double size = 0.0;
+  for (const Vec3& x : points) size = std::max(size, (x - points[0]).cwiseAbs().maxCoeff());
+  if (!(size >= kLeastSize && size <= kLargestSize))
+    throw InputError(where, format("its points are up to {:.3g} m apart", size),
+                     "Check its unit of length, or give a scale");
+  return size;
+}
+
+/// Without points that no triangle uses.
+TriangleSurface used_part(const TriangleSurface& surface) {
+  TriangleSurface part;
+  std::vector<int> number(surface.points.size(), -1);
+  for (std::array<int, 3> t : surface.triangles) {
+    for (int& corner : t) {
+      int& known = number[corner];
+      if (known < 0) {
+        known = static_cast<int>(part.points.size());
+        part.points.push_back(surface.points[corner]);
+      }
+      corner = known;
+    }
+    part.triangles.push_back(t);
+  }
+  return part;
+}
+
+void check_triangles(std::string_view where, const TriangleSurface& surface) {
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
+    const double longest =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    if (!((b - a).cross(c - a).norm() > kNoArea * longest))
+      throw InputError(where,
+                       format("the triangle at ({:.6g}, {:.6g}, {:.6g}) m has no area: its corners "
+                              "lie on a line",
+                              a[0], a[1], a[2]),
+                       "Let the program that made it remove degenerate triangles, or set "
+                       "contact: {touches: false}");
+  }
+}
+
 Shape polyhedron(std::string_view where, const TriangleSurface& outside, double rounding) {
   Shape s;
   s.solid = Solid::polyhedron;
@@ -184,17 +235,23 @@ Shape plane(const ShapePlace& place) {
 
 Shape hull(std::string_view where, std::span<const Vec3> points, const ShapePlace& place,
            double rounding) {
+  const double extent = check_extent(where, points);
   const TriangleSurface outside = placed(convex_hull(where, points), place);
   const double size = inner_size(outside);
+  if (!(size > kFlat * extent))
+    throw InputError(where, "the points lie almost in a plane, so their hull has no volume",
+                     "Give points that do not lie in one plane");
   check_rounding(where, rounding, 0.5 * size);
   return polyhedron(where, outside, rounding == 0.0 ? kRounding * size : rounding);
 }
 
 Shape mesh(std::string_view where, const TriangleSurface& surface, const ShapePlace& place,
            double rounding) {
-  TriangleSurface outside = placed(surface, place);
+  check_extent(where, surface.points);
+  TriangleSurface outside = placed(used_part(surface), place);
   join_equal_points(outside);
   check_closed(where, outside);
+  check_triangles(where, outside);
   orient_outward(outside);
   const double edge = median_edge(outside);
   check_rounding(where, rounding, 0.25 * edge);
