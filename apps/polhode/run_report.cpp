@@ -115,8 +115,7 @@ std::string statics_table(const RunSummary& s) {
 
 /// "5 shapes", "5 shapes and 2 surfaces".
 std::string parties_text(const RunSummary::Contacts& c) {
-  std::string surfaces =
-      counted(static_cast<std::size_t>(c.surfaces), "surface", "surfaces") + " of solids";
+  std::string surfaces = counted(static_cast<std::size_t>(c.surfaces), "surface", "surfaces");
   if (c.shapes == 0) return surfaces;
   return format("{} shapes", c.shapes) + (c.surfaces > 0 ? " and " + surfaces : "");
 }

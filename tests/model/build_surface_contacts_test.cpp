@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 #include <polhode/base/error.hpp>
 #include <polhode/io/read_model.hpp>
@@ -156,6 +158,72 @@ TEST(BuildSurfaceContacts, InStaticsKnowsNoFrictionAndNoBodies) {
   EXPECT_THAT(complaint("contacts: {" + kAlone + ", default: {friction: 0.2}}", hold, statics),
               HasSubstr("meet with friction, which statics does not know"));
   EXPECT_THAT(complaint("contacts: {}", hold, statics), HasSubstr("bodies may touch bodies"));
+}
+
+/// A rope from a mast to a ball, past a post.
+Model rope_of(const std::string& contact, const std::string& contacts = "contacts: {}",
+              const std::string& mast = "shape: {box: [0.1, 0.1, 1]}") {
+  return read_model_text(R"(
+format: 1
+bodies:
+  mast: {fixed: true, )" + mast +
+                             R"(, position: [0, 0, -0.4]}
+  post: {fixed: true, shape: {sphere: 0.2}, position: [1, 0, -0.2]}
+  floor: {fixed: true, shape: {plane: z}, position: [0, 0, -2]}
+  ball: {shape: {sphere: 0.1}, mass: 1, position: [2, 0, 0]}
+cables:
+  rope: {through: [[mast, [0, 0, 0.4]], [ball]], stiffness: 10 kN, free_length: 2, mass_per_length: 0.5,
+         elements: 10, )" + contact +
+                             "}\n" + contacts + "\nanalysis: {duration: 1 s, step: 10 ms}\n",
+                         "rope.yaml");
+}
+
+const SurfaceContact& contact_with(const Simulation& s, const std::string& body) {
+  for (const ContactMap::Surface& surface : s.contact_map().surfaces)
+    if (s.model().side_name(surface.side) == body)
+      return dynamic_cast<const SurfaceContact&>(s.system().nodes().group(surface.group));
+  throw std::logic_error("the cable does not meet " + body);
+}
+
+TEST(BuildSurfaceContacts, ACableMeetsBodiesThoseItHangsOnToo) {
+  using Names = std::vector<std::string>;
+  const std::string round = "contact: {radius: 20 mm}";
+  EXPECT_EQ(met(rope_of("damping: 0")), Names{}) << "without contact";
+  EXPECT_EQ(met(rope_of(round)), (Names{"ball", "floor", "mast", "post"}));
+  EXPECT_EQ(met(rope_of("contact: {radius: 20 mm, touches: false}")), Names{});
+  EXPECT_EQ(met(rope_of(round, "contacts: {exclude: [[rope, mast], [ball, rope]]}")),
+            (Names{"floor", "post"}));
+  EXPECT_EQ(met(rope_of("contact: {radius: 20 mm, meets: [wood]}", "contacts: {}",
+                        "shape: {box: [0.1, 0.1, 1]}, contact: {groups: [wood]}")),
+            Names{"mast"});
+}
+
+// @tests{cable-gap}
+TEST(BuildSurfaceContacts, ACableIsLookedAtAsCloselyAsTheShapeIsRound) {
+  const Simulation s(rope_of("contact: {radius: 20 mm}"));
+  EXPECT_EQ(contact_with(s, "floor").size(), 11) << "nodes alone";
+  // Pieces of 0.2 m, points no farther apart than (0.02 + 0.1)/2 m.
+  EXPECT_EQ(contact_with(s, "post").size(), 41);
+  // Half of the radius: 20 points a piece. The rope comes out of the mast at 0.05 m, where it
+  // touches; half a turn of its radius, 0.0628 m, reaches farther: 7 points are left out.
+  EXPECT_EQ(contact_with(s, "mast").size(), 201 - 7);
+  // It leaves the ball, of radius 0.05 m, whose middle it is hung up at, at 0.07 m: a piece has six
+  // points, 0.0333 m apart, of which three are inside or near.
+  EXPECT_EQ(contact_with(s, "ball").size(), 61 - 3);
+}
+
+// @tests{cable-stiffness}
+TEST(BuildSurfaceContacts, ACableIsAsStiffAsAFullRoundBar) {
+  const double area = std::numbers::pi * 0.02 * 0.02, pressure = 1e-3 * 10e3 / area;
+  const Simulation s(rope_of("contact: {radius: 20 mm}"));
+  const contact::NormalLaw& law = contact_with(s, "post").law().normal;
+  EXPECT_NEAR(law.tolerance, 2e-5, 1e-12) << "1e-3 of the radius";
+  EXPECT_NEAR(law.force(0.0) / pressure, 1.0, 1e-12);
+  Model quick = rope_of("contact: {radius: 20 mm}");
+  quick.analysis.step = 1e-6;
+  const Simulation fast(quick);
+  EXPECT_NEAR(contact_with(fast, "post").law().normal.stiffness / (0.5 / area * 0.04 / 1e-12), 1.0,
+              1e-12);
 }
 
 }  // namespace

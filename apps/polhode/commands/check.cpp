@@ -131,7 +131,7 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
                     format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
 }
 
-/// A surface of a solid against a shape or against that of a solid.
+/// A surface of a solid, or a cable, against a shape or against another one.
 struct TouchingGroup {
   std::string name;
   const SurfaceLaw& law;
@@ -145,13 +145,13 @@ TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Sur
   return {group.name(), surface.law(), surface.places(), group.kind() == EdgeContact::kKind};
 }
 
-/// What a surface of a solid meets, and how.
+/// What surfaces of solids and cables meet, and how.
 nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const Model& model = simulation.model();
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
     const TouchingGroup group = touching_group(simulation, s);
-    list.push_back({{"solid", model.solids[static_cast<std::size_t>(s.solid)].name},
+    list.push_back({{is_cable_side(s.own) ? "cable" : "solid", model.side_name(s.own)},
                     {is_solid_side(s.side) ? "on_solid" : "body", model.side_name(s.side)},
                     {group.edges ? "edges" : "points", group.places},
                     {"gap_tolerance", group.law.normal.tolerance},

@@ -134,7 +134,7 @@ std::string contact_text(const Simulation& simulation) {
       std::count_if(contacts.pairs.begin(), contacts.pairs.end(),
                     [](const ContactPairSpec& pair) { return pair.sensor; }));
   const std::size_t surfaces = simulation.contact_map().surfaces.size();
-  std::string text = surfaces > 0 ? counted(surfaces, "surface", "surfaces") + " of solids, " : "";
+  std::string text = surfaces > 0 ? counted(surfaces, "surface", "surfaces") + ", " : "";
   text += format("{} shapes, law {}, friction {:g}, restitution {:g}",
                  simulation.contact_map().body.size(), contacts.standard.potential,
                  contacts.standard.friction, contacts.standard.restitution);

@@ -103,7 +103,8 @@ void add(Fingerprint& f, const ContactLawSpec& law) {
 }
 
 /// Laws and what they belong to; what is recorded of contacts may differ.
-void add(Fingerprint& f, const ContactsSpec& contacts, const std::vector<BodySpec>& bodies) {
+void add(Fingerprint& f, const Model& model) {
+  const ContactsSpec& contacts = model.contacts;
   f.number(contacts.present);
   if (!contacts.present) return;
   add(f, contacts.standard);
@@ -126,13 +127,15 @@ void add(Fingerprint& f, const ContactsSpec& contacts, const std::vector<BodySpe
     f.number(a);
     f.number(b);
   }
-  for (const BodySpec& body : bodies)
+  for (const BodySpec& body : model.bodies)
     for (const ShapeSpec& shape : body.shapes) {
       f.text(shape.type);
       for (const double x : shape.sizes) f.number(x);
       f.numbers(shape.position);
       f.numbers(shape.orientation.coeffs());
     }
+  for (const CableLineSpec& cable : model.cables)
+    if (cable.contact) f.number(cable.contact->radius);
 }
 
 }  // namespace
@@ -143,7 +146,7 @@ std::string model_fingerprint(const Model& model) {
   for (const auto& body : model.bodies) add(f, body);
   for (const auto& joint : model.joints) add(f, joint);
   for (const auto& load : model.loads) add(f, load);
-  add(f, model.contacts, model.bodies);
+  add(f, model);
   const AnalysisSpec& a = model.analysis;
   f.text(a.type);
   f.number(a.rho_inf);

@@ -416,6 +416,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&beam_fields());
   tables.push_back(&beam_contact_fields());
   tables.push_back(&cable_fields());
+  tables.push_back(&cable_contact_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());
   tables.push_back(&solid_contact_fields());

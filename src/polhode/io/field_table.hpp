@@ -116,6 +116,7 @@ const std::vector<KindTable>& fibre_tables();
 const std::vector<KindTable>& section_tables();
 const FieldTable& beam_fields();
 const FieldTable& beam_contact_fields();
+const FieldTable& cable_contact_fields();
 const FieldTable& cable_fields();
 const FieldTable& solid_fields();
 const FieldTable& solid_mesh_fields();

@@ -238,7 +238,29 @@ const FieldTable& cable_fields() {
            .meaning = "Pieces from one point to the next, if it has mass.",
            .standard = "1",
            .range = {1.0, 1e6}},
+          {.name = "contact",
+           .kind = kSection,
+           .meaning = "The cable touches bodies and beams as a round rope, beside 'contacts'.",
+           .standard = "it touches nothing",
+           .table = "cable contact"},
       }};
+  return table;
+}
+
+const FieldTable& cable_contact_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"cable contact",
+                 "How a cable takes part in contact: all along its centre line.",
+                 {{.name = "radius",
+                   .kind = kNumber,
+                   .dimension = kLength,
+                   .meaning = "Of the cable, about its centre line.",
+                   .required = true,
+                   .range = kPositive}}};
+    const std::vector<Field>& side = contact_side_fields().fields;
+    t.fields.insert(t.fields.end(), side.begin(), side.end());
+    return t;
+  }();
   return table;
 }
 

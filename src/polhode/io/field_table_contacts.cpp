@@ -56,9 +56,9 @@ std::vector<Field> law_fields() {
       {.name = "reference_pressure",
        .kind = kNumber,
        .dimension = kPressure,
-       .meaning = "Of surfaces of solids: a pressure that the barrier carries at gap 0; it chooses "
-                  "the stiffness.",
-       .standard = "from the solid's elasticity, density and step",
+       .meaning = "Of surfaces of solids, and of cables on their diameter: a pressure that the "
+                  "barrier carries at gap 0; it chooses the stiffness.",
+       .standard = "from elasticity, density and step",
        .range = kPositive},
       kRestitution,
       {.name = "rebound",
@@ -138,7 +138,7 @@ const FieldTable& contacts_fields() {
       "Contact between the shapes of bodies, and of surfaces of solids with them. Without this "
       "section all pass through one another; with it, an empty one too, every shape meets those of "
       "all other bodies but neighbours at a joint, and every solid meets the shapes of all bodies "
-      "but those it is bonded to.",
+      "but those it is bonded to. Beams and cables take part that have the key contact.",
       {
           {.name = "default",
            .kind = kSection,
@@ -146,8 +146,9 @@ const FieldTable& contacts_fields() {
            .table = "contact law"},
           {.name = "materials",
            .kind = kNamed,
-           .meaning =
-               "Contact materials by name, for the key contact of bodies, shapes and solids.",
+           .meaning = "Contact materials by name, for the key contact of bodies, shapes, solids, "
+                      "beams and "
+                      "cables.",
            .table = "contact material"},
           {.name = "combine",
            .kind = kSection,
@@ -155,13 +156,13 @@ const FieldTable& contacts_fields() {
            .table = "contact combination"},
           {.name = "pairs",
            .kind = kNamed,
-           .meaning =
-               "Laws of pairs of bodies, of a body and a solid, or of materials, by a name of "
-               "your choice; those that name bodies go before those of materials.",
+           .meaning = "Laws of pairs of bodies, of a body and a solid or cable, or of materials, "
+                      "by a name "
+                      "of your choice; those that name bodies go before those of materials.",
            .table = "contact pair"},
           {.name = "exclude",
            .kind = kBodyPairs,
-           .meaning = "Pairs of bodies, or of a body and a solid, that do not meet."},
+           .meaning = "Pairs of bodies, or of a body and a solid or cable, that do not meet."},
           {.name = "joint_neighbours",
            .kind = kBoolean,
            .meaning = "Bodies with a common joint meet, and solids the bodies they are bonded to.",

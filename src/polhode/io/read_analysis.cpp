@@ -166,7 +166,7 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
             (names.empty() ? "It is bonded to nothing." : "Interfaces: " + name_list(names) + "."));
 }
 
-/// Two bodies with shapes, in a model with contact.
+/// Two bodies with shapes, solids or cables, in a model with contact.
 void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
   const auto pair = read_side_pair(context, *section.find("contact"), section.path("contact"));
   if (!pair) return;
@@ -176,6 +176,14 @@ void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe
   }
   for (const int body : *pair) {
     if (is_solid_side(body)) continue;
+    if (is_cable_side(body)) {
+      const CableLineSpec& cable =
+          context.model.cables[static_cast<std::size_t>(cable_of_side(body))];
+      if (cable.contact) continue;
+      section.fault("contact", format("the cable {} does not touch", quote(cable.name)),
+                    "Give it contact: {radius: ...}, or leave the probe out.");
+      return;
+    }
     const bool ground = body == kGround;
     if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
     section.fault("contact",

@@ -357,10 +357,21 @@ class CableReader {
       cable_.strain = BarStrain::green;
     cable_.mass_per_length = section_.number("mass_per_length").value_or(0.0);
     cable_.elements = section_.integer("elements").value_or(1);
+    if (const SourceNode* node = section_.find("contact")) read_contact(*node);
     if (context_.diagnostics.size() == before) divide();
   }
 
  private:
+  void read_contact(const SourceNode& node) {
+    Section section(context_, node, context_.tree.place_of(node), section_.path("contact"),
+                    cable_contact_fields());
+    if (!node.is_map()) return;
+    CableContactSpec contact;
+    contact.radius = section.number("radius").value_or(0.0);
+    read_contact_side(section, contact.side);
+    cable_.contact = std::move(contact);
+  }
+
   void read_through(const SourceNode& node) {
     const std::string path = section_.path("through");
     const char* const mend = "Write [[plate, [0, 0, 0.1]], [mast, end]].";
@@ -472,6 +483,9 @@ void read_cables(ReadContext& context, const SourceNode& node) {
     cable.name = key.name;
     cable.place = context.tree.place_of(key, node.children[k]);
     CableReader(context, node.children[k], cable).read();
+    const int index = static_cast<int>(context.model.cables.size()) - 1;
+    const bool sound = index >= 0 && context.model.cables.back().name == key.name;
+    context.cables.emplace(key.name, sound ? std::optional(index) : std::nullopt);
   }
 }
 

@@ -166,7 +166,7 @@ class ContactsReader {
     if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
   }
 
-  /// Two bodies that have shapes, or one and a solid; ground itself has none.
+  /// Two bodies that have shapes, or one and a solid or cable; ground itself has none.
   std::optional<std::array<int, 2>> read_sides(Section& section) {
     const SourceNode* node = section.find("between");
     if (!node) return std::nullopt;
@@ -180,6 +180,15 @@ class ContactsReader {
                     const std::string& path) {
     for (std::size_t k = 0; k < 2; ++k) {
       if (is_solid_side(pair[k])) continue;
+      if (is_cable_side(pair[k])) {
+        const CableLineSpec& cable =
+            context_.model.cables[static_cast<std::size_t>(cable_of_side(pair[k]))];
+        if (cable.contact) continue;
+        context_.fault(node.children[k], path,
+                       format("the cable {} does not touch", quote(cable.name)),
+                       "Give it contact: {radius: ...}, or leave the pair out.");
+        return false;
+      }
       if (pair[k] == kGround) {
         context_.fault(node.children[k], path, "the ground has no shapes",
                        "Name the fixed body whose shape is meant.");
@@ -193,7 +202,7 @@ class ContactsReader {
       return false;
     }
     const auto fixed = [&](int b) {
-      return !is_solid_side(b) && context_.model.bodies[static_cast<std::size_t>(b)].fixed;
+      return !is_surface_side(b) && context_.model.bodies[static_cast<std::size_t>(b)].fixed;
     };
     if (!fixed(pair[0]) || !fixed(pair[1])) return true;
     context_.fault(node, path, "both bodies are fixed", "Name at least one that moves.");
@@ -245,20 +254,24 @@ class ContactsReader {
 
   /// What is stated of a point does not suit a surface, and the other way round.
   void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
-    if (!is_solid_side(sides[0]) && !is_solid_side(sides[1])) {
+    if (!is_surface_side(sides[0]) && !is_surface_side(sides[1])) {
       if (section.has("reference_pressure"))
         section.fault("reference_pressure", "stands in a pair of bodies",
-                      "It belongs to surfaces of solids: use reference_load.");
+                      "It belongs to surfaces of solids and to cables: use reference_load.");
       return;
     }
+    const bool cable = is_cable_side(sides[0]) || is_cable_side(sides[1]);
+    const std::string not_of =
+        format("does not go with {}", cable ? "a cable" : "the surface of a solid");
     for (const char* key : {"stiffness", "hertz_stiffness", "reference_load", "rebound",
                             "friction_stiffness", "friction_damping"})
       if (section.has(key))
-        section.fault(key, "does not go with the surface of a solid",
+        section.fault(key, not_of,
                       "Leave it out; reference_pressure makes the surface stiffer or softer.");
     if (section.has("law") && section.choice("law") == "hertz")
-      section.fault("law", "hertz does not go with the surface of a solid",
-                    "Use barrier or linear: the solid itself gives way as Hertz says.");
+      section.fault("law", "hertz " + not_of,
+                    cable ? "Use barrier or linear."
+                          : "Use barrier or linear: the solid itself gives way as Hertz says.");
   }
 
   std::optional<std::array<int, 2>> read_materials(Section& section) {
@@ -305,9 +318,9 @@ class ContactsReader {
     if (!section.has("between")) return;
     const auto ends = read_sides(section);
     if (!ends) return;
-    if (is_solid_side((*ends)[0]) || is_solid_side((*ends)[1])) {
-      section.fault("between", "a sensor does not know surfaces of solids",
-                    "Name two bodies; for a solid a probe tells gap and force.");
+    if (is_surface_side((*ends)[0]) || is_surface_side((*ends)[1])) {
+      section.fault("between", "a sensor does not know surfaces of solids, nor cables",
+                    "Name two bodies; for a solid or cable a probe tells gap and force.");
       return;
     }
     for (const ContactPairSpec& other : contacts_.pairs)
@@ -401,24 +414,37 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
   const auto is_solid = [&](const SourceNode& child) {
     return child.is_text() && context.solids.contains(child.text);
   };
+  const auto is_cable = [&](const SourceNode& child) {
+    return child.is_text() && context.cables.contains(child.text);
+  };
   if (!node.is_list() || node.children.size() != 2 ||
-      std::none_of(node.children.begin(), node.children.end(), is_solid))
+      std::none_of(node.children.begin(), node.children.end(),
+                   [&](const SourceNode& child) { return is_solid(child) || is_cable(child); }))
     return read_body_pair(context, node, path);
   std::array<int, 2> sides{};
   for (std::size_t k = 0; k < 2; ++k) {
     const SourceNode& child = node.children[k];
-    if (!is_solid(child)) {
+    const bool solid = is_solid(child), cable = is_cable(child);
+    if (!solid && !cable) {
       const auto body = read_body(context, child, path);
       if (!body) return std::nullopt;
       sides[k] = *body;
       continue;
     }
-    if (context.bodies.contains(child.text)) {
-      context.fault(child, path, format("{} is a body and a solid", quote(child.text)),
+    if (const bool body = context.bodies.contains(child.text); body || (solid && cable)) {
+      context.fault(child, path,
+                    format("{} is a {} and a {}", quote(child.text), body ? "body" : "solid",
+                           cable ? "cable" : "solid"),
                     "Give one of them another name.");
       return std::nullopt;
     }
-    sides[k] = side_of_solid(context.solids.at(child.text));
+    if (cable && !context.cables.at(child.text)) return std::nullopt;  // its fault is told
+    sides[k] = cable ? side_of_cable(*context.cables.at(child.text))
+                     : side_of_solid(context.solids.at(child.text));
+  }
+  if (is_cable_side(sides[0]) && is_cable_side(sides[1])) {
+    context.fault(node, path, "cables do not touch one another", "Leave the pair out.");
+    return std::nullopt;
   }
   return sides;
 }

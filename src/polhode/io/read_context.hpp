@@ -27,6 +27,7 @@ struct ReadContext {
   std::unordered_map<std::string, int> materials{}, solids{};        ///< Likewise.
   /// By name; nothing if a fault was found.
   std::map<std::string, std::optional<SectionSpec>> sections{};
+  std::map<std::string, std::optional<int>> cables{};       ///< Index by name, likewise.
   std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
 

@@ -6,6 +6,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/read_context.hpp>
+#include <polhode/model/contact_sides.hpp>
 
 namespace polhode {
 
@@ -146,7 +147,8 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
   const int order = model.analysis.order.value_or(2);
-  const bool surfaces = model.analysis.type == "statics" && !model.solids.empty();
+  const bool surfaces =
+      model.analysis.type == "statics" && (!model.solids.empty() || has_touching_cables(model));
   if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces)
     context.fault(*root.find("contacts"), "contacts",
                   format("stands beside an analysis of type {}", model.analysis.type),

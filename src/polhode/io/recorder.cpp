@@ -45,7 +45,7 @@ class SensorFile {
   std::size_t done_ = 0;
 };
 
-/// Points of bodies, then those of surfaces of solids, of which the solid is side a.
+/// Points of bodies, then those of surfaces of solids and of cables, which are side a.
 std::vector<contact::TouchingPoint> touching_points(const Simulation& simulation) {
   std::vector<contact::TouchingPoint> points = simulation.contact_points();
   int side = static_cast<int>(simulation.contact_map().body.size());
@@ -123,13 +123,16 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     std::vector<std::string> names;
     for (const BodySpec& body : model.bodies) names.push_back(body.name);
     for (const SolidSpec& solid : model.solids) names.push_back(solid.name);
+    for (const CableLineSpec& cable : model.cables) names.push_back(cable.name);
+    const auto number_of = [bodies = static_cast<int>(model.bodies.size()),
+                            solids = static_cast<int>(model.solids.size())](int side) {
+      if (is_cable_side(side)) return bodies + solids + cable_of_side(side);
+      return is_solid_side(side) ? bodies + solid_of_side(side) : side;
+    };
     // Sides of surfaces are numbered behind the shapes of bodies, see touching_points().
     std::vector<int> side = simulation.contact_map().body;
     for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
-      side.insert(side.end(), {static_cast<int>(model.bodies.size()) + surface.solid,
-                               is_solid_side(surface.side) ? static_cast<int>(model.bodies.size()) +
-                                                                 solid_of_side(surface.side)
-                                                           : surface.side});
+      side.insert(side.end(), {number_of(surface.own), number_of(surface.side)});
     impl_->contacts.emplace(folder + "/paraview", "contacts", std::move(names), std::move(side),
                             keep);
   }

@@ -73,6 +73,12 @@ struct AttachmentSpec {
   Vec3 Z = Vec3::Zero();  ///< From the centre of mass, body axes; ground: world [m].
 };
 
+/// How a cable touches: as a round rope about its centre line.
+struct CableContactSpec {
+  double radius = 0.0;   ///< [m]
+  ContactSideSpec side;  ///< Of all of it.
+};
+
 /// One cable, rope, rod or truss member as described: straight pieces from point to point. Each
 /// piece has its own elongation; nothing slides through the points between.
 struct CableLineSpec {
@@ -86,6 +92,7 @@ struct CableLineSpec {
   BarStrain strain = BarStrain::engineering;
   double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then pieces go from point to point.
   int elements = 1;              ///< With mass: pieces from one point to the next.
+  std::optional<CableContactSpec> contact;  ///< None: bodies pass through the cable.
 
   /// Filled in by add_cable(): the pieces.
   struct Piece {

@@ -59,7 +59,7 @@ class ContactsBuilder {
     shapes_of_.resize(model_.bodies.size());
     for (int i = 0; i < static_cast<int>(map_.body.size()); ++i)
       shapes_of_[static_cast<std::size_t>(map_.body[static_cast<std::size_t>(i)])].push_back(i);
-    if (!model_.solids.empty() && !any_may_meet()) {  // surfaces of solids touch alone
+    if (has_surfaces() && !any_may_meet()) {  // surfaces touch alone
       map_.body.clear();
       return nullptr;
     }
@@ -69,7 +69,10 @@ class ContactsBuilder {
 
  private:
   [[nodiscard]] static bool of_bodies(const ContactPairSpec& pair) {
-    return !pair.of_materials && !is_solid_side(pair.a) && !is_solid_side(pair.b);
+    return !pair.of_materials && !is_surface_side(pair.a) && !is_surface_side(pair.b);
+  }
+  [[nodiscard]] bool has_surfaces() const {
+    return !model_.solids.empty() || has_touching_cables(model_);
   }
   [[nodiscard]] bool any_may_meet() const {
     for (int a = 0; a < static_cast<int>(shapes_of_.size()); ++a)
@@ -137,7 +140,7 @@ class ContactsBuilder {
       if (of_bodies(pair)) excluded_.erase(std::minmax(pair.a, pair.b));
     for (const auto& [a, b] : spec_.excluded) excluded_.insert(std::minmax(a, b));
     for (const auto& [a, b] : excluded_)
-      if (!is_solid_side(a) && !is_solid_side(b)) set_->exclude(a, b);
+      if (!is_surface_side(a) && !is_surface_side(b)) set_->exclude(a, b);
   }
 
   [[nodiscard]] bool may_meet(int a, int b) const {
@@ -158,7 +161,8 @@ class ContactsBuilder {
     for (const ContactPairSpec& pair : spec_.pairs)
       if (of_bodies(pair)) keep(pair.a, pair.b, pair.sensor ? pair.name : "");
     for (const ProbeSpec& probe : model_.output.probes)
-      if (probe.kind == "contact" && !is_solid_side(probe.pair[0]) && !is_solid_side(probe.pair[1]))
+      if (probe.kind == "contact" && !is_surface_side(probe.pair[0]) &&
+          !is_surface_side(probe.pair[1]))
         keep(probe.pair[0], probe.pair[1], "");
     if (!spec_.record.value_or(true)) return;
     std::vector<std::pair<int, int>> found;
@@ -211,6 +215,12 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
     }
   for (const SolidSpec& solid : model.solids) {
     const ContactSide side = contact_side(solid);
+    if (!side.touches) continue;
+    any = true;
+    check_material(model, side, faults, told);
+  }
+  for (const CableLineSpec& cable : model.cables) {
+    const ContactSide side = contact_side(cable);
     if (!side.touches) continue;
     any = true;
     check_material(model, side, faults, told);

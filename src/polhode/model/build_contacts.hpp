@@ -27,9 +27,9 @@ struct ContactMap {
   std::vector<int> body;   ///< By shape of the ContactSet: index into Model::bodies.
   bool all_pairs = false;  ///< Every pair that may meet is kept.
   /// Faces of one kind of a solid against one shape of a body; or points of its surface against
-  /// that of a solid, of which another such entry has the points.
+  /// that of a solid, of which another such entry has the points. Or the centre line of a cable.
   struct Surface {
-    int solid = 0;          ///< Index into Model::solids.
+    int own = 0;            ///< Whose points: the side of a solid or of a cable.
     int side = 0;           ///< What it meets, see contact_spec.hpp.
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().

@@ -12,10 +12,10 @@
 
 namespace polhode {
 
-/// The surface of a solid and a shape of a body, or two surfaces, that may meet.
+/// The surface of a solid or a cable and a shape of a body, or two surfaces, that may meet.
 struct SurfacePair {
-  int solid = 0;          ///< Index into Model::solids.
-  int side = 0;           ///< What it meets: a body, another solid or itself.
+  int own = 0;            ///< Side of a solid or of a cable, see contact_spec.hpp.
+  int side = 0;           ///< What it meets: a body, another one of these or itself.
   std::size_t shape = 0;  ///< Of a body.
   ContactLawSpec law;
 };
@@ -33,7 +33,7 @@ void add_surface_contacts(System& system, const Model& model, const std::vector<
                           const std::vector<SolidMap>& solids, ContactMap& map);
 
 /// What the surfaces of a pair of sides do to each other, at a state.
-/// @param pair  Of ContactMap::pairs, one of its sides a solid.
+/// @param pair  Of ContactMap::pairs, one of its sides a solid or a cable.
 [[nodiscard]] ContactReport surface_report(const System& system, const State& state,
                                            const ContactMap& map, const ContactMap::Pair& pair);
 /// What all surfaces took since the start.

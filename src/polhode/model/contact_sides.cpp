@@ -46,6 +46,18 @@ void for_sides(const Model& model, Visit&& visit) {
   for (const BodySpec& body : model.bodies)
     for (std::size_t s = 0; s < body.shapes.size(); ++s) visit(contact_side(body, s));
   for (const SolidSpec& solid : model.solids) visit(contact_side(solid));
+  for (const CableLineSpec& cable : model.cables) visit(contact_side(cable));
+}
+
+/// Of what touches as a whole.
+ContactSide side_of(const ContactSideSpec& spec, const std::string& path) {
+  return {.touches = spec.touches.value_or(true),
+          .material = pointer(spec.material),
+          .groups = pointer(spec.groups),
+          .meets = pointer(spec.meets),
+          .material_path = path + "material",
+          .groups_path = path + "groups",
+          .meets_path = path + "meets"};
 }
 
 }  // namespace
@@ -84,14 +96,20 @@ ContactSide contact_side(const BodySpec& body, std::size_t shape) {
 }
 
 ContactSide contact_side(const SolidSpec& solid) {
-  const std::string path = format("solids.{}.contact.", solid.name);
-  return {.touches = solid.contact.touches.value_or(true),
-          .material = pointer(solid.contact.material),
-          .groups = pointer(solid.contact.groups),
-          .meets = pointer(solid.contact.meets),
-          .material_path = path + "material",
-          .groups_path = path + "groups",
-          .meets_path = path + "meets"};
+  return side_of(solid.contact, format("solids.{}.contact.", solid.name));
+}
+
+ContactSide contact_side(const CableLineSpec& cable) {
+  const std::string path = format("cables.{}.contact.", cable.name);
+  if (cable.contact) return side_of(cable.contact->side, path);
+  ContactSide nothing = side_of({}, path);
+  nothing.touches = false;
+  return nothing;
+}
+
+bool has_touching_cables(const Model& model) {
+  return std::any_of(model.cables.begin(), model.cables.end(),
+                     [](const CableLineSpec& cable) { return contact_side(cable).touches; });
 }
 
 int material_of(const ContactsSpec& contacts, const ContactSide& side) {

@@ -12,8 +12,8 @@
 
 namespace polhode {
 
-/// What is stated of a shape of a body, or of the surface of a solid, that may touch; null where
-/// nothing is. Paths are those of the keys, or of where they would stand.
+/// What is stated of a shape of a body, of the surface of a solid or of a cable, that may touch;
+/// null where nothing is. Paths are those of the keys, or of where they would stand.
 struct ContactSide {
   bool touches = true;
   const std::string* material = nullptr;
@@ -30,6 +30,9 @@ struct ContactSide {
 /// A key of the shape goes before that of its body.
 [[nodiscard]] ContactSide contact_side(const BodySpec& body, std::size_t shape);
 [[nodiscard]] ContactSide contact_side(const SolidSpec& solid);
+/// A cable whose contact nothing is said of does not touch.
+[[nodiscard]] ContactSide contact_side(const CableLineSpec& cable);
+[[nodiscard]] bool has_touching_cables(const Model& model);
 /// Index into ContactsSpec::materials, −1 if none is stated or it is unknown.
 [[nodiscard]] int material_of(const ContactsSpec& contacts, const ContactSide& side);
 

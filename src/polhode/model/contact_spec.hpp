@@ -11,15 +11,26 @@
 
 namespace polhode {
 
-// A side of contact is a body, by its index into Model::bodies, or the surface of a solid:
+// A side of contact is a body, by its index into Model::bodies, the surface of a solid, or a cable:
+/// More solids than a model has: the sides of cables come behind theirs.
+inline constexpr int kMostSolids = 1 << 24;
 /// The side of a solid, by its index into Model::solids.
 [[nodiscard]] constexpr int side_of_solid(int solid) { return kGround - 1 - solid; }
-[[nodiscard]] constexpr bool is_solid_side(int side) { return side < kGround; }
+/// The side of a cable, by its index into Model::cables.
+[[nodiscard]] constexpr int side_of_cable(int cable) { return kGround - 1 - kMostSolids - cable; }
+/// No body: a solid or a cable.
+[[nodiscard]] constexpr bool is_surface_side(int side) { return side < kGround; }
+[[nodiscard]] constexpr bool is_cable_side(int side) { return side < kGround - kMostSolids; }
+[[nodiscard]] constexpr bool is_solid_side(int side) {
+  return is_surface_side(side) && !is_cable_side(side);
+}
 /// Index into Model::solids of a side that is a solid's.
 [[nodiscard]] constexpr int solid_of_side(int side) { return kGround - 1 - side; }
+/// Index into Model::cables of a side that is a cable's.
+[[nodiscard]] constexpr int cable_of_side(int side) { return kGround - 1 - kMostSolids - side; }
 
 /// How a shape takes part in contact; what is absent is as the body's, then as the model's. Of a
-/// solid: how its surface does.
+/// solid: how its surface does. Of a beam or cable: how all of it does.
 struct ContactSideSpec {
   std::optional<bool> touches;                     ///< False: the shape meets nothing.
   std::optional<std::string> material;             ///< Name of a contact material.
@@ -67,7 +78,8 @@ struct ContactPairSpec {
 /// How a property of a pair follows from its two materials.
 enum class Combination { geometric_mean, mean, minimum, maximum, product };
 
-/// Contact between the shapes of bodies, and of surfaces of solids with them, as described.
+/// Contact between the shapes of bodies, and of surfaces of solids and cables with them, as
+/// described.
 struct ContactsSpec {
   bool present = false;
   Place place;

@@ -2,6 +2,7 @@
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/fe/contact/surface_contact.hpp>
 #include <polhode/model/method.hpp>
 #include <polhode/solve/contact_engine.hpp>
 #include <polhode/solve/coupled_engine.hpp>
@@ -21,6 +22,8 @@ constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder
 constexpr int kIterations = 12, kIterationsSolids = 30;
 /// Surfaces of solids in contact: forces follow from tiny ways.
 constexpr double kToleranceSurfaces = 1e-9;
+/// Cables among them: what rounds of the length of a stiff piece moves light nodes sideways.
+constexpr double kToleranceCables = 1e-7;
 /// Of contact, whose stiffness turns a gap that is off by little into a force that is off by much.
 constexpr double kToleranceContact = 1e-12;
 constexpr int kIterationsContact = 40;
@@ -89,6 +92,13 @@ bool has_surfaces(const System& system) {
   return false;
 }
 
+bool has_touching_cables(const System& system) {
+  for (int g = 0; g < system.nodes().group_count(); ++g)
+    if (const auto* surface = dynamic_cast<const SurfaceContact*>(&system.nodes().group(g)))
+      if (surface->of_cable()) return true;
+  return false;
+}
+
 /// Bodies hang together by beams or cables, of which the tree makes loops.
 bool has_elastic_pairs(const System& system) {
   for (const InteractionRef& ref : system.interactions())
@@ -125,8 +135,10 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   }
   if (!system.nodes().empty()) {
     if (a.solver == "tree")
-      throw InputError("analysis.solver", "'tree' has no deformable solids",
-                       "Use solver: automatic, block_lu, klu or sparse_lu");
+      throw InputError(
+          "analysis.solver",
+          has_surfaces(system) ? "'tree' has no contacts" : "'tree' has no deformable solids",
+          "Use solver: automatic, block_lu, klu or sparse_lu");
     const NodeFactor factor =
         policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
             ? NodeFactor::every_iteration
@@ -191,7 +203,8 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
         "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
         a.rho_inf);
   if (has_surfaces(system)) {
-    if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceSurfaces;
+    if (a.newton_tolerance <= 0.0)
+      c.newton.tolerance = has_touching_cables(system) ? kToleranceCables : kToleranceSurfaces;
     if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
   }
   m.engine = choose_engine(system, a, momentum_rate(a.momentum_rate), policy, m.narration);

@@ -32,8 +32,9 @@ const std::string& Model::body_name(int body) const {
 }
 
 const std::string& Model::side_name(int side) const {
-  return is_solid_side(side) ? solids.at(static_cast<std::size_t>(solid_of_side(side))).name
-                             : body_name(side);
+  if (is_cable_side(side)) return cables.at(static_cast<std::size_t>(cable_of_side(side))).name;
+  if (is_solid_side(side)) return solids.at(static_cast<std::size_t>(solid_of_side(side))).name;
+  return body_name(side);
 }
 
 int Model::joint_index(const std::string& name) const {

@@ -129,7 +129,7 @@ class Simulation {
   [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
   /// What interfaces(solid)[k] exerts on the solid.
   [[nodiscard]] InterfaceReport interface_reaction(int solid, int k) const;
-  // Contact of bodies, and of surfaces of solids with them.
+  // Contact of bodies, and of surfaces of solids and of cables with them.
   [[nodiscard]] bool has_contacts() const;
   /// Null unless bodies may touch bodies.
   [[nodiscard]] const contact::ContactSet* contact_set() const;

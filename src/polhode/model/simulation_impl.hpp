@@ -81,7 +81,7 @@ struct Simulation::Impl {
     if (map.contacts)
       throw InputError(
           "contacts", "bodies may touch bodies, which in statics and modes they cannot do",
-          "Exclude these pairs: surfaces of solids touch alone, or use type: dynamics");
+          "Exclude these pairs: surfaces of solids and cables touch alone, or use type: dynamics");
     StaticOptions options;
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
@@ -226,12 +226,11 @@ struct Simulation::Impl {
   void refuse_overlaps() const {
     const std::vector<std::string> surfaces = surface_overlaps(model, system, state, map.contact);
     if (!surfaces.empty())
-      throw InputError(
-          "contacts",
-          "surfaces of solids overlap or touch at the start: " + name_list(surfaces, 12),
-          "Correct positions or sizes, or exclude pairs that are meant to overlap; "
-          "'overlaps: resolve' moves bodies only. Between two solids leave a gap of "
-          "at least half the gap_tolerance");
+      throw InputError("contacts",
+                       "surfaces overlap or touch at the start: " + name_list(surfaces, 12),
+                       "Correct positions or sizes, or exclude pairs that are meant to overlap; "
+                       "'overlaps: resolve' moves bodies only. Between two solids leave a gap of "
+                       "at least half the gap_tolerance");
     if (!map.contacts) return;
     const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
     if (list.empty()) return;

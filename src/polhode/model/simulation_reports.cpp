@@ -179,7 +179,7 @@ bool Simulation::has_contacts() const {
 ContactReport Simulation::contact(int pair) const {
   const ContactMap& map = impl_->map.contact;
   const ContactMap::Pair& sides = map.pairs.at(static_cast<std::size_t>(pair));
-  if (is_solid_side(sides.a) || is_solid_side(sides.b))
+  if (is_surface_side(sides.a) || is_surface_side(sides.b))
     return surface_report(impl_->system, impl_->state, map, sides);
   return impl_->contacts.report(pair);
 }

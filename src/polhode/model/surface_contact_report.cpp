@@ -28,7 +28,7 @@ ContactReport surface_report(const System& system, const State& state, const Con
   ContactReport report;
   report.gap = std::numeric_limits<double>::quiet_NaN();
   for (const ContactMap::Surface& surface : map.surfaces) {
-    const int own = side_of_solid(surface.solid);
+    const int own = surface.own;
     if (std::minmax(own, surface.side) != std::minmax(pair.a, pair.b)) continue;
     const SurfaceReport r = report_of(system, state, surface);
     const double sign = own == pair.a ? 1.0 : -1.0;  // reports are of forces on the solid
@@ -79,8 +79,7 @@ std::vector<std::string> surface_overlaps(const Model& model, const System& syst
   for (const ContactMap::Surface& surface : map.surfaces) {
     const double depth = contact_of(system, surface).overlap(instant);
     if (depth < 0.0) continue;
-    const std::string own = model.side_name(side_of_solid(surface.solid)),
-                      other = model.side_name(surface.side);
+    const std::string own = model.side_name(surface.own), other = model.side_name(surface.side);
     const std::string text = depth > 0.0 ? format("{} in {} by {:.3g} m", own, other, depth)
                                          : format("{} touches {}", own, other);
     if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);

@@ -24,6 +24,8 @@ constexpr double kLeftStiff = 1e-18;
 /// many iterations.
 constexpr double kGains = 0.7;
 constexpr int kStalled = 3;
+/// Out of the depth of a barrier, which falls like 1/s, increments double: that is no round-off.
+constexpr double kLeaves = 1.5;
 /// Increments above this part of the tolerance are no round-off [-].
 constexpr double kRoundOffBelow = 1e-2;
 /// Kept factors that contract by less than this are renewed.
@@ -164,7 +166,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     // proximal repeats, contract by a constant factor: these go on.
     const double contraction = last > 0.0 ? e / last : 1.0;
     lame = polished && contraction > kLame;
-    stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
+    const bool leaves = guard.near() && e > kLeaves * last;
+    if (!leaves) stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
     if (polished && !kept && e * contraction * contraction > left && stalled < kStalled) continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)

@@ -62,7 +62,9 @@ NodeCondensation::NodeCondensation(const System& system) : system_(&system) {
     const std::vector<int>& bodies = nodes.pieces()[p].bodies;
     columns_ = std::max(columns_, 6 * static_cast<int>(bodies.size()));
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      for (std::size_t j = i; j < bodies.size(); ++j) {
+        piece_of_.try_emplace({bodies[i], bodies[j]}, static_cast<int>(p));
+        if (j == i) continue;
         const auto [it, fresh] =
             known.try_emplace({bodies[i], bodies[j]}, static_cast<int>(pairs_.size()));
         if (fresh) pairs_.push_back({bodies[i], bodies[j], 0, 0});
@@ -170,14 +172,8 @@ NodeCondensation::Coupling& NodeCondensation::coupling(int piece, int node, int 
 
 /// A bonded node's neighbours: of one piece if one of them is free; bodies alone else.
 int NodeCondensation::piece_of_pair(int a, int b) const {
-  const auto& pieces = system_->nodes().pieces();
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const auto& list = pieces[p].bodies;
-    if (std::binary_search(list.begin(), list.end(), a) &&
-        std::binary_search(list.begin(), list.end(), b))
-      return static_cast<int>(p);
-  }
-  return -1;
+  const auto found = piece_of_.find(std::minmax(a, b));
+  return found == piece_of_.end() ? -1 : found->second;
 }
 
 /// The blocks beside the graph, each by itself: K_ij and K_ji are two.

@@ -66,6 +66,7 @@ class NodeCondensation {
   void analyse();
   void gather_moving(const std::vector<double>& K, const std::vector<const Bond*>& bond_of);
   [[nodiscard]] Coupling& coupling(int piece, int node, int body);
+  /// The first piece that reaches both bodies; −1 if none does.
   [[nodiscard]] int piece_of_pair(int a, int b) const;
   void place_bonds(const Trial& trial);
   void gather_couplings(const std::vector<double>& K, const std::vector<double>& F,
@@ -82,6 +83,7 @@ class NodeCondensation {
   std::vector<std::vector<Coupling>> couplings_;      ///< By piece.
   std::map<std::pair<int, int>, std::size_t> known_;  ///< Free node and body: their coupling.
   std::vector<KktPair> pairs_;
+  std::map<std::pair<int, int>, int> piece_of_;  ///< By two bodies, or one twice.
   std::vector<std::vector<int>> pair_of_;  ///< By piece: pair of places (i, j), i < j, row by row.
   std::vector<Eigen::MatrixXd> A_bb_, S_;  ///< By piece.
   std::vector<double> W_;  ///< A_ff⁻¹ A_fb: unknowns by 6 columns a body's place.

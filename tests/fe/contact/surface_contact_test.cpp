@@ -129,7 +129,7 @@ Scene scene(const Case& c, const std::string& shape, bool on_body, unsigned seed
   const Vec3 origin = random.vector(), move = random.vector(0.1), theta = random.vector(0.1);
   const Mat3 R_1 = on_body ? Mat3(cay(theta) * R) : R;
   const Vec3 origin_1 = on_body ? Vec3(origin + move) : origin;
-  const int n = shape == "quad4" ? 4 : 6;
+  const int n = shape == "quad4" ? 4 : shape == "rope" ? 2 : 6;
   const double corner[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
   const double square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   for (int a = 0; a < n; ++a) {
@@ -204,16 +204,29 @@ std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
   return history;
 }
 
+/// Points of the faces; or, of two nodes, of a rope between them.
+SurfacePoints points_of(const Scene& s) {
+  if (s.faces.shape != "rope") return surface_points("c", s.faces, s.X);
+  SurfacePoints rope;
+  rope.nodes_per_point = 2;
+  rope.radius = 0.2;
+  for (const double t : {0.0, 0.3, 1.0}) {
+    rope.points.push_back({0.02 + 0.01 * t, {1.0 - t, t}});
+    rope.nodes.insert(rope.nodes.end(), {0, 1});
+  }
+  return rope;
+}
+
 template <class What>
 void for_scenes(const SurfaceLaw& l, double rho_inf, What&& what) {
   for (const Case& c : cases())
-    for (const char* shape : {"quad4", "tri6"})
+    for (const char* shape : {"quad4", "tri6", "rope"})
       for (const bool on_body : {false, true})
         for (const unsigned seed : {1U}) {
           SCOPED_TRACE(std::string(c.name) + " " + shape + (on_body ? " on a body" : ""));
           const Scene s = scene(c, shape, on_body, seed, context_of(rho_inf));
-          const SurfaceContact contact("c", surface_points("c", s.faces, s.X),
-                                       s.nodes.start_positions(), c.surface, s.place, l);
+          const SurfaceContact contact("c", points_of(s), s.nodes.start_positions(), c.surface,
+                                       s.place, l);
           what(contact, s, bristles(contact, seed));
         }
 }

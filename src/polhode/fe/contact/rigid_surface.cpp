@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/contact/gap.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
@@ -124,6 +125,25 @@ RigidSurface::Gap RigidSurface::plain_gap(const Vec3& y) const {
   if (!(d > 0.0)) return {-offset, Vec3::UnitZ(), Mat3::Zero()};
   const Vec3 n = from / d;
   return {d - offset, n, (Mat3::Identity() - core.D - n * n.transpose()) / d};
+}
+
+double RigidSurface::extent() const {
+  switch (kind) {
+    case Kind::sphere:
+      return radius;
+    case Kind::capsule:
+      return radius + half[2];
+    case Kind::cylinder:
+      return std::hypot(radius, half[2]);
+    case Kind::box:
+      return half.norm();
+    case Kind::plane:
+    case Kind::hollow_sphere:
+    case Kind::convex:
+    case Kind::mesh:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace polhode

@@ -29,17 +29,42 @@ SurfaceContact::SurfaceContact(std::string name, SurfacePoints points, const std
       law_(law),
       n_(points.nodes_per_point),
       frame_(place.moves() ? 4 : 0),
-      points_(std::move(points)) {
+      points_(std::move(points)),
+      extent_(surface.extent()) {
   for (int i = 0; i < size(); ++i) {
     const auto first = points_.nodes.begin() + static_cast<std::ptrdiff_t>(i) * n_;
     nodes_.insert(nodes_.end(), first, first + n_);
     if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
   }
-  std::vector<double> x;
-  for (const Vec3& node : X) x.insert(x.end(), node.begin(), node.end());
   gap_at_start_ = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size(); ++i)
-    gap_at_start_ = std::min(gap_at_start_, surface_.distance(local(x.data(), i)));
+  for (const double g : gaps(X)) gap_at_start_ = std::min(gap_at_start_, g);
+}
+
+std::vector<double> SurfaceContact::gaps(const std::vector<Vec3>& X) const {
+  std::vector<double> x, list;
+  for (const Vec3& node : X) x.insert(x.end(), node.begin(), node.end());
+  for (int i = 0; i < size(); ++i) list.push_back(distance(local(x.data(), i)));
+  return list;
+}
+
+/// @eq{cable-gap}
+RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuestion& question) const {
+  if (is_far(y, question.at_most)) return {.value = question.at_most};
+  RigidSurface::Gap g =
+      surface_.gap(y, {question.law, question.at_most + radius(), question.sided});
+  g.value -= radius();
+  return g;
+}
+
+double SurfaceContact::distance(const Vec3& y, double at_most, bool sided) const {
+  if (is_far(y, at_most)) return at_most;
+  return surface_.distance(y, at_most + radius(), sided) - radius();
+}
+
+Vec3 SurfaceContact::foot(const double* x, int point) const {
+  const Vec3 p = position(x, point);
+  if (!of_cable()) return p;
+  return p - radius() * (axes(x) * gap(local(x, point), {law_.normal}).normal);
 }
 
 Vec3 SurfaceContact::position(const double* x, int point) const {
@@ -174,8 +199,8 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
   const Vec3 way = place.at_n1 - place.at_n;
   // Of a gap that acts at the other end of the step only, the value matters as well.
   const GapQuestion question{law_.normal, reach + way.norm(), sided(step)};
-  const RigidSurface::Gap g_n1 = surface_.gap(place.at_n1, question);
-  const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : surface_.gap(place.at_n, question);
+  const RigidSurface::Gap g_n1 = gap(place.at_n1, question);
+  const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : gap(place.at_n, question);
   a.gap_n = g_n.value;
   a.gap_n1 = g_n1.value;
   if (g_n.value >= reach && g_n1.value >= reach) return a;

@@ -27,7 +27,7 @@ struct SurfacePlace {
   [[nodiscard]] bool moves() const { return nodes[0] >= 0; }
 };
 
-/// Faces of a solid against a rigid surface: the potential ∫ β(g) dA over the
+/// Faces of a solid, or a cable, against a rigid surface: the potential ∫ β(g) dA over the
 /// reference area.
 ///
 /// The forces of a point are functions of its coordinates y in the surface's
@@ -44,7 +44,7 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
                  const RigidSurface& surface, const SurfacePlace& place, const SurfaceLaw& law);
 
-  std::string kind() const override { return "surface contact"; }
+  std::string kind() const override { return of_cable() ? "cable contact" : "surface contact"; }
   const std::string& name() const override { return name_; }
   int size() const override { return static_cast<int>(points_.points.size()); }
   int nodes_per_element() const override { return n_ + frame_; }
@@ -70,6 +70,9 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
 
   const SurfaceLaw& law() const override { return law_; }
   std::size_t places() const override { return points_.points.size(); }
+  [[nodiscard]] bool of_cable() const { return points_.radius > 0.0; }
+  /// Of each point [m]. @param X  See the constructor.
+  [[nodiscard]] std::vector<double> gaps(const std::vector<Vec3>& X) const;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;
@@ -103,7 +106,19 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   template <class T>
   struct Terms;
 
+  /// Between what is round about a point and the surface.
+  [[nodiscard]] RigidSurface::Gap gap(const Vec3& y, const GapQuestion& question) const;
+  [[nodiscard]] double distance(const Vec3& y,
+                                double at_most = std::numeric_limits<double>::infinity(),
+                                bool sided = false) const;
+  [[nodiscard]] double radius() const { return points_.radius; }
+  /// Of a cable most is far from most shapes.
+  [[nodiscard]] bool is_far(const Vec3& y, double at_most) const {
+    return of_cable() && y.norm() - extent_ - radius() > at_most;
+  }
   [[nodiscard]] Vec3 position(const double* x, int point) const;
+  /// Where what is round about a point is nearest to the surface.
+  [[nodiscard]] Vec3 foot(const double* x, int point) const;
   [[nodiscard]] Vec3 local(const double* x, int point) const;
   [[nodiscard]] Mat3 axes(const double* x) const;
   [[nodiscard]] Place place(const NodeStep& step, int point) const {
@@ -115,6 +130,8 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   }
   [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
                            bool tangent) const;
+  [[nodiscard]] bool goes_through(const Vec3& from, const Vec3& to) const;
+  [[nodiscard]] double free_of_stretch(const NodeStep& from, const NodeStep& to) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a,
                                   const double* memory) const;
 
@@ -124,6 +141,7 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   SurfaceLaw law_;
   int n_ = 1, frame_ = 0;  ///< Nodes of the face, of the frame.
   SurfacePoints points_;
+  double extent_ = 0.0;        ///< Of the surface about its origin [m].
   std::vector<int> nodes_;     ///< Of each point: of its face, then of the frame.
   double gap_at_start_ = 0.0;  ///< Smallest [m].
 };

@@ -16,6 +16,11 @@ constexpr double kLeave = 0.1;
 constexpr int kMostAdvances = 200;
 /// Clearances beyond this many bands are all alike.
 constexpr double kFar = 10.0;
+/// A way shorter than so many times the depth that counts as through does not get so deep.
+constexpr double kThrough = 2.0;
+constexpr int kHalvings = 6;
+/// What is drawn out as far as it may be goes on by this factor at a time.
+constexpr double kMoreStretch = 1.1;
 
 }  // namespace
 
@@ -24,21 +29,59 @@ void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
   if (law_.normal.potential != contact::NormalPotential::barrier) return;
   const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i)
-    list.push_back((surface_.distance(local(step.x_n1, i), floor + kFar * band) - floor) / band);
+    list.push_back((distance(local(step.x_n1, i), floor + kFar * band) - floor) / band);
+}
+
+/// Pieces of a cable that an iterate draws out would let the shape pass between points.
+double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to) const {
+  double most = 1.0;
+  if (std::isinf(points_.most_apart)) return most;
+  for (int i = 0; i < size(); ++i) {
+    const std::span<const int> ends = nodes(i);
+    const auto apart = [&](const NodeStep& step) {
+      return points_.points[static_cast<std::size_t>(i)].span *
+             (NodeStep::at(step.x_n1, ends[1]) - NodeStep::at(step.x_n1, ends[0])).norm();
+    };
+    const double at_end = apart(to);
+    if (at_end <= points_.most_apart) continue;
+    const double at_start = apart(from);
+    const double allowed = std::max(points_.most_apart, kMoreStretch * at_start);
+    if (at_end > allowed) most = std::min(most, (allowed - at_start) / (at_end - at_start));
+  }
+  return most;
+}
+
+/// Whether the straight way of a step goes through the shape. A cable has no inside that iterates
+/// could not be led around: one after the other they might find the far side.
+bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
+  const Vec3 way = to - from;
+  const double length = way.norm();
+  if (length < kThrough * points_.through) return false;
+  double part = 0.0;
+  for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
+    const double room = distance(from + part * way) + points_.through;
+    if (room <= kLeave * points_.through) return true;
+    part += room / length;
+  }
+  return false;
 }
 
 /// The gap changes by no more than the way in the surface's coordinates.
 double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
                                  const double* /*history*/) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
-  double most = 1.0;
+  double most = free_of_stretch(from, to);
   const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i) {
     const Vec3 start = local(from.x_n1, i), way = local(to.x_n1, i) - start;
     const double length = way.norm();
-    const auto room_at = [&](const Vec3& y) {
-      return surface_.distance(y, floor + length + band) - floor;
-    };
+    if (of_cable()) {
+      const Vec3 y_n = local(from.x_n, i);
+      const bool beside = !goes_through(y_n, start);
+      for (int k = 0; beside && k < kHalvings && goes_through(y_n, start + most * way); ++k)
+        most *= 0.5;
+    }
+    const auto room_at = [&](const Vec3& y) { return distance(y, floor + length + band) - floor; };
     double room = room_at(start);
     const double least = kLeave * std::min(room, band);
     if (room <= 0.0 || room - least >= length * most) continue;
@@ -57,7 +100,7 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
 double SurfaceContact::overlap(const NodeStep& instant) const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size(); ++i)
-    least = std::min(least, surface_.distance(local(instant.x_n1, i), least, true));
+    least = std::min(least, distance(local(instant.x_n1, i), least, true));
   return least > -law_.normal.tolerance ? -1.0 : -least;
 }
 
@@ -87,8 +130,8 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
       const Vec3 kept(memory[0], memory[1], memory[2]);
-      const double gap = surface_.gap(local(step.x_n1, i), question).value;
-      w.stored += area * (law_.normal.energy(gap) + 0.5 * law_.bristle * kept.squaredNorm());
+      const double now = gap(local(step.x_n1, i), question).value;
+      w.stored += area * (law_.normal.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
       continue;
     }
     const Action a = act(step, place(step, i), memory, false);
@@ -119,7 +162,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
     double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     const Action a = act(step, place(step, i), memory, false);
-    t.gap = std::min(t.gap, a.acts ? a.gap_n1 : surface_.distance(local(step.x_n1, i), t.gap));
+    t.gap = std::min(t.gap, a.acts ? a.gap_n1 : distance(local(step.x_n1, i), t.gap));
     if (a.acts && !instant) {
       const Energies e = energies(step, a, memory);
       t.friction_loss += area * e.by_friction;
@@ -133,7 +176,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
       (a.slips ? t.slipping : t.sticking) += 1.0;
       force += area * a.h;
       friction += area * a.friction;
-      moment += area * a.pressure * position(step.x_n1, i);
+      moment += area * a.pressure * foot(step.x_n1, i);
     }
     const bool stays = a.gap_n1 < law_.normal.reach();
     for (int k = 0; k < 3; ++k) {
@@ -165,12 +208,12 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     if (!(memory[10] > 0.0)) continue;
     const double area = points_.points[static_cast<std::size_t>(i)].area;
-    const RigidSurface::Gap gap = surface_.gap(local(instant.x_n1, i), {law_.normal});
-    list.push_back({.point = position(instant.x_n1, i),
-                    .normal = R * gap.normal.normalized(),
+    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law_.normal});
+    list.push_back({.point = foot(instant.x_n1, i),
+                    .normal = R * here.normal.normalized(),
                     .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
                     .friction = area * (R * Vec3(memory[7], memory[8], memory[9])),
-                    .gap = gap.value,
+                    .gap = here.value,
                     .pressure = memory[10]});
   }
   return list;
