@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <polhode/base/format.hpp>
+#include <polhode/contact/buried.hpp>
 #include <polhode/contact/contact_set.hpp>
 
 namespace polhode::contact {
@@ -55,12 +56,41 @@ std::vector<TouchingPoint> ContactSet::touching() const {
   return list;
 }
 
+namespace {
+
+using Overlaps = std::map<std::pair<int, int>, ShapeOverlap>;
+
+/// Shapes that lie within surfaces of triangles, none of which is near.
+/// @param touch  (shape, shape) → whether they may.
+/// @param at     (shape) → where it is.
+template <class Touch, class At>
+void add_buried(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at, Overlaps& deepest) {
+  const int n = static_cast<int>(shapes.size());
+  for (int b = 0; b < n; ++b) {
+    const Shape& B = shapes[b].shape;
+    if (B.solid != Solid::surface) continue;
+    for (int a = 0; a < n; ++a) {
+      const Shape& A = shapes[a].shape;
+      if (a == b || !A.bounded() || deepest.contains(std::minmax(a, b)) || !touch(a, b)) continue;
+      const Placement<double> at_a = at(a), at_b = at(b);
+      const Vec3 between = value(at_a.point(A.bound_centre)) - value(at_b.point(B.bound_centre));
+      if (between.norm() > A.bound_radius + B.bound_radius) continue;
+      const std::optional<Buried> found = buried(A, B, at_a, at_b);
+      if (!found) continue;
+      deepest[std::minmax(a, b)] = {std::min(a, b), std::max(a, b), found->depth,
+                                    a < b ? found->normal : Vec3(-found->normal)};
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep> instants) {
   StepContext context;
   context.dt = 1e-2;
   State none;
   begin_step(none, instants, context);
-  std::map<std::pair<int, int>, ShapeOverlap> deepest;
+  Overlaps deepest;
   for (const Point& p : points_) {
     if (p.sensor || p.data.pair.weight < 0.0 || p.gap_n > -p.data.normal.tolerance) continue;
     ShapeOverlap& found = deepest[std::minmax(p.a, p.b)];
@@ -72,6 +102,13 @@ std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep>
     const double sign = p.a < p.b ? 1.0 : -1.0;
     found = {std::min(p.a, p.b), std::max(p.a, p.b), -p.gap_n, sign * value(g.normal)};
   }
+  add_buried(
+      shapes_, [&](int a, int b) { return may_meet(shapes_[a], shapes_[b]) && !law(a, b).sensor; },
+      [&](int shape) {
+        const BodyStep& step = step_of(shape, instants);
+        return Placement<double>(step.r_n, step.Lambda_n, 0);
+      },
+      deepest);
   std::vector<ShapeOverlap> list;
   list.reserve(deepest.size());
   for (const auto& [key, overlap] : deepest) list.push_back(overlap);

@@ -291,6 +291,7 @@ Shape height_field(std::string_view where, int columns, double spacing,
   field = placed(std::move(field), place);
   check_rounding(where, rounding, 0.25 * spacing);
   Shape s;
+  s.axes = place.axes;
   s.solid = Solid::surface;
   s.rounding = rounding == 0.0 ? kRounding * spacing : rounding;
   take_triangles(s, shrunk(field, s.rounding));

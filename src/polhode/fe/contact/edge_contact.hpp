@@ -85,11 +85,10 @@ class EdgeContact final : public ElementGroup,
   /// Ends 0 and 1 of edge e of the first lines, 2 and 3 of f of the second.
   [[nodiscard]] const MeshPoint& end(int e, int f, int k) const;
   [[nodiscard]] EdgePairData data(int e, int f) const;
-  [[nodiscard]] double* memory(double* history, int slot) const {
+  /// Of a slot in the history; behind the last one the totals.
+  template <class Number>
+  [[nodiscard]] Number* memory(Number* history, int slot) const {
     return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(slot);
-  }
-  [[nodiscard]] const double* memory(const double* history, int slot) const {
-    return memory(const_cast<double*>(history), slot);
   }
   [[nodiscard]] int slots() const;
   [[nodiscard]] int slot_of_second(int f) const;
