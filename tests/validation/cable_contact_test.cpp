@@ -165,7 +165,9 @@ TEST(CableContact, RopeOverADrumSlipsAboveTheRatioOfEytelwein) {
     Simulation s(drum.model);
     const double error = std::abs(drum.acceleration(s) / a - 1.0);
     EXPECT_LT(error, 5.0 / (pieces * pieces)) << pieces;
-    if (coarse > 0.0) EXPECT_LT(error, 0.4 * coarse) << pieces;
+    if (coarse > 0.0) {
+      EXPECT_LT(error, 0.4 * coarse) << pieces;
+    }
     EXPECT_EQ(s.contact(0).status, 2);
     EXPECT_GT(s.contact(0).energy_lost, 0.1);
     coarse = error;

@@ -50,13 +50,6 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
         format("rho_inf is {:g}: numerical damping takes energy from every contact; "
                "restitution and rebound are not those asked for.",
                simulation.model().analysis.rho_inf));
-  std::vector<std::string> touching;
-  for (const SolidSpec& solid : simulation.model().solids)
-    if (simulation.has_contacts() && solid.contact.touches.value_or(true))
-      touching.push_back(solid.name);
-  if (touching.size() > 1)
-    list.push_back(format("The solids {} touch shapes of bodies, but not one another.",
-                          name_list(touching, 12)));
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
   return list;
