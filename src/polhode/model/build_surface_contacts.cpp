@@ -185,16 +185,22 @@ class SurfacesBuilder {
           std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start));
       map_.surfaces.push_back({side_of_solid(solids[k]), side_of_solid(solids[1 - k]), 0, group});
     }
+    add_edges(pair, surfaces, X, law, start);
+  }
+
+  /// The sharp edges of both surfaces on each other.
+  void add_edges(const SurfacePair& pair, const MeshSurface (&surfaces)[2],
+                 const std::vector<Vec3>& X, SurfaceLaw law, const SolidContactStart& start) {
     EdgeContact::Sides sides{sharp_edges(surfaces[0], X), sharp_edges(surfaces[1], X),
-                             least * least};
+                             start.edge * start.edge};
     if (sides.first.edges.empty() || sides.second.edges.empty()) return;
-    SurfaceLaw of_edges = law;
-    of_edges.normal.tolerance *= kEdgeBand;
-    of_edges.normal.stiffness /= kEdgeBand;
-    const int group = system_.add_elements(std::make_unique<EdgeContact>(
-        format("edges of {} on {}", name(0), self ? "itself" : name(1)), std::move(sides), of_edges,
-        start));
-    map_.surfaces.push_back({side_of_solid(solids[0]), side_of_solid(solids[1]), 0, group});
+    law.normal.tolerance *= kEdgeBand;
+    law.normal.stiffness /= kEdgeBand;
+    const int group = system_.add_elements(
+        std::make_unique<EdgeContact>(format("edges of {} on {}", model_.side_name(pair.own),
+                                             start.self ? "itself" : model_.side_name(pair.side)),
+                                      std::move(sides), law, start));
+    map_.surfaces.push_back({pair.own, pair.side, 0, group});
   }
 
   /// How far nodes of two solids go against each other in the first step [m].

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <polhode/fe/contact/edge_pair.hpp>
@@ -171,7 +172,7 @@ EdgePair::Force EdgePair::mean_m_slope() const {
 
 EdgePair::Stiffness EdgePair::stiffness() const {
   Stiffness K = Stiffness::Zero(12, 12);
-  (void)by_angle(&K);
+  by_angle(&K);
   const Force m_slope = mean_m_slope();
   for (const Part& p : parts_) {
     K += p.sign * m_ * p.gap.stiffness(p.pressure);

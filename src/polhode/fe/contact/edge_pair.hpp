@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <polhode/fe/contact/plane_friction.hpp>
 
 namespace polhode {
@@ -30,7 +32,7 @@ class EdgePair {
   using Force = CentralGap::Force;
   using Stiffness = CentralGap::Stiffness;
 
-  /// @param step_alpha  α_f; 1 at an instant.
+  /// @param alpha_f  1 at an instant. The law is to live as long.
   EdgePair(const FourMoves& moves, const EdgePairData& data, const SurfaceLaw& law, double alpha_f,
            bool conserving);
 
@@ -57,7 +59,8 @@ class EdgePair {
     contact::ForceAndSlope pressure;
     CentralGap gap;
   };
-  [[nodiscard]] Force by_angle(Stiffness* K) const;
+  /// What acts because m changes with the angle; its derivatives are added to K.
+  Force by_angle(Stiffness* K) const;
   [[nodiscard]] Force mean_m_slope() const;  ///< D m̄ / D x_{n+1}.
 
   FourMoves moves_;

@@ -2,10 +2,12 @@
 // Which edges may cross, and how far they may go.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <polhode/contact/broad_phase.hpp>
 #include <polhode/fe/contact/edge_contact.hpp>
+#include <polhode/fe/contact/free_way.hpp>
 
 namespace polhode {
 
@@ -42,7 +44,7 @@ bool EdgeContact::may_meet(int e, int f) const {
   for (int k = 0; k < 4; ++k) x[k] = nodes_.start(end(e, f, k));
   for (int i = 0; i < 2; ++i)
     for (int j = 2; j < 4; ++j)
-      if (&end(e, f, i) == &end(e, f, j) || x[i] == x[j]) return false;
+      if (x[i] == x[j]) return false;
   return room(nearest_of_edges(x).distance) >= kTogether * law_.normal.tolerance;
 }
 
@@ -84,14 +86,8 @@ void EdgeContact::find(Search& s) const {
 void EdgeContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   nodes_.write_start(history);
-  std::vector<double> x(3 * static_cast<std::size_t>(reach().back() + 1));
-  const double* place = history;
-  for (const int i : reach()) {
-    std::copy_n(place, 3, x.begin() + 3 * i);
-    place += 3;
-  }
   memory(history, slots())[offsetof(SurfaceTotals, gap) / sizeof(double)] =
-      least_gap(x.data(), history);
+      least_gap(nodes_.positions(history).data(), history);
 }
 
 /// Of edges that are not along each other; NaN if none is near.

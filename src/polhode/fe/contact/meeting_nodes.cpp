@@ -41,6 +41,15 @@ void MeetingNodes::write_start(double* key) const {
   key[start_.size()] = std::max(kLook * edge_, kLookSteps * way_);
 }
 
+std::vector<double> MeetingNodes::positions(const double* key) const {
+  std::vector<double> x(3 * static_cast<std::size_t>(numbers_.back() + 1));
+  for (const int i : numbers_) {
+    std::copy_n(key, 3, x.begin() + 3 * i);
+    key += 3;
+  }
+  return x;
+}
+
 void MeetingNodes::write_instant(const double* x, double* key) const {
   for (const int i : numbers_) key = std::copy_n(x + 3 * i, 3, key);
   *key = kLook * edge_;

@@ -9,8 +9,6 @@
 
 namespace polhode {
 
-/// What is left in front of a surface at the end of a way, of what there was at its start.
-inline constexpr double kLeave = 0.1;
 /// Of one surface, places nearer than so many gap tolerances from the start on do not meet.
 inline constexpr double kTogether = 4.0;
 
@@ -39,6 +37,8 @@ class MeetingNodes {
   [[nodiscard]] const std::vector<int>& numbers() const { return numbers_; }  ///< Ascending.
   [[nodiscard]] std::size_t key_size() const { return 3 * numbers_.size() + 1; }
   void write_start(double* key) const;
+  /// The places of a key by node number, as positions are given.
+  [[nodiscard]] std::vector<double> positions(const double* key) const;
   /// For another instant than the start, as if it were that.
   void write_instant(const double* x, double* key) const;
   /// Looks again if it is time to.
@@ -74,24 +74,5 @@ class MeetingNodes {
   std::vector<double> start_;  ///< Places.
   std::vector<int> carriers_;  ///< A body, or kFreeNode.
 };
-
-/// The part of a way, at most `most`, on which features do not come nearer than `least`, followed
-/// by advances of their distance.
-/// @param distance  At the start of the way [m].
-/// @param length    They come nearer by no more than this on all of it [m].
-/// @param room      (part of the way) → distance there.
-template <class Room>
-[[nodiscard]] double free_way(double most, double distance, double least, double length,
-                              Room&& room) {
-  constexpr int kMostAdvances = 200;
-  if (distance - least >= length * most) return most;
-  double part = 0.0;
-  for (int k = 0; k < kMostAdvances && part < most; ++k) {
-    part += (distance - least) / length;
-    distance = room(std::min(part, most));
-    if (distance <= least) break;
-  }
-  return std::min(most, part);
-}
 
 }  // namespace polhode

@@ -126,12 +126,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
 /// NaN where nothing is near.
 void SolidContact::note_gap_at_start(double* history) const {
   double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
-  std::vector<double> x(3 * static_cast<std::size_t>(reach().back() + 1));
-  const double* place = history;
-  for (const int i : reach()) {
-    std::copy_n(place, 3, x.begin() + 3 * i);
-    place += 3;
-  }
+  const std::vector<double> x = nodes_.positions(history);
   const Search& s = search(history);
   const Field start(surface_, x.data());
   double least = std::numeric_limits<double>::infinity();

@@ -7,6 +7,7 @@
 
 #include <polhode/contact/broad_phase.hpp>
 #include <polhode/contact/nearest.hpp>
+#include <polhode/fe/contact/free_way.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/contact/solid_contact_field.hpp>
 

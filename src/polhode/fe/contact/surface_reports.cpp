@@ -4,16 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/fe/contact/free_way.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
 
 namespace polhode {
 
 namespace {
 
-/// What is left in front of a barrier at the end of a way, of what there was at its start.
-constexpr double kLeave = 0.1;
-/// Ways are followed by advances of the gap's own size, at most so many.
-constexpr int kMostAdvances = 200;
 /// Clearances beyond this many bands are all alike.
 constexpr double kFar = 10.0;
 /// A way shorter than so many times the depth that counts as through does not get so deep.
@@ -82,17 +79,10 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
         most *= 0.5;
     }
     const auto room_at = [&](const Vec3& y) { return distance(y, floor + length + band) - floor; };
-    double room = room_at(start);
-    const double least = kLeave * std::min(room, band);
-    if (room <= 0.0 || room - least >= length * most) continue;
-    double part = 0.0;
-    for (int k = 0; k < kMostAdvances && part < most; ++k) {
-      const double advance = (room - least) / length;
-      part += advance;
-      room = room_at(start + std::min(part, most) * way);
-      if (room <= least) break;
-    }
-    most = std::min(most, part);
+    const double room = room_at(start);
+    if (room <= 0.0) continue;
+    most = free_way(most, room, kLeave * std::min(room, band), length,
+                    [&](double part) { return room_at(start + part * way); });
   }
   return most;
 }
