@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <numeric>
 #include <polhode/so3/hat.hpp>
 #include <polhode/solve/block_cg.hpp>
 
@@ -42,7 +43,11 @@ Crowd crowd(int bodies, double stiffness, unsigned seed) {
 
 void set(BlockCg& cg, const Crowd& c) {
   ASSERT_TRUE(cg.set_bodies(c.blocks));
-  cg.set_springs(c.springs);
+  std::vector<ActingPoint> points;
+  for (const ContactSpring& s : c.springs) points.emplace_back().spring = s;
+  std::vector<int> all(c.blocks.size());
+  std::iota(all.begin(), all.end(), 0);
+  cg.set_springs(points, all);
 }
 
 /// The matrix that BlockCg never writes down.

@@ -17,14 +17,24 @@ struct ContactSpring {
   Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
 };
 
+/// A point that acts.
+struct ActingPoint {
+  int point = 0;  ///< Its number, ascending.
+  ContactSpring spring;
+  Vec3 force = Vec3::Zero();                              ///< On a; on b the opposite [N].
+  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< [N m]
+};
+
 /// Contacts seen by iterative solvers of crowds: forces by body and springs by point.
 class PointwiseContacts {
  public:
   virtual ~PointwiseContacts() = default;
-  /// Adds the wrenches to those of the bodies, and replaces the springs.
-  virtual void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
-                                  std::span<Vec6> wrenches,
-                                  std::vector<ContactSpring>& springs) = 0;
+  /// The points that act, until the next call.
+  /// @param moved  By body, the ground last: what has moved since the last call of this step; empty
+  ///               for all. Forces between others are those of that call.
+  virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
+                                                          const StepContext& context,
+                                                          std::span<const char> moved) = 0;
   /// Holds back predicted increments, pair by pair, about where impacts in the step will stop them.
   /// @param steps  Nobody has moved yet.
   virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,

@@ -180,8 +180,8 @@ bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& conte
                    increments[body].tail<3>().norm() * reach_of_body_[body]);
   };
   const auto bodies = static_cast<int>(references_.size());
-  for (int body = 0; body < bodies && !leaves; ++body)
-    leaves = reach_of_body_[body] > 0.0 &&
+  for (int body = 0; body < bodies && !leaves; ++body)  // what stays was asked for before
+    leaves = reach_of_body_[body] > 0.0 && !increments[body].isZero(0.0) &&
              !(moved(body, steps[body].r_n1, steps[body].Lambda_n1) + ahead(body) <
                references_[body].margin);
   if (!leaves) return false;

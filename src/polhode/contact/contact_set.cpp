@@ -180,6 +180,7 @@ void ContactSet::stiffen(Point& p, double k) const {
 
 void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContext& context) {
   balls_.resize(points_.size());
+  renewed_ = true;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     open_or_close(points_[i], balls_[i], steps, context);
     if (context.ga.alpha_f != 0.5) balls_[i].holds = false;
@@ -328,13 +329,23 @@ double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) c
   return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
 }
 
-void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
-                                    std::span<Vec6> wrenches, std::vector<ContactSpring>& springs) {
-  springs.clear();
+std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const BodyStep> steps,
+                                                            const StepContext& context,
+                                                            std::span<const char> moved) {
+  const bool all = moved.empty() || renewed_;
+  renewed_ = false;
+  std::swap(acting_, acting_before_);
+  acting_.clear();
   pointwise_ = true;
   double least = std::numeric_limits<double>::infinity();
+  auto before = acting_before_.begin();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const ApproachOfBalls& balls = balls_[i];
+    if (!all && !moved[balls.a] && !moved[balls.b]) {
+      while (before != acting_before_.end() && before->point < i) ++before;
+      if (before != acting_before_.end() && before->point == i) acting_.push_back(*before);
+      continue;
+    }
     const BodyStep &a = steps[balls.a], &b = steps[balls.b];
     double gap_1 = 0.0;
     if (balls.holds) {  // most are only near: nothing but what lies side by side is read for them
@@ -347,17 +358,13 @@ void ContactSet::evaluate_pointwise(std::span<const BodyStep> steps, const StepC
     const Point& p = points_[i];
     const PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
                                  : point_force(p.data, a, b, context);
-    springs.push_back({shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C});
-    const ContactSpring& s = springs.back();
-    if (s.a != kGround) {
-      wrenches[s.a].head<3>() += f.force;
-      wrenches[s.a].tail<3>() += f.moment_a;
-    }
-    if (s.b != kGround) {
-      wrenches[s.b].head<3>() -= f.force;
-      wrenches[s.b].tail<3>() += f.moment_b;
-    }
+    acting_.push_back({i,
+                       {shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C},
+                       f.force,
+                       f.moment_a,
+                       f.moment_b});
   }
+  return acting_;
 }
 
 Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {

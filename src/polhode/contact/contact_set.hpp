@@ -102,8 +102,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
              std::span<const Vec6> increments) override;
   void evaluate(std::span<const BodyStep> steps, const StepContext& context,
                 std::span<PairTerms> terms) override;
-  void evaluate_pointwise(std::span<const BodyStep> steps, const StepContext& context,
-                          std::span<Vec6> wrenches, std::vector<ContactSpring>& springs) override;
+  std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
+                                                  const StepContext& context,
+                                                  std::span<const char> moved) override;
   void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
                      std::span<Vec6> increments) const override;
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
@@ -206,7 +207,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
-  std::vector<ApproachOfBalls> balls_;  ///< By point.
+  std::vector<ApproachOfBalls> balls_;               ///< By point.
+  std::vector<ActingPoint> acting_, acting_before_;  ///< When forces were asked for last.
+  bool renewed_ = true;                              ///< Points are others since then.
   std::vector<Participants> pairs_;
   std::vector<int> settling_;  ///< Points of the impacts that were told last.
   std::vector<double> saved_, totals_;

@@ -92,12 +92,12 @@ Gap<double> ContactSet::gap_along(const Point& p, std::span<const BodyStep> step
 
 double ContactSet::sensible_part(std::span<const Vec6> increments) const {
   double part = 1.0;
-  const auto shorten = [&](double length, double most) {
-    if (length * part > most) part = most / length;
+  const auto shorten = [&](const auto& way, double most) {
+    if (way.squaredNorm() * part * part > most * most) part = most / way.norm();
   };
   for (std::size_t body = 0; body < references_.size(); ++body) {
-    shorten(increments[body].tail<3>().norm(), kLongestTurn);
-    if (reach_of_body_[body] > 0.0) shorten(increments[body].head<3>().norm(), stride_[body]);
+    shorten(increments[body].tail<3>(), kLongestTurn);
+    if (reach_of_body_[body] > 0.0) shorten(increments[body].head<3>(), stride_[body]);
   }
   return part;
 }
@@ -117,8 +117,9 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     if (const ApproachOfBalls& balls = balls_[i]; balls.holds) {
       const Vec6 &x_a = balls.a == ground ? still : increments[balls.a],
                  &x_b = balls.b == ground ? still : increments[balls.b];
-      const double part =
-          balls.part(steps[balls.a], steps[balls.b], x_a.head<3>() - x_b.head<3>(), kKeptByBalls);
+      const Vec3 change = x_a.head<3>() - x_b.head<3>();
+      if (change.isZero(0.0)) continue;
+      const double part = balls.part(steps[balls.a], steps[balls.b], change, kKeptByBalls);
       if (part < most && !points_[i].sensor) {
         most = part;
         tightest_ = i;

@@ -110,37 +110,46 @@ bool BlockCg::set_bodies(std::span<const Mat6> blocks) {
   return true;
 }
 
-void BlockCg::set_springs(std::span<const ContactSpring> springs) {
+void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const int> moving) {
   const double squared = per_length_ * per_length_, ratio = per_turn_ / per_length_;
   const auto four = [](const auto& x, double s) {
     return Four{static_cast<float>(s * x[0]), static_cast<float>(s * x[1]),
                 static_cast<float>(s * x[2]), 0.0f};
   };
-  const auto ground = static_cast<int>(own_.size());
-  inverse_ = own_;
-  springs_.resize(springs.size());
-  for (std::size_t k = 0; k < springs.size(); ++k) {
-    const ContactSpring& from = springs[k];
-    Spring& s = springs_[k];
+  const auto count = static_cast<int>(moving.size());
+  moving_.assign(moving.begin(), moving.end());
+  place_.assign(own_.size(), count);
+  block_.resize(moving.size());
+  for (int k = 0; k < count; ++k) {
+    place_[moving[k]] = k;
+    block_[k] = own_[moving[k]];
+  }
+  inverse_ = block_;
+  springs_.clear();
+  for (const ActingPoint& point : points) {
+    const ContactSpring& from = point.spring;
+    Spring s;
+    s.a = from.a == kGround ? count : place_[from.a];
+    s.b = from.b == kGround ? count : place_[from.b];
+    if (s.a == count && s.b == count) continue;
     for (int j = 0; j < 3; ++j) s.C[j] = four(from.C.col(j), squared);
     s.arm_a = four(from.arm_a, ratio);
     s.arm_b = four(from.arm_b, ratio);
-    s.a = from.a == kGround ? ground : from.a;
-    s.b = from.b == kGround ? ground : from.b;
-    if (s.a != ground) add(s, s.arm_a, inverse_[s.a]);
-    if (s.b != ground) add(s, s.arm_b, inverse_[s.b]);
+    if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
+    if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
+    springs_.push_back(s);
   }
   // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
-  for (std::size_t b = 0; b < own_.size(); ++b)
-    if (Block inverse; invert(inverse_[b], inverse))
-      inverse_[b] = inverse;
+  for (int k = 0; k < count; ++k)
+    if (Block inverse; invert(inverse_[k], inverse))
+      inverse_[k] = inverse;
     else
-      inverse_[b] = own_inverse_[b];
+      inverse_[k] = own_inverse_[moving[k]];
 }
 
-/// y = A p. The ground's part of p stays zero, that of y is never read.
+/// y = A p. What stays has a part of p that is zero, and one of y that is never read.
 void BlockCg::multiply() {
-  for (std::size_t b = 0; b < own_.size(); ++b) y_[b] = times(own_[b], p_[b]);
+  for (std::size_t k = 0; k < block_.size(); ++k) y_[k] = times(block_[k], p_[k]);
   for (const Spring& s : springs_) {
     const Pair &a = p_[s.a], &b = p_[s.b];
     const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
@@ -153,7 +162,7 @@ void BlockCg::multiply() {
 }
 
 int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most) {
-  const std::size_t n = rhs.size();
+  const std::size_t n = moving_.size();
   const Pair zero{};
   x_.assign(n, zero);
   r_.resize(n);
@@ -162,55 +171,56 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
   y_.assign(n + 1, zero);
   // Scaled to size one as well: forces of any unit fit into single precision.
   double size = 0.0;
-  for (const Vec6& f : rhs) {
+  for (const int b : moving_) {
+    const Vec6& f = rhs[b];
     size = std::max(size, per_length_ * f.head<3>().lpNorm<Eigen::Infinity>());
     size = std::max(size, per_turn_ * f.tail<3>().lpNorm<Eigen::Infinity>());
   }
-  x.assign(n, Vec6::Zero());
+  x.assign(rhs.size(), Vec6::Zero());
   if (!(size > 0.0) || !std::isfinite(size)) return 0;
   const double by_length = per_length_ / size, by_turn = per_turn_ / size;
   double rz = 0.0;
-  for (std::size_t b = 0; b < n; ++b) {
+  for (std::size_t k = 0; k < n; ++k) {
     for (int i = 0; i < 3; ++i) {
-      r_[b].moved[i] = static_cast<float>(by_length * rhs[b][i]);
-      r_[b].turned[i] = static_cast<float>(by_turn * rhs[b][3 + i]);
+      r_[k].moved[i] = static_cast<float>(by_length * rhs[moving_[k]][i]);
+      r_[k].turned[i] = static_cast<float>(by_turn * rhs[moving_[k]][3 + i]);
     }
-    r_[b].moved[3] = r_[b].turned[3] = 0.0f;
-    z_[b] = p_[b] = times(inverse_[b], r_[b]);
-    rz += dot(r_[b], z_[b]);
+    r_[k].moved[3] = r_[k].turned[3] = 0.0f;
+    z_[k] = p_[k] = times(inverse_[k], r_[k]);
+    rz += dot(r_[k], z_[k]);
   }
   const double enough = part * rz;
-  int k = 0;
-  while (k < most && rz > enough) {
-    ++k;
+  int iterations = 0;
+  while (iterations < most && rz > enough) {
+    ++iterations;
     multiply();
     double curvature = 0.0;
-    for (std::size_t b = 0; b < n; ++b) curvature += dot(p_[b], y_[b]);
+    for (std::size_t k = 0; k < n; ++k) curvature += dot(p_[k], y_[k]);
     if (!(curvature > 0.0)) break;
     const auto alpha = static_cast<float>(rz / curvature);
     double next = 0.0;
-    for (std::size_t b = 0; b < n; ++b) {
-      x_[b].moved += alpha * p_[b].moved;
-      x_[b].turned += alpha * p_[b].turned;
-      r_[b].moved -= alpha * y_[b].moved;
-      r_[b].turned -= alpha * y_[b].turned;
-      z_[b] = times(inverse_[b], r_[b]);
-      next += dot(r_[b], z_[b]);
+    for (std::size_t k = 0; k < n; ++k) {
+      x_[k].moved += alpha * p_[k].moved;
+      x_[k].turned += alpha * p_[k].turned;
+      r_[k].moved -= alpha * y_[k].moved;
+      r_[k].turned -= alpha * y_[k].turned;
+      z_[k] = times(inverse_[k], r_[k]);
+      next += dot(r_[k], z_[k]);
     }
     const auto beta = static_cast<float>(next / rz);
     rz = next;
-    for (std::size_t b = 0; b < n; ++b) {
-      p_[b].moved = z_[b].moved + beta * p_[b].moved;
-      p_[b].turned = z_[b].turned + beta * p_[b].turned;
+    for (std::size_t k = 0; k < n; ++k) {
+      p_[k].moved = z_[k].moved + beta * p_[k].moved;
+      p_[k].turned = z_[k].turned + beta * p_[k].turned;
     }
   }
   const double length = per_length_ * size, turn = per_turn_ * size;
-  for (std::size_t b = 0; b < n; ++b)
+  for (std::size_t k = 0; k < n; ++k)
     for (int i = 0; i < 3; ++i) {
-      x[b][i] = length * x_[b].moved[i];
-      x[b][3 + i] = turn * x_[b].turned[i];
+      x[moving_[k]][i] = length * x_[k].moved[i];
+      x[moving_[k]][3 + i] = turn * x_[k].turned[i];
     }
-  return k;
+  return iterations;
 }
 
 }  // namespace polhode

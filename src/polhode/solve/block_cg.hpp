@@ -19,9 +19,10 @@ class BlockCg {
  public:
   /// @param blocks  By body, the symmetric part counts. @returns false if one is not positive.
   [[nodiscard]] bool set_bodies(std::span<const Mat6> blocks);
-  /// Of the bodies set last.
-  void set_springs(std::span<const ContactSpring> springs);
-  /// x from zero until r·P⁻¹r is below `part` of what it was. @returns iterations done.
+  /// Of the bodies set last. @param moving  Ascending: the others stay where they are.
+  void set_springs(std::span<const ActingPoint> points, std::span<const int> moving);
+  /// x from zero until r·P⁻¹r is below `part` of what it was; zero for bodies that stay.
+  /// @returns iterations done.
   int solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most);
 
  private:
@@ -33,7 +34,7 @@ class BlockCg {
   struct Spring {
     Four C[3];  ///< Columns.
     Four arm_a, arm_b;
-    int a, b;  ///< The ground comes after the bodies.
+    int a, b;  ///< Among those that move; what stays comes after them.
   };
   struct Block {
     Pair column[6];
@@ -47,9 +48,11 @@ class BlockCg {
   void multiply();
 
   double per_length_ = 1.0, per_turn_ = 1.0;  ///< Scales of the matrix: S A S.
-  std::vector<Block> own_, own_inverse_, inverse_;
+  std::vector<Block> own_, own_inverse_;      ///< By body.
+  std::vector<int> moving_, place_;           ///< Bodies that move; by body its place among them.
+  std::vector<Block> block_, inverse_;        ///< Of bodies that move, as everything from here on.
   std::vector<Spring> springs_;
-  std::vector<Pair> x_, r_, z_, p_, y_;  ///< By body; p_ and y_ have the ground last.
+  std::vector<Pair> x_, r_, z_, p_, y_;  ///< p_ and y_ have what stays last.
 };
 
 }  // namespace polhode

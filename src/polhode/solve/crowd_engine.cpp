@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <polhode/base/error.hpp>
 #include <polhode/solve/crowd_engine.hpp>
@@ -15,6 +16,10 @@ namespace {
 constexpr double kCoarse = 1e-3, kFine = 1e-4;
 constexpr int kCoarseIterations = 2, kMostInner = 400;
 constexpr int kMostCuts = 8;
+/// Bodies are moved on while their residual is above this part of what counts as solved; others
+/// within so many contacts of them go with them. Where these are most, all are.
+constexpr double kLate = 0.5, kMost = 0.7;
+constexpr int kRings = 2;
 /// Part of the merit that an increment shall take away. An increment that takes hardly anything
 /// flips between sticking and sliding: half of it takes nearly all.
 constexpr double kDecrease = 0.25;
@@ -46,8 +51,12 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
   steps_.resize(n + 1);
   inertia_.resize(n);
   own_.resize(n);
-  wrenches_.resize(n);
+  of_motion_.resize(n);
   rhs_.resize(n);
+  sizes_.resize(n);
+  far_.resize(n);
+  for (const BodyData& body : system.bodies())
+    per_mass_.push_back({1.0 / body.mass, 3.0 / body.inertia.trace()});
   x_.resize(n);
   start_.resize(n);
 }
@@ -83,46 +92,73 @@ void CrowdEngine::move(int body, const Vec3& u, const Vec3& theta) {
   s.W_n1 = s.rate * (s.Lambda_n.transpose() * theta) + inertia_[body].W;
 }
 
-void CrowdEngine::write(const State& state, Trial& trial) const {
+void CrowdEngine::end_step(const State& state, Trial& trial) {
   for (int b = 0; b < system_->body_count(); ++b)
     move_body(state, trial, system_->slot(b), steps_[b].u, steps_[b].theta);
 }
 
 void CrowdEngine::begin_step(const State& state, Trial& trial) {
-  std::vector<BodyStep> start(steps_.size(), BodyStep::ground(trial.context.ga.alpha_f));
-  steps_.back() = start.back();
+  steps_.back() = BodyStep::ground(trial.context.ga.alpha_f);
+  double fastest = 0.0;
   for (int b = 0; b < system_->body_count(); ++b) {
-    start[b] = steps_[b] = body_step(*system_, state, trial, b);
-    start[b].r_n1 = start[b].r_n;
-    start[b].Lambda_n1 = start[b].Lambda_n;
-    start[b].u = start[b].theta = Vec3::Zero();
-    x_[b] << steps_[b].u, steps_[b].theta;
+    BodyStep& s = steps_[b] = body_step(*system_, state, trial, b);
+    x_[b] << s.u, s.theta;
+    s.r_n1 = s.r_n;
+    s.Lambda_n1 = s.Lambda_n;
+    s.u = s.theta = Vec3::Zero();
+    far_[b] = s.r_n.lpNorm<Eigen::Infinity>();
+    fastest = std::max(fastest, s.v_n.squaredNorm());
   }
   start_inertia(state, trial.context);
-  contacts_->begin_step(state, start, trial.context);
-  contacts_->cover(start, trial.context, x_);
-  pointwise_->place_impacts(start, trial.context, x_);
-  const double part = contacts_->filter(start, x_);
+  weight_ = system_->gravity().norm();
+  if (weight_ == 0.0) weight_ = kPartOfSpeed * std::sqrt(fastest) / std::abs(trial.context.dt);
+  weight_ = std::max(weight_, std::numeric_limits<double>::min());
+  contacts_->begin_step(state, steps_, trial.context);
+  contacts_->cover(steps_, trial.context, x_);
+  pointwise_->place_impacts(steps_, trial.context, x_);
+  const double part = contacts_->filter(steps_, x_);
   for (int b = 0; b < system_->body_count(); ++b)
     move(b, part * x_[b].head<3>(), part * x_[b].tail<3>());
-  write(state, trial);
-  evaluated_ = false;
   searches_ = 0;
+  move_all();
+  evaluated_ = false;
+}
+
+void CrowdEngine::move_all() {
+  moving_.resize(static_cast<std::size_t>(system_->body_count()));
+  std::iota(moving_.begin(), moving_.end(), 0);
+  moves_.assign(moving_.size() + 1, 1);
+  moves_.back() = 0;
+}
+
+void CrowdEngine::move_late() {
+  const auto n = static_cast<std::size_t>(system_->body_count());
+  const double late = kLate * enough_ * weight_;
+  for (std::size_t b = 0; b < n; ++b) moves_[b] = sizes_[b] * per_mass_[b].moved > late * late;
+  for (int ring = 0; ring < kRings; ++ring) {
+    ring_ = moves_;
+    for (const ActingPoint& p : acting_) {
+      const int a = p.spring.a, b = p.spring.b;
+      if (a != kGround && b != kGround && ring_[a] != ring_[b]) moves_[a] = moves_[b] = 1;
+    }
+  }
+  moving_.clear();
+  for (std::size_t b = 0; b < n; ++b)
+    if (moves_[b]) moving_.push_back(static_cast<int>(b));
+  if (static_cast<double>(moving_.size()) > kMost * static_cast<double>(n)) move_all();
 }
 
 /// Forces of bodies, loads and contacts at the trial, whose steps are up to date.
 void CrowdEngine::evaluate(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
-  std::fill(wrenches_.begin(), wrenches_.end(), Vec6::Zero());
   const double per_speed = context.ga.kappa / context.dt;
-  double fastest = 0.0;
-  for (int b = 0; b < system_->body_count(); ++b) {
+  for (const int b : moving_) {
     const BodyData& body = system_->bodies()[b];
     const BodyStep& s = steps_[b];
-    rhs_[b] << inertia_[b].force - per_speed * body.mass * s.v_n1,
+    of_motion_[b] << inertia_[b].force - per_speed * body.mass * s.v_n1,
         inertia_[b].moment - per_speed * (s.Lambda_n1 * (body.inertia * s.W_n1));
-    fastest = std::max(fastest, s.v_n.squaredNorm());
   }
+  rhs_ = of_motion_;
   if (!loads_.empty()) blocks_ = own_;
   loads_.run(steps_, context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& t) {
@@ -136,30 +172,33 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
                  blocks_[ref.b] -= t.D_bb;
                }
              });
-  pointwise_->evaluate_pointwise(steps_, context, wrenches_, springs_);
+  acting_ = pointwise_->evaluate_pointwise(steps_, context, moves_);
+  double noise = 0.0;  // what rounding of positions leaves of stiff contacts
+  for (const ActingPoint& p : acting_) {
+    const int a = p.spring.a, b = p.spring.b;
+    if (a != kGround) {
+      rhs_[a].head<3>() += p.force;
+      rhs_[a].tail<3>() += p.moment_a;
+    }
+    if (b != kGround) {
+      rhs_[b].head<3>() -= p.force;
+      rhs_[b].tail<3>() += p.moment_b;
+    }
+    const int one = a != kGround ? a : b;
+    noise = std::max(noise, p.spring.C.trace() * far_[one] * per_mass_[one].moved);
+  }
   merit_ = 0.0;
   double worst = 0.0;
   worst_body_ = -1;
   for (int b = 0; b < system_->body_count(); ++b) {
-    rhs_[b] += wrenches_[b];
-    const BodyData& body = system_->bodies()[b];
-    const double size = rhs_[b].head<3>().squaredNorm() / body.mass +
-                        3.0 * rhs_[b].tail<3>().squaredNorm() / body.inertia.trace();
-    merit_ += size;
-    if (!(size / body.mass <= worst)) worst = size / body.mass, worst_body_ = b;
+    const PerMass& per = per_mass_[b];
+    const double size =
+        per.moved * rhs_[b].head<3>().squaredNorm() + per.turned * rhs_[b].tail<3>().squaredNorm();
+    merit_ += sizes_[b] = size;
+    if (!(size * per.moved <= worst)) worst = size * per.moved, worst_body_ = b;
   }
-  double weight = system_->gravity().norm();
-  if (weight == 0.0) weight = kPartOfSpeed * std::sqrt(fastest) / std::abs(context.dt);
-  weight = std::max(weight, std::numeric_limits<double>::min());
-  residual_ = std::sqrt(worst) / weight;
-  // What rounding of positions leaves of stiff contacts: no residual can be smaller.
-  double noise = 0.0;
-  for (const ContactSpring& s : springs_) {
-    const int b = s.a != kGround ? s.a : s.b;
-    noise = std::max(
-        noise, s.C.trace() * steps_[b].r_n1.cwiseAbs().maxCoeff() / system_->bodies()[b].mass);
-  }
-  enough_ = std::max(tolerance_, kRoundOff * noise / weight);
+  residual_ = std::sqrt(worst) / weight_;
+  enough_ = std::max(tolerance_, kRoundOff * noise / weight_);  // no residual can be smaller
   evaluated_ = true;
 }
 
@@ -168,20 +207,25 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   if (!evaluated_) evaluate(state, trial);
   done.solved = std::isfinite(merit_);
   if (!done.solved || residual_ < enough_) return done;
+  if (loads_.empty()) move_late();
   if ((searches_ == 0 || !loads_.empty()) && !cg_.set_bodies(loads_.empty() ? own_ : blocks_)) {
     done.solved = false;
     return done;
   }
-  cg_.set_springs(springs_);
+  cg_.set_springs(acting_, moving_);
   inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner);
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
   double part = std::min(damping, contacts_->filter(steps_, x_));
   const double before = merit_, per_length = 1.0 / system_->length_scale();
-  for (int b = 0; b < system_->body_count(); ++b) start_[b] << steps_[b].u, steps_[b].theta;
+  double at_stake = 0.0;
+  for (const int b : moving_) {
+    at_stake += sizes_[b];
+    start_[b] << steps_[b].u, steps_[b].theta;
+  }
   for (int cut = 0;; ++cut) {
     done.increment = done.rotation = 0.0;
-    for (int b = 0; b < system_->body_count(); ++b) {
+    for (const int b : moving_) {
       const Vec3 D_r = x_[b].head<3>(), D_theta = x_[b].tail<3>();
       done.increment = std::max({done.increment, per_length * D_r.lpNorm<Eigen::Infinity>(),
                                  D_theta.lpNorm<Eigen::Infinity>()});
@@ -190,12 +234,12 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
       move(b, start_[b].head<3>() + part * D_r, turned);
     }
     evaluate(state, trial);
-    if (cut == kMostCuts || merit_ <= (1.0 - kDecrease * part) * before || residual_ < enough_)
+    const double left = at_stake - (before - merit_);
+    if (cut == kMostCuts || left <= (1.0 - kDecrease * part) * at_stake || residual_ < enough_)
       break;
-    const double best = before / (merit_ - (1.0 - 2.0 * part) * before) * part;  // of a parabola
+    const double best = at_stake / (left - (1.0 - 2.0 * part) * at_stake) * part;  // of a parabola
     part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
   }
-  write(state, trial);
   done.applied = part;
   // What the residual says is final: the increment is no measure of the next one.
   if (residual_ < enough_) {
@@ -209,12 +253,16 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
 
 void CrowdEngine::add_ground_wrench(double* force, double* moment) const {
   Vec3 f = Vec3::Zero(), m = Vec3::Zero();
-  for (std::size_t b = 0; b < wrenches_.size(); ++b) {
-    f += wrenches_[b].head<3>();
-    m += (steps_[b].r_n + steps_[b].alpha_f * steps_[b].u).cross(Vec3(wrenches_[b].head<3>())) +
-         wrenches_[b].tail<3>();
-  }
+  const auto add = [&](int b, const Vec3& on_b, const Vec3& moment_on_b) {
+    if (b == kGround) return;
+    f += on_b;
+    m += (steps_[b].r_n + steps_[b].alpha_f * steps_[b].u).cross(on_b) + moment_on_b;
+  };
   // Forces between bodies cancel in the sums: what is left is the ground's.
+  for (const ActingPoint& p : acting_) {
+    add(p.spring.a, p.force, p.moment_a);
+    add(p.spring.b, -p.force, p.moment_b);
+  }
   for (int i = 0; i < 3; ++i) {
     force[i] += f[i];
     moment[i] += m[i];

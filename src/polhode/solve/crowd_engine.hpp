@@ -14,7 +14,8 @@ namespace polhode {
 /// Newton iterations of a crowd: many bodies without joints that only contacts couple. Conjugate
 /// gradients instead of a factorisation; the tangent is the symmetric positive part of the true
 /// one, so Newton contracts by a factor. A step is solved when the residual of every body is below
-/// a part of its weight.
+/// a part of its weight. Most bodies are there after a few iterations: only the others, and those
+/// they touch, are moved from then on.
 class CrowdEngine final : public NewtonEngine {
  public:
   /// Residual that counts as solved, as part of a body's weight. With friction or restitution below
@@ -31,7 +32,7 @@ class CrowdEngine final : public NewtonEngine {
   [[nodiscard]] std::string worst_other() const override { return contacts_->tightest(); }
   [[nodiscard]] bool may_grow() const override { return true; }
   void add_ground_wrench(double* force, double* moment) const override;
-  void end_step(const State&, Trial&) override {}
+  void end_step(const State& state, Trial& trial) override;
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
   [[nodiscard]] MovingContacts* contacts() const override { return contacts_; }
@@ -45,8 +46,9 @@ class CrowdEngine final : public NewtonEngine {
  private:
   void start_inertia(const State& state, const StepContext& context);
   void move(int body, const Vec3& u, const Vec3& theta);
-  void write(const State& state, Trial& trial) const;
   void evaluate(const State& state, const Trial& trial);
+  void move_all();
+  void move_late();
 
   const System* system_;
   MovingContacts* contacts_;
@@ -61,10 +63,20 @@ class CrowdEngine final : public NewtonEngine {
   };
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<Inertia> inertia_;
-  std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; and with loads.
-  std::vector<Vec6> wrenches_, rhs_, x_, start_;
-  std::vector<ContactSpring> springs_;
-  double merit_ = 0.0, residual_ = 0.0;
+  std::vector<Mat6> own_, blocks_;                 ///< Of inertia alone; and with loads.
+  std::vector<Vec6> of_motion_, rhs_, x_, start_;  ///< rhs_: of the motion, loads and contacts.
+  struct PerMass {
+    double moved, turned;  ///< One over the mass, and the mean of the moments of inertia.
+  };
+  std::vector<PerMass> per_mass_;
+  std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].
+  std::vector<double> sizes_;  ///< By body, of its residual [N² / kg].
+  std::span<const ActingPoint> acting_;
+  std::vector<int> moving_;  ///< Bodies that the iteration moves, ascending.
+  std::vector<char> moves_;  ///< The same by body; the ground last.
+  std::vector<char> ring_;   ///< Those that move so far.
+  double merit_ = 0.0;       ///< Sum of sizes.
+  double residual_ = 0.0, weight_ = 0.0;
   bool evaluated_ = false;
   int worst_body_ = -1, searches_ = 0;
   long inner_ = 0;
