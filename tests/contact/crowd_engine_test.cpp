@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include <polhode/assembly/state_archive.hpp>
 #include <polhode/base/error.hpp>
 
@@ -13,7 +16,7 @@ using namespace test;
 
 /// Balls and a few boxes that fall into a corner of two walls and a floor.
 struct Heap : Scene {
-  explicit Heap(double residual) {
+  explicit Heap(double residual, const std::function<void(Scene&)>& more = {}) {
     crowd_residual = residual;
     for (int i = 0; i < 24; ++i) {
       const Vec3 r(0.25 * (i % 3) + 0.13 + 0.004 * std::sin(13.0 * i),
@@ -23,6 +26,7 @@ struct Heap : Scene {
       else
         add_ball("ball " + std::to_string(i), 0.1, 1.0, at(r));
     }
+    if (more) more(*this);
     add_floor();
     add_floor(Vec3::UnitX());
     add_floor(Vec3::UnitY());
@@ -85,6 +89,68 @@ TEST(CrowdEngine, GoesOnBitForBitFromAnArchive) {
   s.restart();
   ASSERT_TRUE(s.run(0.1));
   EXPECT_EQ(state_hash(s.system, s.state), end);
+}
+
+/// Where few bodies moved, the forces of the others are those of before.
+TEST(CrowdEngine, AsksOnlyForForcesOfWhatMoved) {
+  Heap s(1e-6);
+  ASSERT_TRUE(s.run(0.4));
+  const int n = s.system.body_count();
+  std::vector<BodyStep> steps(static_cast<std::size_t>(n) + 1);
+  StepContext context;
+  context.dt = 2e-3;
+  for (int b = 0; b < n; ++b) {
+    steps[b] = s.system.instant(s.state, b);
+    steps[b].alpha_f = 0.5;
+  }
+  steps.back() = BodyStep::ground(0.5);
+  s.contacts->begin_step(s.state, steps, context);
+  const auto forces = [&](const std::vector<char>& moved) {
+    const auto points = s.contacts->evaluate_pointwise(steps, context, moved);
+    return std::vector<ActingPoint>(points.begin(), points.end());
+  };
+  const std::vector<ActingPoint> before = forces({});
+  ASSERT_GT(before.size(), 20U);
+  std::vector<char> moved(steps.size(), 0);
+  for (const int b : {2, 11, 12, 20}) {
+    moved[b] = 1;
+    steps[b].u = Vec3(1e-5 * b, -2e-5, -3e-5);
+    steps[b].r_n1 = steps[b].r_n + steps[b].u;
+  }
+  const std::vector<ActingPoint> part = forces(moved), all = forces({});
+  ASSERT_EQ(part.size(), all.size());
+  int others = 0, same = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(part[k].point, all[k].point);
+    EXPECT_EQ(part[k].force, all[k].force);
+    EXPECT_EQ(part[k].moment_a, all[k].moment_a);
+    EXPECT_EQ(part[k].moment_b, all[k].moment_b);
+    EXPECT_EQ(part[k].spring.C, all[k].spring.C);
+    const auto was = std::find_if(before.begin(), before.end(),
+                                  [&](const ActingPoint& p) { return p.point == all[k].point; });
+    const bool equal = was != before.end() && was->force == all[k].force;
+    equal ? ++same : ++others;
+  }
+  EXPECT_GT(others, 4);
+  EXPECT_GT(same, 4);
+}
+
+/// Balls that fly are solved before the heap is, and stay out of its iterations: they are on their
+/// parabolas, and the heap does not feel them.
+TEST(CrowdEngine, LeavesAloneWhatIsSolved) {
+  Heap s(1e-6);
+  Heap both(1e-6, [](Scene& scene) {
+    for (int k = 0; k < 40; ++k)
+      scene.add_ball("flies " + std::to_string(k), 0.1, 1.0,
+                     at({5.0 + k, 5.0, 6.0}, {0.3, 0.1, 2.0}));
+  });
+  ASSERT_TRUE(s.run(0.2));
+  ASSERT_TRUE(both.run(0.2));
+  for (int k = 24; k < 64; ++k) {  // up to 1e-6 of gravity
+    EXPECT_LT((both.motion(k).v - Vec3(0.3, 0.1, 2.0 - 9.81 * 0.2)).norm(), 2e-6) << k;
+    EXPECT_NEAR(both.motion(k).r.z(), 6.0 + 2.0 * 0.2 - 0.5 * 9.81 * 0.04, 2e-7) << k;
+  }
+  for (int b = 0; b < 24; ++b) EXPECT_LT((both.motion(b).r - s.motion(b).r).norm(), 1e-6) << b;
 }
 
 TEST(CrowdEngine, RefusesJoints) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <algorithm>
 #include <numeric>
+
+#include <Eigen/LU>
 #include <polhode/so3/hat.hpp>
 #include <polhode/solve/block_cg.hpp>
 
@@ -41,13 +43,17 @@ Crowd crowd(int bodies, double stiffness, unsigned seed) {
   return c;
 }
 
-void set(BlockCg& cg, const Crowd& c) {
-  ASSERT_TRUE(cg.set_bodies(c.blocks));
+std::vector<ActingPoint> acting(const Crowd& c) {
   std::vector<ActingPoint> points;
   for (const ContactSpring& s : c.springs) points.emplace_back().spring = s;
+  return points;
+}
+
+void set(BlockCg& cg, const Crowd& c) {
+  ASSERT_TRUE(cg.set_bodies(c.blocks));
   std::vector<int> all(c.blocks.size());
   std::iota(all.begin(), all.end(), 0);
-  cg.set_springs(points, all);
+  cg.set_springs(acting(c), all);
 }
 
 /// The matrix that BlockCg never writes down.
@@ -143,6 +149,28 @@ TEST(BlockCg, StandsSpringsOfAnyStiffness) {
   std::vector<Vec6> x;
   cg.solve(numbers(12, 5), x, 1e-4, 200);
   EXPECT_TRUE(flat(x).allFinite());
+}
+
+/// Of A x = f the rows and columns of what moves.
+TEST(BlockCg, LeavesBodiesWhereTheyAre) {
+  const Crowd c = crowd(40, 20.0, 3);
+  const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};
+  BlockCg cg;
+  ASSERT_TRUE(cg.set_bodies(c.blocks));
+  cg.set_springs(acting(c), moving);
+  const std::vector<Vec6> rhs = numbers(40, 5);
+  std::vector<Vec6> x;
+  cg.solve(rhs, x, 1e-14, 2000);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(6 * std::ssize(moving), 6 * 40);
+  for (int k = 0; k < std::ssize(moving); ++k)
+    P.block<6, 6>(6 * k, 6 * moving[k]) = Mat6::Identity();
+  const Eigen::MatrixXd A = P * assembled(c) * P.transpose();
+  const Vec f = P * flat(rhs), reference = P.transpose() * A.partialPivLu().solve(f);
+  EXPECT_LT((flat(x) - reference).norm(), 2e-5 * reference.norm());
+  for (int b = 0; b < 40; ++b) {
+    const bool moves = std::find(moving.begin(), moving.end(), b) != moving.end();
+    EXPECT_EQ(x[b].isZero(0.0), !moves) << b;
+  }
 }
 
 TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {

@@ -50,14 +50,14 @@ void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContex
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const ApproachOfBalls& balls = balls_[i];
-      if (!balls.holds || points_[i].sensor) continue;
+      if (!balls.holds) continue;
       const Vec3 u_a = increments[balls.a].head<3>();
       const Vec3 moved = balls.b == ground ? u_a : Vec3(u_a - increments[balls.b].head<3>());
       const double gap_1 = moved.norm() > kFar * balls.distance && balls.distance > 0.0
                                ? balls.gap_n + balls.offset.dot(moved) / balls.distance
                                : balls.gap_after(moved);
       const double room = std::min(balls.gap_n, balls.reach) - balls.least_gap;
-      if (!(gap_1 - balls.least_gap < kRoomKept * room)) continue;
+      if (!(gap_1 - balls.least_gap < kRoomKept * room) || points_[i].sensor) continue;
       const double share_a = share(balls.a), share_b = share(balls.b);
       const double back = stopped_gap(points_[i].data, balls.gap_n, gap_1 - balls.gap_n,
                                       K / (share_a + share_b), balls.least_gap, context.dt) -

@@ -18,7 +18,7 @@ constexpr int kCoarseIterations = 2, kMostInner = 400;
 constexpr int kMostCuts = 8;
 /// Bodies are moved on while their residual is above this part of what counts as solved; others
 /// within so many contacts of them go with them. Where these are most, all are.
-constexpr double kLate = 0.5, kMost = 0.7;
+constexpr double kLate = 0.02, kMost = 0.7;
 constexpr int kRings = 2;
 /// Part of the merit that an increment shall take away. An increment that takes hardly anything
 /// flips between sticking and sliding: half of it takes nearly all.
