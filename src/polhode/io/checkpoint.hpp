@@ -7,11 +7,6 @@
 
 namespace polhode {
 
-/// SHA-256 over everything of a model that a run depends on: bodies, joints, loads, gravity and
-/// the method, but not the duration, the tolerance of the start or the output, so that a run may
-/// be continued for longer. Time functions count by their values at a few times.
-[[nodiscard]] std::string model_fingerprint(const Model& model);
-
 /// Saves a state so that a run continues from it bit for bit. The file is written atomically and
 /// carries a checksum. @throws FileError
 void write_checkpoint(const std::string& path, const Model& model, const System& system,
