@@ -171,6 +171,27 @@ TEST_F(CommandLine, ContinuesFromACheckpointBitForBit) {
   EXPECT_EQ(value(rest.out, "frames"), "52");
 }
 
+/// Libraries that would share their work among threads do not: sums would depend on how many.
+TEST_F(CommandLine, GivesTheSameBitsAtAnyThreadCount) {
+  for (const std::string example : {"ironing", "stack", "flexible_four_bar"}) {
+    write("example.yaml",
+          test::text_of(test::source_dir() + "/examples/" + example + "/model.yaml"));
+    std::string hash;
+    for (const std::string threads : {"1", "2", "4"}) {
+      std::vector<std::string> words{"/usr/bin/env"};
+      for (const char* library : {"OMP_NUM_THREADS=", "OPENBLAS_NUM_THREADS=", "TBB_NUM_THREADS="})
+        words.push_back(library + threads);
+      words.insert(words.end(), {test::cli_program(), "run", "example.yaml", "--json", "--quiet",
+                                 "--set", "analysis.duration=0.02 s"});
+      const auto result = test::Program(words, folder_ / "").wait();
+      ASSERT_EQ(result.code, 0) << result.err;
+      if (hash.empty()) hash = value(result.out, "result_hash");
+      EXPECT_EQ(value(result.out, "result_hash"), hash) << example << ", threads: " << threads;
+    }
+    EXPECT_NE(hash, "missing");
+  }
+}
+
 TEST_F(CommandLine, StopsAtTheWallLimitWithACheckpoint) {
   const auto stopped = run({"run", "model.yaml", "--wall-limit", "0"});
   EXPECT_EQ(stopped.code, 75);
@@ -272,6 +293,20 @@ analysis: {type: statics}
   EXPECT_EQ(result.code, 4) << result.err;
   EXPECT_THAT(result.err, HasSubstr("body 'stone'"));
   EXPECT_TRUE(exists("stone.results/results.h5"));
+}
+
+/// A slack cable holds nothing: all of the tangent is zero.
+TEST_F(CommandLine, EndsWith4AndNamesTheNodeOfASlackCable) {
+  write("slack.yaml", R"(format: 1
+gravity: [0, 0, -9.81]
+cables:
+  rope: {through: [[ground, [0, 0, 0]], [ground, [10, 0, 0]]], stiffness: 1e5 N,
+         free_length: 10.5 m, mass_per_length: 1.0, elements: 80}
+analysis: {type: statics}
+)");
+  const auto result = run({"run", "slack.yaml"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.out + result.err, AllOf(HasSubstr("worst at body 'rope."), HasSubstr("held")));
 }
 
 TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {
