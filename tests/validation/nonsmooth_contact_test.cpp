@@ -141,21 +141,8 @@ TEST(NonsmoothContact, CradleWithGapsHandsTheImpactOn) {
 /// SPHERES_IN_A_BIN, n = 100, with the default sweeps.
 TEST(NonsmoothContact, AHundredSpheresComeToRestInABin) {
   Scene s;
-  const double side = 1.25;
-  const int n = 100, row = static_cast<int>(std::floor((side - 0.21) / 0.22)) + 1;
-  const double x0 = -0.11 * (row - 1);
-  for (int i = 0; i < n; ++i)
-    s.add_ball("sphere " + std::to_string(i), 0.1, 1.0,
-               at({x0 + 0.22 * (i % row) + 0.005 * std::sin(12.9898 * i),
-                   x0 + 0.22 * ((i / row) % row) + 0.005 * std::sin(78.233 * i),
-                   0.12 + 0.22 * (i / (row * row)) + 0.005 * std::sin(37.719 * i)}));
-  s.add_floor();
-  for (const Vec3& n_wall : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-    contact::ShapePlace place;
-    place.axes = Quat::FromTwoVectors(Vec3::UnitZ(), n_wall).toRotationMatrix();
-    place.origin = -0.5 * side * n_wall;
-    s.contacts->add_shape({kGround, "wall", contact::plane(place)});
-  }
+  const int n = 100;
+  s.add_bin(n, 1.25);
   s.law(0.5, 0.0);
   s.contacts->set_impulses({});
   s.begin(2e-3);

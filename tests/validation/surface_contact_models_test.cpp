@@ -109,6 +109,41 @@ analysis: {duration: 0.4 s, step: 0.5 ms}
   EXPECT_GT(summary.contacts->least_gap, -5e-5);
 }
 
+/// A bar that meets a wall end on: a wave of the stress ρcv runs to its free end and back, for 2L/c
+/// (St Venant's rod; Goldsmith, Impact, 1960, section 3.2).
+TEST(SurfaceContactModel, AnElasticBarRestsOnAWallWhileAWaveRunsThroughIt) {
+  const double density = 100.0, c = 10.0, area = 0.1, v = 0.01, length = 1.0;
+  Simulation simulation(read_model_text(R"(
+format: 1
+bodies: {wall: {fixed: true, shape: {plane: x}}}
+materials: {m: {type: elastic, youngs_modulus: 10 kPa, poisson_ratio: 0, density: 100}}
+solids:
+  bar:
+    mesh: {block: {size: [1, 0.25, 0.4], cells: [40, 1, 1]}, position: [0.50002, 0, 0]}
+    material: m
+    velocity: [-0.01, 0, 0]
+    contact: {surface: {plane: {axis: x, at: min}}}
+contacts: {default: {restitution: 1, gap_tolerance: 5e-6}}
+analysis: {duration: 0.3 s, step: 1 ms}
+)",
+                                        "bar.yaml"));
+  const double plateau = density * c * v * area;
+  double first = 0.0, last = 0.0, sum = 0.0;
+  int steps = 0;
+  const RunSummary summary = simulation.run({}, [&](Simulation& s) {
+    const double force = s.contact(0).force[0], t = s.time();
+    if (std::abs(force) > 0.01 * plateau) {
+      if (first == 0.0) first = t - 1e-3;
+      last = t;
+    }
+    if (t > 0.03 && t < 0.18) sum += std::abs(force), ++steps;
+  });
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  EXPECT_NEAR(last - first, 2.0 * length / c, 0.01 * 2.0 * length / c + 1e-3);  // and one step
+  EXPECT_NEAR(sum / steps, plateau, 0.01 * plateau);
+  EXPECT_LT(summary.energy_drift, 1e-10);
+}
+
 /// The end of a ball of radius 1 pressed on a plane. Hertz: with the force F and E* = E/(1 − ν²)
 /// the radius of contact is (3 F R/(4 E*))^(1/3), the pressure in the middle 3 F/(2π a²)
 /// (K. L. Johnson, Contact Mechanics, 1985, section 4.2).
