@@ -88,6 +88,7 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
       {"length of a cable", [](Model& m) { m.cables[0].pieces[0].free_length = 1.1; }},
       {"mass of a cable", [](Model& m) { m.cables[0].pieces[0].mass = 0.1; }},
       {"radius of a cable", [](Model& m) { m.cables[0].contact->radius = 0.02; }},
+      {"a cable that touches itself", [](Model& m) { m.cables[0].contact->self = true; }},
       {"pressure of contact", [](Model& m) { m.contacts.standard.reference_pressure = 1e3; }},
       {"friction", [](Model& m) { m.contacts.standard.friction = 0.3; }},
       {"material of contact", [](Model& m) { m.contacts.materials[0].restitution = 0.3; }},

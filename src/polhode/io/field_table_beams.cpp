@@ -256,7 +256,11 @@ const FieldTable& cable_contact_fields() {
                    .dimension = kLength,
                    .meaning = "Of the cable, about its centre line.",
                    .required = true,
-                   .range = kPositive}}};
+                   .range = kPositive},
+                  {.name = "self",
+                   .kind = kBoolean,
+                   .meaning = "true: it touches itself, too, where it is wound or folded.",
+                   .standard = "false"}}};
     const std::vector<Field>& side = contact_side_fields().fields;
     t.fields.insert(t.fields.end(), side.begin(), side.end());
     return t;

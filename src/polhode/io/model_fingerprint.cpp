@@ -136,7 +136,7 @@ class Fingerprint {
         b.mesh);
   }
   void one(const AttachmentSpec& a) { add(a.body, a.Z); }
-  void one(const CableContactSpec& c) { add(c.radius, c.side); }
+  void one(const CableContactSpec& c) { add(c.radius, c.self, c.side); }
   void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
   void one(const CableLineSpec& c) {
     add(c.name, c.through, c.stiffness, c.free_length, c.damping, c.tension_only, c.strain,

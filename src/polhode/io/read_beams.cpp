@@ -368,6 +368,7 @@ class CableReader {
     if (!node.is_map()) return;
     CableContactSpec contact;
     contact.radius = section.number("radius").value_or(0.0);
+    contact.self = section.boolean("self").value_or(false);
     read_contact_side(section, contact.side);
     cable_.contact = std::move(contact);
   }

@@ -76,6 +76,7 @@ struct AttachmentSpec {
 /// How a cable touches: as a round rope about its centre line.
 struct CableContactSpec {
   double radius = 0.0;   ///< [m]
+  bool self = false;     ///< It touches itself.
   ContactSideSpec side;  ///< Of all of it.
 };
 

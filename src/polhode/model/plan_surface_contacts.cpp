@@ -46,6 +46,10 @@ class Planner {
         add_solids(static_cast<int>(s), static_cast<int>(t));
     for (std::size_t c = 0; c < model_.cables.size(); ++c)
       for (std::size_t s = 0; s < model_.solids.size(); ++s) refuse_solid(c, s);
+    for (const CableLineSpec& cable : model_.cables)
+      if (cable.contact && cable.contact->self)
+        fault(format("cables.{}.contact.self", cable.name),
+              "a cable that touches itself is not there yet", "Leave it out");
     check_named();
     return std::move(list_);
   }
