@@ -240,7 +240,8 @@ const FieldTable& cable_fields() {
            .range = {1.0, 1e6}},
           {.name = "contact",
            .kind = kSection,
-           .meaning = "The cable touches bodies and beams as a round rope, beside 'contacts'.",
+           .meaning = "The cable touches bodies, beams and other cables as a round rope, beside "
+                      "'contacts'.",
            .standard = "it touches nothing",
            .table = "cable contact"},
       }};

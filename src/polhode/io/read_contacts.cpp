@@ -442,10 +442,6 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
     sides[k] = cable ? side_of_cable(*context.cables.at(child.text))
                      : side_of_solid(context.solids.at(child.text));
   }
-  if (is_cable_side(sides[0]) && is_cable_side(sides[1])) {
-    context.fault(node, path, "cables do not touch one another", "Leave the pair out.");
-    return std::nullopt;
-  }
   return sides;
 }
 

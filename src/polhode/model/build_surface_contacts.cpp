@@ -12,6 +12,7 @@
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/cable_contact.hpp>
+#include <polhode/model/cable_pairs.hpp>
 #include <polhode/model/contact_sides.hpp>
 #include <polhode/model/rigid_surfaces.hpp>
 #include <polhode/model/solid_parts.hpp>
@@ -49,7 +50,9 @@ class SurfacesBuilder {
   void build() {
     const std::vector<SurfacePair> pairs = plan_surface_contacts(model_);
     for (const SurfacePair& pair : pairs) {
-      if (is_cable_side(pair.own))
+      if (is_cable_side(pair.own) && is_cable_side(pair.side))
+        add_cables(pair);
+      else if (is_cable_side(pair.own))
         add_cable(pair);
       else if (is_solid_side(pair.side))
         add_solids(pair);
@@ -99,14 +102,43 @@ class SurfacesBuilder {
                   body.shapes.size() > 1 ? format("{}.{}", body.name, pair.shape) : body.name);
   }
 
+  const CableLine& line_of(int side) {
+    auto [at, fresh] = lines_.try_emplace(side);
+    if (fresh) at->second = add_cable_line(system_, model_, cable_of(side), bodies_);
+    return at->second;
+  }
+  [[nodiscard]] const CableLineSpec& cable_of(int side) const {
+    return model_.cables[static_cast<std::size_t>(cable_of_side(side))];
+  }
+
+  /// Two cables, or one and itself.
+  void add_cables(const SurfacePair& pair) {
+    const CableSide a{cable_of(pair.own), line_of(pair.own)},
+        b{cable_of(pair.side), line_of(pair.side)};
+    const double radius = std::min(a.line.radius, b.line.radius);
+    const SurfaceLaw law =
+        law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)), 2.0 * radius, radius);
+    const std::vector<Vec3> X = positions();
+    std::vector<int> carriers, nodes = a.line.nodes;
+    nodes.insert(nodes.end(), b.line.nodes.begin(), b.line.nodes.end());
+    for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
+    const SolidContactStart start{.X = X,
+                                  .carriers = carriers,
+                                  .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
+                                  .way = way_of_step(nodes),
+                                  .self = pair.own == pair.side};
+    const int group = system_.add_elements(std::make_unique<EdgeContact>(
+        format("{} on {}", a.cable.name, start.self ? "itself" : b.cable.name),
+        cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
+    map_.surfaces.push_back({pair.own, pair.side, 0, group});
+  }
+
   /// The centre line of a cable, all of it at its radius from what it meets.
   void add_cable(const SurfacePair& pair) {
     const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
     const ShapeSpec& shape = body.shapes[pair.shape];
-    auto [at, fresh] = lines_.try_emplace(pair.own);
-    if (fresh) at->second = add_cable_line(system_, model_, cable, bodies_);
-    const CableLine& line = at->second;
+    const CableLine& line = line_of(pair.own);
     const SurfaceLaw law = law_of(pair.law, stuff_of(cable), 2.0 * line.radius,
                                   std::min(line.radius, half_size(shape)));
     const std::string where = name_of(pair);
@@ -174,7 +206,7 @@ class SurfacesBuilder {
     const SolidContactStart start{.X = X,
                                   .carriers = carriers,
                                   .edge = least,
-                                  .way = way_of_step(solids[0], solids[1]),
+                                  .way = way_of_step(nodes_of({solids[0], solids[1]})),
                                   .self = self};
     for (int k = 0; k < (self ? 1 : 2); ++k) {
       const std::string where = format("{} on {}", name(k), name(1 - k));
@@ -203,21 +235,22 @@ class SurfacesBuilder {
     map_.surfaces.push_back({pair.own, pair.side, 0, group});
   }
 
-  /// How far nodes of two solids go against each other in the first step [m].
-  [[nodiscard]] double way_of_step(int a, int b) const {
+  [[nodiscard]] std::vector<int> nodes_of(const std::vector<int>& solids) const {
+    std::vector<int> list;
+    for (const int s : solids) {
+      const SolidMap& solid = solids_[static_cast<std::size_t>(s)];
+      for (int k = 0; k < solid.node_count(); ++k) list.push_back(solid.first_node + k);
+    }
+    return list;
+  }
+
+  /// How far nodes go against each other in the first step [m].
+  [[nodiscard]] double way_of_step(const std::vector<int>& nodes) const {
     Vec3 mean = Vec3::Zero();
-    int count = 0;
-    const auto each = [&](auto&& visit) {
-      for (const int s : {a, b}) {
-        const SolidMap& solid = solids_[static_cast<std::size_t>(s)];
-        for (int k = 0; k < solid.node_count(); ++k)
-          visit(system_.nodes()[solid.first_node + k].velocity);
-      }
-    };
-    each([&](const Vec3& v) { mean += v, ++count; });
-    mean /= count;
+    for (const int i : nodes) mean += system_.nodes()[i].velocity;
+    mean /= static_cast<double>(nodes.size());
     double most = 0.0;
-    each([&](const Vec3& v) { most = std::max(most, (v - mean).norm()); });
+    for (const int i : nodes) most = std::max(most, (system_.nodes()[i].velocity - mean).norm());
     return most * model_.analysis.step.value_or(0.0);
   }
 
@@ -266,6 +299,9 @@ class SurfacesBuilder {
       stuff.density = std::min(stuff.density, solids_[static_cast<std::size_t>(s)].plan.density);
     }
     return stuff;
+  }
+  [[nodiscard]] static Stuff lesser(const Stuff& a, const Stuff& b) {
+    return {std::min(a.E, b.E), std::min(a.pressure, b.pressure), std::min(a.density, b.density)};
   }
   /// A cable counts as a full round bar, which is not flattened. @eq{cable-stiffness}
   [[nodiscard]] static Stuff stuff_of(const CableLineSpec& cable) {

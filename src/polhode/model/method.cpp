@@ -2,6 +2,7 @@
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/fe/contact/edge_contact.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
 #include <polhode/model/method.hpp>
 #include <polhode/solve/contact_engine.hpp>
@@ -93,9 +94,12 @@ bool has_surfaces(const System& system) {
 }
 
 bool has_touching_cables(const System& system) {
-  for (int g = 0; g < system.nodes().group_count(); ++g)
+  for (int g = 0; g < system.nodes().group_count(); ++g) {
     if (const auto* surface = dynamic_cast<const SurfaceContact*>(&system.nodes().group(g)))
       if (surface->of_cable()) return true;
+    if (const auto* edges = dynamic_cast<const EdgeContact*>(&system.nodes().group(g)))
+      if (edges->of_cables()) return true;
+  }
   return false;
 }
 

@@ -27,6 +27,8 @@ std::string strange_key(const ContactLawSpec& law) {
   return {};
 }
 
+bool touches_itself(const CableLineSpec& cable) { return cable.contact && cable.contact->self; }
+
 class Planner {
  public:
   Planner(const Model& model, std::vector<InputError>* faults)
@@ -46,10 +48,9 @@ class Planner {
         add_solids(static_cast<int>(s), static_cast<int>(t));
     for (std::size_t c = 0; c < model_.cables.size(); ++c)
       for (std::size_t s = 0; s < model_.solids.size(); ++s) refuse_solid(c, s);
-    for (const CableLineSpec& cable : model_.cables)
-      if (cable.contact && cable.contact->self)
-        fault(format("cables.{}.contact.self", cable.name),
-              "a cable that touches itself is not there yet", "Leave it out");
+    for (std::size_t c = 0; c < model_.cables.size(); ++c)
+      for (std::size_t d = c; d < model_.cables.size(); ++d)
+        add_cables(static_cast<int>(c), static_cast<int>(d));
     check_named();
     return std::move(list_);
   }
@@ -138,21 +139,46 @@ class Planner {
     const StatedLaw stated =
         law_between(model_.contacts, {material_of(model_.contacts, a), side_of_solid(s)},
                     {material_of(model_.contacts, b), side_of_solid(t)});
+    check_law(stated,
+              s == t ? format("'{}' meets itself", one.name)
+                     : format("'{}' and '{}' meet", one.name, two.name),
+              "surfaces of solids", "meshes");
+    list_.push_back({side_of_solid(s), side_of_solid(t), 0, stated.law});
+  }
+
+  /// Two cables; or one with itself, if it says so.
+  void add_cables(int c, int d) {
+    const CableLineSpec &one = model_.cables[static_cast<std::size_t>(c)],
+                        &two = model_.cables[static_cast<std::size_t>(d)];
+    const ContactSide a = contact_side(one), b = contact_side(two);
+    if (!a.touches || !b.touches || (c == d && !touches_itself(one))) return;
+    if (c != d && !groups_meet(a, b)) return;
+    if (excluded_.contains(std::minmax(side_of_cable(c), side_of_cable(d)))) return;
+    const StatedLaw stated =
+        law_between(model_.contacts, {material_of(model_.contacts, a), side_of_cable(c)},
+                    {material_of(model_.contacts, b), side_of_cable(d)});
+    check_law(stated,
+              c == d ? format("'{}' meets itself", one.name)
+                     : format("'{}' and '{}' meet", one.name, two.name),
+              "cables", "cables");
+    list_.push_back({side_of_cable(c), side_of_cable(d), 0, stated.law});
+  }
+
+  /// What two surfaces without a shape cannot do.
+  void check_law(const StatedLaw& stated, const std::string& who, const char* they,
+                 const char* passing) {
     const std::string where =
         stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
-    const std::string who = s == t ? format("'{}' meets itself", one.name)
-                                   : format("'{}' and '{}' meet", one.name, two.name);
     if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
       fault(where, format("{} with friction, which statics does not know", who),
             "Set friction: 0, or let the model come to rest in dynamics");
     if (const std::string key = strange_key(stated.law); !key.empty())
-      fault(where, format("{} by a law with {}, which surfaces of solids do not know", who, key),
+      fault(where, format("{} by a law with {}, which {} do not know", who, key, they),
             "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
             "friction, or zero");
     if (stated.law.potential == "linear")
-      fault(where, format("{} by the linear law, which lets meshes pass", who),
+      fault(where, format("{} by the linear law, which lets {} pass", who, passing),
             "Give the pair a law of its own in contacts.pairs, with law: barrier");
-    list_.push_back({side_of_solid(s), side_of_solid(t), 0, stated.law});
   }
 
   /// A cable and a solid that nothing keeps from meeting.
@@ -168,15 +194,19 @@ class Planner {
           "Exclude the pair, or keep them apart by groups");
   }
 
-  /// A solid with itself, named without that it touches itself.
+  /// A solid or a cable with itself, named without that it touches itself.
   void check_named() {
     for (const ContactPairSpec& pair : model_.contacts.pairs) {
-      if (pair.of_materials || pair.a != pair.b || !is_solid_side(pair.a)) continue;
-      const SolidSpec& solid = model_.solids[static_cast<std::size_t>(solid_of_side(pair.a))];
-      if (!solid.self_contact)
-        fault(format("contacts.pairs.{}", pair.name),
-              format("'{}' does not touch itself", solid.name),
-              format("Set solids.{}.contact: {{self: true}}, or leave the pair out", solid.name));
+      if (pair.of_materials || pair.a != pair.b || !is_surface_side(pair.a)) continue;
+      const bool cable = is_cable_side(pair.a);
+      const bool self =
+          cable ? touches_itself(model_.cables[static_cast<std::size_t>(cable_of_side(pair.a))])
+                : model_.solids[static_cast<std::size_t>(solid_of_side(pair.a))].self_contact;
+      const std::string& name = model_.side_name(pair.a);
+      if (!self)
+        fault(format("contacts.pairs.{}", pair.name), format("'{}' does not touch itself", name),
+              format("Set {}.{}.contact: {{self: true}}, or leave the pair out",
+                     cable ? "cables" : "solids", name));
     }
   }
 

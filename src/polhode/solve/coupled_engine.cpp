@@ -145,10 +145,12 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   const bool factor = must_factor(trial, refactor);
   if (!take_elements(state, trial, factor, done)) return done;
   if (factor) {
+    const int known = condensation_.meetings();
     if (!condensation_.factor(nodes_, trial)) {
       done.reason = "the matrix of the solids is singular";
       return done;
     }
+    if (condensation_.meetings() != known) set_up();
     ++factorisations_;
     factored_dt_ = trial.context.dt;
     contraction_ = 0.0;

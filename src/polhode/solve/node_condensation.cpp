@@ -71,6 +71,8 @@ NodeCondensation::NodeCondensation(const System& system) : system_(&system) {
         pair_of_[p].push_back(it->second);
       }
   }
+  piece_pairs_ = pairs_.size();
+  meeting_diagonal_.assign(system.body_count(), Mat6::Zero());
   W_.resize(static_cast<std::size_t>(nodes.unknowns()) * columns_);
   y_.resize(nodes.unknowns());
 }
@@ -125,6 +127,8 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
     couplings_[p].clear();
     A_bb_[p].setZero(n, n);
   }
+  for (Mat6& block : meeting_diagonal_) block.setZero();
+  for (auto& blocks : meeting_blocks_) blocks = {Mat6::Zero(), Mat6::Zero()};
   known_.clear();
   const auto block_of = [&](int row, int column) {
     const auto& c = nodes.column();
@@ -153,10 +157,14 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
     }
     // The arm turns as well.
     const int p = piece_of_pair(bond.body, bond.body);
-    if (p < 0) continue;
     const Vec3 F = Eigen::Map<const Vec3>(F_all.data() + 3 * i);
+    const Mat3 turned_arm = arm_weight * hat(F) * hat(bond.z_n1);
+    if (p < 0) {
+      meeting_diagonal_[bond.body].block<3, 3>(3, 3) += turned_arm;
+      continue;
+    }
     const int at = 6 * place_in(p, bond.body) + 3;
-    A_bb_[p].block<3, 3>(at, at) += arm_weight * hat(F) * hat(bond.z_n1);
+    A_bb_[p].block<3, 3>(at, at) += turned_arm;
   }
   if (!moving_.row.empty()) gather_moving(K, bond_of);
 }
@@ -186,10 +194,17 @@ void NodeCondensation::gather_moving(const std::vector<double>& K,
     if (!row && !column) continue;
     const Mat3 K_ij = Block(K.data() + 9 * (nodes.column().size() + k));
     if (row && column) {
+      const Mat6 share = carried(row->z_alpha).transpose() * K_ij * carried(column->z_n1);
+      if (row->body == column->body && piece_of_pair(row->body, row->body) < 0) {
+        meeting_diagonal_[row->body] += share;
+        continue;
+      }
       const int p = piece_of_pair(row->body, column->body);
-      if (p < 0) continue;
-      A_bb_[p].block<6, 6>(6 * place_in(p, row->body), 6 * place_in(p, column->body)) +=
-          carried(row->z_alpha).transpose() * K_ij * carried(column->z_n1);
+      if (p < 0)
+        meeting_blocks_[meeting_.at(std::minmax(row->body, column->body))]
+                       [row->body < column->body ? 0 : 1] += share;
+      else
+        A_bb_[p].block<6, 6>(6 * place_in(p, row->body), 6 * place_in(p, column->body)) += share;
     } else if (row) {
       if (nodes.piece(j) >= 0)
         coupling(nodes.piece(j), j, row->body).bf += carried(row->z_alpha).transpose() * K_ij;
@@ -199,9 +214,29 @@ void NodeCondensation::gather_moving(const std::vector<double>& K,
   }
 }
 
+/// Pairs of bodies whose nodes may meet, unless a piece reaches both.
+void NodeCondensation::find_meetings() {
+  const Nodes& nodes = system_->nodes();
+  std::map<std::pair<int, int>, std::size_t> now;
+  for (std::size_t k = 0; k < moving_.row.size(); ++k) {
+    const int a = nodes[moving_.row[k]].body, b = nodes[moving_.column[k]].body;
+    if (a >= 0 && b >= 0 && a != b && piece_of_pair(a, b) < 0) now.emplace(std::minmax(a, b), 0);
+  }
+  std::size_t number = 0;
+  for (auto& [bodies, place] : now) place = number++;
+  if (now == meeting_) return;
+  meeting_ = std::move(now);
+  ++meetings_;
+  pairs_.resize(piece_pairs_);
+  for (const auto& [bodies, place] : meeting_)
+    pairs_.push_back({bodies.first, bodies.second, 0, 0});
+  meeting_blocks_.resize(meeting_.size());
+}
+
 bool NodeCondensation::factor(const NodeSystem& nodes, const Trial& trial) {
   if (!(nodes.moving() == moving_)) {
     moving_ = nodes.moving();
+    find_meetings();
     analyse();
   }
   return factor(nodes.tangent(), nodes.residual(), trial, {});
@@ -301,6 +336,13 @@ void NodeCondensation::condense(const std::vector<double>& F, double scale,
         v.K_ba += block(j, i);
       }
     }
+  }
+  for (std::size_t b = 0; b < meeting_diagonal_.size(); ++b)
+    diagonal[b] += scale * meeting_diagonal_[b];
+  for (std::size_t k = 0; k < meeting_blocks_.size(); ++k) {
+    KktValues::Pair& v = pairs[piece_pairs_ + k];
+    v.K_ab += scale * meeting_blocks_[k][0];
+    v.K_ba += scale * meeting_blocks_[k][1];
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -19,14 +20,20 @@ namespace polhode {
 ///   A_fb = K_f· P,   A_bf = P̄ᵀ K_·f,   A_bb = P̄ᵀ K P + Σ [0 0; 0 α_f F̂ ẑ_{n+1}]
 ///   S = A_bb − A_bf A_ff⁻¹ A_fb
 ///
+/// Bonded nodes whose bodies no free node connects, such as those of cables that touch one
+/// another, need no elimination: their blocks are couplings of bodies as they are. Which these
+/// are changes with what may meet.
+///
 /// A factorisation serves later iterations and steps, turned with the body the solid is bonded to:
 /// K and M turn with the solid. Derivation: docs/theory/solids_and_bodies.md.
 class NodeCondensation {
  public:
   explicit NodeCondensation(const System& system);
 
-  /// The pairs of bodies that pieces couple, for the topology of the bodies' linear system.
+  /// The pairs of bodies that pieces couple, then those that only meet, for the topology of the
+  /// bodies' linear system. The latter may change in factor(); then meetings() does.
   [[nodiscard]] const std::vector<KktPair>& pairs() const { return pairs_; }
+  [[nodiscard]] int meetings() const { return meetings_; }  ///< How often they changed.
   struct FactorOptions {
     bool arms_turn = true;     ///< The tangent of arms is wanted: not for masses.
     bool same_matrix = false;  ///< Of the free unknowns: factored before, only bodies have moved.
@@ -64,6 +71,7 @@ class NodeCondensation {
     Eigen::Matrix<double, 6, 3> bf;
   };
   void analyse();
+  void find_meetings();
   void gather_moving(const std::vector<double>& K, const std::vector<const Bond*>& bond_of);
   [[nodiscard]] Coupling& coupling(int piece, int node, int body);
   /// The first piece that reaches both bodies; −1 if none does.
@@ -83,7 +91,12 @@ class NodeCondensation {
   std::vector<std::vector<Coupling>> couplings_;      ///< By piece.
   std::map<std::pair<int, int>, std::size_t> known_;  ///< Free node and body: their coupling.
   std::vector<KktPair> pairs_;
-  std::map<std::pair<int, int>, int> piece_of_;  ///< By two bodies, or one twice.
+  std::size_t piece_pairs_ = 0;  ///< The first of them.
+  int meetings_ = 0;
+  std::map<std::pair<int, int>, std::size_t> meeting_;  ///< By two bodies.
+  std::vector<Mat6> meeting_diagonal_;                  ///< By body.
+  std::vector<std::array<Mat6, 2>> meeting_blocks_;     ///< By meeting: K_ab, K_ba.
+  std::map<std::pair<int, int>, int> piece_of_;         ///< By two bodies, or one twice.
   std::vector<std::vector<int>> pair_of_;  ///< By piece: pair of places (i, j), i < j, row by row.
   std::vector<Eigen::MatrixXd> A_bb_, S_;  ///< By piece.
   std::vector<double> W_;  ///< A_ff⁻¹ A_fb: unknowns by 6 columns a body's place.

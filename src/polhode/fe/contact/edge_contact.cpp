@@ -48,6 +48,15 @@ EdgePairData EdgeContact::data(int e, int f) const {
   d.squares =
       square_first_[static_cast<std::size_t>(e)] * square_second_[static_cast<std::size_t>(f)];
   d.centre = centre_;
+  d.retreat = sides_.retreat;
+  d.behind = sides_.behind;
+  const auto take = [&](const EdgeLines& lines, int edge, EdgeLines::Points& own) {
+    if (lines.points.empty()) return;
+    own = lines.points[static_cast<std::size_t>(edge)];
+    own.area /= sides_.area;
+  };
+  take(sides_.first, e, d.points[0]);
+  take(sides_.second, f, d.points[1]);
   return d;
 }
 
@@ -68,6 +77,7 @@ struct EdgeContact::Touch {
   int slot_n = -1, slot_n1 = -1;  ///< Where its bristle is kept; −1: nowhere.
   EdgePair pair;
   FourSlide slide;
+  LineSlide along;
   double by_friction = 0.0, bristle_n1 = 0.0;  ///< Energies [J/m²].
 };
 
@@ -82,7 +92,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
       moves.x_n1[k] = p.at(step.x_n1);
       moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
     }
-    Touch t{e, f, -1, -1, {moves, data(e, f), law_, step.alpha_f, step.context.conserving}, {}};
+    Touch t{e, f, -1, -1, {moves, data(e, f), law_, step.alpha_f, step.context.conserving}, {}, {}};
     if (!t.pair.acts()) continue;
     const int first = e, second = slot_of_second(f);
     if (memory(history, first)[0] == f + 1.0)
@@ -102,12 +112,20 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
   for (Touch& t : list) {
     if (!rubs) continue;
     Vec3 kept = Vec3::Zero();
-    if (t.slot_n >= 0) kept = Vec3(memory(history, t.slot_n) + 1);
+    double kept_along = 0.0;
+    if (t.slot_n >= 0) {
+      kept = Vec3(memory(history, t.slot_n) + 1);
+      kept_along = memory(history, t.slot_n)[kAlong];
+    }
     t.slide = t.pair.slide(kept, tangent);
+    t.along = t.pair.slide_along(kept_along, tangent);
     const double half_k = 0.5 * law_.bristle;
-    if (t.slot_n1 >= 0) t.bristle_n1 = half_k * t.slide.bristle.squaredNorm();
-    t.by_friction = std::max(
-        0.0, -t.slide.friction.dot(t.slide.slid) - t.bristle_n1 + half_k * kept.squaredNorm());
+    if (t.slot_n1 >= 0)
+      t.bristle_n1 =
+          half_k * (t.slide.bristle.squaredNorm() + t.along.bristle_n1 * t.along.bristle_n1);
+    t.by_friction =
+        std::max(0.0, -t.slide.friction.dot(t.slide.slid) - t.along.friction * t.along.slid -
+                          t.bristle_n1 + half_k * (kept.squaredNorm() + kept_along * kept_along));
   }
   return list;
 }
@@ -118,7 +136,7 @@ ElementReport EdgeContact::evaluate(const NodeStep& step, const double* history,
                                     const ElementSink& sink) const {
   const bool tangent = sink.tangent != nullptr;
   for (const Touch& t : touches(step, history, tangent)) {
-    const EdgePair::Force f = sides_.area * (t.pair.force() + t.slide.force);
+    const EdgePair::Force f = sides_.area * (t.pair.force() + t.slide.force + t.along.force);
     for (int k = 0; k < 4; ++k) {
       const MeshPoint& p = end(t.e, t.f, k);
       for (int a = 0; a < p.count; ++a)
@@ -126,7 +144,7 @@ ElementReport EdgeContact::evaluate(const NodeStep& step, const double* history,
     }
     if (!tangent) continue;
     const EdgePair::Stiffness K =
-        sides_.area * (t.pair.stiffness() + t.slide.K +
+        sides_.area * (t.pair.stiffness() + t.slide.K + t.along.K +
                        t.slide.by_pressure * t.pair.pressure_slope().transpose());
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
@@ -144,13 +162,18 @@ Work EdgeContact::work(const NodeStep& step, const double* history,
     w.stored += sides_.area * (t.pair.stored() + t.bristle_n1);
     if (!instant) w.dissipated += sides_.area * (t.by_friction + taken_by_pressure(step, t));
   }
-  for (int s = 0; instant && s < slots(); ++s)
-    w.stored += sides_.area * 0.5 * law_.bristle * Vec3(memory(history, s) + 1).squaredNorm();
+  for (int s = 0; instant && s < slots(); ++s) {
+    const double* kept = memory(history, s);
+    w.stored += sides_.area * 0.5 * law_.bristle *
+                (Vec3(kept + 1).squaredNorm() + kept[kAlong] * kept[kAlong]);
+  }
   return w;
 }
 
 double EdgeContact::taken_by_pressure(const NodeStep& step, const Touch& t) const {
-  return law_.end_share > 0.0 || step.alpha_f != 0.5 ? std::max(0.0, t.pair.dissipated()) : 0.0;
+  if (!(law_.end_share > 0.0) && step.alpha_f == 0.5) return 0.0;
+  // Of pairs that share a node only the sum is not negative.
+  return of_cables() ? t.pair.dissipated() : std::max(0.0, t.pair.dissipated());
 }
 
 void EdgeContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
@@ -162,7 +185,9 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
   const std::vector<Touch> list = touches(step, history, false);
   std::fill(memory(history, 0), numbers, 0.0);
   for (const Touch& t : list) {
-    const EdgePair::Force f = t.pair.force() + t.slide.force;
+    const EdgePair::Force f = t.pair.force() + t.slide.force + t.along.force;
+    const Vec3 rubbing = sides_.area * (t.slide.friction + t.along.on_first);
+    const bool slips = t.slide.slips || t.along.slips;
     const Vec3 on_first = sides_.area * (f.segment<3>(0) + f.segment<3>(3));
     const double normal = sides_.area * std::max(0.0, t.pair.pressure());
     sums.friction_loss += sides_.area * t.by_friction;
@@ -170,21 +195,22 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     if (step.x_n != step.x_n1) sums.impulse += normal * step.context.dt;  // else statics
     if (normal > 0.0) {
       sums.normal_force += normal;
-      (t.slide.slips ? sums.slipping : sums.sticking) += 1.0;
+      (slips ? sums.slipping : sums.sticking) += 1.0;
       force += on_first;
-      friction += sides_.area * t.slide.friction;
+      friction += rubbing;
       moment += normal * t.pair.point();
     }
     if (t.slot_n1 < 0) continue;
     double* const kept = memory(history, t.slot_n1);
     kept[0] = (t.slot_n1 == t.e ? t.f : t.e) + 1.0;
-    kept[4] = t.slide.slips ? 1.0 : 0.0;
+    kept[4] = slips ? 1.0 : 0.0;
     for (int k = 0; k < 3; ++k) {
       kept[1 + k] = t.slide.bristle_n1[k];
       kept[5 + k] = on_first[k];
-      kept[8 + k] = sides_.area * t.slide.friction[k];
+      kept[8 + k] = rubbing[k];
     }
     kept[11] = normal;
+    kept[kAlong] = t.along.bristle_n1;
   }
   if (sums.normal_force > 0.0) moment /= sums.normal_force;
   for (int k = 0; k < 3; ++k) {

@@ -15,9 +15,9 @@
 namespace polhode {
 
 /// Lines of edges against others: sharp edges of two solids, or of one, that may cross between
-/// their nodes. See EdgePair for what two of them do.
+/// their nodes, and cables, which are round edges. See EdgePair for what two of them do.
 ///
-/// Each edge remembers a bristle with one other edge; a pair that neither of its edges remembers
+/// Each edge remembers the bristles with one other edge; a pair that neither of its edges remembers
 /// rubs all the same, but begins anew in each step. @eq{edge-potential}
 class EdgeContact final : public ElementGroup,
                           public BarrierPoints,
@@ -29,11 +29,16 @@ class EdgeContact final : public ElementGroup,
     double area = 1.0;        ///< That a crossing stands for [m²].
     /// Sum of the radii around the edges; 0: sharp ones, which the tolerance keeps apart [m].
     double radius = 0.0;
+    double retreat = 0.0, behind = 0.0;  ///< Of round edges, as of EdgePairData.
+    /// Of round edges, by edge of the first lines: ranges of edges of the second that it does not
+    /// meet, first and last.
+    std::vector<std::vector<std::array<int, 2>>> left_out = {};
   };
   EdgeContact(std::string name, Sides sides, const SurfaceLaw& law, const SolidContactStart& start);
 
   static constexpr const char* kKind = "contact of edges";
-  std::string kind() const override { return kKind; }
+  std::string kind() const override { return of_cables() ? "contact of cables" : kKind; }
+  [[nodiscard]] bool of_cables() const { return sides_.retreat > 0.0; }  ///< Round edges.
   const std::string& name() const override { return name_; }
   int size() const override { return 0; }  // its blocks are those of MovingPattern
   int nodes_per_element() const override { return 1; }
@@ -69,8 +74,9 @@ class EdgeContact final : public ElementGroup,
 
  private:
   /// Of an edge: its partner's number and one, or 0; the bristle in the world, whether it slips,
-  /// and of the last step the force on the first edge, its tangential part and the normal force.
-  static constexpr std::size_t kMemory = 12;
+  /// of the last step the force on the first edge, its tangential part and the normal force; and
+  /// the bristle lengthwise.
+  static constexpr std::size_t kMemory = 13, kAlong = 12;
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<std::pair<int, int>> pairs;
@@ -97,10 +103,8 @@ class EdgeContact final : public ElementGroup,
   [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
   void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
   [[nodiscard]] double least_gap(const double* x, const double* history) const;
-  /// How far two edges at a distance may come nearer.
-  [[nodiscard]] double room(double distance) const {
-    return distance - centre_ + law_.normal.tolerance;
-  }
+  /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
+  [[nodiscard]] double room(int e, int f, const Vec3 (&x)[4]) const;
 
   std::string name_;
   Sides sides_;

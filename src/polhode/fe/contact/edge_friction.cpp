@@ -94,6 +94,7 @@ EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
 }  // namespace
 
 FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
+  if (round() && !(pressure_ > 0.0)) return {};
   const auto rub = [&](const auto& p, bool seeded) {
     return friction(moves_, alpha_, law_, p, kept, seeded);
   };

@@ -12,6 +12,13 @@ namespace polhode {
 struct EdgeLines {
   std::vector<MeshPoint> vertices;
   std::vector<std::array<int, 2>> edges;
+  /// Of round edges, each by itself: equal parts at whose ends points meet edges that lie along
+  /// it, and the area of a part. Sharp edges have none.
+  struct Points {
+    int parts = 0;
+    double area = 0.0;  ///< [m²]
+  };
+  std::vector<Points> points;
 
   /// For each vertex the part of what it does that is shared with further edges, (n − 1)/n for the
   /// n that end there.

@@ -69,42 +69,85 @@ EdgePair::EdgePair(const FourMoves& moves, const EdgePairData& data, const Surfa
   c_n1_ = measure(x_n1);
   m_n_ = blend(c_n_);
   m_n1_ = blend(c_n1_);
-  if (m_n_ == 0.0 && m_n1_ == 0.0) return;
+  if (!round()) {
+    if (m_n_ == 0.0 && m_n1_ == 0.0) return;
+    factor_ = (1.0 - alpha_) * m_n_ + alpha_ * m_n1_;
+    factor_n1_ = m_n1_;
+  }
   acts_ = true;
-  m_ = (1.0 - alpha_) * m_n_ + alpha_ * m_n1_;
+  add_edges(x_n);
+  if (round()) add_points(x_n);
+}
+
+void EdgePair::add_edges(const Vec3 (&x_n)[4]) {
   for (int i = -1; i < 2; ++i)
     for (int j = -1; j < 2; ++j) {
       const double sign = (i < 0 ? 1.0 : -data_.shared[i]) * (j < 0 ? 1.0 : -data_.shared[2 + j]);
-      if (sign == 0.0) continue;
-      const NearestFour at_n = nearest_of_edges(x_n, i, j), at_n1 = nearest_of_edges(x_n1, i, j);
-      const double g_n = at_n.distance - data_.centre, g_n1 = at_n1.distance - data_.centre;
-      if (g_n >= reach && g_n1 >= reach) continue;
-      const auto pressure = contact::stop_force(law_.normal, {.at_n = g_n,
-                                                              .at_n1 = g_n1,
-                                                              .alpha_f = alpha_,
-                                                              .conserving = conserving_,
-                                                              .end_share = law_.end_share});
-      parts_.push_back({sign, g_n, g_n1, pressure,
-                        CentralGap(moves_, at_n, nullptr, at_n1, alpha_, conserving_)});
-      B_n_ += sign * law_.normal.energy(g_n);
-      B_n1_ += sign * law_.normal.energy(g_n1);
-      pressure_ += m_ * sign * pressure.value;
+      if (sign != 0.0) add(sign, i, j, true, x_n);
     }
+}
+
+/// Where edges cross they keep their points farther apart than these can feel.
+void EdgePair::add_points(const Vec3 (&x_n)[4]) {
+  if (m_n_ == 1.0 && m_n1_ == 1.0) return;
+  for (int side = 0; side < 2; ++side) {
+    const auto& [parts, area] = data_.points[side];
+    for (int k = 0; parts > 0 && k <= parts; ++k) {
+      const double share = k == 0 || k == parts ? 0.5 * area : area;
+      const double place = static_cast<double>(k) / parts;
+      for (int end = -1; end < 2; ++end) {
+        const double sign = end < 0 ? share : -share * data_.shared[2 * (1 - side) + end];
+        if (sign == 0.0) continue;
+        if (side == 0)
+          add(sign, place, end, false, x_n);
+        else
+          add(sign, end, place, false, x_n);
+      }
+    }
+  }
+}
+
+/// @eq{edge-potential} @eq{cable-pair}
+void EdgePair::add(double sign, double e_place, double f_place, bool across, const Vec3 (&x_n)[4]) {
+  const NearestFour at_n = nearest_of_edges(x_n, e_place, f_place),
+                    at_n1 = nearest_of_edges(moves_.x_n1, e_place, f_place);
+  const auto gap = [&](const NearestFour& at, double m) {
+    return at.distance - data_.centre + (across ? data_.retreat * (1.0 - m) : data_.behind);
+  };
+  const double g_n = gap(at_n, m_n_), g_n1 = gap(at_n1, m_n1_), reach = law_.normal.reach();
+  if (g_n >= reach && g_n1 >= reach) return;
+  const auto pressure = contact::stop_force(law_.normal, {.at_n = g_n,
+                                                          .at_n1 = g_n1,
+                                                          .alpha_f = alpha_,
+                                                          .conserving = conserving_,
+                                                          .end_share = law_.end_share});
+  parts_.push_back({sign, g_n, g_n1, pressure,
+                    CentralGap(moves_, at_n, nullptr, at_n1, alpha_, conserving_), across,
+                    at_n1.c});
+  B_n_ += sign * law_.normal.energy(g_n);
+  B_n1_ += sign * law_.normal.energy(g_n1);
+  (across ? pressure_ : along_) += factor_ * sign * pressure.value;
 }
 
 double EdgePair::dissipated() const {
   double taken = 0.0;
   for (const Part& p : parts_) taken -= p.sign * p.pressure.value * (p.gap_n1 - p.gap_n);
-  return m_ * (taken - (B_n1_ - B_n_));
+  return factor_ * (taken - (B_n1_ - B_n_));
+}
+
+EdgePair::Force EdgePair::gap_slope(const Part& part) const {
+  if (!part.across || !round()) return part.gap.slope();
+  return part.gap.slope() - data_.retreat * m_slope();
 }
 
 /// What changing m by the angle takes: −B̄ Δm/Δc times the derivative of c, which in squared lengths
-/// is quadratic, so that in the middle of the step it is exact.
+/// is quadratic, so that in the middle of the step it is exact. Of round edges the force of the
+/// gap that m draws back stands in the place of B̄.
 EdgePair::Force EdgePair::by_angle(Stiffness* K) const {
   Force f = Force::Zero(12);
   const bool moves = std::max(c_n_, c_n1_) > kFrom && std::min(c_n_, c_n1_) < kTo;
   if (!moves) return f;
-  const auto act = [&]<class T>(T B_mean) {
+  const auto act = [&]<class T>(T by_m) {
     const FourPoints<T> at(moves_, alpha_, true);
     V3<T> x_n1[4];
     V3<double> x_n[4];
@@ -115,7 +158,7 @@ EdgePair::Force EdgePair::by_angle(Stiffness* K) const {
     const Products<double> before(x_n[1] - x_n[0], x_n[3] - x_n[2]);
     const Products<T> after(x_n1[1] - x_n1[0], x_n1[3] - x_n1[2]);
     const T scale =
-        B_mean * (-1.0 / data_.squares) *
+        by_m * (-1.0 / data_.squares) *
         blend_quotient(conserving_ ? c_n_ : c_n1_, after.square() * (1.0 / data_.squares));
     const double w = conserving_ ? 0.5 : 1.0;
     const T ee = w * after.ee + (1.0 - w) * before.ee, ff = w * after.ff + (1.0 - w) * before.ff,
@@ -131,16 +174,20 @@ EdgePair::Force EdgePair::by_angle(Stiffness* K) const {
     }
     return force;
   };
-  const double B_mean = (1.0 - alpha_) * B_n_ + alpha_ * B_n1_;
+  double by_m = (1.0 - alpha_) * B_n_ + alpha_ * B_n1_;
+  if (round()) by_m = data_.retreat * pressure_;
   if (!K) {
-    const auto values = act(B_mean);
+    const auto values = act(by_m);
     for (int k = 0; k < 4; ++k)
       f.segment<3>(3 * k) = contact::value(values[static_cast<std::size_t>(k)]);
     return f;
   }
-  Dual B(B_mean);
+  Dual B(by_m);
   for (const Part& p : parts_) {
-    const Force slope = -alpha_ * p.sign * law_.normal.force(p.gap_n1) * p.gap.slope();
+    if (!p.across) continue;
+    const double by_gap =
+        round() ? data_.retreat * p.pressure.slope : -alpha_ * law_.normal.force(p.gap_n1);
+    const Force slope = p.sign * by_gap * gap_slope(p);
     for (int j = 0; j < 12; ++j) B.d[j] += slope[j];
   }
   const auto values = act(B);
@@ -154,15 +201,15 @@ EdgePair::Force EdgePair::by_angle(Stiffness* K) const {
 
 EdgePair::Force EdgePair::force() const {
   Force f = by_angle(nullptr);
-  for (const Part& p : parts_) f += p.sign * m_ * p.gap.force(p.pressure.value);
+  for (const Part& p : parts_) f += p.sign * factor_ * p.gap.force(p.pressure.value);
   return f;
 }
 
-EdgePair::Force EdgePair::mean_m_slope() const {
+EdgePair::Force EdgePair::m_slope() const {
   Force slope = Force::Zero(12);
   if (c_n1_ <= kFrom || c_n1_ >= kTo) return slope;
   const double t = (c_n1_ - kFrom) / (kTo - kFrom);
-  const double by_c = alpha_ * 6.0 * t * (1.0 - t) / (kTo - kFrom) / data_.squares;
+  const double by_c = 6.0 * t * (1.0 - t) / (kTo - kFrom) / data_.squares;
   const Vec3 e = moves_.x_n1[1] - moves_.x_n1[0], f = moves_.x_n1[3] - moves_.x_n1[2];
   const Vec3 by_e = 2.0 * by_c * (f.squaredNorm() * e - e.dot(f) * f);
   const Vec3 by_f = 2.0 * by_c * (e.squaredNorm() * f - e.dot(f) * e);
@@ -173,26 +220,46 @@ EdgePair::Force EdgePair::mean_m_slope() const {
 EdgePair::Stiffness EdgePair::stiffness() const {
   Stiffness K = Stiffness::Zero(12, 12);
   by_angle(&K);
-  const Force m_slope = mean_m_slope();
+  const Force by_m = m_slope();
   for (const Part& p : parts_) {
-    K += p.sign * m_ * p.gap.stiffness(p.pressure);
-    K += p.sign * p.gap.force(p.pressure.value) * m_slope.transpose();
+    K += p.sign * factor_ * p.gap.stiffness(p.pressure);
+    if (!round())
+      K += p.sign * alpha_ * p.gap.force(p.pressure.value) * by_m.transpose();
+    else if (p.across)
+      K -= p.sign * data_.retreat * p.gap.force(p.pressure.slope) * by_m.transpose();
   }
   return K;
 }
 
 EdgePair::Force EdgePair::pressure_slope() const {
   Force slope = Force::Zero(12);
-  const Force m_slope = mean_m_slope();
-  for (const Part& p : parts_)
-    slope += p.sign * (m_ * p.pressure.slope * p.gap.slope() + p.pressure.value * m_slope);
+  const Force by_m = m_slope();
+  for (const Part& p : parts_) {
+    if (!p.across) continue;
+    slope += p.sign * factor_ * p.pressure.slope * gap_slope(p);
+    if (!round()) slope += p.sign * alpha_ * p.pressure.value * by_m;
+  }
   return slope;
 }
 
+LineSlide EdgePair::slide_along(double kept, bool tangent) const {
+  if (!(along_ > 0.0)) return {};
+  Force slope = Force::Zero(12);
+  for (const Part& p : parts_)
+    if (!p.across) slope += p.sign * p.pressure.slope * p.gap.slope();
+  return {moves_, alpha_, law_, along_, slope, kept, tangent};
+}
+
 Vec3 EdgePair::point() const {
+  const auto middle = [&](const Eigen::Vector4d& c) {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) sum += 0.5 * std::abs(c[k]) * moves_.x_n1[k];
+    return sum;
+  };
+  if (!round() || !(pressure() > 0.0)) return middle(nearest_.c);
   Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) sum += 0.5 * std::abs(nearest_.c[k]) * moves_.x_n1[k];
-  return sum;
+  for (const Part& p : parts_) sum += p.sign * p.pressure.value * middle(p.c);
+  return sum / pressure();
 }
 
 Vec3 EdgePair::normal() const {

@@ -85,9 +85,9 @@ NearestFour nearest_of_triangle(const Vec3 (&x)[4]) {
   return n;
 }
 
-NearestFour nearest_of_edges(const Vec3 (&x)[4], int e_end, int f_end) {
+NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place) {
   const Vec3 e = x[1] - x[0], f = x[3] - x[2];
-  double a = e_end, b = f_end;
+  double a = e_place, b = f_place;
   bool a_free = false, b_free = false;
   // The part of an edge of squared length l, from `from` along `to`, that is nearest to p.
   const auto project = [](const Vec3& p, const Vec3& from, const Vec3& along, double& part) {
@@ -95,16 +95,21 @@ NearestFour nearest_of_edges(const Vec3 (&x)[4], int e_end, int f_end) {
     part = std::clamp(t, 0.0, 1.0);
     return part == t;
   };
-  if (e_end < 0 && f_end < 0) {
+  // Ends are taken as they are.
+  const auto on = [](const Vec3& from, const Vec3& to, double part) -> Vec3 {
+    if (part == 0.0) return from;
+    return part == 1.0 ? to : Vec3((1.0 - part) * from + part * to);
+  };
+  if (e_place < 0.0 && f_place < 0.0) {
     const contact::SegmentsRegion r = contact::nearest_on_segments(x[0], e, x[2], f);
     a = r.s, b = r.t;
     a_free = r.s_free, b_free = r.t_free;
     if (a_free && b_free)
       a_free = e.cross(f).squaredNorm() > kParallel * e.squaredNorm() * f.squaredNorm();
-  } else if (e_end < 0) {
-    a_free = project(x[2 + f_end], x[0], e, a);
-  } else if (f_end < 0) {
-    b_free = project(x[e_end], x[2], f, b);
+  } else if (e_place < 0.0) {
+    a_free = project(on(x[2], x[3], f_place), x[0], e, a);
+  } else if (f_place < 0.0) {
+    b_free = project(on(x[0], x[1], e_place), x[2], f, b);
   }
   NearestFour n;
   n.c << 1.0 - a, a, b - 1.0, -b;

@@ -32,8 +32,9 @@ struct NearestFour {
 /// x_0 and the triangle of the others.
 [[nodiscard]] NearestFour nearest_of_triangle(const Vec3 (&x)[4]);
 
-/// The edges x_0 x_1 and x_2 x_3, or one end of them.
-/// @param e_end, f_end  0 or 1: only this end of the first, the second edge; −1: all of it.
-[[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], int e_end = -1, int f_end = -1);
+/// The edges x_0 x_1 and x_2 x_3, or one place on them.
+/// @param e_place, f_place  From 0 to 1: only this place on the first, the second edge; −1: all.
+[[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place = -1.0,
+                                           double f_place = -1.0);
 
 }  // namespace polhode
