@@ -239,6 +239,43 @@ TEST(RoundEdgePair, RubsLengthwiseWithoutSumOrMoment) {
       }
 }
 
+TEST(RoundEdgePair, RubsWhereItCrossesWithoutSumOrMoment) {
+  for (const double angle : {0.2, 0.3, 0.45, 1.2})
+    for (const double mu : {0.002, 50.0})
+      for (const unsigned seed : {1U, 2U, 3U}) {
+        SCOPED_TRACE(testing::Message() << angle << " " << mu << " " << seed);
+        Random random(seed);
+        Scene s;
+        s.data = data();
+        const Vec3 e(1.0, 0.0, 0.0), f(-std::cos(angle), std::sin(angle), 0.0);
+        const Vec3 from(-0.45, 0.0, 0.185);
+        const Vec3 x[4] = {from, from + e, -0.5 * f, 0.5 * f};
+        for (int k = 0; k < 4; ++k) {
+          s.moves.u[k] = random.vector(0.01);
+          s.moves.x_n1[k] = x[k] + random.vector(0.003) + s.moves.u[k];
+        }
+        const SurfaceLaw l = law(mu);
+        const EdgePair pair = s.pair(l);
+        ASSERT_GT(pair.pressure_across(), 0.0);
+        const Vec3 kept = random.vector(0.003);
+        const FourSlide slide = pair.slide(kept, true);
+        const Resultant r(s, slide.force);
+        EXPECT_NEAR(r.work, slide.friction.dot(slide.slid), 1e-12);
+        EXPECT_LT(r.sum.norm(), 1e-12);
+        EXPECT_LT(r.moment.norm(), 1e-11);
+        EXPECT_EQ(slide.slips, mu < 1.0);
+        const auto moved = [&](const Vec& d) {
+          Scene to = s;
+          for (int k = 0; k < 12; ++k) to.move(k, d[k]);
+          return to;
+        };
+        const Mat K = slide.K + slide.by_pressure * pair.pressure_slope().transpose();
+        expect_derivative(
+            K, [&](const Vec& d) -> Vec { return moved(d).pair(l).slide(kept, false).force; },
+            "friction across", 1e-6, 1e-6);
+      }
+}
+
 /// One edge is drawn along itself: that far it slides, whichever way the other one points. Rolled
 /// around it, it does not.
 TEST(RoundEdgePair, SlidesByWhatIsDrawnAlongAndRollsFreely) {

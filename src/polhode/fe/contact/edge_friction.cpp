@@ -8,6 +8,10 @@ namespace {
 
 using contact::V3;
 
+/// Squared sines of the angles from which round edges rub across their mean direction, and do so
+/// fully: 10 and 30 degrees.
+constexpr double kRolls = 0.03015, kRubs = 0.25;
+
 template <class T>
 struct EdgeOnEdge {
   V3<T> force[4], slid;
@@ -45,6 +49,31 @@ void weights(const NearestFour& nearest, const V3<T> (&x)[4], T (&c)[4]) {
   }
 }
 
+/// What round edges take of a vector in the plane of contact: the less they cross, the more they
+/// roll on each other instead, all but along their mean direction.
+template <class T>
+struct Rolling {
+  V3<T> t;
+  T w = T(1.0);
+
+  Rolling(const V3<T>& e, const V3<T>& f, bool round) : t(e) {
+    if (!round) return;
+    const T ee = dot(e, e), ff = dot(f, f), ef = dot(e, f);
+    const T square = 1.0 - ef * ef / (ee * ff);
+    const double s = contact::value(square);
+    if (s >= kRubs) return;
+    const T part = (1.0 / (kRubs - kRolls)) * (square - kRolls);
+    w = s > kRolls ? part * part * (3.0 - 2.0 * part) : T(0.0);
+    const double sign = contact::value(ef) < 0.0 ? -1.0 : 1.0;
+    t = unit((1.0 / sqrt(ee)) * e + (sign / sqrt(ff)) * f);
+  }
+  [[nodiscard]] V3<T> of(const V3<T>& x) const {
+    if (contact::value(w) == 1.0) return x;
+    const V3<T> along = dot(t, x) * t;
+    return along + w * (x - along);
+  }
+};
+
 /// The nearest points of the middle of the step slide on each other in the plane of both edges; how
 /// they move as the two edges turn is taken off, with the rotation of the pair
 ///
@@ -54,7 +83,7 @@ void weights(const NearestFour& nearest, const V3<T> (&x)[4], T (&c)[4]) {
 /// @eq{edge-friction}
 template <class T>
 EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
-                       const T& pressure, const Vec3& kept, bool seeded) {
+                       const T& pressure, const Vec3& kept, bool round, bool seeded) {
   const FourPoints<T> at(moves, alpha, seeded);
   Vec3 middle[4];
   moves.at(alpha, middle);
@@ -73,13 +102,14 @@ EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
   const V3<T> omega =
       per * (dot(n, du_f) * e - dot(n, du_e) * f + (0.5 * (dot(f, du_e) - dot(e, du_f))) * n);
   way = way - cross(omega, y);
-  const V3<T> slid = way - dot(n, way) * n;
+  const Rolling<T> rolling(e, f, round);
+  const V3<T> slid = rolling.of(way - dot(n, way) * n);
   const auto direction = [&](int from, int to) { return contact::v3(at.x_n[to] - at.x_n[from]); };
   EdgeOnEdge<T> r{{},
                   slid,
                   {SlidePlane<T>(e, f), SlidePlane<double>(direction(0, 1), direction(2, 3)), law,
                    pressure, kept, slid, alpha}};
-  const V3<T>& h = r.rub.friction;
+  const V3<T> h = rolling.of(r.rub.friction);
   const V3<T> moment = cross(y, h);
   const T on_n = dot(n, moment);
   const V3<T> on_e = per * (dot(f, moment) * n - (0.5 * on_n) * f);
@@ -96,7 +126,7 @@ EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
 FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
   if (round() && !(pressure_ > 0.0)) return {};
   const auto rub = [&](const auto& p, bool seeded) {
-    return friction(moves_, alpha_, law_, p, kept, seeded);
+    return friction(moves_, alpha_, law_, p, kept, round(), seeded);
   };
   const auto& x = moves_.x_n1;
   return FourSlide(rub, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),
