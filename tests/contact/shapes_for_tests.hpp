@@ -17,10 +17,10 @@ struct NamedShape {
   contact::Shape shape;
 };
 
-/// A ring of 12 × 8 quadrilaterals, split in triangles: closed and not convex.
-inline TriangleSurface torus(double R, double r) {
+/// A ring of n × 8 quadrilaterals, split in triangles: closed and not convex.
+inline TriangleSurface torus(double R, double r, int n = 12) {
   TriangleSurface s;
-  const int n = 12, m = 8;
+  const int m = 8;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < m; ++j) {
       const double u = 2.0 * std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / m;

@@ -43,12 +43,14 @@ Model trolley() {
 }
 
 /// A rope that rubs over a drum on the way to its beam, with a ball at its end.
-Model rope() {
-  return read_model_text(R"(
+Model rope(const std::string& drum = "{cylinder: [0.1, 0.1]}") {
+  return read_model_text(
+      R"(
 format: 1
 gravity: [0, 0, -9.81]
 bodies:
-  drum: {shape: {cylinder: [0.1, 0.1]}, mass: 1, orientation: {axis: x, angle: 90 deg}, position: [0, 0, -60 mm]}
+  drum: {shape: )" +
+          drum + R"(, mass: 1, orientation: {axis: x, angle: 90 deg}, position: [0, 0, -60 mm]}
   ball: {shape: {sphere: 0.05}, mass: 0.3, position: [0.3, 0, 0]}
 joints:
   axle: {type: revolute, bodies: [ground, drum], at: [0, 0, -60 mm], axis: y, friction: {mu: 0.2, radius: 8 mm, length: 60 mm}}
@@ -58,7 +60,7 @@ cables:
 contacts: {default: {friction: 0.3, restitution: 0.5}}
 analysis: {duration: 0.4 s, step: 1 ms}
 )",
-                         "rope.yaml");
+      "rope.yaml");
 }
 
 /// The same by impulses, whose points remember what acted.
@@ -84,6 +86,7 @@ std::vector<RestartCase> cases() {
       {"SpheresInABin", touching("spheres_in_a_bin", 0.3)},
       {"Trolley", trolley()},
       {"RopeOverADrum", rope()},
+      {"RopeOverATube", rope("{tube: [0.1, 0.08, 0.1]}")},
       {"SpheresInABinByImpulses", by_impulses(touching("spheres_in_a_bin", 0.6))},
   };
 }

@@ -4,55 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include <contact/shapes_for_tests.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/io/checkpoint.hpp>
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
+#include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode::test {
 namespace {
 
 using testing::HasSubstr;
-
-void write_obj(const std::string& file, const TriangleSurface& surface) {
-  std::ofstream out(file);
-  for (const Vec3& x : surface.points)
-    out << format("v {:.17g} {:.17g} {:.17g}\n", x[0], x[1], x[2]);
-  for (const auto& t : surface.triangles)
-    out << format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-}
-
-/// A box about the origin with n × n × 1 cells.
-TriangleSurface plate(const Vec3& size, int n) {
-  TriangleSurface s;
-  const int m = n + 1;
-  for (int k = 0; k < 2; ++k)
-    for (int j = 0; j < m; ++j)
-      for (int i = 0; i < m; ++i)
-        s.points.push_back(size.cwiseProduct(
-            Vec3(static_cast<double>(i) / n, static_cast<double>(j) / n, k) - Vec3::Constant(0.5)));
-  const auto at = [&](int i, int j, int k) { return (k * m + j) * m + i; };
-  const auto quad = [&](int a, int b, int c, int d) {
-    s.triangles.push_back({a, b, c});
-    s.triangles.push_back({a, c, d});
-  };
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      quad(at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1));
-      quad(at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0));
-    }
-  for (int i = 0; i < n; ++i) {
-    quad(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1));
-    quad(at(i, n, 0), at(i, n, 1), at(i + 1, n, 1), at(i + 1, n, 0));
-    quad(at(0, i, 0), at(0, i, 1), at(0, i + 1, 1), at(0, i + 1, 0));
-    quad(at(n, i, 0), at(n, i + 1, 0), at(n, i + 1, 1), at(n, i, 1));
-  }
-  return s;
-}
 
 std::string flat_field(int n, double spacing) {
   std::string row;

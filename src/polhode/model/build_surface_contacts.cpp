@@ -139,12 +139,12 @@ class SurfacesBuilder {
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
     const ShapeSpec& shape = body.shapes[pair.shape];
     const CableLine& line = line_of(pair.own);
-    const SurfaceLaw law = law_of(pair.law, stuff_of(cable), 2.0 * line.radius,
-                                  std::min(line.radius, half_size(shape)));
+    const CableSizes sizes = cable_sizes(shape, line.radius);
+    const SurfaceLaw law = law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest);
     const std::string where = name_of(pair);
     const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
-    points.points.through = 0.5 * (line.radius + half_size(shape));
+    points.points.through = sizes.through;
     const SurfacePlace place = place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side)]);
     const std::vector<Vec3> X = positions();
     const std::vector<double> gaps =

@@ -12,11 +12,6 @@ namespace polhode {
 
 namespace {
 
-bool is_convex(const std::string& shape) {
-  return shape == "plane" || shape == "sphere" || shape == "capsule" || shape == "box" ||
-         shape == "cylinder" || shape == "cone" || shape == "ellipsoid" || shape == "hull";
-}
-
 /// What a law asks for that surfaces of solids cannot do; empty if nothing. Constants of the force
 /// of a point, which surfaces choose for themselves, do not matter.
 std::string strange_key(const ContactLawSpec& law) {
@@ -87,19 +82,12 @@ class Planner {
            const ContactSide& of_shape) {
     const BodySpec& spec = model_.bodies[static_cast<std::size_t>(body)];
     const std::string& name = model_.side_name(own);
-    if (is_cable_side(own) && !is_convex(spec.shapes[shape].type))
-      fault(
-          shape_path(spec, shape),
-          format("the cable '{}' meets it, which cables cannot do with a {}", name,
-                 spec.shapes[shape].type),
-          "They can with plane, sphere, capsule, box, cylinder, cone, ellipsoid and hull. Exclude "
-          "the pair, or set contact: {touches: false}");
     const StatedLaw stated =
         law_between(model_.contacts, {material_of(model_.contacts, of_own), own},
                     {material_of(model_.contacts, of_shape), body});
     const std::string where =
         stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts.default";
-    check_tolerance(where, name, spec, shape, stated.law);
+    check_tolerance(where, own, spec, shape, stated.law);
     if (const std::string key = strange_key(stated.law); !key.empty())
       fault(where,
             format("'{}' and '{}' meet by a law with {}, which {} do not know", name, spec.name,
@@ -114,17 +102,24 @@ class Planner {
     list_.push_back({own, body, shape, stated.law});
   }
 
-  /// A band that is wide against the triangles of a shape would reach through them.
-  void check_tolerance(const std::string& where, const std::string& solid, const BodySpec& body,
-                       std::size_t k, const ContactLawSpec& law) {
+  /// A band that is wide against the triangles of a shape, and the radius of a cable, would reach
+  /// through them.
+  void check_tolerance(const std::string& where, int own, const BodySpec& body, std::size_t k,
+                       const ContactLawSpec& law) {
     const ShapeSpec& shape = body.shapes[k];
     if (!(law.gap_tolerance > 0.0) || law.potential == "linear") return;
-    const double most = widest_tolerance(shape);
+    const bool cable = is_cable_side(own);
+    const double most =
+        cable ? widest_tolerance(
+                    shape,
+                    model_.cables[static_cast<std::size_t>(cable_of_side(own))].contact->radius)
+              : widest_tolerance(shape);
     if (law.gap_tolerance > most)
       fault(where,
             format("'{}' meets the {} of '{}' with a gap_tolerance of {:.3g} m, above a quarter of "
-                   "the median edge of its triangles, {:.3g} m",
-                   solid, shape.type, body.name, law.gap_tolerance, most),
+                   "the median edge of its triangles{}, {:.3g} m",
+                   model_.side_name(own), shape.type, body.name, law.gap_tolerance,
+                   cable ? " and an eighth of the cable's radius" : "", most),
             "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
   }
 

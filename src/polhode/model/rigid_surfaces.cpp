@@ -17,6 +17,9 @@ namespace {
 constexpr double kRounding = 1e-3;
 /// The same of boxes and cylinders, of cones and hulls, and of triangles, at most.
 constexpr double kMostOfBoxes = 0.5, kMostOfHulls = 0.2, kMostOfTriangles = 0.25;
+/// Part of the radius of a cable that its band may take: its points, no farther apart than 1.6
+/// radii, then let nothing through between them.
+constexpr double kMostOfRadius = 0.125;
 
 bool has_triangles(const ShapeSpec& shape) {
   return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
@@ -43,9 +46,15 @@ double smallest_detail(const ShapeSpec& shape) {
   return has_triangles(shape) ? contact::median_edge(triangles_of(shape)) : half_size(shape);
 }
 
-double widest_tolerance(const ShapeSpec& shape) {
+double widest_tolerance(const ShapeSpec& shape, double radius) {
   if (!has_triangles(shape)) return std::numeric_limits<double>::infinity();
-  return kMostOfTriangles * smallest_detail(shape);
+  return kMostOfTriangles * smallest_detail(shape) + kMostOfRadius * radius;
+}
+
+CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
+  if (has_triangles(shape)) return {radius, 0.5 * radius};
+  const double half = half_size(shape);
+  return {std::min(radius, half), 0.5 * (radius + half)};
 }
 
 RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {

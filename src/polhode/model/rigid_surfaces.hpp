@@ -17,7 +17,15 @@ namespace polhode {
 
 /// The widest tolerance that does not reach through the triangles of a shape [m]; others have no
 /// limit.
-[[nodiscard]] double widest_tolerance(const ShapeSpec& shape);
+/// @param radius  Of a cable, which keeps that away beside it [m].
+[[nodiscard]] double widest_tolerance(const ShapeSpec& shape, double radius = 0.0);
+
+/// What a tolerance between a cable and a shape is to be small against, and the depth of the middle
+/// of the shape, through which none is to go [m]. Surfaces of triangles may be thin anywhere.
+struct CableSizes {
+  double smallest, through;
+};
+[[nodiscard]] CableSizes cable_sizes(const ShapeSpec& shape, double radius);
 
 /// A shape as surfaces of solids meet it, in its own coordinates. Its edges are rounded by the
 /// tolerance of the gap, as far as the shape allows.

@@ -8,6 +8,7 @@
 #include <polhode/contact/hull.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
 #include <support/derivative.hpp>
+#include <support/obj_file.hpp>
 
 namespace polhode::test {
 namespace {
@@ -56,15 +57,18 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
   for (Vec3& x : shape.corners) x.head<2>() += 0.3 * Vec3(random.vector()).head<2>();
   const RigidMesh field(shape);
   const contact::NormalLaw law = band(0.3);
-  for (int k = 0; k < 2000; ++k) {
+  const double radii[] = {0.0, 0.4, 2.5};  // of a ball about the point, to larger than triangles
+  for (int k = 0; k < 3000; ++k) {
     Vec3 y = random.vector(3.0);
+    const double radius = radii[k % 3];
     if (k % 4 == 1) y = shape.corners[static_cast<std::size_t>(40 + k % 3)];  // over a corner
     if (k % 4 == 2)                                                           // over an edge
       y = 0.3 * shape.corners[40] + 0.7 * shape.corners[41];
     y[2] = 0.25 * random.number();
     if (y[2] < -rho) y[2] += 0.3;
-    const SurfaceGap g = field.gap(y, {law});
-    EXPECT_NEAR(g.value, y[2], 1e-13);
+    y[2] += radius;
+    const SurfaceGap g = field.gap(y, {law, 100.0, false, radius});
+    EXPECT_NEAR(g.value, y[2] - radius, 1e-13);
     EXPECT_LT((g.normal - Vec3::UnitZ()).norm(), 1e-10) << y.transpose();
     EXPECT_LT(g.curvature.norm(), 1e-8);
     EXPECT_NEAR(field.distance(y, 10.0, false), y[2], 1e-14);
@@ -84,29 +88,57 @@ TEST(RigidMesh, IsTheBoxWhoseTrianglesItHas) {
                                 "box", contact::convex_hull("box", corners), {}, rho))};
   const contact::NormalLaw law = band(rho);
   Random random(41);
-  for (int k = 0; k < 2000; ++k) {
-    Vec3 y = random.vector(1.1).cwiseProduct(Vec3(2.0, 3.0, 2.5));
-    if (k % 2 == 0) y = 1.02 * y.cwiseQuotient(y.cwiseAbs()).cwiseProduct(Vec3(2.0, 3.0, 2.5));
+  for (int k = 0; k < 4000; ++k) {
+    const double radius = k < 2000 ? 0.0 : 1.7;
+    const Vec3 half = Vec3(2.0, 3.0, 2.5) + Vec3::Constant(0.8 * radius);
+    Vec3 y = random.vector(1.1).cwiseProduct(half);
+    if (k % 2 == 0) y = 1.02 * y.cwiseQuotient(y.cwiseAbs()).cwiseProduct(half);
     if (k % 4 == 0) y[k % 3] *= 0.7;
     const bool within = plain.distance(y) < -rho;
-    const SurfaceGap g = plain.gap(y, {law}), h = meshed.gap(y, {law, 100.0, within});
+    const SurfaceGap g = plain.gap(y, {law, 100.0, false, radius}),
+                     h = meshed.gap(y, {law, 100.0, within, radius});
     ASSERT_NEAR(g.value, h.value, 1e-13) << y.transpose();
     if (within) continue;
     EXPECT_LT((g.normal - h.normal).norm(), 1e-10) << y.transpose();
     EXPECT_LT((g.curvature - h.curvature).norm(), 1e-8) << y.transpose();
-    EXPECT_NEAR(meshed.distance(y), h.value, 1e-13);
-    EXPECT_NEAR(meshed.distance(y, 0.05), std::min(h.value, 0.05), 1e-13);
+    EXPECT_NEAR(meshed.distance(y) - radius, h.value, 1e-13);
+    EXPECT_NEAR(meshed.distance(y, 0.05), std::min(h.value + radius, 0.05), 1e-13);
+  }
+}
+
+/// A drum of triangles becomes a cylinder with the square of the turn of its sides, whatever the
+/// radius of the ball.
+TEST(RigidMesh, BecomesTheCylinderOfSecondOrder) {
+  const contact::NormalLaw law = band(0.05);
+  for (const double radius : {0.0, 0.3, 2.0}) {
+    double coarse = 0.0;
+    for (const int sides : {16, 32, 64, 128}) {
+      const RigidMesh drum(contact::mesh("drum", prism(1.0, 3.0, sides), {}, 1e-3));
+      double worst = 0.0;
+      for (int k = 0; k < 500; ++k) {
+        const double u = 0.1 + 0.006 * k, d = 1.0 + radius;
+        const Vec3 y(d * std::cos(u), d * std::sin(u), 0.001 * k);
+        worst = std::max(worst, std::abs(drum.gap(y, {law, 100.0, false, radius}).value));
+      }
+      const double half = std::numbers::pi / sides;
+      EXPECT_LT(worst, 1.2 * (0.5 * half * half)) << "the height of the arc over a side";
+      if (coarse > 0.0) {
+        EXPECT_LT(worst, 0.3 * coarse) << sides;
+      }
+      coarse = worst;
+    }
   }
 }
 
 /// Points within the band over a rough surface, many of them near several features.
 template <class What>
-void for_points(const RigidMesh& mesh, const contact::NormalLaw& law, What&& what) {
+void for_points(const RigidMesh& mesh, const GapQuestion& question, What&& what) {
+  const contact::NormalLaw& law = question.law;
   Random random(23);
   int found = 0;
   for (int k = 0; k < 40000 && found < 300; ++k) {
-    const Vec3 y = random.vector(4.0).cwiseProduct(Vec3(1.0, 1.0, 0.4));
-    const double d = mesh.distance(y, 1.0, true);
+    const Vec3 y = random.vector(4.0).cwiseProduct(Vec3(1.0, 1.0, 0.4 + 0.2 * question.radius));
+    const double d = mesh.distance(y, 4.0, true) - question.radius;
     if (d < -0.9 * law.tolerance || d > law.tolerance) continue;
     ++found;
     what(y);
@@ -117,58 +149,92 @@ void for_points(const RigidMesh& mesh, const contact::NormalLaw& law, What&& wha
 /// @tests{surface-feature-sum}
 TEST(RigidMesh, HasTheDerivativesOfItsGap) {
   const contact::NormalLaw law = band(0.2);
-  for (const RigidMesh& mesh : {RigidMesh(hills(0.2)), ring(0.2)}) {
-    double several = 0.0;
-    for_points(mesh, law, [&](const Vec3& y) {
-      const SurfaceGap g = mesh.gap(y, {law});
-      several = std::max(several, mesh.distance(y, 1.0, false) - g.value);
-      const auto value = [&](const Vec& d) -> Vec {
-        return Vec::Constant(1, mesh.gap(Vec3(y + Vec3(d)), {law}).value);
-      };
-      const auto normal = [&](const Vec& d) -> Vec {
-        return mesh.gap(Vec3(y + Vec3(d)), {law}).normal;
-      };
-      if (g.value > 0.95 * law.tolerance) return;  // its normal turns fast where the band ends
-      expect_derivative(g.normal.transpose(), value, "gap", 1e-6, 1e-6);
-      expect_derivative(g.curvature, normal, "normal", 1e-4, 1e-7);
-    });
-    EXPECT_GT(several, 1e-3) << "some points are near two features at least";
+  for (const double radius : {0.0, 0.9}) {
+    const GapQuestion question{law, 100.0, false, radius};
+    for (const RigidMesh& mesh : {RigidMesh(hills(0.2)), ring(0.2)}) {
+      double several = 0.0;
+      for_points(mesh, question, [&](const Vec3& y) {
+        const SurfaceGap g = mesh.gap(y, question);
+        several = std::max(several, mesh.distance(y, 4.0, false) - radius - g.value);
+        const auto value = [&](const Vec& d) -> Vec {
+          return Vec::Constant(1, mesh.gap(Vec3(y + Vec3(d)), question).value);
+        };
+        const auto normal = [&](const Vec& d) -> Vec {
+          return mesh.gap(Vec3(y + Vec3(d)), question).normal;
+        };
+        if (g.value > 0.95 * law.tolerance) return;  // its normal turns fast where the band ends
+        expect_derivative(g.normal.transpose(), value, "gap", 1e-6, 1e-6);
+        expect_derivative(g.curvature, normal, "normal", 1e-4, 1e-7);
+      });
+      EXPECT_GT(several, 1e-3) << "some points are near two features at least";
+    }
   }
 }
 
-/// The energy has no jumps: along any way it changes by what its force does.
+/// Along a way, kept at a distance, the energy changes by what the force does. Returns the most of
+/// it.
+double expect_work(const RigidMesh& mesh, const GapQuestion& question, const Vec3& from,
+                   const Vec3& to, double height, int n = 4000) {
+  const contact::NormalLaw& law = question.law;
+  const auto over = [&](double part) {
+    Vec3 y = from + part * (to - from);
+    for (int i = 0; i < 20; ++i)  // up to it
+      y[2] += height + question.radius - mesh.distance(y, 10.0, true);
+    return y;
+  };
+  Vec3 y = over(0.0);
+  SurfaceGap g = mesh.gap(y, question);
+  double energy = law.energy(g.value), work = 0.0, most = 0.0;
+  const double start = energy;
+  for (int i = 1; i <= n; ++i) {
+    const Vec3 next = over(i / static_cast<double>(n));
+    const SurfaceGap h = mesh.gap(next, question);
+    const Vec3 f = 0.5 * (law.force_and_slope(g.value).value * g.normal +
+                          law.force_and_slope(h.value).value * h.normal);
+    work -= f.dot(next - y);
+    energy = law.energy(h.value);
+    EXPECT_NEAR(energy - start, work, 1e-3 * law.energy(0.0));
+    most = std::max(most, energy);
+    y = next;
+    g = h;
+  }
+  return most;
+}
+
+/// The energy has no jumps. @tests{surface-feature-sum}
 TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(hills(0.2));
-  Random random(3);
-  double most = 0.0;
-  for (int k = 0; k < 20; ++k) {
-    Vec3 from = random.vector(3.0), to = random.vector(3.0);
-    from[2] = to[2] = 0.0;
-    const auto over = [&](double part) {
-      Vec3 y = from + part * (to - from);
-      for (int i = 0; i < 20; ++i) y[2] += 0.05 - mesh.distance(y, 5.0, true);  // up to it
-      return y;
-    };
-    const int n = 4000;
-    Vec3 y = over(0.0);
-    SurfaceGap g = mesh.gap(y, {law});
-    double energy = law.energy(g.value), work = 0.0;
-    const double start = energy;
-    for (int i = 1; i <= n; ++i) {
-      const Vec3 next = over(i / static_cast<double>(n));
-      const SurfaceGap h = mesh.gap(next, {law});
-      const Vec3 f = 0.5 * (law.force_and_slope(g.value).value * g.normal +
-                            law.force_and_slope(h.value).value * h.normal);
-      work -= f.dot(next - y);
-      energy = law.energy(h.value);
-      EXPECT_NEAR(energy - start, work, 1e-3 * law.energy(0.0));
-      most = std::max(most, energy);
-      y = next;
-      g = h;
+  for (const double radius : {0.0, 0.6}) {
+    Random random(3);
+    double most = 0.0;
+    for (int k = 0; k < 20; ++k) {
+      Vec3 from = random.vector(3.0), to = random.vector(3.0);
+      from[2] = to[2] = 0.0;
+      most = std::max(most, expect_work(mesh, {law, 100.0, false, radius}, from, to, 0.05));
     }
+    EXPECT_GT(most, 1.2 * law.energy(0.05)) << "valleys were met";
   }
-  EXPECT_GT(most, 1.2 * law.energy(0.05)) << "valleys were met";
+}
+
+/// A ball that does not fit through a ring is held back wherever it lies on the hole, by what is
+/// nearest at least, and its energy has no jumps there either. @tests{surface-feature-holes}
+TEST(RigidMesh, HoldsBackWhatIsWiderThanAHole) {
+  const contact::NormalLaw law = band(0.2);
+  const RigidMesh mesh(contact::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
+  const GapQuestion question{law, 100.0, false, 2.3};
+  Random random(9);
+  int acted = 0;
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 y = Vec3(0.3 * random.number(), 0.3 * random.number(), 1.0 + random.number());
+    const double nearest = mesh.distance(y, 10.0, false) - question.radius;
+    if (nearest > law.tolerance || nearest < -0.9 * law.tolerance) continue;
+    ++acted;
+    EXPECT_LT(mesh.gap(y, question).value, nearest + 1e-13) << y.transpose();
+  }
+  EXPECT_GT(acted, 100);
+  const Vec3 from(0.3, 0.25, 2.0), to(-0.24, -0.225, 2.0);
+  EXPECT_GT(expect_work(mesh, question, from, to, 0.05, 400), 0.99 * law.energy(0.05));
 }
 
 TEST(RigidMesh, KnowsItsInside) {

@@ -84,6 +84,13 @@ bool RigidMesh::behind(const Vec3& y, const TriangleTree::Hit& hit) const {
   return false;
 }
 
+double RigidMesh::extent() const {
+  if (bordered_) return std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const Vec3& x : surface_.corners) most = std::max(most, x.norm());
+  return most + surface_.rounding;
+}
+
 double RigidMesh::distance(const Vec3& y, double at_most, bool sided) const {
   const TriangleTree::Hit hit = nearest(y, at_most + surface_.rounding, sided);
   if (hit.triangle < 0) return at_most;
@@ -92,14 +99,13 @@ double RigidMesh::distance(const Vec3& y, double at_most, bool sided) const {
 }
 
 /// @eq{surface-gap} with a triangle, edge or corner for the core.
-SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y) const {
+SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y, double round) const {
   const auto i = static_cast<std::size_t>(feature.index);
-  const double rho = surface_.rounding;
   if (feature.kind == TriangleRegion::face) {
     const contact::Shape::Plane& plane = surface_.planes[i];
     const double height = plane.normal.dot(y) - plane.offset;
     const double side = height < 0.0 ? -1.0 : 1.0;
-    return {side * height - rho, side * plane.normal, Mat3::Zero()};
+    return {side * height - round, side * plane.normal, Mat3::Zero()};
   }
   Vec3 from;
   Mat3 fixed = Mat3::Identity();  // I less what the nearest point follows
@@ -115,8 +121,8 @@ SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y) const {
   }
   const double d = from.norm();
   const Vec3 n = normal_on(from, d);
-  if (!(d > 0.0)) return {-rho, n, Mat3::Zero()};
-  return {d - rho, n, (fixed - n * n.transpose()) / d};
+  if (!(d > 0.0)) return {-round, n, Mat3::Zero()};
+  return {d - round, n, (fixed - n * n.transpose()) / d};
 }
 
 /// Every triangle, edge and corner counts where its nearest point is: most cancel.
@@ -165,28 +171,35 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
 }
 
 /// With V = Σ w β(gᵢ) and f = −β′ the gap g = β⁻¹(V) has the gradient n = Σ w f(gᵢ) nᵢ / f(g).
-/// @eq{surface-feature-sum}
+/// @eq{surface-feature-sum} @eq{surface-feature-holes}
 SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
-                          const contact::NormalLaw& law) const {
+                          const GapQuestion& question) const {
+  const contact::NormalLaw& law = question.law;
+  const double round = surface_.rounding + question.radius;
+  std::vector<std::pair<SurfaceGap, int>> near;
+  for (const Feature& f : features_near(y, law.reach() + round)) {
+    if (f.count == 0) continue;
+    const SurfaceGap g = gap_of(f, y, round);
+    if (g.value < law.reach()) near.emplace_back(g, f.count);
+  }
+  if (near.empty()) return {law.reach(), nearest.normal, nearest.curvature};
+  if (near.size() == 1) return near.front().first;
+  std::stable_sort(near.begin(), near.end(),
+                   [](const auto& a, const auto& b) { return a.first.value < b.first.value; });
   double V = 0.0;
   Vec3 force = Vec3::Zero();
   Mat3 stiffness = Mat3::Zero();
-  SurfaceGap single;
-  int several = 0;
-  for (const Feature& f : features_near(y, law.reach() + surface_.rounding)) {
-    if (f.count == 0) continue;
-    const SurfaceGap g = gap_of(f, y);
-    if (!(g.value < law.reach())) continue;
+  int open = 0, places = 0;  // by the features so far, and of these what counts
+  for (const auto& [g, count] : near) {
+    open += count;
+    const int w = std::max(1, open) - places;
+    places += w;
+    if (w == 0) continue;
     const contact::NormalLaw::WithSlope one = law.force_and_slope(g.value);
-    several += f.count == 1 ? 1 : 2;
-    single = g;
-    V += f.count * law.energy(g.value);
-    force += f.count * one.value * g.normal;
-    stiffness += f.count * (one.slope * g.normal * g.normal.transpose() + one.value * g.curvature);
+    V += w * law.energy(g.value);
+    force += w * one.value * g.normal;
+    stiffness += w * (one.slope * g.normal * g.normal.transpose() + one.value * g.curvature);
   }
-  if (several == 1) return single;
-  // In the middle of holes that are narrower than the band features may cancel.
-  if (!(V > 0.0)) return {law.reach(), nearest.normal, nearest.curvature};
   SurfaceGap g;
   g.value = law.gap_of(V);
   const contact::NormalLaw::WithSlope all = law.force_and_slope(g.value);
@@ -197,12 +210,12 @@ SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
 }
 
 SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuestion& question) const {
-  const TriangleTree::Hit hit = nearest(y, question.at_most + surface_.rounding, question.sided);
+  const double round = surface_.rounding + question.radius;
+  const TriangleTree::Hit hit = nearest(y, question.at_most + round, question.sided);
   if (hit.triangle < 0) return {question.at_most, Vec3::UnitZ(), Mat3::Zero()};
-  const Feature feature = this->feature(hit.triangle, hit.region);
-  SurfaceGap g = gap_of(feature, y);
+  SurfaceGap g = gap_of(feature(hit.triangle, hit.region), y, round);
   if (question.sided && behind(y, hit)) {
-    g.value = -(g.value + surface_.rounding) - surface_.rounding;
+    g.value = -(g.value + round) - round;
     g.normal = -g.normal;
     g.curvature = -g.curvature;
     return g;
@@ -210,7 +223,7 @@ SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuestion& question) const {
   const contact::NormalLaw& law = question.law;
   const double deep = law.floor() + kDeep * 2.0 * law.tolerance;
   if (!(g.value < law.reach()) || g.value < deep) return g;
-  return sum(y, g, law);
+  return sum(y, g, question);
 }
 
 }  // namespace polhode

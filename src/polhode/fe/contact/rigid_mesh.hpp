@@ -21,7 +21,8 @@ struct SurfaceGap {
 struct GapQuestion {
   const contact::NormalLaw& law;  ///< Which makes one gap of those of several features.
   double at_most = std::numeric_limits<double>::infinity();  ///< Larger gaps are told as this [m].
-  bool sided = false;  ///< Gaps within surfaces of triangles are negative, see RigidMesh.
+  bool sided = false;   ///< Gaps within surfaces of triangles are negative, see RigidMesh.
+  double radius = 0.0;  ///< Of a ball about the point: the gap is that of the ball [m].
 };
 
 /// A rigid surface of triangles that points of solids meet.
@@ -30,6 +31,11 @@ struct GapQuestion {
 /// their potentials, for each triangle, less each edge that two of them share, plus each corner
 /// inside: what neighbours have in common counts once. The gap with the potential of that sum is
 /// the one that is told, so a triangulated plane has the gap of the plane. @eq{surface-feature-sum}
+///
+/// In order of their gaps the features that count so far sum up to the number of places at which a
+/// growing ball touches the surface, less its holes. Over a hole or a pit that is narrower than a
+/// ball this would be none: one place counts always, so nothing is pushed by less than by what is
+/// nearest. @eq{surface-feature-holes}
 ///
 /// Triangles have two sides: no step takes a point from one to the other, and none starts within.
 /// Where points may get there all the same, as iterates of statics, the question asks for `sided`.
@@ -41,6 +47,8 @@ class RigidMesh {
   [[nodiscard]] SurfaceGap gap(const Vec3& y, const GapQuestion& question) const;
   /// The least of the gaps to features.
   [[nodiscard]] double distance(const Vec3& y, double at_most, bool sided) const;
+  /// No point of it, nor what is behind it, is farther from the origin [m]; infinite with a border.
+  [[nodiscard]] double extent() const;
 
  private:
   struct Feature {
@@ -54,10 +62,11 @@ class RigidMesh {
   [[nodiscard]] contact::TriangleTree::Hit nearest(const Vec3& y, double at_most, bool sided) const;
   [[nodiscard]] Feature feature(int triangle, const contact::TriangleRegion& region) const;
   [[nodiscard]] bool behind(const Vec3& y, const contact::TriangleTree::Hit& hit) const;
-  [[nodiscard]] SurfaceGap gap_of(const Feature& feature, const Vec3& y) const;
+  /// @param round  Of what is round about both, the feature and the point [m].
+  [[nodiscard]] SurfaceGap gap_of(const Feature& feature, const Vec3& y, double round) const;
   [[nodiscard]] Features features_near(const Vec3& point, double distance) const;
   [[nodiscard]] SurfaceGap sum(const Vec3& y, const SurfaceGap& nearest,
-                               const contact::NormalLaw& law) const;
+                               const GapQuestion& question) const;
 
   contact::Shape surface_;
   contact::TriangleTree tree_;

@@ -62,7 +62,10 @@ RigidSurface::Gap over(const contact::Shape& solid, const Vec3& y) {
 }  // namespace
 
 RigidSurface::Gap RigidSurface::gap(const Vec3& y, const GapQuestion& question) const {
-  return kind == Kind::mesh ? triangles->gap(y, question) : plain_gap(y);
+  if (kind == Kind::mesh) return triangles->gap(y, question);
+  Gap g = plain_gap(y);
+  g.value -= question.radius;
+  return g;
 }
 
 double RigidSurface::distance(const Vec3& y, double at_most, bool sided) const {
@@ -140,8 +143,9 @@ double RigidSurface::extent() const {
     case Kind::plane:
     case Kind::hollow_sphere:
     case Kind::convex:
-    case Kind::mesh:
       break;
+    case Kind::mesh:
+      return triangles->extent();
   }
   return std::numeric_limits<double>::infinity();
 }

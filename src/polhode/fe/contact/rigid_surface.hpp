@@ -37,7 +37,8 @@ struct RigidSurface {
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;
-  /// No point of it is farther from the origin [m]; infinite for planes and where it is not known.
+  /// No point of it is farther from the origin [m]; infinite for planes, fields of heights and
+  /// where it is not known.
   [[nodiscard]] double extent() const;
 
  private:

@@ -43,17 +43,15 @@ SurfaceContact::SurfaceContact(std::string name, SurfacePoints points, const std
 std::vector<double> SurfaceContact::gaps(const std::vector<Vec3>& X) const {
   std::vector<double> x, list;
   for (const Vec3& node : X) x.insert(x.end(), node.begin(), node.end());
-  for (int i = 0; i < size(); ++i) list.push_back(distance(local(x.data(), i)));
+  for (int i = 0; i < size(); ++i)
+    list.push_back(distance(local(x.data(), i), std::numeric_limits<double>::infinity(), true));
   return list;
 }
 
 /// @eq{cable-gap}
 RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuestion& question) const {
   if (is_far(y, question.at_most)) return {.value = question.at_most};
-  RigidSurface::Gap g =
-      surface_.gap(y, {question.law, question.at_most + radius(), question.sided});
-  g.value -= radius();
-  return g;
+  return surface_.gap(y, {question.law, question.at_most, question.sided, radius()});
 }
 
 double SurfaceContact::distance(const Vec3& y, double at_most, bool sided) const {
@@ -64,7 +62,7 @@ double SurfaceContact::distance(const Vec3& y, double at_most, bool sided) const
 Vec3 SurfaceContact::foot(const double* x, int point) const {
   const Vec3 p = position(x, point);
   if (!of_cable()) return p;
-  return p - radius() * (axes(x) * gap(local(x, point), {law_.normal}).normal);
+  return p - radius() * (axes(x) * gap(local(x, point), {law_.normal}).normal.normalized());
 }
 
 Vec3 SurfaceContact::position(const double* x, int point) const {
