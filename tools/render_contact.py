@@ -212,3 +212,20 @@ class Pictures:
         plot.legend(frameon=False, loc="upper right")
         r.label(plot, "speeds of the gears", y="[rad/s]")
         return figure
+
+    def crossed_lines(self):
+        r, m = self.r, self.r.Motion("crossed_lines")
+        figure, scene, plot = r.sheet(flat=True, wide=1.4)
+        for name, along, colour, pieces in (("lower", 0, r.BLUE, 20), ("upper", 1, r.RED, 40)):
+            x = np.array([m.place[f"{name}.{k}"][-1] for k in range(pieces + 1)])
+            scene.plot(x[:, along], 1e3 * x[:, 2], color=colour, label=name, marker="o", ms=2)
+        scene.set_aspect("auto"), scene.legend(frameon=False)
+        r.label(scene, "both lines, each from its side", "along it [m]", "z [mm]")
+        masses = np.linspace(0.2, 1.0, 5)
+        for tight, colour in (("1.99 m", r.BLUE), ("1.995 m", r.GOLD)):
+            runs = [r.support.Run(r.ROOT / "examples/crossed_lines/model.yaml", f"heavy={mass} kg/m", f"tight={tight}")
+                    for mass in masses]
+            plot.plot(masses, [run.probe("press")["normal"][-1] for run in runs], "o-", color=colour, ms=4, label=tight)
+        plot.legend(frameon=False)
+        r.label(plot, "force between them [N], by the length of the lower one", "mass of the upper one [kg/m]")
+        return figure

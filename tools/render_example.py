@@ -456,7 +456,7 @@ EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, n_f
             flyball_governor, gyroscope, door_on_two_hinges, beam_roll_up, flexible_four_bar)
 
 CONTACT = ("bouncing_ball", "incline", "newtons_cradle", "tippe_top", "rattleback", "stack", "card_house", "rolling_coin",
-           "spheres_in_a_bin", "gear_pair")
+           "spheres_in_a_bin", "gear_pair", "crossed_lines")
 
 
 def main():
