@@ -52,6 +52,38 @@ analysis: {type: statics}
   EXPECT_NEAR(simulation.contact(0).normal_force, p, 1e-9);
 }
 
+/// A ball pressed into one twice as stiff: the stiff one's pole rests in a dent of the other, as
+/// near to one triangle as to its mirror image. Hertz: 4/3 E* √R* δ^(3/2) (K. L. Johnson, Contact
+/// Mechanics, 1985, section 4.2). @tests{statics-kink}
+TEST(SolidsInStatics, SettleInADent) {
+  Simulation simulation(read_model_text(R"(
+format: 1
+variables: {T: 1 s}
+materials:
+  soft: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}
+  stiff: {type: elastic, youngs_modulus: 2 MPa, poisson_ratio: 0.3, density: 1000}
+solids:
+  upper:
+    mesh: {sphere: {diameter: 2, octants: 1, cells: [5, 4], grading: [0.06, 14]}, position: [0, 0, 1.0001], orientation: {axis: x, angle: 180 deg}}
+    material: soft
+    contact: {surface: outer}
+    prescribed: {x: {nodes: xmid, x: 0}, y: {nodes: ymid, y: 0}, z: {nodes: zmid, z: "-4e-3*t/T"}}
+  lower:
+    mesh: {sphere: {diameter: 2, octants: 1, cells: [6, 4], grading: [0.06, 14]}, position: [0, 0, -1], orientation: {axis: z, angle: -90 deg}}
+    material: stiff
+    contact: {surface: outer}
+    prescribed: {x: {nodes: xmid, x: 0}, y: {nodes: ymid, y: 0}, z: {nodes: zmid, z: 0}}
+contacts: {default: {gap_tolerance: 2e-5, reference_pressure: 20 kPa}}
+analysis: {type: statics, load_steps: 6}
+)",
+                                        "dent.yaml"));
+  const RunSummary summary = simulation.run();
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  const double modulus = 1.0 / (0.91 / 1e6 + 0.91 / 2e6), deep = 3.9e-3;
+  const double force = 4.0 / 3.0 * modulus * std::sqrt(0.5) * std::pow(deep, 1.5);
+  EXPECT_NEAR(4.0 * simulation.contact(0).normal_force / force, 1.0, 0.1);  // measured 1.04
+}
+
 /// A small block is pushed across a large one, farther than is looked for partners at a time.
 TEST(SolidsInStatics, FindTheirPartnersWhereTheyGo) {
   const auto pressed = [](double start, double way) {

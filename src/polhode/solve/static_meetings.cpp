@@ -11,6 +11,9 @@ namespace {
 
 /// Parts of an increment that surfaces leave free are taken a little smaller, as bodies turn.
 constexpr double kShorter = 0.98;
+/// Increments below this, in sizes of elements, that stay above this part of the one before, come
+/// no nearer to an equilibrium.
+constexpr double kSmall = 1e-5, kStalls = 0.5;
 
 }  // namespace
 
@@ -21,6 +24,24 @@ void StaticNewton::look_for_meetings() {
   for (const Meeting& m : meetings_)
     m.pattern->renew(step, work_.element_history.data() + m.first_history);
   x_before_ = trial_.node_x;
+}
+
+/// Iterates that go to and fro without coming nearer: on which sides of the kinks they are changes,
+/// and a mixture of the sides' forces balances.
+bool StaticNewton::balanced_on_a_kink(StaticStep& step) {
+  const std::size_t n = step.increments.size();
+  if (meetings_.empty() || n < 3) return false;
+  const double e = step.increments[n - 1];
+  if (!(e < kSmall) || !(e > kStalls * step.increments[n - 2])) {
+    kinks_.clear();
+    return false;
+  }
+  kinks_.add(rhs_);
+  const Vec here = rhs_;
+  rhs_ = kinks_.shortest();
+  const bool all = balanced(step) != Balance::off;
+  rhs_ = here;
+  return all;
 }
 
 /// How far nodes may go on the straight way between two places: surfaces of solids are seen from

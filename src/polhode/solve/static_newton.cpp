@@ -335,6 +335,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   if (start && free_part(state, state.node_x.data(), start->node_x.data()) < 1.0) start = nullptr;
   work_ = start ? *start : state;
   x_before_.clear();
+  kinks_.clear();
   start_scratch(work_);
   choose_scale();
   const auto fail = [&](std::string reason) {
@@ -372,6 +373,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
       if (e <= options_.tolerance || e * rate <= options_.tolerance * (1.0 - rate)) break;
       if (balance == Balance::rounded && e < kClose) break;  // nothing gets any better
     }
+    if (arrived && balanced_on_a_kink(step)) break;
     if (step.iterations == options_.max_iterations)
       return fail(format("has not converged in {} iterations", options_.max_iterations));
     ++step.iterations;

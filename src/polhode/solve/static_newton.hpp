@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/assembly/barrier_points.hpp>
+#include <polhode/solve/kink_mixture.hpp>
 #include <polhode/solve/newton_system.hpp>
 #include <polhode/solve/saddle_solver.hpp>
 
@@ -62,6 +63,7 @@ class StaticNewton {
   ElementReport assemble();
   void choose_scale();
   [[nodiscard]] Balance balanced(StaticStep& step) const;
+  [[nodiscard]] bool balanced_on_a_kink(StaticStep& step);
   [[nodiscard]] bool factor_and_solve(StaticStep& step);
   [[nodiscard]] bool make_symmetric();
   [[nodiscard]] bool nearly_singular() const;
@@ -97,6 +99,7 @@ class StaticNewton {
   };
   std::vector<Meeting> meetings_;
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
+  KinkMixture kinks_;             ///< Residuals of the iterates that hardly move any more.
   double force_ = 0.0;            ///< Largest force of the last assembly [N].
   std::vector<int> turns_;        ///< Interactions whose history counts turns.
 };
