@@ -63,6 +63,25 @@ analysis: {duration: 0.4 s, step: 1 ms}
       "rope.yaml");
 }
 
+/// A rope that rubs over a soft block, with a ball at its end.
+Model rope_on_pad() {
+  return read_model_text(R"(
+format: 1
+gravity: [0, 0, -9.81]
+materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+bodies:
+  ball: {shape: {sphere: 0.04}, mass: 0.2, position: [0.2, 0, 0]}
+solids:
+  pad: {mesh: {block: {size: [0.1, 0.06, 0.04], cells: [3, 2, 1]}, position: [0, 0, -0.026]}, material: rubber, bonded: {ground: zmin}}
+cables:
+  rope: {through: [[ground, [-0.15, 0, 0]], [ball]], stiffness: 2 kN, mass_per_length: 0.1, damping: 1,
+         elements: 10, contact: {radius: 5 mm}}
+contacts: {default: {friction: 0.3, restitution: 0.5}}
+analysis: {duration: 30 ms, step: 1 ms}
+)",
+                         "pad.yaml");
+}
+
 /// The same by impulses, whose points remember what acted.
 Model by_impulses(Model model) {
   model.contacts.standard.potential = "nonsmooth";
@@ -86,6 +105,7 @@ std::vector<RestartCase> cases() {
       {"SpheresInABin", touching("spheres_in_a_bin", 0.3)},
       {"Trolley", trolley()},
       {"RopeOverADrum", rope()},
+      {"RopeOnAPad", rope_on_pad()},
       {"RopeOverATube", rope("{tube: [0.1, 0.08, 0.1]}")},
       {"SpheresInABinByImpulses", by_impulses(touching("spheres_in_a_bin", 0.6))},
   };

@@ -23,6 +23,8 @@ namespace {
 
 /// Part of the smaller of edge and shape that the tolerance of the gap is.
 constexpr double kTolerance = 1e-3;
+/// Part of a cable's radius that it is against a solid, which gives way much farther.
+constexpr double kOnSolid = 1e-2;
 /// Part of Young's modulus that a pressure at gap zero is, at least.
 constexpr double kPressure = 0.02;
 /// The same of a cable's: what a strain of a hundredth presses on a drum of fifteen times the
@@ -52,6 +54,8 @@ class SurfacesBuilder {
     for (const SurfacePair& pair : pairs) {
       if (is_cable_side(pair.own) && is_cable_side(pair.side))
         add_cables(pair);
+      else if (is_cable_side(pair.own) && is_solid_side(pair.side))
+        add_cable_on_solid(pair);
       else if (is_cable_side(pair.own))
         add_cable(pair);
       else if (is_solid_side(pair.side))
@@ -161,6 +165,59 @@ class SurfacesBuilder {
     map_.surfaces.push_back({pair.own, pair.side, pair.shape, group});
   }
 
+  /// The centre line of a cable on the triangles of a solid.
+  void add_cable_on_solid(const SurfacePair& pair) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
+    const int s = solid_of_side(pair.side);
+    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
+    const CableLine& line = line_of(pair.own);
+    const std::vector<Vec3> X = positions();
+    const std::vector<LoadedFaces> faces = faces_of(solids_[static_cast<std::size_t>(s)]);
+    const MeshSurface surface = triangulated(faces);
+    if (surface.triangles.empty()) return;
+    const SurfaceLaw law = law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)),
+                                  2.0 * line.radius, kOnSolid / kTolerance * line.radius);
+    const std::vector<int> carriers = this->carriers();
+    std::vector<int> moving = nodes_of({s});
+    moving.insert(moving.end(), line.nodes.begin(), line.nodes.end());
+    const SolidContactStart start{
+        .X = X, .carriers = carriers, .edge = smallest_edge(faces, X), .way = way_of_step(moving)};
+    const std::string where = format("{} on {}", cable.name, solid.name);
+    const auto contact = [&](const CablePoints& points) {
+      return std::make_unique<SolidContact>(where, mesh_points(points.points), surface, law, start,
+                                            round_line(points.points));
+    };
+    CablePoints points = cable_points(line, 0.5 * line.radius);
+    const std::vector<double> gaps = contact(points)->gaps_at_start();
+    leave_out_attachments(
+        points, cable, line,
+        [&](const AttachmentSpec& a) {
+          return std::any_of(solid.bonded.begin(), solid.bonded.end(), [&](const BondSpec& bond) {
+            return is_fastened_to(model_, a, bond.body);
+          });
+        },
+        [&](int point) {
+          return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
+        });
+    if (points.arc.empty()) return;
+    map_.surfaces.push_back({pair.own, pair.side, 0, system_.add_elements(contact(points))});
+  }
+
+  /// Body of each node.
+  [[nodiscard]] std::vector<int> carriers() const {
+    std::vector<int> list;
+    list.reserve(system_.nodes().count());
+    for (int i = 0; i < system_.nodes().count(); ++i) list.push_back(system_.nodes()[i].body);
+    return list;
+  }
+
+  [[nodiscard]] static double smallest_edge(const std::vector<LoadedFaces>& faces,
+                                            const std::vector<Vec3>& X) {
+    double edge = std::numeric_limits<double>::infinity();
+    for (const LoadedFaces& block : faces) edge = std::min(edge, median_edge(block, X));
+    return edge;
+  }
+
   /// How far apart points of a cable may be. Over a plane the straight pieces are highest and
   /// lowest at nodes; elsewhere what bends around the shape must not be missed.
   [[nodiscard]] static double spacing(const ShapeSpec& shape, double radius) {
@@ -191,15 +248,12 @@ class SurfacesBuilder {
     for (int k = 0; k < 2; ++k) {
       faces[k] = faces_of(solids_[static_cast<std::size_t>(solids[k])]);
       surfaces[k] = triangulated(faces[k]);
-      edge[k] = std::numeric_limits<double>::infinity();
-      for (const LoadedFaces& block : faces[k]) edge[k] = std::min(edge[k], median_edge(block, X));
+      edge[k] = smallest_edge(faces[k], X);
     }
     if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
     const double least = std::min(edge[0], edge[1]);
     const SurfaceLaw law = law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least);
-    std::vector<int> carriers;
-    carriers.reserve(system_.nodes().count());
-    for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
+    const std::vector<int> carriers = this->carriers();
     const auto& name = [&](int side) -> const std::string& {
       return model_.solids[static_cast<std::size_t>(solids[side])].name;
     };

@@ -72,6 +72,25 @@ CablePoints cable_points(const CableLine& line, double spacing) {
   return all;
 }
 
+std::vector<MeshPoint> mesh_points(const SurfacePoints& points) {
+  std::vector<MeshPoint> list;
+  for (std::size_t k = 0; k < points.points.size(); ++k) {
+    MeshPoint& p = list.emplace_back();
+    for (std::size_t a = 0; a < 2; ++a) p.add(points.nodes[2 * k + a], points.points[k].N[a]);
+    p.area = points.points[k].area;
+  }
+  return list;
+}
+
+RoundLine round_line(const SurfacePoints& points) {
+  RoundLine line;
+  line.radius = points.radius;
+  line.most_apart = points.most_apart;
+  for (std::size_t k = 0; k < points.points.size(); ++k)
+    line.spans.push_back({points.nodes[2 * k], points.nodes[2 * k + 1], points.points[k].span});
+  return line;
+}
+
 bool is_fastened_to(const Model& model, const AttachmentSpec& at, int body) {
   if (at.body == body) return true;
   for (const BeamSpec& beam : model.beams) {

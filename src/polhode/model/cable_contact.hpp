@@ -5,6 +5,8 @@
 #include <vector>
 
 #include <polhode/assembly/system.hpp>
+#include <polhode/fe/contact/line_stretch.hpp>
+#include <polhode/fe/contact/mesh_surface.hpp>
 #include <polhode/fe/contact/surface_points.hpp>
 #include <polhode/model/model.hpp>
 
@@ -30,6 +32,10 @@ struct CablePoints {
 /// Its nodes, and points between them that are no farther apart than `spacing`, half of what they
 /// keep away from the core of the shape.
 [[nodiscard]] CablePoints cable_points(const CableLine& line, double spacing);
+
+/// The points as those of a mesh, and what is round about them.
+[[nodiscard]] std::vector<MeshPoint> mesh_points(const SurfacePoints& points);
+[[nodiscard]] RoundLine round_line(const SurfacePoints& points);
 
 /// Takes out what does not meet a body that the cable hangs on: from each place at which it does,
 /// what is nearer along the cable than half a turn about a bar of its own radius, and what leaves

@@ -95,8 +95,7 @@ bool has_surfaces(const System& system) {
 
 bool has_touching_cables(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g) {
-    if (const auto* surface = dynamic_cast<const SurfaceContact*>(&system.nodes().group(g)))
-      if (surface->of_cable()) return true;
+    if (system.nodes().group(g).kind() == kCableContact) return true;
     if (const auto* edges = dynamic_cast<const EdgeContact*>(&system.nodes().group(g)))
       if (edges->of_cables()) return true;
   }

@@ -42,7 +42,8 @@ class Planner {
       for (std::size_t t = s; t < model_.solids.size(); ++t)
         add_solids(static_cast<int>(s), static_cast<int>(t));
     for (std::size_t c = 0; c < model_.cables.size(); ++c)
-      for (std::size_t s = 0; s < model_.solids.size(); ++s) refuse_solid(c, s);
+      for (std::size_t s = 0; s < model_.solids.size(); ++s)
+        add_cable_on_solid(static_cast<int>(c), static_cast<int>(s));
     for (std::size_t c = 0; c < model_.cables.size(); ++c)
       for (std::size_t d = c; d < model_.cables.size(); ++d)
         add_cables(static_cast<int>(c), static_cast<int>(d));
@@ -176,17 +177,27 @@ class Planner {
             "Give the pair a law of its own in contacts.pairs, with law: barrier");
   }
 
-  /// A cable and a solid that nothing keeps from meeting.
-  void refuse_solid(std::size_t c, std::size_t s) {
-    const CableLineSpec& cable = model_.cables[c];
-    const SolidSpec& solid = model_.solids[s];
+  /// A cable and a solid.
+  void add_cable_on_solid(int c, int s) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(c)];
+    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
     const ContactSide a = contact_side(cable), b = contact_side(solid);
-    const std::pair<int, int> key =
-        std::minmax(side_of_cable(static_cast<int>(c)), side_of_solid(static_cast<int>(s)));
-    if (!a.touches || !b.touches || !groups_meet(a, b) || excluded_.contains(key)) return;
-    fault(format("cables.{}.contact", cable.name),
-          format("'{}' meets the solid '{}', which cables cannot do", cable.name, solid.name),
-          "Exclude the pair, or keep them apart by groups");
+    if (!a.touches || !b.touches || !groups_meet(a, b)) return;
+    const int own = side_of_cable(c), side = side_of_solid(s);
+    if (excluded_.contains(std::minmax(own, side))) return;
+    const StatedLaw stated = law_between(model_.contacts, {material_of(model_.contacts, a), own},
+                                         {material_of(model_.contacts, b), side});
+    const std::string where =
+        stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
+    check_law(stated, format("'{}' and '{}' meet", cable.name, solid.name), "cables", "cables");
+    const double most = widest_tolerance(cable.contact->radius);
+    if (stated.law.gap_tolerance > most)
+      fault(where,
+            format("'{}' meets '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
+                   "cable's radius, {:.3g} m",
+                   cable.name, solid.name, stated.law.gap_tolerance, most),
+            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
+    list_.push_back({own, side, 0, stated.law});
   }
 
   /// A solid or a cable with itself, named without that it touches itself.

@@ -48,8 +48,10 @@ double smallest_detail(const ShapeSpec& shape) {
 
 double widest_tolerance(const ShapeSpec& shape, double radius) {
   if (!has_triangles(shape)) return std::numeric_limits<double>::infinity();
-  return kMostOfTriangles * smallest_detail(shape) + kMostOfRadius * radius;
+  return kMostOfTriangles * smallest_detail(shape) + widest_tolerance(radius);
 }
+
+double widest_tolerance(double radius) { return kMostOfRadius * radius; }
 
 CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
   if (has_triangles(shape)) return {radius, 0.5 * radius};

@@ -20,6 +20,9 @@ namespace polhode {
 /// @param radius  Of a cable, which keeps that away beside it [m].
 [[nodiscard]] double widest_tolerance(const ShapeSpec& shape, double radius = 0.0);
 
+/// The widest tolerance of a cable of some radius against what has no inside [m].
+[[nodiscard]] double widest_tolerance(double radius);
+
 /// What a tolerance between a cable and a shape is to be small against, and the depth of the middle
 /// of the shape, through which none is to go [m]. Surfaces of triangles may be thin anywhere.
 struct CableSizes {

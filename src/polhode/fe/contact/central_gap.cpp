@@ -9,31 +9,53 @@ constexpr int kLengths = NearestFour::kLengths;
 /// Changes of squared lengths below this part of them have no direction.
 constexpr double kNoDirection = 1e-14;
 
+template <int kMostSets>
+typename CentralGapOf<kMostSets>::Over between(const FourMoves& from, const NearestFour& at_n,
+                                               const FourMoves* to, const NearestFour& at_n1) {
+  typename CentralGapOf<kMostSets>::Over over;
+  over.sets = to ? 2 : 1;
+  over.moves[0] = from;
+  if (to) over.moves[1] = *to;
+  over.d_n = at_n.distance;
+  over.d_n1 = at_n1.distance;
+  over.resize();
+  const int last = kLengths * (over.sets - 1);
+  over.g_n.template head<kLengths>() = at_n.gradient();
+  over.g_n1.template segment<kLengths>(last) = at_n1.gradient();
+  over.H_n1.template block<kLengths, kLengths>(last, last) =
+      at_n1.hessian(over.moves[over.sets - 1].x_n1);
+  return over;
+}
+
 }  // namespace
 
+template <int kMostSets>
+CentralGapOf<kMostSets>::CentralGapOf(const FourMoves& from, const NearestFour& at_n,
+                                      const FourMoves* to, const NearestFour& at_n1, double alpha_f,
+                                      bool conserving)
+    : CentralGapOf(between<kMostSets>(from, at_n, to, at_n1), alpha_f, conserving) {}
+
 /// @eq{central-gap}
-CentralGap::CentralGap(const FourMoves& from, const NearestFour& at_n, const FourMoves* to,
-                       const NearestFour& at_n1, double alpha_f, bool conserving)
-    : alpha_(alpha_f),
-      d_n_(at_n.distance),
-      d_n1_(at_n1.distance),
-      d_alpha_((1.0 - alpha_f) * d_n_ + alpha_f * d_n1_) {
-  const int sets = to ? 2 : 1, last = kLengths * (sets - 1);
-  points_ = 4 * sets;
-  lengths_ = kLengths * sets;
-  for (int set = 0; set < sets; ++set) {
-    const FourMoves& moves = set == 0 ? from : *to;
-    Vec3 x[4];
-    moves.at(alpha_f, x);
-    for (int i = 0; i < 4; ++i) {
-      x_alpha_[4 * set + i] = x[i];
-      x_n1_[4 * set + i] = moves.x_n1[i];
-    }
-  }
+template <int kMostSets>
+CentralGapOf<kMostSets>::CentralGapOf(const Over& over, double alpha_f, bool conserving)
+    : points_(4 * over.sets),
+      lengths_(kLengths * over.sets),
+      alpha_(alpha_f),
+      d_n_(over.d_n),
+      d_n1_(over.d_n1),
+      d_alpha_((1.0 - alpha_f) * d_n_ + alpha_f * d_n1_),
+      g_n1_(over.g_n1),
+      H_n1_(over.H_n1) {
   change_.resize(lengths_);
   double size = 0.0;
-  for (int set = 0; set < sets; ++set) {
-    const FourMoves& moves = set == 0 ? from : *to;
+  for (int set = 0; set < over.sets; ++set) {
+    const FourMoves& moves = over.moves[set];
+    Vec3 at[4];
+    moves.at(alpha_f, at);
+    for (int i = 0; i < 4; ++i) {
+      x_alpha_[4 * set + i] = at[i];
+      x_n1_[4 * set + i] = moves.x_n1[i];
+    }
     for (int l = 0; l < kLengths; ++l) {
       const int i = NearestFour::kEnds[l][0], j = NearestFour::kEnds[l][1];
       ends_[kLengths * set + l][0] = 4 * set + i;
@@ -43,13 +65,7 @@ CentralGap::CentralGap(const FourMoves& from, const NearestFour& at_n, const Fou
       size += x.squaredNorm();
     }
   }
-  const FourMoves& at_end = to ? *to : from;
-  g_n1_.setZero(lengths_);
-  g_n1_.segment<kLengths>(last) = at_n1.gradient();
-  H_n1_.setZero(lengths_, lengths_);
-  H_n1_.block<kLengths, kLengths>(last, last) = at_n1.hessian(at_end.x_n1);
-  mean_ = alpha_ * g_n1_;
-  mean_.head<kLengths>() += (1.0 - alpha_) * at_n.gradient();
+  mean_ = alpha_ * g_n1_ + (1.0 - alpha_) * over.g_n;
   g_ = mean_;
   sign_ = mean_.unaryExpr([](double g) { return g < 0.0 ? -1.0 : 1.0; });
   change_squared_ = mean_.cwiseAbs().dot(change_.cwiseAbs2());
@@ -64,34 +80,40 @@ CentralGap::CentralGap(const FourMoves& from, const NearestFour& at_n, const Fou
 }
 
 /// ∂s/∂x by point.
-CentralGap::Slopes CentralGap::slopes(const Vec3 (&x)[kMostPoints]) const {
+template <int kMostSets>
+typename CentralGapOf<kMostSets>::Slopes CentralGapOf<kMostSets>::slopes(
+    const Vec3 (&x)[kMostPoints]) const {
   Slopes B = Slopes::Zero(lengths_, 3 * points_);
   for (int l = 0; l < lengths_; ++l) {
     const int i = ends_[l][0], j = ends_[l][1];
     const Vec3 s = 2.0 * (x[i] - x[j]);
-    B.block<1, 3>(l, 3 * i) = s.transpose();
-    B.block<1, 3>(l, 3 * j) = -s.transpose();
+    B.template block<1, 3>(l, 3 * i) = s.transpose();
+    B.template block<1, 3>(l, 3 * j) = -s.transpose();
   }
   return B;
 }
 
-CentralGap::Force CentralGap::force(double lambda) const {
+template <int kMostSets>
+typename CentralGapOf<kMostSets>::Force CentralGapOf<kMostSets>::force(double lambda) const {
   Force f = Force::Zero(3 * points_);
   const double mu = lambda / (2.0 * d_alpha_);
   for (int l = 0; l < lengths_; ++l) {
     const int i = ends_[l][0], j = ends_[l][1];
     const Vec3 along = 2.0 * mu * g_[l] * (x_alpha_[i] - x_alpha_[j]);
-    f.segment<3>(3 * i) += along;
-    f.segment<3>(3 * j) -= along;
+    f.template segment<3>(3 * i) += along;
+    f.template segment<3>(3 * j) -= along;
   }
   return f;
 }
 
-CentralGap::Force CentralGap::slope() const {
+template <int kMostSets>
+typename CentralGapOf<kMostSets>::Force CentralGapOf<kMostSets>::slope() const {
   return slopes(x_n1_).transpose() * g_n1_ / (2.0 * d_n1_);
 }
 
-CentralGap::Stiffness CentralGap::stiffness(const contact::ForceAndSlope& lambda) const {
+template <int kMostSets>
+typename CentralGapOf<kMostSets>::Stiffness CentralGapOf<kMostSets>::stiffness(
+    const contact::ForceAndSlope& lambda) const {
   const double mu = lambda.value / (2.0 * d_alpha_);
   const Lengths d_slope = g_n1_ / (2.0 * d_n1_);
   const Lengths mu_slope = (lambda.slope / (2.0 * d_alpha_) - mu * alpha_ / d_alpha_) * d_slope;
@@ -124,5 +146,8 @@ CentralGap::Stiffness CentralGap::stiffness(const contact::ForceAndSlope& lambda
   }
   return K;
 }
+
+template class CentralGapOf<2>;
+template class CentralGapOf<kMostTriangles>;
 
 }  // namespace polhode

@@ -26,16 +26,37 @@ struct FourMoves {
 /// ends, and the force of length (i, j) on i 2 q_ij (x̄_i − x̄_j). Weighted by |ḡ| the correction
 /// knows only lengths that the distance depends on: it goes over from a face to its edges and
 /// corners without a jump, whichever of the faces around these is looked at. @eq{central-gap}
-class CentralGap {
+/// @tparam kMostSets  Sets of four points, each with six lengths.
+template <int kMostSets>
+class CentralGapOf {
  public:
-  static constexpr int kMostPoints = 8, kMostLengths = 2 * NearestFour::kLengths;
+  static constexpr int kMostPoints = 4 * kMostSets,
+                       kMostLengths = kMostSets * NearestFour::kLengths;
   using Force = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostPoints, 1>;
   using Stiffness =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMostPoints, 3 * kMostPoints>;
 
+  using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostLengths, 1>;
+  using Square =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, kMostLengths>;
+
+  /// A distance of several sets of four points over a step.
+  struct Over {
+    int sets = 0;
+    FourMoves moves[kMostSets];
+    double d_n = 0.0, d_n1 = 0.0;  ///< [m]
+    Lengths g_n, g_n1;             ///< ∂(d²)/∂s at both ends.
+    Square H_n1;                   ///< ∂g_n1/∂s_n1
+    void resize() {
+      g_n.setZero(NearestFour::kLengths * sets);
+      g_n1.setZero(NearestFour::kLengths * sets);
+      H_n1.setZero(NearestFour::kLengths * sets, NearestFour::kLengths * sets);
+    }
+  };
+  CentralGapOf(const Over& over, double alpha_f, bool conserving);
   /// @param to  The features at t_{n+1}; null: those at t_n are.
-  CentralGap(const FourMoves& from, const NearestFour& at_n, const FourMoves* to,
-             const NearestFour& at_n1, double alpha_f, bool conserving);
+  CentralGapOf(const FourMoves& from, const NearestFour& at_n, const FourMoves* to,
+               const NearestFour& at_n1, double alpha_f, bool conserving);
 
   [[nodiscard]] int points() const { return points_; }
   /// Points at t_{n+αf}, those of t_n's features first.
@@ -47,9 +68,6 @@ class CentralGap {
   [[nodiscard]] Force slope() const;
 
  private:
-  using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostLengths, 1>;
-  using Square =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, kMostLengths>;
   using Slopes =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, 3 * kMostPoints>;
   [[nodiscard]] Slopes slopes(const Vec3 (&x)[kMostPoints]) const;
@@ -66,5 +84,10 @@ class CentralGap {
   double kappa_ = 0.0, change_squared_ = 0.0;  ///< The latter: Σ|ḡ| Δs².
   Square H_n1_;                                ///< ∂g_n1/∂s_n1
 };
+
+/// Between one feature at each end of the step.
+using CentralGap = CentralGapOf<2>;
+/// Triangles about one point, at both ends of a step together.
+inline constexpr int kMostTriangles = 8;
 
 }  // namespace polhode

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Friction of two edges that cross.
 #include <polhode/fe/contact/edge_pair.hpp>
+#include <polhode/fe/contact/nearest_weights.hpp>
 
 namespace polhode {
 
@@ -17,37 +18,6 @@ struct EdgeOnEdge {
   V3<T> force[4], slid;
   PlaneRub<T> rub;
 };
-
-/// c of the nearest points in numbers of sort T: where it is free, the derivatives of |Σ c x|² by
-/// its directions vanish.
-template <class T>
-void weights(const NearestFour& nearest, const V3<T> (&x)[4], T (&c)[4]) {
-  for (int k = 0; k < 4; ++k) c[k] = T(nearest.c[k]);
-  if constexpr (std::is_same_v<T, double>) {
-    return;
-  } else {
-    const auto sum = [&](const auto& a) {
-      V3<T> s = a[0] * (x[0] - x[3]);
-      for (int k = 1; k < 3; ++k) s = s + a[k] * (x[k] - x[3]);
-      return s;
-    };
-    const V3<T> y = sum(c);
-    V3<T> way[2];
-    for (int i = 0; i < nearest.free_count; ++i) way[i] = sum(nearest.free[i]);
-    // One Newton step from values that already solve it leaves them and gives the derivatives.
-    T step[2];
-    if (nearest.free_count == 1) {
-      step[0] = -dot(way[0], y) / dot(way[0], way[0]);
-    } else if (nearest.free_count == 2) {
-      const T a = dot(way[0], way[0]), b = dot(way[0], way[1]), d = dot(way[1], way[1]);
-      const T p = dot(way[0], y), q = dot(way[1], y), scale = 1.0 / (a * d - b * b);
-      step[0] = scale * (b * q - d * p);
-      step[1] = scale * (b * p - a * q);
-    }
-    for (int i = 0; i < nearest.free_count; ++i)
-      for (int k = 0; k < 4; ++k) c[k] = c[k] + nearest.free[i][k] * step[i];
-  }
-}
 
 /// What round edges take of a vector in the plane of contact: the less they cross, the more they
 /// roll on each other instead, all but along their mean direction.
@@ -88,7 +58,7 @@ EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
   Vec3 middle[4];
   moves.at(alpha, middle);
   T c[4];
-  weights(nearest_of_edges(middle), at.x, c);
+  nearest_weights(nearest_of_edges(middle), at.x, c);
   const V3<T> e = at.x[1] - at.x[0], f = at.x[3] - at.x[2];
   const V3<T> du_e = at.u[1] - at.u[0], du_f = at.u[3] - at.u[2];
   const V3<T> across = cross(e, f);

@@ -85,6 +85,29 @@ NearestFour nearest_of_triangle(const Vec3 (&x)[4]) {
   return n;
 }
 
+NearestFour nearest_of_corner(const Vec3 (&x)[4], int a) {
+  NearestFour n;
+  n.c[0] = 1.0;
+  n.c[a] = -1.0;
+  measure(x, n);
+  return n;
+}
+
+NearestFour nearest_of_edge(const Vec3 (&x)[4], int a, int b) {
+  const Vec3 e = x[b] - x[a];
+  const double t = (x[0] - x[a]).dot(e) / e.squaredNorm();
+  if (!(t > 0.0 && t < 1.0)) return nearest_of_corner(x, t > 0.0 ? b : a);
+  NearestFour n;
+  n.c[0] = 1.0;
+  n.c[a] = t - 1.0;
+  n.c[b] = -t;
+  n.free[0][a] = 1.0;
+  n.free[0][b] = -1.0;
+  n.free_count = 1;
+  measure(x, n);
+  return n;
+}
+
 NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place) {
   const Vec3 e = x[1] - x[0], f = x[3] - x[2];
   double a = e_place, b = f_place;

@@ -32,6 +32,11 @@ struct NearestFour {
 /// x_0 and the triangle of the others.
 [[nodiscard]] NearestFour nearest_of_triangle(const Vec3 (&x)[4]);
 
+/// x_0 and the edge x_a x_b.
+[[nodiscard]] NearestFour nearest_of_edge(const Vec3 (&x)[4], int a, int b);
+/// x_0 and x_a.
+[[nodiscard]] NearestFour nearest_of_corner(const Vec3 (&x)[4], int a);
+
 /// The edges x_0 x_1 and x_2 x_3, or one place on them.
 /// @param e_place, f_place  From 0 to 1: only this place on the first, the second edge; −1: all.
 [[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place = -1.0,

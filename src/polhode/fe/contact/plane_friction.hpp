@@ -27,6 +27,9 @@ struct SlidePlane {
     if (!(contact::value(square) > 0.0)) return 0.0 * s;
     return (length / sqrt(square)) * s;
   }
+  [[nodiscard]] contact::V3<T> along(const double (&parts)[2], double length) const {
+    return along(parts[0], parts[1], length);
+  }
 };
 
 /// Four points in numbers of sort T, in the middle of a step and how they moved.
@@ -88,16 +91,15 @@ struct FourSlide {
 
   /// @param rub  (pressure in numbers of sort T, seeded) → what has force[4], slid and a PlaneRub
   ///             `rub`, all of sort T.
-  /// @param end  The plane at t_{n+1}.
-  template <class Rub>
-  FourSlide(Rub&& rub, const SlidePlane<double>& end, double pressure, bool tangent) {
+  /// @param end  The plane, or what else bristles are told in, at t_{n+1}.
+  template <class Rub, class End>
+  FourSlide(Rub&& rub, const End& end, double pressure, bool tangent) {
     const auto values = rub(pressure, false);
     friction = contact::value(values.rub.friction);
     slid = contact::value(values.slid);
     bristle = contact::value(values.rub.bristle);
     slips = values.rub.slips;
-    bristle_n1 =
-        contact::value(end.along(values.rub.parts[0], values.rub.parts[1], bristle.norm()));
+    bristle_n1 = contact::value(end.along(values.rub.parts, bristle.norm()));
     for (int k = 0; k < 4; ++k) force.segment<3>(3 * k) = contact::value(values.force[k]);
     if (!tangent) return;
     const auto by_x = rub(contact::Dual(pressure), true);

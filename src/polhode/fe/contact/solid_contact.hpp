@@ -7,8 +7,9 @@
 
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/element_group.hpp>
-#include <polhode/fe/contact/central_gap.hpp>
+#include <polhode/fe/contact/line_stretch.hpp>
 #include <polhode/fe/contact/meeting_nodes.hpp>
+#include <polhode/fe/contact/mesh_gap.hpp>
 #include <polhode/fe/contact/surface_totals.hpp>
 
 namespace polhode {
@@ -20,15 +21,18 @@ namespace polhode {
 /// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
 /// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet,
 /// see MeetingNodes. @eq{mesh-contact}
+///
+/// Points of a cable keep its radius away, and what they have to triangles is a MeshGap: the gap is
+/// the distance less the radius. @eq{cable-on-mesh}
 class SolidContact final : public ElementGroup,
                            public BarrierPoints,
                            public MovingPattern,
                            public TouchingSurface {
  public:
   SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
-               const SurfaceLaw& law, const SolidContactStart& start);
+               const SurfaceLaw& law, const SolidContactStart& start, RoundLine cable = {});
 
-  std::string kind() const override { return "contact of solids"; }
+  std::string kind() const override { return of_cable() ? kCableContact : "contact of solids"; }
   const std::string& name() const override { return name_; }
   int size() const override { return 0; }  // its blocks are those of MovingPattern
   int nodes_per_element() const override { return 1; }
@@ -55,6 +59,10 @@ class SolidContact final : public ElementGroup,
 
   const SurfaceLaw& law() const override { return law_; }
   std::size_t places() const override { return points_.size(); }
+  [[nodiscard]] bool of_cable() const { return cable_.radius > 0.0; }
+  /// Of each point at the start, behind the nearest triangle less than zero; NaN where nothing is
+  /// near [m].
+  [[nodiscard]] std::vector<double> gaps_at_start() const;
   [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
   /// Pairs of a point and a triangle that are looked at.
   [[nodiscard]] int candidates(const double* history) const;
@@ -83,9 +91,10 @@ class SolidContact final : public ElementGroup,
   };
   /// A point that acts, over a step.
   struct Action {
-    Nearest at_n, at_n1;
-    contact::ForceAndSlope pressure;
-    double gap_n = 0.0, gap_n1 = 0.0;  ///< d − g_tol
+    MeshGap at_n, at_n1;
+    contact::ForceAndSlope pressure;   ///< Conjugate to the distance.
+    contact::ForceAndSlope push;       ///< Of what acts on the point: the resultant.
+    double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
     bool acts = false;
   };
   struct Energies {
@@ -102,7 +111,20 @@ class SolidContact final : public ElementGroup,
   void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
   [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
                                 int point) const;
+  [[nodiscard]] MeshGap gap(const Field& field, std::span<const int> triangles, int point,
+                            const Nearest& nearest) const;
+  [[nodiscard]] double signed_distance(const Field& field, std::span<const int> triangles,
+                                       int point, const Nearest& nearest) const;
+  /// A point and the triangles around it on a straight way.
+  struct Way;
   [[nodiscard]] FourMoves moves(const Field& x_n1, const Field& u, int point, int triangle) const;
+  template <class Use>
+  void with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point, const Action& a,
+                Use&& use) const;
+  /// How far a point at a distance may come nearer.
+  [[nodiscard]] double room(double distance) const {
+    return distance - centre_ + law_.normal.tolerance;
+  }
   [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
   [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
                            std::span<const int> triangles, int point) const;
@@ -112,12 +134,16 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
                                   const double* memory) const;
   void note_gap_at_start(double* history) const;
+  [[nodiscard]] Vec3 normal(const Field& field, const MeshGap& gap, int point) const;
+  [[nodiscard]] Vec3 foot(const Field& field, const MeshGap& gap, int point) const;
 
   std::string name_;
   std::vector<MeshPoint> points_;
   MeshSurface surface_;
   SurfaceLaw law_;
   bool self_ = false;
+  RoundLine cable_;
+  double centre_ = 0.0;  ///< Distance at which the gap is zero [m].
   MeetingNodes nodes_;
   mutable Search search_;  ///< Of the last history asked for.
 };

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <polhode/fe/contact/plane_friction.hpp>
+#include <polhode/fe/contact/round_friction.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <polhode/fe/contact/solid_contact_field.hpp>
 
@@ -70,6 +71,11 @@ SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1,
     moves = m;
   }
   const Vec3 kept(memory[0], memory[1], memory[2]);
+  if (of_cable()) {
+    static_cast<FourSlide&>(slide) =
+        round_friction(moves, step.alpha_f, law_, pressure, kept, tangent);
+    return slide;
+  }
   const auto rub = [&](const auto& p, bool seeded) {
     return friction(moves, step.alpha_f, law_, p, kept, seeded);
   };

@@ -41,16 +41,17 @@ Work SolidContact::work(const NodeStep& step, const double* history,
     const double* kept = memory(history, p);
     const double area = points_[static_cast<std::size_t>(p)].area;
     if (instant) {
-      const double gap = nearest(x_n1, triangles, p).four.distance - law_.normal.tolerance;
+      const double gap =
+          this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p)).distance - centre_;
       w.stored += area * (law_.normal.energy(gap) +
                           0.5 * law_.bristle * Vec3(kept[0], kept[1], kept[2]).squaredNorm());
       continue;
     }
     const Action a = act(step, x_n, x_n1, triangles, p);
     if (!a.acts) continue;
-    const Slide slide =
-        law_.mu > 0.0 ? this->slide(step, x_n1, u, triangles, p, a.pressure.value, kept, false)
-                      : Slide{};
+    const Slide slide = law_.mu > 0.0
+                            ? this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false)
+                            : Slide{};
     const Energies e = energies(step, a, slide, kept);
     w.stored += area * e.stored;
     w.dissipated += area * (e.by_friction + e.by_pressure);
@@ -75,25 +76,22 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     Vec3 h = Vec3::Zero();
     if (!triangles.empty()) {
       a = act(step, x_n, x_n1, triangles, p);
-      t.gap = std::min(t.gap, a.at_n1.four.distance);
+      t.gap = std::min(t.gap, a.gap_n1 + centre_ - cable_.radius);
     }
     if (a.acts) {
       if (law_.mu > 0.0)
-        slide = this->slide(step, x_n1, u, triangles, p, a.pressure.value, kept, false);
-      const bool other = a.at_n.triangle != a.at_n1.triangle;
-      const FourMoves from = moves(x_n1, u, p, a.at_n.triangle);
-      const FourMoves to = other ? moves(x_n1, u, p, a.at_n1.triangle) : from;
-      const CentralGap gap(from, a.at_n.four, other ? &to : nullptr, a.at_n1.four, step.alpha_f,
-                           step.context.conserving);
-      const CentralGap::Force f = gap.force(a.pressure.value);
-      h = f.segment<3>(0) + slide.friction;
-      if (other) h += f.segment<3>(12);
+        slide = this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false);
+      h = slide.friction;
+      with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& /*at*/) {
+        const auto f = gap.force(a.pressure.value);
+        for (int k = 0; k < gap.points(); k += 4) h += f.template segment<3>(3 * k);
+      });
       const Energies e = energies(step, a, slide, kept);
       t.friction_loss += point.area * e.by_friction;
       t.normal_loss += point.area * e.by_pressure;
-      if (step.x_n != step.x_n1) t.impulse += point.area * a.pressure.value * step.context.dt;
+      if (step.x_n != step.x_n1) t.impulse += point.area * a.push.value * step.context.dt;
     }
-    const double pressure = a.acts ? a.pressure.value : 0.0;
+    const double pressure = a.acts ? a.push.value : 0.0;
     if (pressure > 0.0) {
       t.normal_force += point.area * pressure;
       t.area += point.area;
@@ -101,7 +99,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       (slide.slips ? t.slipping : t.sticking) += 1.0;
       force += point.area * h;
       friction += point.area * slide.friction;
-      moment += point.area * pressure * point.at(step.x_n1);
+      moment += point.area * pressure * foot(x_n1, a.at_n1, p);
     }
     const bool stays = a.acts && a.gap_n1 < law_.normal.reach();
     for (int k = 0; k < 3; ++k) {
@@ -123,6 +121,24 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
   nodes_.renew(step, history);
 }
 
+/// From the triangles to a point.
+Vec3 SolidContact::normal(const Field& field, const MeshGap& gap, int point) const {
+  Vec3 sum = Vec3::Zero();
+  for (const MeshGap::Part& part : gap.parts) {
+    Vec3 x[4], y = Vec3::Zero();
+    four_points(field, point, part.triangle, x);
+    for (int k = 0; k < 4; ++k) y += part.four.c[k] * (x[k] - x[0]);
+    sum += part.share * y.normalized();
+  }
+  return sum.normalized();
+}
+
+/// Where what is round about a point is nearest to the surface.
+Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const {
+  const Vec3 at = points_[static_cast<std::size_t>(point)].at(field.nodes);
+  return of_cable() ? Vec3(at - cable_.radius * normal(field, gap, point)) : at;
+}
+
 /// NaN where nothing is near.
 void SolidContact::note_gap_at_start(double* history) const {
   double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
@@ -131,7 +147,7 @@ void SolidContact::note_gap_at_start(double* history) const {
   const Field start(surface_, x.data());
   double least = std::numeric_limits<double>::infinity();
   for (int p = 0; p < static_cast<int>(points_.size()); ++p)
-    least = std::min(least, nearest(start, found(s, p), p).four.distance);
+    least = std::min(least, nearest(start, found(s, p), p).four.distance - cable_.radius);
   numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
       std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
 }
@@ -149,17 +165,15 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
     const double* kept = memory(history, p);
     if (!(kept[10] > 0.0)) continue;
     const MeshPoint& point = points_[static_cast<std::size_t>(p)];
-    const Nearest n = nearest(x, found(s, p), p);
+    const std::span<const int> triangles = found(s, p);
+    const Nearest n = nearest(x, triangles, p);
     if (n.triangle < 0) continue;
-    Vec3 at[4];
-    four_points(x, p, n.triangle, at);
-    Vec3 y = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) y += n.four.c[k] * (at[k] - at[0]);
-    list.push_back({.point = at[0],
-                    .normal = y.normalized(),
+    const MeshGap gap = this->gap(x, triangles, p, n);
+    list.push_back({.point = foot(x, gap, p),
+                    .normal = normal(x, gap, p),
                     .force = point.area * Vec3(kept[4], kept[5], kept[6]),
                     .friction = point.area * Vec3(kept[7], kept[8], kept[9]),
-                    .gap = n.four.distance,
+                    .gap = gap.distance - cable_.radius,
                     .pressure = kept[10]});
   }
   return list;

@@ -2,6 +2,7 @@
 // Which triangles a point of a solid's surface may meet, and how far nodes may move until these
 // have to be looked for again.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,10 @@ namespace {
 constexpr double kRounding = 1e-6;
 /// Clearances beyond this many bands are all alike.
 constexpr double kFar = 10.0;
+/// Of the radius of a cable: what comes nearer on the straight way of a step goes through.
+constexpr double kThrough = 0.5;
+/// Part of an increment that is left where it would lead around.
+constexpr double kShorter = 0.25;
 
 double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   return (p - contact::nearest_on_triangle(p, a, b, c).nearest).norm();
@@ -68,7 +73,7 @@ bool SolidContact::may_meet(int point, int triangle) const {
 }
 
 void SolidContact::find(Search& s) const {
-  const double look = nodes_.look(s.key.data()) + 2.0 * law_.normal.tolerance;
+  const double look = nodes_.look(s.key.data()) + centre_ + law_.normal.tolerance;
   const auto place = [&](const MeshPoint& at) { return nodes_.place(at, s.key.data()); };
   std::vector<Vec3> vertices;
   for (const MeshPoint& v : surface_.vertices) vertices.push_back(place(v));
@@ -138,50 +143,97 @@ void SolidContact::clearances(const NodeStep& step, const double* history,
   const Field x(surface_, step.x_n1);
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const Nearest n = nearest(x, found(s, p), p);
-    const double d = n.triangle < 0 ? kFar : n.four.distance / (2.0 * law_.normal.tolerance);
+    const double d = n.triangle < 0 ? kFar : room(n.four.distance) / (2.0 * law_.normal.tolerance);
     list.push_back(std::min(kFar, d));
   }
 }
 
+struct SolidContact::Way {
+  struct Corner {
+    Vec3 at, move;
+  };
+  Corner point;
+  std::vector<std::array<Corner, 3>> triangles;
+  double length = 0.0;  ///< No corner goes farther against the point.
+
+  Way(const SolidContact& c, const Field& from, const Field& to, std::span<const int> list, int p) {
+    const MeshPoint& own = c.points_[static_cast<std::size_t>(p)];
+    point.at = own.at(from.nodes);
+    point.move = own.at(to.nodes) - point.at;
+    for (const int t : list) {
+      auto& triangle = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v =
+            static_cast<std::size_t>(c.surface_.triangles[static_cast<std::size_t>(t)][k]);
+        triangle[k] = {from.vertices[v], to.vertices[v] - from.vertices[v]};
+        length = std::max(length, (triangle[k].move - point.move).norm());
+      }
+    }
+  }
+  [[nodiscard]] double distance(double part) const {
+    const auto at = [&](const Corner& c) { return Vec3(c.at + part * c.move); };
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& t : triangles)
+      least = std::min(least, distance_to(at(point), at(t[0]), at(t[1]), at(t[2])));
+    return least;
+  }
+  /// Whether the point comes nearer than this, as far as one of its moves may take it.
+  [[nodiscard]] bool comes_nearer(double least) const {
+    if (length < least) return false;
+    double part = 0.0;
+    for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
+      const double left = distance(part) - least;
+      if (left <= kLeave * least) return true;
+      part += left / length;
+    }
+    return false;
+  }
+};
+
 /// The distance of a point to a triangle changes by no more than the largest way of one of the
-/// triangle's corners against the point.
+/// triangle's corners against the point. A cable has no inside that iterates could not be led
+/// around, see SurfaceContact.
 double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
                                const double* history) const {
   double most = nodes_.free_part(from.x_n1, to.x_n1, history);
+  for (const RoundLine::Span& span : cable_.spans)
+    most = std::min(most, free_of_stretch(span, cable_.most_apart, from, to));
   const Search& s = search(history);
   if (s.triangle.empty()) return most;
-  const Field x(surface_, from.x_n1), x_to(surface_, to.x_n1);
+  const Field x(surface_, from.x_n1), x_to(surface_, to.x_n1), x_n(surface_, from.x_n);
+  const double band = 2.0 * law_.normal.tolerance;
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
     if (triangles.empty()) continue;
-    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
-    const Vec3 start = point.at(x.nodes), way = point.at(x_to.nodes) - start;
-    double length = 0.0;
-    for (const int t : triangles)
-      for (const int v : surface_.triangles[static_cast<std::size_t>(t)]) {
-        const auto k = static_cast<std::size_t>(v);
-        length = std::max(length, (x_to.vertices[k] - x.vertices[k] - way).norm());
-      }
-    const double room = nearest(x, triangles, p).four.distance;
-    const double least = kLeave * std::min(room, 2.0 * law_.normal.tolerance);
-    most = free_way(most, room, least, length, [&](double part) {
-      double distance = std::numeric_limits<double>::infinity();
-      for (const int t : triangles) {
-        Vec3 at[3];
-        for (std::size_t c = 0; c < 3; ++c) {
-          const auto i =
-              static_cast<std::size_t>(surface_.triangles[static_cast<std::size_t>(t)][c]);
-          at[c] = x.vertices[i] + part * (x_to.vertices[i] - x.vertices[i]);
-        }
-        distance = std::min(distance, distance_to(Vec3(start + part * way), at[0], at[1], at[2]));
-      }
-      return distance;
-    });
+    const Way way(*this, x, x_to, triangles, p);
+    if (of_cable() && from.x_n != from.x_n1) {
+      const double through = kThrough * cable_.radius;
+      const bool beside = !Way(*this, x_n, x, triangles, p).comes_nearer(through);
+      if (beside && Way(*this, x_n, x_to, triangles, p).comes_nearer(through))
+        most = std::min(most, kShorter);
+    }
+    const double now = room(nearest(x, triangles, p).four.distance);
+    if (now <= 0.0) continue;
+    most = free_way(most, now, kLeave * std::min(now, band), way.length,
+                    [&](double part) { return room(way.distance(part)); });
   }
   return most;
 }
 
-/// A point that is behind the triangle nearest to it is in the other solid.
+/// A point that is behind the triangle nearest to it is in the other solid: less than zero.
+double SolidContact::signed_distance(const Field& field, std::span<const int> triangles, int point,
+                                     const Nearest& nearest) const {
+  // Of triangles with the same nearest point, the one that is seen most from the front.
+  double side = -std::numeric_limits<double>::infinity();
+  for (const int t : triangles) {
+    Vec3 at[4];
+    four_points(field, point, t, at);
+    if (nearest_of_triangle(at).distance > nearest.four.distance * (1.0 + 1e-9)) continue;
+    side = std::max(side, (at[2] - at[1]).cross(at[3] - at[1]).dot(at[0] - at[1]));
+  }
+  return side < 0.0 ? -nearest.four.distance : nearest.four.distance;
+}
+
 double SolidContact::overlap(const NodeStep& instant) const {
   std::vector<double> history(nodes_.key_size());
   nodes_.write_instant(instant.x_n1, history.data());
@@ -192,19 +244,33 @@ double SolidContact::overlap(const NodeStep& instant) const {
     const std::span<const int> triangles = found(s, p);
     const Nearest n = nearest(x, triangles, p);
     if (n.triangle < 0) continue;
-    // Of triangles with the same nearest point, the one that is seen most from the front.
-    double side = -std::numeric_limits<double>::infinity();
-    for (const int t : triangles) {
-      Vec3 at[4];
-      four_points(x, p, t, at);
-      if (nearest_of_triangle(at).distance > n.four.distance * (1.0 + 1e-9)) continue;
-      side = std::max(side, (at[2] - at[1]).cross(at[3] - at[1]).dot(at[0] - at[1]));
+    const double signed_d = signed_distance(x, triangles, p, n);
+    if (of_cable()) {
+      const double gap = signed_d - cable_.radius;
+      if (gap <= -law_.normal.tolerance) deepest = std::max(deepest, -gap);
+      continue;
     }
     if (n.four.distance < 0.5 * law_.normal.tolerance) deepest = std::max(deepest, 0.0);
-    if (!self_ && side < 0.0 && n.four.distance > kRounding * law_.normal.tolerance)
+    if (!self_ && signed_d < 0.0 && n.four.distance > kRounding * law_.normal.tolerance)
       deepest = std::max(deepest, n.four.distance);
   }
   return deepest;
+}
+
+std::vector<double> SolidContact::gaps_at_start() const {
+  std::vector<double> history(nodes_.key_size());
+  nodes_.write_start(history.data());
+  const std::vector<double> places = nodes_.positions(history.data());
+  const Search& s = search(history.data());
+  const Field x(surface_, places.data());
+  std::vector<double> list;
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const std::span<const int> triangles = found(s, p);
+    const Nearest n = nearest(x, triangles, p);
+    list.push_back(n.triangle < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                  : signed_distance(x, triangles, p, n) - cable_.radius);
+  }
+  return list;
 }
 
 }  // namespace polhode

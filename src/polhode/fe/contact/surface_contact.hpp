@@ -7,6 +7,7 @@
 
 #include <polhode/assembly/barrier_points.hpp>
 #include <polhode/assembly/element_group.hpp>
+#include <polhode/fe/contact/line_stretch.hpp>
 #include <polhode/fe/contact/rigid_surface.hpp>
 #include <polhode/fe/contact/surface_points.hpp>
 #include <polhode/fe/contact/surface_totals.hpp>
@@ -44,7 +45,7 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
                  const RigidSurface& surface, const SurfacePlace& place, const SurfaceLaw& law);
 
-  std::string kind() const override { return of_cable() ? "cable contact" : "surface contact"; }
+  std::string kind() const override { return of_cable() ? kCableContact : "surface contact"; }
   const std::string& name() const override { return name_; }
   int size() const override { return static_cast<int>(points_.points.size()); }
   int nodes_per_element() const override { return n_ + frame_; }

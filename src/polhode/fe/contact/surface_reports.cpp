@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <polhode/fe/contact/free_way.hpp>
+#include <polhode/fe/contact/line_stretch.hpp>
 #include <polhode/fe/contact/surface_contact.hpp>
 
 namespace polhode {
@@ -16,8 +17,6 @@ constexpr double kFar = 10.0;
 /// A way shorter than so many times the depth that counts as through does not get so deep.
 constexpr double kThrough = 2.0;
 constexpr int kHalvings = 6;
-/// What is drawn out as far as it may be goes on by this factor at a time.
-constexpr double kMoreStretch = 1.1;
 
 }  // namespace
 
@@ -35,15 +34,8 @@ double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to)
   if (std::isinf(points_.most_apart)) return most;
   for (int i = 0; i < size(); ++i) {
     const std::span<const int> ends = nodes(i);
-    const auto apart = [&](const NodeStep& step) {
-      return points_.points[static_cast<std::size_t>(i)].span *
-             (NodeStep::at(step.x_n1, ends[1]) - NodeStep::at(step.x_n1, ends[0])).norm();
-    };
-    const double at_end = apart(to);
-    if (at_end <= points_.most_apart) continue;
-    const double at_start = apart(from);
-    const double allowed = std::max(points_.most_apart, kMoreStretch * at_start);
-    if (at_end > allowed) most = std::min(most, (allowed - at_start) / (at_end - at_start));
+    const RoundLine::Span span{ends[0], ends[1], points_.points[static_cast<std::size_t>(i)].span};
+    most = std::min(most, polhode::free_of_stretch(span, points_.most_apart, from, to));
   }
   return most;
 }
