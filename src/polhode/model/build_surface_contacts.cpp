@@ -123,9 +123,9 @@ class SurfacesBuilder {
     const SurfaceLaw law =
         law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)), 2.0 * radius, radius);
     const std::vector<Vec3> X = positions();
-    std::vector<int> carriers, nodes = a.line.nodes;
+    const std::vector<int> carriers = this->carriers();
+    std::vector<int> nodes = a.line.nodes;
     nodes.insert(nodes.end(), b.line.nodes.begin(), b.line.nodes.end());
-    for (int i = 0; i < system_.nodes().count(); ++i) carriers.push_back(system_.nodes()[i].body);
     const SolidContactStart start{.X = X,
                                   .carriers = carriers,
                                   .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
