@@ -162,7 +162,7 @@ const FieldTable& contacts_fields() {
            .table = "contact pair"},
           {.name = "exclude",
            .kind = kBodyPairs,
-           .meaning = "Pairs of bodies, or of a body and a solid or cable, that do not meet."},
+           .meaning = "Pairs of bodies, solids and cables that do not meet."},
           {.name = "joint_neighbours",
            .kind = kBoolean,
            .meaning = "Bodies with a common joint meet, and solids the bodies they are bonded to.",
