@@ -7,6 +7,7 @@
 #include <polhode/assembly/nodes.hpp>
 #include <polhode/fe/contact/edge_contact.hpp>
 #include <support/derivative.hpp>
+#include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {
@@ -87,10 +88,7 @@ std::vector<double> history_of(const EdgeContact& contact) {
 }
 
 Vec forces(const EdgeContact& contact, const Scene& s, const std::vector<double>& history) {
-  Vec f = Vec::Zero(static_cast<Eigen::Index>(s.x_n.size()));
-  contact.evaluate(s.step(), history.data(), nullptr, Mat3::Identity(),
-                   ElementSink{f.data(), nullptr, nullptr});
-  return f;
+  return forces_over(s.step(), s.x_n.size(), contact, history);
 }
 
 /// Where a line is crossed does not matter, be it at one of its nodes or of the other line's.
@@ -131,19 +129,8 @@ TEST(EdgeContact, HasTheTangentOfItsForces) {
       const EdgeContact contact = s.contact(mu);
       const std::vector<double> history = history_of(contact);
       ASSERT_GT(forces(contact, s, history).norm(), 1e-2);
-      const NodeBlocks& blocks = contact.blocks(history.data());
-      std::vector<double> values(9 * blocks.row.size(), 0.0);
-      Vec f = Vec::Zero(static_cast<Eigen::Index>(s.x_n.size()));
-      contact.evaluate(s.step(), history.data(), nullptr, Mat3::Identity(),
-                       ElementSink{f.data(), values.data(), nullptr});
-      Mat K = Mat::Zero(f.size(), f.size());
-      for (std::size_t b = 0; b < blocks.row.size(); ++b)
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c)
-            K(3 * blocks.row[b] + r, 3 * blocks.column[b] + c) +=
-                values[9 * b + static_cast<std::size_t>(3 * r + c)];
       expect_derivative(
-          K,
+          tangent_over(s.step(), s.x_n.size(), contact, history),
           [&](const Vec& d) -> Vec {
             Scene to = s;
             for (Eigen::Index k = 0; k < d.size(); ++k) to.move(static_cast<std::size_t>(k), d[k]);

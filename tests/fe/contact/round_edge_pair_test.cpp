@@ -6,6 +6,7 @@
 
 #include <polhode/fe/contact/edge_pair.hpp>
 #include <support/derivative.hpp>
+#include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {
@@ -13,15 +14,7 @@ namespace {
 
 constexpr double kRadii = 0.2, kTolerance = 0.04;
 
-SurfaceLaw law(double mu, double end_share = 0.0) {
-  SurfaceLaw l;
-  l.normal.tolerance = kTolerance;
-  l.normal.stiffness = 30.0;
-  l.mu = mu;
-  l.bristle = 40.0;
-  l.end_share = end_share;
-  return l;
-}
+SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
 
 enum class Place { crossing, between, along, against, end_over_edge };
 const Place kPlaces[] = {Place::crossing, Place::between, Place::along, Place::against,

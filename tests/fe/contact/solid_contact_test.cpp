@@ -7,6 +7,7 @@
 #include <polhode/assembly/nodes.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
 #include <support/derivative.hpp>
+#include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {
@@ -82,47 +83,18 @@ Scene scene(unsigned seed, double rho_inf, double way = 0.12) {
   return s;
 }
 
-SurfaceLaw law(double mu, double end_share = 0.0) {
-  SurfaceLaw l;
-  l.normal.tolerance = kTolerance;
-  l.normal.stiffness = 30.0;
-  l.mu = mu;
-  l.bristle = 40.0;
-  l.end_share = end_share;
-  return l;
-}
+SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
 
 Vec forces(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  Vec f = Vec::Zero(static_cast<Eigen::Index>(s.x_n.size()));
-  contact.evaluate(s.step(), history.data(), nullptr, Mat3::Identity(),
-                   ElementSink{f.data(), nullptr, nullptr});
-  return f;
+  return forces_over(s.step(), s.x_n.size(), contact, history);
 }
 
 Mat tangent(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  const NodeBlocks& blocks = contact.blocks(history.data());
-  std::vector<double> values(9 * blocks.row.size(), 0.0);
-  Vec f = Vec::Zero(static_cast<Eigen::Index>(s.x_n.size()));
-  contact.evaluate(s.step(), history.data(), nullptr, Mat3::Identity(),
-                   ElementSink{f.data(), values.data(), nullptr});
-  Mat K = Mat::Zero(f.size(), f.size());
-  for (std::size_t b = 0; b < blocks.row.size(); ++b)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c)
-        K(3 * blocks.row[b] + r, 3 * blocks.column[b] + c) +=
-            values[9 * b + static_cast<std::size_t>(3 * r + c)];
-  return K;
+  return tangent_over(s.step(), s.x_n.size(), contact, history);
 }
 
 std::vector<double> bristles(const SolidContact& contact, const Scene& s, unsigned seed) {
-  Random random(seed);
-  std::vector<double> history(contact.history_size());
-  contact.initialize(history.data());
-  constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
-  const std::size_t first = 3 * s.X.size() + 1;
-  for (std::size_t p = 0; p < contact.points().size(); ++p)
-    for (std::size_t c = 0; c < 3; ++c) history[first + kNumbers * p + c] = 0.05 * random.number();
-  return history;
+  return bristles_of(contact, s.X.size(), seed);
 }
 
 // @tests{four-point-distance} @tests{central-gap} @tests{mesh-friction}

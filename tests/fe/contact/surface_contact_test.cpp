@@ -10,6 +10,7 @@
 #include <polhode/so3/cayley.hpp>
 #include <polhode/so3/hat.hpp>
 #include <support/derivative.hpp>
+#include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {
@@ -154,21 +155,10 @@ Scene scene(const Case& c, const std::string& shape, bool on_body, unsigned seed
   return s;
 }
 
-SurfaceLaw law(double mu, double end_share = 0.0) {
-  SurfaceLaw l;
-  l.normal.tolerance = kTolerance;
-  l.normal.stiffness = 30.0;
-  l.mu = mu;
-  l.bristle = 40.0;
-  l.end_share = end_share;
-  return l;
-}
+SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
 
 Vec forces(const SurfaceContact& contact, const Nodes& nodes, const std::vector<double>& history) {
-  Vec f = Vec::Zero(static_cast<Eigen::Index>(nodes.x_n.size()));
-  contact.evaluate(nodes.step(), history.data(), nullptr, Mat3::Identity(),
-                   ElementSink{f.data(), nullptr, nullptr});
-  return f;
+  return forces_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
 
 /// The matrix, by blocks of (point, i, j) like the sink of the solver.

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tests of surfaces of solids and cables in contact ask over one step.
+#pragma once
+
+#include <vector>
+
+#include <polhode/assembly/moving_pattern.hpp>
+#include <polhode/assembly/nodes.hpp>
+#include <polhode/fe/contact/solid_contact.hpp>
+#include <polhode/fe/contact/surface_law.hpp>
+#include <support/random_steps.hpp>
+
+namespace polhode::test {
+
+/// Stiffnesses of size one, for surfaces of size one.
+inline SurfaceLaw soft_law(double tolerance, double mu, double end_share = 0.0) {
+  SurfaceLaw l;
+  l.normal.tolerance = tolerance;
+  l.normal.stiffness = 30.0;
+  l.mu = mu;
+  l.bristle = 40.0;
+  l.end_share = end_share;
+  return l;
+}
+
+/// On all nodes.
+inline Vec forces_over(const NodeStep& step, std::size_t size, const ElementGroup& contact,
+                       const std::vector<double>& history) {
+  Vec f = Vec::Zero(static_cast<Eigen::Index>(size));
+  contact.evaluate(step, history.data(), nullptr, Mat3::Identity(),
+                   ElementSink{f.data(), nullptr, nullptr});
+  return f;
+}
+
+/// The matrix of a group whose blocks move.
+template <class Contact>
+Mat tangent_over(const NodeStep& step, std::size_t size, const Contact& contact,
+                 const std::vector<double>& history) {
+  const NodeBlocks& blocks = contact.blocks(history.data());
+  std::vector<double> values(9 * blocks.row.size(), 0.0);
+  Vec f = Vec::Zero(static_cast<Eigen::Index>(size));
+  contact.evaluate(step, history.data(), nullptr, Mat3::Identity(),
+                   ElementSink{f.data(), values.data(), nullptr});
+  Mat K = Mat::Zero(f.size(), f.size());
+  for (std::size_t b = 0; b < blocks.row.size(); ++b)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        K(3 * blocks.row[b] + r, 3 * blocks.column[b] + c) +=
+            values[9 * b + static_cast<std::size_t>(3 * r + c)];
+  return K;
+}
+
+/// A history in which every point has a bristle. @param nodes  Of both surfaces.
+inline std::vector<double> bristles_of(const SolidContact& contact, std::size_t nodes,
+                                       unsigned seed) {
+  Random random(seed);
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
+  const std::size_t first = 3 * nodes + 1;
+  for (std::size_t p = 0; p < contact.points().size(); ++p)
+    for (std::size_t c = 0; c < 3; ++c) history[first + kNumbers * p + c] = 0.05 * random.number();
+  return history;
+}
+
+}  // namespace polhode::test
