@@ -23,6 +23,25 @@ inline SurfaceLaw soft_law(double tolerance, double mu, double end_share = 0.0) 
   return l;
 }
 
+/// Nodes that move over a step.
+struct MovingNodes {
+  std::vector<Vec3> X;
+  std::vector<double> x_n, x_n1, u;
+  StepContext context;
+  double alpha_f = 0.5;
+
+  [[nodiscard]] NodeStep step() const {
+    return {x_n.data(), x_n1.data(), u.data(), u.data(), u.data(), context, alpha_f, 1.0};
+  }
+  [[nodiscard]] NodeStep start() const {
+    return {x_n.data(), x_n.data(), u.data(), u.data(), u.data(), context, 1.0, 0.0};
+  }
+  void move(std::size_t k, double by) {
+    x_n1[k] += by;
+    u[k] += by;
+  }
+};
+
 /// On all nodes.
 inline Vec forces_over(const NodeStep& step, std::size_t size, const ElementGroup& contact,
                        const std::vector<double>& history) {
@@ -50,14 +69,22 @@ Mat tangent_over(const NodeStep& step, std::size_t size, const Contact& contact,
   return K;
 }
 
-/// A history in which every point has a bristle. @param nodes  Of both surfaces.
-inline std::vector<double> bristles_of(const SolidContact& contact, std::size_t nodes,
-                                       unsigned seed) {
+inline Vec forces(const SolidContact& contact, const MovingNodes& nodes,
+                  const std::vector<double>& history) {
+  return forces_over(nodes.step(), nodes.x_n.size(), contact, history);
+}
+inline Mat tangent(const SolidContact& contact, const MovingNodes& nodes,
+                   const std::vector<double>& history) {
+  return tangent_over(nodes.step(), nodes.x_n.size(), contact, history);
+}
+/// A history in which every point has a bristle.
+inline std::vector<double> bristles(const SolidContact& contact, const MovingNodes& nodes,
+                                    unsigned seed) {
   Random random(seed);
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
-  const std::size_t first = 3 * nodes + 1;
+  const std::size_t first = 3 * nodes.X.size() + 1;
   for (std::size_t p = 0; p < contact.points().size(); ++p)
     for (std::size_t c = 0; c < 3; ++c) history[first + kNumbers * p + c] = 0.05 * random.number();
   return history;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which surfaces may meet what, and by which law.
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include <polhode/base/format.hpp>
@@ -128,43 +129,61 @@ class Planner {
   void add_solids(int s, int t) {
     const SolidSpec &one = model_.solids[static_cast<std::size_t>(s)],
                     &two = model_.solids[static_cast<std::size_t>(t)];
-    const ContactSide a = contact_side(one), b = contact_side(two);
-    if (!a.touches || !b.touches || (s == t && !one.self_contact)) return;
-    if (s != t && !groups_meet(a, b)) return;
-    if (excluded_.contains(std::minmax(side_of_solid(s), side_of_solid(t)))) return;
-    const StatedLaw stated =
-        law_between(model_.contacts, {material_of(model_.contacts, a), side_of_solid(s)},
-                    {material_of(model_.contacts, b), side_of_solid(t)});
-    check_law(stated,
-              s == t ? format("'{}' meets itself", one.name)
-                     : format("'{}' and '{}' meet", one.name, two.name),
-              "surfaces of solids", "meshes");
-    list_.push_back({side_of_solid(s), side_of_solid(t), 0, stated.law});
+    if (s == t && !one.self_contact) return;
+    add_surfaces(side_of_solid(s), contact_side(one), side_of_solid(t), contact_side(two),
+                 "surfaces of solids", "meshes");
   }
 
   /// Two cables; or one with itself, if it says so.
   void add_cables(int c, int d) {
     const CableLineSpec &one = model_.cables[static_cast<std::size_t>(c)],
                         &two = model_.cables[static_cast<std::size_t>(d)];
-    const ContactSide a = contact_side(one), b = contact_side(two);
-    if (!a.touches || !b.touches || (c == d && !touches_itself(one))) return;
-    if (c != d && !groups_meet(a, b)) return;
-    if (excluded_.contains(std::minmax(side_of_cable(c), side_of_cable(d)))) return;
-    const StatedLaw stated =
-        law_between(model_.contacts, {material_of(model_.contacts, a), side_of_cable(c)},
-                    {material_of(model_.contacts, b), side_of_cable(d)});
+    if (c == d && !touches_itself(one)) return;
+    add_surfaces(side_of_cable(c), contact_side(one), side_of_cable(d), contact_side(two), "cables",
+                 "cables");
+  }
+
+  void add_cable_on_solid(int c, int s) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(c)];
+    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
+    const std::optional<StatedLaw> stated =
+        add_surfaces(side_of_cable(c), contact_side(cable), side_of_solid(s), contact_side(solid),
+                     "cables", "cables");
+    const double most = widest_tolerance(cable.contact ? cable.contact->radius : 0.0);
+    if (stated && stated->law.gap_tolerance > most)
+      fault(place_of(*stated),
+            format("'{}' meets '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
+                   "cable's radius, {:.3g} m",
+                   cable.name, solid.name, stated->law.gap_tolerance, most),
+            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
+  }
+
+  /// Two surfaces without a shape, or one twice. @returns their law, unless something keeps them
+  /// apart.
+  std::optional<StatedLaw> add_surfaces(int own, const ContactSide& a, int side,
+                                        const ContactSide& b, const char* they,
+                                        const char* passing) {
+    if (!a.touches || !b.touches || (own != side && !groups_meet(a, b))) return {};
+    if (excluded_.contains(std::minmax(own, side))) return {};
+    const StatedLaw stated = law_between(model_.contacts, {material_of(model_.contacts, a), own},
+                                         {material_of(model_.contacts, b), side});
     check_law(stated,
-              c == d ? format("'{}' meets itself", one.name)
-                     : format("'{}' and '{}' meet", one.name, two.name),
-              "cables", "cables");
-    list_.push_back({side_of_cable(c), side_of_cable(d), 0, stated.law});
+              own == side
+                  ? format("'{}' meets itself", model_.side_name(own))
+                  : format("'{}' and '{}' meet", model_.side_name(own), model_.side_name(side)),
+              they, passing);
+    list_.push_back({own, side, 0, stated.law});
+    return stated;
+  }
+
+  [[nodiscard]] static std::string place_of(const StatedLaw& stated) {
+    return stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
   }
 
   /// What two surfaces without a shape cannot do.
   void check_law(const StatedLaw& stated, const std::string& who, const char* they,
                  const char* passing) {
-    const std::string where =
-        stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
+    const std::string where = place_of(stated);
     if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
       fault(where, format("{} with friction, which statics does not know", who),
             "Set friction: 0, or let the model come to rest in dynamics");
@@ -175,29 +194,6 @@ class Planner {
     if (stated.law.potential == "linear")
       fault(where, format("{} by the linear law, which lets {} pass", who, passing),
             "Give the pair a law of its own in contacts.pairs, with law: barrier");
-  }
-
-  /// A cable and a solid.
-  void add_cable_on_solid(int c, int s) {
-    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(c)];
-    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
-    const ContactSide a = contact_side(cable), b = contact_side(solid);
-    if (!a.touches || !b.touches || !groups_meet(a, b)) return;
-    const int own = side_of_cable(c), side = side_of_solid(s);
-    if (excluded_.contains(std::minmax(own, side))) return;
-    const StatedLaw stated = law_between(model_.contacts, {material_of(model_.contacts, a), own},
-                                         {material_of(model_.contacts, b), side});
-    const std::string where =
-        stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
-    check_law(stated, format("'{}' and '{}' meet", cable.name, solid.name), "cables", "cables");
-    const double most = widest_tolerance(cable.contact->radius);
-    if (stated.law.gap_tolerance > most)
-      fault(where,
-            format("'{}' meets '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
-                   "cable's radius, {:.3g} m",
-                   cable.name, solid.name, stated.law.gap_tolerance, most),
-            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
-    list_.push_back({own, side, 0, stated.law});
   }
 
   /// A solid or a cable with itself, named without that it touches itself.

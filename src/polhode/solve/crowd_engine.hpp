@@ -66,7 +66,7 @@ class CrowdEngine final : public NewtonEngine {
   std::vector<Mat6> own_, blocks_;                 ///< Of inertia alone; and with loads.
   std::vector<Vec6> of_motion_, rhs_, x_, start_;  ///< rhs_: of the motion, loads and contacts.
   struct PerMass {
-    double moved, turned;  ///< One over the mass, and the mean of the moments of inertia.
+    double moved, turned;  ///< One over the mass, and one over the mean moment of inertia.
   };
   std::vector<PerMass> per_mass_;
   std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].

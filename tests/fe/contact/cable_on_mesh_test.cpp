@@ -19,23 +19,8 @@ constexpr double kTolerance = 0.2, kRadius = 0.6;
 
 /// Nodes of 2 × 2 quadrilaterals, of which those in the middle line lie deeper, and after them
 /// three of a cable along that line.
-struct Scene {
-  std::vector<Vec3> X;
-  std::vector<double> x_n, x_n1, u;
+struct Scene : MovingNodes {
   LoadedFaces faces{"quad4", {}};
-  StepContext context;
-  double alpha_f = 0.5;
-
-  [[nodiscard]] NodeStep step() const {
-    return {x_n.data(), x_n1.data(), u.data(), u.data(), u.data(), context, alpha_f, 1.0};
-  }
-  [[nodiscard]] NodeStep start() const {
-    return {x_n.data(), x_n.data(), u.data(), u.data(), u.data(), context, 1.0, 0.0};
-  }
-  void move(std::size_t k, double by) {
-    x_n1[k] += by;
-    u[k] += by;
-  }
 };
 
 /// @param depth   Of the valley, below zero of the ridge.
@@ -84,18 +69,6 @@ SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
           soft_law(kTolerance, mu, end_share),
           SolidContactStart{.X = s.X, .carriers = carriers, .edge = 3.0},
           std::move(line)};
-}
-
-Vec forces(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  return forces_over(s.step(), s.x_n.size(), contact, history);
-}
-
-Mat tangent(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  return tangent_over(s.step(), s.x_n.size(), contact, history);
-}
-
-std::vector<double> bristles(const SolidContact& contact, const Scene& s, unsigned seed) {
-  return bristles_of(contact, s.X.size(), seed);
 }
 
 struct Place {

@@ -16,24 +16,9 @@ namespace {
 constexpr double kTolerance = 0.3;
 
 /// Nodes of two plates of faces above each other, the second one being met, that both move.
-struct Scene {
-  std::vector<Vec3> X;
-  std::vector<double> x_n, x_n1, u;
+struct Scene : MovingNodes {
   std::vector<LoadedFaces> lower, upper;
   std::vector<int> carriers;
-  StepContext context;
-  double alpha_f = 0.5;
-
-  [[nodiscard]] NodeStep step() const {
-    return {x_n.data(), x_n1.data(), u.data(), u.data(), u.data(), context, alpha_f, 1.0};
-  }
-  [[nodiscard]] NodeStep start() const {
-    return {x_n.data(), x_n.data(), u.data(), u.data(), u.data(), context, 1.0, 0.0};
-  }
-  void move(std::size_t k, double by) {
-    x_n1[k] += by;
-    u[k] += by;
-  }
   [[nodiscard]] SolidContact contact(const SurfaceLaw& law, double edge = 3.0,
                                      bool cells = false) const {
     const MeshSurface below = triangulated(lower);
@@ -84,18 +69,6 @@ Scene scene(unsigned seed, double rho_inf, double way = 0.12) {
 }
 
 SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
-
-Vec forces(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  return forces_over(s.step(), s.x_n.size(), contact, history);
-}
-
-Mat tangent(const SolidContact& contact, const Scene& s, const std::vector<double>& history) {
-  return tangent_over(s.step(), s.x_n.size(), contact, history);
-}
-
-std::vector<double> bristles(const SolidContact& contact, const Scene& s, unsigned seed) {
-  return bristles_of(contact, s.X.size(), seed);
-}
 
 // @tests{four-point-distance} @tests{central-gap} @tests{mesh-friction}
 TEST(SolidContact, HasTheTangentOfItsForces) {

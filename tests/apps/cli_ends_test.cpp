@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Equilibria and modes by the command line, and runs that cannot go on.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <polhode/base/format.hpp>
+
+#include "command_line.hpp"
+
+namespace polhode {
+namespace {
+
+using test::CommandLine;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST_F(CommandLine, EndsWith4AndKeepsTheLastStateWhenAStepDoesNotConverge) {
+  const auto result = run({"run", "model.yaml", "--set", "analysis.max_iterations=1", "--set",
+                           "analysis.min_step=10 ms"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("body '"));
+  EXPECT_TRUE(exists("model.results/checkpoint.pst"));
+  EXPECT_TRUE(exists("model.results/results.h5"));
+}
+
+TEST_F(CommandLine, FindsAnEquilibriumAndWritesItsLoadSteps) {
+  write("weight.yaml", R"(format: 1
+gravity: [0, 0, -10]
+bodies:
+  weight: {mass: 2, inertia: [1, 1, 1], position: [0, 0, -1]}
+joints:
+  guide: {type: prismatic, bodies: [ground, weight], at: [0, 0, 0], axis: z}
+loads:
+  spring: {type: spring_damper, bodies: [ground, weight], at: [[0, 0, 0], [0, 0, -1]],
+           stiffness: 400 N/m, free_length: 1 m}
+analysis: {type: statics, load_steps: 4}
+output:
+  probes:
+    weight: {body: weight}
+)");
+  const auto result = run({"run", "weight.yaml", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(value(result.out, "steps"), "4");
+  EXPECT_EQ(value(result.out, "frames"), "5");
+  EXPECT_EQ(value(result.out, "unstable_directions"), "0");
+  EXPECT_NEAR(std::stod(value(result.out, "strain_energy")), 0.5 * 400 * 0.05 * 0.05, 1e-12);
+  const std::string table = read("weight.results/probes/weight.csv");
+  EXPECT_THAT(table, HasSubstr("\n1,0,0,-1.0"));  // -1.05, to rounding
+  const auto shown = run({"run", "weight.yaml"});
+  EXPECT_THAT(shown.out, AllOf(HasSubstr("load carried"), HasSubstr("stable")));
+}
+
+TEST_F(CommandLine, EndsWith4AndNamesWhatNothingHolds) {
+  write("stone.yaml", R"(format: 1
+gravity: [0, 0, -10]
+bodies:
+  stone: {mass: 2, inertia: [1, 1, 1]}
+analysis: {type: statics}
+)");
+  const auto result = run({"run", "stone.yaml"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("body 'stone'"));
+  EXPECT_TRUE(exists("stone.results/results.h5"));
+}
+
+/// A slack cable holds nothing: all of the tangent is zero.
+TEST_F(CommandLine, EndsWith4AndNamesTheNodeOfASlackCable) {
+  write("slack.yaml", R"(format: 1
+gravity: [0, 0, -9.81]
+cables:
+  rope: {through: [[ground, [0, 0, 0]], [ground, [10, 0, 0]]], stiffness: 1e5 N,
+         free_length: 10.5 m, mass_per_length: 1.0, elements: 80}
+analysis: {type: statics}
+)");
+  const auto result = run({"run", "slack.yaml"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.out + result.err, AllOf(HasSubstr("worst at body 'rope."), HasSubstr("held")));
+}
+
+TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {
+  write("swing.yaml", R"(format: 1
+gravity: [0, -10, 0]
+bodies:
+  bob: {mass: 1, inertia: [1, 1, 1], position: [0, -1, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, bob], at: [0, 0, 0], axis: z}
+analysis: {type: modes}
+output: {paraview: true}
+)");
+  for (const char* command : {"modes", "run"}) {
+    const auto result = run({command, "swing.yaml", "--json"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    // ω² = m g a / (J + m a²) = 5.
+    EXPECT_NEAR(std::stod(value(result.out, "frequency")), std::sqrt(5.0) / 6.283185307179586,
+                1e-12);
+    EXPECT_EQ(value(result.out, "complete"), "true");
+  }
+  EXPECT_TRUE(exists("swing.results/modes.h5"));
+  EXPECT_TRUE(exists("swing.results/paraview/modes.pvd"));
+  EXPECT_THAT(run({"modes", "swing.yaml"}).out, HasSubstr("0.355881"));
+}
+
+// A motor without a limit: the rotor turns faster than the least step can follow.
+TEST_F(CommandLine, EndsWith4NamesTheBodyAndKeepsTheLastStateOfAModelThatRunsAway) {
+  write("motor.yaml", R"(format: 1
+bodies:
+  rotor: {mass: 1, inertia: [0.03, 0.03, 0.05]}
+joints:
+  shaft: {type: revolute, bodies: [ground, rotor], at: [0, 0, 0], axis: z}
+loads:
+  motor: {type: moment, body: rotor, moment: [0, 0, 200 N m]}
+analysis: {duration: 10 s, step: 2 ms, min_step: 0.5 ms}
+output:
+  every: 0.1 s
+  probes:
+    shaft: {joint: shaft}
+    motor: {load: motor}
+)");
+  const auto result = run({"run", "motor.yaml", "--json", "--isa", "baseline"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_EQ(value(result.out, "end"), "\"not_converged\"");
+  EXPECT_EQ(value(result.out, "instruction_set"), "\"baseline\"");
+  EXPECT_THAT(result.err, AllOf(HasSubstr("body 'rotor'"), HasSubstr("max_step_rotation")));
+  EXPECT_TRUE(exists("motor.results/checkpoint.pst"));
+  EXPECT_THAT(read("motor.results/probes/motor.csv"),
+              StartsWith("t [s],mx [N m],my [N m],mz [N m]\n0,0,0,200\n"));
+  const auto rest = run({"run", "motor.yaml", "--restart", "motor.results/checkpoint.pst"});
+  EXPECT_EQ(rest.code, 4) << rest.err;
+}
+
+/// A cube of one metre on the ground whose top is pressed, E = 1 Pa, in one step of nearly statics.
+std::string pressed_cube(
+    const std::string& material, double pressure,
+    const std::string& analysis = "{duration: 50 s, step: 25 s, min_step: 25 s, rho_inf: 0}") {
+  return R"(format: 1
+materials:
+  foam: {type: )" +
+         material + R"(, youngs_modulus: 1, poisson_ratio: 0, density: 1}
+solids:
+  cube:
+    mesh: {block: {size: [1, 1, 1], cells: [2, 2, 2]}}
+    element: hex8
+    material: foam
+    bonded: {ground: zmin}
+loads:
+  press: {type: traction, solid: cube, surface: zmax, traction: [0, 0, )" +
+         std::to_string(-pressure) + R"(]}
+analysis: )" +
+         analysis + R"(
+output:
+  paraview: true
+  probes:
+    top: {solid: cube, point: [0, 0, 0.5]}
+)";
+}
+
+// A material that gives way: no step carries so much.
+TEST_F(CommandLine, EndsWith4NamesTheElementAndKeepsTheLastStateOfASolidThatCollapses) {
+  write("cube.yaml", pressed_cube("elastic", 1.5));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_EQ(value(result.out, "end"), "\"not_converged\"");
+  EXPECT_THAT(result.err, testing::ContainsRegex("element [0-7] of 'solids.cube'"));
+  EXPECT_TRUE(exists("cube.results/checkpoint.pst"));
+  EXPECT_TRUE(exists("cube.results/results.h5"));
+  EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n0,0,0,0.5"));
+}
+
+TEST_F(CommandLine, EndsWith4AtTheLastEquilibriumOfASolidThatCollapses) {
+  write("cube.yaml", pressed_cube("elastic", 1.5, "{type: statics}"));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_THAT(result.err, testing::ContainsRegex("element [0-7] of 'solids.cube'"));
+  const double reached = std::stod(value(result.out, "load_factor"));
+  EXPECT_GT(reached, 0.1);
+  EXPECT_LT(reached, 0.2);  // E/(3 √3) is carried, were the sides guided
+  EXPECT_EQ(value(result.out, "t"), value(result.out, "load_factor"));
+  // A frame, a row and a picture for every load step.
+  EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n" + value(result.out, "t") + ","));
+  const int steps = std::stoi(value(result.out, "steps"));
+  EXPECT_GT(steps, 2);
+  EXPECT_EQ(std::stoi(value(result.out, "frames")), steps + 1);
+  EXPECT_TRUE(exists(format("cube.results/paraview/solids/{:06d}.vtu", steps)));
+  EXPECT_FALSE(exists(format("cube.results/paraview/solids/{:06d}.vtu", steps + 1)));
+}
+
+TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
+  write("cube.yaml", pressed_cube("neo_hookean", 0.6));
+  const auto result = run({"run", "cube.yaml", "--json"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("warning: solids.cube: element"), HasSubstr("0.7")));
+  EXPECT_THAT(value(result.out, "warnings"), HasSubstr("["));
+  write("cube.yaml", pressed_cube("neo_hookean", 0.1));
+  EXPECT_THAT(run({"run", "cube.yaml"}).err, testing::Not(HasSubstr("warning")));
+}
+
+}  // namespace
+}  // namespace polhode
