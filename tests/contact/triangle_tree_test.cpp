@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <polhode/contact/triangle_tree.hpp>
 
@@ -36,6 +37,35 @@ TEST(TriangleTree, FindsWhatALookAtAllTrianglesFinds) {
     EXPECT_LT(found.size(), ring.triangles.size() / 2);
     EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
   }
+}
+
+TEST(TriangleTree, KnowsHowOftenASurfaceWindsAroundAPoint) {
+  const double R = 0.35, r = 0.15;
+  const TriangleSurface ring = torus(R, r, 48);
+  const TriangleTree tree(ring.points, ring.triangles);
+  // And a second ring through the first.
+  const int count = static_cast<int>(ring.points.size());
+  TriangleSurface more = ring;
+  const double shift = 0.2;
+  for (const Vec3& x : ring.points) more.points.emplace_back(x + shift * Vec3::UnitX());
+  for (const auto& t : ring.triangles)
+    more.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  const TriangleTree both(more.points, more.triangles);
+  Random random(6);
+  const auto depth = [&](const Vec3& x) {  // below zero outside the round ring
+    return r - std::hypot(std::hypot(x[0], x[1]) - R, x[2]);
+  };
+  const double chord = 0.02;  // triangles are within that of the round one
+  int within = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 x = random.vector(0.6);
+    const double d = depth(x), e = depth(x - shift * Vec3::UnitX());
+    if (std::abs(d) < chord || std::abs(e) < chord) continue;
+    EXPECT_EQ(tree.winding(x), d > 0.0 ? 1 : 0);
+    EXPECT_EQ(both.winding(x), (d > 0.0 ? 1 : 0) + (e > 0.0 ? 1 : 0));
+    within += d > 0.0 && e > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(within, 20) << "points in both";
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ TEST(BuildSurfaceContacts, RefusesSolidsThatOverlapAtTheStart) {
     FAIL() << "the pad starts 1 cm in the floor";
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("pad in floor by 0.01 m"));
-    EXPECT_THAT(e.what(), HasSubstr("moves bodies only"));
+    EXPECT_THAT(e.what(), HasSubstr("contacts.overlaps: resolve"));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include <polhode/contact/ray.hpp>
 #include <polhode/contact/triangle_tree.hpp>
 
 namespace polhode::contact {
@@ -111,6 +112,30 @@ std::vector<int> TriangleTree::near(const Vec3& x, double distance) const {
     found.insert(found.end(), first, first + node.count);
   }
   return found;
+}
+
+int TriangleTree::winding(const Vec3& x) const {
+  int around = 0;
+  std::array<int, kDeepest> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    const Eigen::Array3d enters = (node.low - x).array() / kAnyRay.array(),
+                         leaves = (node.high - x).array() / kAnyRay.array();
+    if (leaves.minCoeff() < std::max(0.0, enters.maxCoeff())) continue;
+    if (node.second_child > 0) {
+      stack[depth++] = node.second_child;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (int k = node.first; k < node.first + node.count; ++k) {
+      const auto& c = triangles_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
+      around += crossing(kAnyRay, c[0] - x, c[1] - x, c[2] - x);
+    }
+  }
+  return around;
 }
 
 }  // namespace polhode::contact

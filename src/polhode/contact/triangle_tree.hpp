@@ -27,6 +27,10 @@ class TriangleTree {
   /// Triangles whose boxes come as near to a point as `distance`, and perhaps others.
   [[nodiscard]] std::vector<int> near(const Vec3& x, double distance) const;
 
+  /// How often a closed surface winds around a point: 1 within it, 0 outside, 2 where two parts of
+  /// it overlap; in its own hollows 0.
+  [[nodiscard]] int winding(const Vec3& x) const;
+
   [[nodiscard]] const Vec3& low() const { return nodes_.front().low; }  ///< Of all triangles [m].
   [[nodiscard]] const Vec3& high() const { return nodes_.front().high; }
 

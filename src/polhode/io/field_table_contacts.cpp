@@ -173,8 +173,8 @@ const FieldTable& contacts_fields() {
            .table = "contact sensor"},
           {.name = "overlaps",
            .kind = kChoice,
-           .meaning = "What to do with shapes that overlap at the start: refuse them by name, or "
-                      "move bodies apart, the lighter ones farther.",
+           .meaning = "What to do with what overlaps at the start: refuse it by name, or move "
+                      "bodies and solids apart, the lighter ones farther.",
            .standard = "error",
            .choices = {"error", "resolve"}},
           {.name = "sweeps",

@@ -9,6 +9,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/fe/contact/edge_contact.hpp>
 #include <polhode/fe/contact/solid_contact.hpp>
+#include <polhode/fe/contact/solid_inside.hpp>
 #include <polhode/fe/materials/registry.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/cable_contact.hpp>
@@ -16,6 +17,7 @@
 #include <polhode/model/contact_sides.hpp>
 #include <polhode/model/rigid_surfaces.hpp>
 #include <polhode/model/solid_parts.hpp>
+#include <polhode/model/surface_overlaps.hpp>
 
 namespace polhode {
 
@@ -189,6 +191,8 @@ class SurfacesBuilder {
     };
     CablePoints points = cable_points(line, 0.5 * line.radius);
     const std::vector<double> gaps = contact(points)->gaps_at_start();
+    const std::vector<MeshPoint> places = mesh_points(points.points);
+    const SolidInside inside(solid_boundary(solids_[static_cast<std::size_t>(s)]), X[0].data());
     leave_out_attachments(
         points, cable, line,
         [&](const AttachmentSpec& a) {
@@ -197,7 +201,9 @@ class SurfacesBuilder {
           });
         },
         [&](int point) {
-          return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
+          const auto p = static_cast<std::size_t>(point);
+          return gaps[p] < -0.5 * law.normal.tolerance ||
+                 inside.overlap(places[p].at(X[0].data()), line.radius);
         });
     if (points.arc.empty()) return;
     map_.surfaces.push_back({pair.own, pair.side, 0, system_.add_elements(contact(points))});
@@ -226,14 +232,8 @@ class SurfacesBuilder {
     return 0.5 * (radius + (round ? 0.5 * shape.sizes[0] : 0.0));
   }
 
-  /// By the system's numbers.
   [[nodiscard]] static std::vector<LoadedFaces> faces_of(const SolidMap& solid) {
-    std::vector<LoadedFaces> faces;
-    for (const FaceBlock& block : solid.plan.touching.blocks) {
-      faces.push_back({block.type, block.nodes});
-      for (int& node : faces.back().nodes) node += solid.first_node;
-    }
-    return faces;
+    return system_faces(solid, solid.plan.touching);
   }
 
   /// Points of each of both surfaces on the triangles of the other, at half their area.

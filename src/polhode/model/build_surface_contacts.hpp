@@ -46,9 +46,4 @@ struct SurfaceFigures {
 };
 [[nodiscard]] SurfaceFigures surface_figures(const System& system, const State& state,
                                              const ContactMap& map);
-/// Surfaces that are deeper in a shape than the tolerance: "pad in floor by 0.01 m"; and surfaces
-/// of two solids that overlap or leave no gap: "pad touches block".
-[[nodiscard]] std::vector<std::string> surface_overlaps(const Model& model, const System& system,
-                                                        const State& state, const ContactMap& map);
-
 }  // namespace polhode

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/model/surface_overlaps.hpp>
 
 namespace polhode {
 
 /// What separate_overlaps() did.
 struct SeparationReport {
-  std::vector<std::pair<int, double>> moves;  ///< Body, distance [m]; those that moved.
+  std::vector<std::pair<std::string, double>> moves;  ///< Bodies and solids that moved [m].
   int rounds = 0;
 };
 
@@ -21,10 +22,12 @@ struct SeparationReport {
                                                    contact::ContactSet& contacts,
                                                    const State& state);
 
-/// Moves bodies apart until nothing overlaps, without turning them: each pair along the normal at
-/// its deepest point, the two bodies by the inverse of their masses, round after round. Ends after
-/// so many rounds even if something still overlaps.
-SeparationReport separate_overlaps(const System& system, contact::ContactSet& contacts,
+/// Moves bodies and solids apart until nothing overlaps, without turning them: each pair along the
+/// normal at its deepest point, the two by the inverse of their masses, round after round. Solids
+/// and what they are bonded to move as one; what is held, by bonds to the ground or prescribed
+/// nodes, and cables stay where they are. Ends after so many rounds even if something still
+/// overlaps.
+SeparationReport separate_overlaps(const Model& model, const System& system, const SystemMap& map,
                                    State& state);
 
 }  // namespace polhode

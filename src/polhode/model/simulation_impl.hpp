@@ -212,11 +212,10 @@ struct Simulation::Impl {
   }
 
   void move_apart() {
-    if (!map.contacts) return;
-    const SeparationReport moved = separate_overlaps(system, *map.contacts, state);
-    for (const auto& [body, distance] : moved.moves)
-      narration += format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n",
-                          system.bodies()[static_cast<std::size_t>(body)].name, distance);
+    const SeparationReport moved = separate_overlaps(model, system, map, state);
+    for (const auto& [name, distance] : moved.moves)
+      narration +=
+          format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n", name, distance);
   }
 
   void watch_surfaces() {
@@ -224,13 +223,18 @@ struct Simulation::Impl {
   }
 
   void refuse_overlaps() const {
-    const std::vector<std::string> surfaces = surface_overlaps(model, system, state, map.contact);
+    std::vector<std::string> surfaces;
+    for (const SideOverlap& overlap : surface_overlaps(model, system, map, state))
+      surfaces.push_back(overlap_text(model, overlap));
     if (!surfaces.empty())
-      throw InputError("contacts",
-                       "surfaces overlap or touch at the start: " + name_list(surfaces, 12),
-                       "Correct positions or sizes, or exclude pairs that are meant to overlap; "
-                       "'overlaps: resolve' moves bodies only. Between two solids leave a gap of "
-                       "at least half the gap_tolerance");
+      throw InputError(
+          "contacts", "surfaces overlap or touch at the start: " + name_list(surfaces, 12),
+          model.contacts.resolve_overlaps
+              ? "They could not be moved apart: correct positions or sizes. What is held does not "
+                "move, nor do cables, nor sharp edges that cross"
+              : "Correct positions or sizes, exclude pairs that are meant to overlap, or set "
+                "contacts.overlaps: resolve. Between two solids leave a gap of at least half the "
+                "gap_tolerance");
     if (!map.contacts) return;
     const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
     if (list.empty()) return;

@@ -5,7 +5,6 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
-#include <polhode/solve/node_motion.hpp>
 
 namespace polhode {
 
@@ -69,22 +68,6 @@ SurfaceFigures surface_figures(const System& system, const State& state, const C
     if (r.sticking + r.slipping > 0) ++figures.touching;
   }
   return figures;
-}
-
-std::vector<std::string> surface_overlaps(const Model& model, const System& system,
-                                          const State& state, const ContactMap& map) {
-  std::vector<std::string> list;
-  const StepContext still;
-  const NodeStep instant = node_instant(state, still);
-  for (const ContactMap::Surface& surface : map.surfaces) {
-    const double depth = contact_of(system, surface).overlap(instant);
-    if (depth < 0.0) continue;
-    const std::string own = model.side_name(surface.own), other = model.side_name(surface.side);
-    const std::string text = depth > 0.0 ? format("{} in {} by {:.3g} m", own, other, depth)
-                                         : format("{} touches {}", own, other);
-    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
-  }
-  return list;
 }
 
 }  // namespace polhode

@@ -67,10 +67,11 @@ class EdgeContact final : public ElementGroup,
   std::size_t places() const override { return sides_.first.edges.size(); }
   /// Pairs of edges that are looked at.
   [[nodiscard]] int candidates(const double* history) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;
-  [[nodiscard]] double overlap(const NodeStep& instant) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
  private:
   /// Of an edge: its partner's number and one, or 0; the bristle in the world, whether it slips,
@@ -102,6 +103,7 @@ class EdgeContact final : public ElementGroup,
                                            bool tangent) const;
   [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
   void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
+  void note_gap(double* history) const;
   [[nodiscard]] double least_gap(const double* x, const double* history) const;
   /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
   [[nodiscard]] double room(int e, int f, const Vec3 (&x)[4]) const;

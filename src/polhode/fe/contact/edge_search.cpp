@@ -114,6 +114,16 @@ void EdgeContact::find(Search& s) const {
 void EdgeContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   nodes_.write_start(history);
+  note_gap(history);
+}
+
+void EdgeContact::begin_at(const NodeStep& instant, double* history) const {
+  nodes_.write_instant(instant.x_n1, history);
+  note_gap(history);
+}
+
+/// Where nodes were looked at last.
+void EdgeContact::note_gap(double* history) const {
   memory(history, slots())[offsetof(SurfaceTotals, gap) / sizeof(double)] =
       least_gap(nodes_.positions(history).data(), history);
 }
@@ -182,7 +192,7 @@ double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
   return most;
 }
 
-double EdgeContact::overlap(const NodeStep& instant) const {
+std::optional<SurfaceOverlap> EdgeContact::overlap(const NodeStep& instant) const {
   std::vector<double> key(nodes_.key_size());
   nodes_.write_instant(instant.x_n1, key.data());
   double deepest = -1.0;
@@ -195,7 +205,8 @@ double EdgeContact::overlap(const NodeStep& instant) const {
     else if (!of_cables() && left < 0.5 * law_.normal.tolerance)
       deepest = std::max({deepest, 0.0, -left});
   }
-  return deepest;
+  if (deepest < 0.0) return {};
+  return SurfaceOverlap{.depth = deepest};
 }
 
 }  // namespace polhode

@@ -64,12 +64,14 @@ class SolidContact final : public ElementGroup,
   /// near [m].
   [[nodiscard]] std::vector<double> gaps_at_start() const;
   [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
+  [[nodiscard]] double radius() const { return cable_.radius; }  ///< About its points [m].
   /// Pairs of a point and a triangle that are looked at.
   [[nodiscard]] int candidates(const double* history) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;
-  [[nodiscard]] double overlap(const NodeStep& instant) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
  private:
   /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
@@ -115,6 +117,8 @@ class SolidContact final : public ElementGroup,
                             const Nearest& nearest) const;
   [[nodiscard]] double signed_distance(const Field& field, std::span<const int> triangles,
                                        int point, const Nearest& nearest) const;
+  [[nodiscard]] Vec3 way_out(const Field& field, const Nearest& nearest, int point,
+                             double signed_distance) const;
   /// A point and the triangles around it on a straight way.
   struct Way;
   [[nodiscard]] FourMoves moves(const Field& x_n1, const Field& u, int point, int triangle) const;
@@ -133,7 +137,7 @@ class SolidContact final : public ElementGroup,
                             const double* memory, bool tangent) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
                                   const double* memory) const;
-  void note_gap_at_start(double* history) const;
+  void note_gap(double* history) const;
   [[nodiscard]] Vec3 normal(const Field& field, const MeshGap& gap, int point) const;
   [[nodiscard]] Vec3 foot(const Field& field, const MeshGap& gap, int point) const;
 

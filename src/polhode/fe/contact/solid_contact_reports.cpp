@@ -139,8 +139,8 @@ Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const
   return of_cable() ? Vec3(at - cable_.radius * normal(field, gap, point)) : at;
 }
 
-/// NaN where nothing is near.
-void SolidContact::note_gap_at_start(double* history) const {
+/// Where nodes were looked at last; NaN where nothing is near.
+void SolidContact::note_gap(double* history) const {
   double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
   const std::vector<double> x = nodes_.positions(history);
   const Search& s = search(history);

@@ -130,7 +130,12 @@ void SolidContact::find(Search& s) const {
 void SolidContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   nodes_.write_start(history);
-  note_gap_at_start(history);
+  note_gap(history);
+}
+
+void SolidContact::begin_at(const NodeStep& instant, double* history) const {
+  nodes_.write_instant(instant.x_n1, history);
+  note_gap(history);
 }
 
 void SolidContact::clearances(const NodeStep& step, const double* history,
@@ -234,25 +239,40 @@ double SolidContact::signed_distance(const Field& field, std::span<const int> tr
   return side < 0.0 ? -nearest.four.distance : nearest.four.distance;
 }
 
-double SolidContact::overlap(const NodeStep& instant) const {
+/// Along the distance, or where that is none along the normal of the triangle.
+Vec3 SolidContact::way_out(const Field& field, const Nearest& nearest, int point,
+                           double signed_distance) const {
+  if (nearest.four.distance > kRounding * law_.normal.tolerance)
+    return std::copysign(1.0, signed_distance) *
+           normal(field, MeshGap::of(nearest.triangle, nearest.four), point);
+  Vec3 at[4];
+  four_points(field, point, nearest.triangle, at);
+  return (at[2] - at[1]).cross(at[3] - at[1]).normalized();
+}
+
+std::optional<SurfaceOverlap> SolidContact::overlap(const NodeStep& instant) const {
   std::vector<double> history(nodes_.key_size());
   nodes_.write_instant(instant.x_n1, history.data());
   const Search& s = search(history.data());
   const Field x(surface_, instant.x_n1);
-  double deepest = -1.0;
+  std::optional<SurfaceOverlap> deepest;
+  const auto note = [&](double depth, const Vec3& out) {
+    if (!deepest || depth > deepest->depth) deepest = {depth, out};
+  };
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
     const Nearest n = nearest(x, triangles, p);
     if (n.triangle < 0) continue;
-    const double signed_d = signed_distance(x, triangles, p, n);
+    const double d = signed_distance(x, triangles, p, n);
+    const Vec3 out = way_out(x, n, p, d);
     if (of_cable()) {
-      const double gap = signed_d - cable_.radius;
-      if (gap <= -law_.normal.tolerance) deepest = std::max(deepest, -gap);
+      const double gap = d - cable_.radius;
+      if (gap <= -law_.normal.tolerance) note(-gap, out);
       continue;
     }
-    if (n.four.distance < 0.5 * law_.normal.tolerance) deepest = std::max(deepest, 0.0);
-    if (!self_ && signed_d < 0.0 && n.four.distance > kRounding * law_.normal.tolerance)
-      deepest = std::max(deepest, n.four.distance);
+    if (n.four.distance < 0.5 * law_.normal.tolerance) note(0.0, out);
+    if (!self_ && d < 0.0 && n.four.distance > kRounding * law_.normal.tolerance)
+      note(n.four.distance, out);
   }
   return deepest;
 }

@@ -74,10 +74,11 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   [[nodiscard]] bool of_cable() const { return points_.radius > 0.0; }
   /// Of each point [m]. @param X  See the constructor.
   [[nodiscard]] std::vector<double> gaps(const std::vector<Vec3>& X) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
   [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
                                                               const double* history) const override;
-  [[nodiscard]] double overlap(const NodeStep& instant) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
  private:
   /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its

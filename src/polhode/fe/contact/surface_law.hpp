@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <polhode/assembly/node_step.hpp>
@@ -42,19 +43,28 @@ struct SurfacePointReport {
   double pressure = 0.0;                               ///< [Pa]
 };
 
+/// How a surface lies in what it may touch.
+struct SurfaceOverlap {
+  double depth = 0.0;       ///< [m]; 0: they touch.
+  Vec3 out = Vec3::Zero();  ///< Unit, world: where the surface goes to leave; zero if not known.
+};
+
 /// The surface of a solid that touches something: what is told of it.
 class TouchingSurface {
  public:
   virtual ~TouchingSurface() = default;
   [[nodiscard]] virtual const SurfaceLaw& law() const = 0;
   [[nodiscard]] virtual std::size_t places() const = 0;  ///< Points or edges that may touch.
+  /// Begins anew where nodes stand at an instant before the first step, if that is not where they
+  /// were built.
+  virtual void begin_at(const NodeStep& instant, double* history) const = 0;
   [[nodiscard]] virtual SurfaceReport report(const double* history) const = 0;
   /// Points that acted in the last step, where they are at its end.
   [[nodiscard]] virtual std::vector<SurfacePointReport> point_reports(
       const NodeStep& instant, const double* history) const = 0;
-  /// How deep it is at an instant in what it touches, beyond what its law lets pass [m]; negative
-  /// if it is not.
-  [[nodiscard]] virtual double overlap(const NodeStep& instant) const = 0;
+  /// Where it is deepest at an instant in what it touches, if that is beyond what its law lets
+  /// pass. What is far from any surface may not be found, see SolidInside.
+  [[nodiscard]] virtual std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const = 0;
 };
 
 }  // namespace polhode

@@ -79,11 +79,19 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
   return most;
 }
 
-double SurfaceContact::overlap(const NodeStep& instant) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size(); ++i)
-    least = std::min(least, distance(local(instant.x_n1, i), least, true));
-  return least > -law_.normal.tolerance ? -1.0 : -least;
+std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) const {
+  double least = -law_.normal.tolerance;
+  int deepest = -1;
+  for (int i = 0; i < size(); ++i) {
+    const double d = distance(local(instant.x_n1, i), least, true);
+    if (!(d < least)) continue;
+    least = d;
+    deepest = i;
+  }
+  if (deepest < 0) return {};
+  const GapQuestion question{.law = law_.normal, .sided = true};
+  const Vec3 normal = gap(local(instant.x_n1, deepest), question).normal;
+  return SurfaceOverlap{-least, axes(instant.x_n1) * normal.normalized()};
 }
 
 SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
@@ -129,6 +137,13 @@ void SurfaceContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] =
       gap_at_start_;
+}
+
+void SurfaceContact::begin_at(const NodeStep& instant, double* history) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size(); ++i)
+    least = std::min(least, distance(local(instant.x_n1, i), least, true));
+  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] = least;
 }
 
 void SurfaceContact::commit(const NodeStep& step, double* history,
