@@ -94,47 +94,44 @@ TriangleTree::Hit TriangleTree::nearest(const Vec3& x, double at_most) const {
   return hit;
 }
 
-std::vector<int> TriangleTree::near(const Vec3& x, double distance) const {
-  std::vector<int> found;
+template <class Meets, class Use>
+void TriangleTree::visit(Meets&& meets, Use&& use) const {
   std::array<int, kDeepest> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
     const int index = stack[--depth];
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (node.squared_distance(x) > distance * distance) continue;
+    if (!meets(node)) continue;
     if (node.second_child > 0) {
       stack[depth++] = node.second_child;
       stack[depth++] = index + 1;
       continue;
     }
-    const auto first = order_.begin() + node.first;
-    found.insert(found.end(), first, first + node.count);
+    for (int k = node.first; k < node.first + node.count; ++k)
+      use(order_[static_cast<std::size_t>(k)]);
   }
+}
+
+std::vector<int> TriangleTree::near(const Vec3& x, double distance) const {
+  std::vector<int> found;
+  visit([&](const Node& node) { return node.squared_distance(x) <= distance * distance; },
+        [&](int t) { found.push_back(t); });
   return found;
 }
 
 int TriangleTree::winding(const Vec3& x) const {
   int around = 0;
-  std::array<int, kDeepest> stack;
-  std::size_t depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const int index = stack[--depth];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    const Eigen::Array3d enters = (node.low - x).array() / kAnyRay.array(),
-                         leaves = (node.high - x).array() / kAnyRay.array();
-    if (leaves.minCoeff() < std::max(0.0, enters.maxCoeff())) continue;
-    if (node.second_child > 0) {
-      stack[depth++] = node.second_child;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (int k = node.first; k < node.first + node.count; ++k) {
-      const auto& c = triangles_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
-      around += crossing(kAnyRay, c[0] - x, c[1] - x, c[2] - x);
-    }
-  }
+  visit(
+      [&](const Node& node) {
+        const Eigen::Array3d enters = (node.low - x).array() / kAnyRay.array(),
+                             leaves = (node.high - x).array() / kAnyRay.array();
+        return leaves.minCoeff() >= std::max(0.0, enters.maxCoeff());
+      },
+      [&](int t) {
+        const auto& c = triangles_[static_cast<std::size_t>(t)];
+        around += crossing(kAnyRay, c[0] - x, c[1] - x, c[2] - x);
+      });
   return around;
 }
 

@@ -44,6 +44,9 @@ class TriangleTree {
     }
   };
   void build(const std::vector<Vec3>& middles, int first, int last);
+  /// Calls use(triangle) for those in leaves that, like all around them, fulfil meets(node).
+  template <class Meets, class Use>
+  void visit(Meets&& meets, Use&& use) const;
 
   std::vector<std::array<Vec3, 3>> triangles_;
   std::vector<int> order_;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <numeric>
 
 #include <polhode/fe/contact/surface_law.hpp>
@@ -33,6 +32,8 @@ class Parts {
     const int bodies = system.body_count(), solids = static_cast<int>(map.solids.size());
     part_.resize(static_cast<std::size_t>(bodies + solids));
     std::iota(part_.begin(), part_.end(), 0);
+    members_.resize(part_.size());
+    for (const int k : part_) members_[static_cast<std::size_t>(k)] = {k};
     mass_.assign(part_.size(), 0.0);
     held_.assign(part_.size(), false);
     for (int b = 0; b < bodies; ++b)
@@ -41,7 +42,6 @@ class Parts {
   }
 
   [[nodiscard]] int number_of_solid(int solid) const { return system_.body_count() + solid; }
-  [[nodiscard]] int count() const { return static_cast<int>(part_.size()); }
 
   /// Moves two apart by some way along the unit vector in which the first goes, if one of them may.
   /// @param direction  Zero: not known.
@@ -73,7 +73,12 @@ class Parts {
   void join(int a, int b) {
     const int to = std::min(part(a), part(b)), from = std::max(part(a), part(b));
     if (to == from) return;
-    std::replace(part_.begin(), part_.end(), from, to);
+    std::vector<int>& joined = members_[static_cast<std::size_t>(from)];
+    for (const int k : joined) {
+      part_[static_cast<std::size_t>(k)] = to;
+      members_[static_cast<std::size_t>(to)].push_back(k);
+    }
+    joined.clear();
     mass_[static_cast<std::size_t>(to)] += mass_[static_cast<std::size_t>(from)];
     if (held_[static_cast<std::size_t>(from)]) hold(to);
   }
@@ -87,8 +92,7 @@ class Parts {
 
   void move(int number, const Vec3& way, State& state) const {
     if (mobility(number) == 0.0) return;
-    for (int k = 0; k < count(); ++k) {
-      if (part(k) != part(number)) continue;
+    for (const int k : members_[static_cast<std::size_t>(part(number))]) {
       if (k < system_.body_count()) {
         BodyMotion m = system_.motion(state, k);
         m.r += way;
@@ -103,7 +107,9 @@ class Parts {
 
   const System& system_;
   const SystemMap& map_;
-  std::vector<int> part_;  ///< The least number of a part.
+  std::vector<int> part_;  ///< By number: the least one of its part.
+  // By part.
+  std::vector<std::vector<int>> members_;
   std::vector<double> mass_;
   std::vector<bool> held_;
 };
