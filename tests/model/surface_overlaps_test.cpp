@@ -70,6 +70,18 @@ TEST(SurfaceOverlaps, FindBodiesOfAnyShapeWithinASolid) {
   EXPECT_THAT(complaint(model_of(body("{sphere: 0.1}"))), HasSubstr("thing in block by 0.4 m"));
 }
 
+/// What is not in the solid though its box, or its mirror image, is.
+TEST(SurfaceOverlaps, LeaveWhatIsBesideASolid) {
+  EXPECT_EQ(
+      complaint(model_of(body("{hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}}",
+                              "[-0.9, -0.9, -0.9]"))),
+      "");
+  EXPECT_EQ(complaint(model_of(
+                body("{cone: [2, 2]}", "[1.3, 0, 0.8], orientation: {axis: x, angle: 180 deg}"))),
+            "")
+      << "upside down: wide above the block only";
+}
+
 TEST(SurfaceOverlaps, FindWhatPiercesASolidBetweenItsNodes) {
   // A rod whose ends are outside and which no node of the block is in.
   EXPECT_THAT(complaint(model_of(body("{box: [3, 0.02, 0.02]}", "[0, 0.1, 0.13]"))),

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -29,7 +30,9 @@ constexpr double kFree = 2.0;
 /// Where a shape is looked at: balls of its rounding about these points are all within it.
 std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
   std::vector<Vec3> list = shape.corners;
-  if (shape.solid != contact::Solid::surface) list.push_back(shape.bound_centre);
+  if (shape.solid == contact::Solid::polyhedron)
+    list.push_back(std::accumulate(list.begin(), list.end(), Vec3(Vec3::Zero())) /
+                   static_cast<double>(list.size()));
   for (const contact::Shape::Edge& edge : shape.edges) {
     const Vec3 &p = shape.corners[static_cast<std::size_t>(edge.i)],
                &q = shape.corners[static_cast<std::size_t>(edge.j)];
@@ -37,9 +40,11 @@ std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
     for (int k = 1; k < parts; ++k) list.emplace_back(p + (q - p) * k / parts);
   }
   if (!shape.round()) return list;
+  const double beside = shape.solid == contact::Solid::cone ? 0.5 : 1.0;  // at mid height
   for (int k = 0; k < 3; ++k)
-    for (const double sign : {-1.0, 1.0})
-      list.emplace_back(shape.centre + sign * shape.half[k] * shape.axes.col(k));
+    for (const double sign : {-1.0, 0.0, 1.0})
+      list.emplace_back(shape.centre +
+                        sign * (k < 2 ? beside : 1.0) * shape.half[k] * shape.axes.col(k));
   return list;
 }
 
