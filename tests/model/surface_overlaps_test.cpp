@@ -70,6 +70,26 @@ TEST(SurfaceOverlaps, FindBodiesOfAnyShapeWithinASolid) {
   EXPECT_THAT(complaint(model_of(body("{sphere: 0.1}"))), HasSubstr("thing in block by 0.4 m"));
 }
 
+TEST(SurfaceOverlaps, FindWhatIsWithinABodyOfAnyShape) {
+  const std::string within[] = {
+      "  small: {mass: 1, inertia: [1, 1, 1], position: [0.05, 0.1, 0.1], shape: {sphere: 0.1}}\n",
+      "  small: {mass: 1, inertia: [1, 1, 1], position: [0.05, 0.1, 0.1], shape: {box: [0.1, 0.1, "
+      "0.1]}}\n",
+      "  post: {fixed: true}\ncables:\n  rope: {through: [[post, [0, -0.2, 0]], [post, [0, 0.2, "
+      "0]]],"
+      " stiffness: 10 kN, mass_per_length: 0.5, elements: 4, contact: {radius: 5 mm}}\n"};
+  for (const char* shape :
+       {"{sphere: 2}", "{capsule: [2, 4]}", "{box: [2, 2, 2]}", "{cylinder: [2, 2]}",
+        "{cone: [4, 4]}", "{ellipsoid: [2, 3, 4]}", "{plane: z, position: [0, 0, 5]}",
+        "{hull: {points: [[-2, -2, -2], [6, -2, -2], [-2, 6, -2], [-2, -2, 6]]}}"})
+    for (const std::string& one : within)
+      EXPECT_THAT(complaint(model_of(
+                      "bodies:\n  big: {fixed: true, shape: " + std::string(shape) + "}\n" + one,
+                      "contacts: {}", "contact: {touches: false}")),
+                  testing::ContainsRegex("('big' in 'small'|rope in big) by"))
+          << shape << one;
+}
+
 /// What is not in the solid though its box, or its mirror image, is.
 TEST(SurfaceOverlaps, LeaveWhatIsBesideASolid) {
   EXPECT_EQ(
