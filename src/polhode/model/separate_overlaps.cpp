@@ -119,21 +119,19 @@ class Separation {
   Separation(const Model& model, const System& system, const SystemMap& map, State& state)
       : model_(model), system_(system), map_(map), state_(state), parts_(system, map) {}
 
-  int run() {
-    const bool shapes = map_.contacts != nullptr, surfaces = !map_.contact.surfaces.empty();
-    int rounds = 0;
+  void run() {
+    const bool surfaces = !map_.contact.surfaces.empty();
+    bool moved = false;
     for (int k = 0; k < kMostSurfaceRounds; ++k) {
-      const int by_shapes = shapes ? part_shapes() : 0;
-      const bool by_surfaces = surfaces && part_surfaces();
-      rounds += by_shapes + (by_surfaces ? 1 : 0);
-      if (!by_surfaces) break;
+      if (map_.contacts) moved = part_shapes() || moved;
+      if (!surfaces || !part_surfaces()) break;
+      moved = true;
     }
-    if (rounds > 0) begin_surfaces();
-    return rounds;
+    if (moved) begin_surfaces();
   }
 
  private:
-  int part_shapes() {
+  bool part_shapes() {
     int rounds = 0;
     for (bool moved = true; moved && rounds < kMostRounds; rounds += moved ? 1 : 0) {
       moved = false;
@@ -145,7 +143,7 @@ class Separation {
       }
     }
     if (rounds > 0) bond_nodes(system_, state_);
-    return rounds;
+    return rounds > 0;
   }
 
   bool part_surfaces() {
@@ -187,23 +185,22 @@ std::vector<std::string> overlaps_at(const System& system, contact::ContactSet& 
   return contacts.overlaps(instants_of(system, state));
 }
 
-SeparationReport separate_overlaps(const Model& model, const System& system, const SystemMap& map,
-                                   State& state) {
+std::vector<StartMove> separate_overlaps(const Model& model, const System& system,
+                                         const SystemMap& map, State& state) {
   const State before = state;
-  SeparationReport report;
-  report.rounds = Separation(model, system, map, state).run();
+  Separation(model, system, map, state).run();
+  std::vector<StartMove> moves;
   for (int b = 0; b < system.body_count(); ++b) {
     const double way = (system.motion(state, b).r - system.motion(before, b).r).norm();
-    if (way > 0.0)
-      report.moves.emplace_back(system.bodies()[static_cast<std::size_t>(b)].name, way);
+    if (way > 0.0) moves.push_back({system.bodies()[static_cast<std::size_t>(b)].name, way});
   }
   for (std::size_t s = 0; s < map.solids.size(); ++s) {
     const int node = map.solids[s].first_node;
     const double way =
         (NodeStep::at(state.node_x.data(), node) - NodeStep::at(before.node_x.data(), node)).norm();
-    if (way > 0.0) report.moves.emplace_back(model.solids[s].name, way);
+    if (way > 0.0) moves.push_back({model.solids[s].name, way});
   }
-  return report;
+  return moves;
 }
 
 }  // namespace polhode

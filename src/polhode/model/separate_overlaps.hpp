@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <polhode/contact/contact_set.hpp>
@@ -10,10 +9,10 @@
 
 namespace polhode {
 
-/// What separate_overlaps() did.
-struct SeparationReport {
-  std::vector<std::pair<std::string, double>> moves;  ///< Bodies and solids that moved [m].
-  int rounds = 0;
+/// A body or solid that separate_overlaps() moved.
+struct StartMove {
+  std::string name;
+  double distance = 0.0;  ///< [m]
 };
 
 /// Names of the shapes that overlap at a state by more than their tolerance: "'a' in 'b' by 1 m".
@@ -27,7 +26,7 @@ struct SeparationReport {
 /// and what they are bonded to move as one; what is held, by bonds to the ground or prescribed
 /// nodes, and cables stay where they are. Ends after so many rounds even if something still
 /// overlaps.
-SeparationReport separate_overlaps(const Model& model, const System& system, const SystemMap& map,
-                                   State& state);
+std::vector<StartMove> separate_overlaps(const Model& model, const System& system,
+                                         const SystemMap& map, State& state);
 
 }  // namespace polhode

@@ -212,8 +212,7 @@ struct Simulation::Impl {
   }
 
   void move_apart() {
-    const SeparationReport moved = separate_overlaps(model, system, map, state);
-    for (const auto& [name, distance] : moved.moves)
+    for (const auto& [name, distance] : separate_overlaps(model, system, map, state))
       narration +=
           format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n", name, distance);
   }
