@@ -1,0 +1,271 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs models at their step and at parts of it, and tells whether the answers converge, and to what is known.
+
+    tools/refine.py                       every case of tests/refinement
+    tools/refine.py ball_on_floor stops   the cases whose names begin so
+    tools/refine.py --model my.yaml --step "2 ms" --span "0.5 s" --steps 1,1/2,1/5
+                                          a model of yours: its differences and observed orders
+
+Needs nothing but Python; POLHODE=path/to/polhode says which program runs. The exit code is 1 if a case fails.
+"""
+import argparse
+import concurrent.futures
+import csv
+import fractions
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "tests" / "refinement")]
+sys.dont_write_bytecode = True
+from case import Case  # noqa: E402
+from support import program  # noqa: E402
+
+SAMPLES = 200
+ALLOWANCE = 3  # A difference may be this times what the order asks: the phase of an impact within its step is a matter of chance.
+# What a column is tells how it is compared. Accelerations, points and numbers of points jump with an impact: not at all.
+PLACES = ("x", "y", "z", "rx", "ry", "rz", "ux", "uy", "uz", "length", "angle", "impulse", "lost", "energy")
+SPEEDS = ("vx", "vy", "vz", "rate x", "rate y", "rate z", "rate rx", "rate ry", "rate rz", "rate")
+FORCES = ("fx", "fy", "fz", "mx", "my", "mz", "normal", "ftx", "fty", "ftz", "tension")
+
+
+class Run:
+    """One run: how it ended, its figures, the tables of its probes."""
+
+    def __init__(self, model, settings, step, span, probes=None):
+        self.step, self.span, self._tables = step, span, {}
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            if isinstance(model, dict):
+                path = folder / "model.json"
+                path.write_text(json.dumps(model))
+            else:
+                path = ROOT / model
+            sets = {**settings, "analysis.step": f"{step!r} s", "analysis.duration": f"{span!r} s", "output.hdf5": "false",
+                    "output.every": f"{step!r} s"}
+            sets.update({f"output.probes.{name}.every": f"{step!r} s" for name in probes or ()})
+            words = [word for key, value in sets.items() for word in ("--set", f"{key}={value}")]
+            begin = time.perf_counter()
+            done = subprocess.run([program(), "run", str(path), "-o", str(folder / "out"), "--json", "--quiet", *words],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.seconds = time.perf_counter() - begin
+            try:
+                self.figures = json.loads(done.stdout)
+            except json.JSONDecodeError:
+                self.figures = {}
+            self.trouble = "" if done.returncode == 0 else \
+                f"exit code {done.returncode}: {self.figures.get('message') or done.stderr.strip()[:300]}"
+            for file in sorted((folder / "out" / "probes").glob("*.csv")):
+                with open(file, newline="") as lines:
+                    rows = list(csv.reader(lines))
+                columns = zip(*([float(cell) for cell in row] for row in rows[1:]))
+                self._tables[file.stem] = {head.split(" [")[0]: list(column) for head, column in zip(rows[0], columns)}
+
+    def names(self):
+        return sorted(self._tables)
+
+    def probe(self, name):
+        return self._tables[name]
+
+    def value(self, name, column, t):
+        table = self._tables[name]
+        return sampled(table["t"], table[column], [t])[0]
+
+
+def sampled(times, values, wanted):
+    """Values at the wanted times, on straight lines between the rows."""
+    found, i = [], 0
+    for t in wanted:
+        while i + 2 < len(times) and times[i + 1] < t:
+            i += 1
+        width = times[i + 1] - times[i] if i + 1 < len(times) else 0
+        part = min(1, max(0, (t - times[i]) / width)) if width > 0 else 0
+        found.append(values[i] + part * (values[i + 1] - values[i]) if width > 0 else values[i])
+    return found
+
+
+def impulse(times, forces):
+    """Sum of force times step: a row tells the force of the step that ends there."""
+    total, sums = 0.0, [0.0]
+    for t0, t1, f in zip(times, times[1:], forces[1:]):
+        total += f * (t1 - t0)
+        sums.append(total)
+    return sums
+
+
+def channels(run, skip, until):
+    """What of a run is compared: (probe, kind) to columns sampled at common times. Places by their largest difference,
+    speeds by the mean over time, for they jump; forces by their impulse."""
+    found = {}
+    for name in run.names():
+        table = run.probe(name)
+        end = min(until, run.span)
+        wanted = [end * i / SAMPLES for i in range(SAMPLES + 1)]
+        for kind, columns in (("places", PLACES), ("speeds", SPEEDS), ("impulses", FORCES)):
+            if name in skip or f"{name}.{kind}" in skip:
+                continue
+            of_kind = []
+            for column in columns:
+                if column in table and len(table["t"]) > 1:
+                    values = impulse(table["t"], table[column]) if kind == "impulses" else table[column]
+                    of_kind.append(sampled(table["t"], values, wanted))
+            if of_kind:
+                found[name, kind] = of_kind
+    return found
+
+
+def difference(kind, coarse, fine):
+    """Of two lists of columns, over the range of the finer ones."""
+    scale = max((max(map(abs, column)) if kind == "speeds" else max(column) - min(column)) for column in fine)
+    gaps = [[abs(a - b) for a, b in zip(c, f)] for c, f in zip(coarse, fine)]
+    size = max(sum(g) / len(g) for g in gaps) if kind == "speeds" else max(max(g) for g in gaps)
+    return (0.0 if size == 0 else math.inf) if scale == 0 else size / scale
+
+
+def compare(case, runs):
+    """A row for each channel: differences to the finest run, observed order, whether the case's order is kept."""
+    shortest = min([case.until] + [run.span for run in runs])
+    tables = [channels(run, case.skip, shortest) for run in runs]
+    finest = tables[-1]
+    sizes = {kind: 0.0 for _, kind in finest}
+    for (_, kind), columns in finest.items():
+        for column in columns:
+            sizes[kind] = max(sizes[kind], max(column) - min(column) if kind != "speeds" else max(map(abs, column)))
+    rows = []
+    for key, fine in finest.items():
+        kind = key[1]
+        own = max(max(c) - min(c) if kind != "speeds" else max(map(abs, c)) for c in fine)
+        if own < case.floor * sizes[kind] or own == 0:
+            continue  # What stands still has no range to compare with; the others and the known values see it move.
+        gaps = [difference(kind, table[key], fine) for table in tables[:-1]]
+        ratio = runs[-2].step / runs[0].step
+        observed = math.log(gaps[-1] / gaps[0]) / math.log(ratio) if len(gaps) > 1 and min(gaps[0], gaps[-1]) > 0 else math.nan
+        bound = max(case.floor, ALLOWANCE * gaps[0] * ratio**case.order)
+        good = all(gap <= max(case.floor, ALLOWANCE * gaps[0]) for gap in gaps) and gaps[-1] <= bound
+        rows.append((f"{key[0]} {key[1]}", gaps, observed, good))
+    return rows
+
+
+def run_variant(case, variant, steps, workers):
+    """All runs of one variant, coarse to fine."""
+    settings = {key: value for key, value in variant.settings.items()}
+    names = list(case.model["output"]["probes"]) if isinstance(case.model, dict) else None
+    if names is None:
+        names = Run(case.model, settings, case.step, case.step).names()
+    jobs = [(case.step * part, case.spans.get(part, case.span)) for part in steps]
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(lambda job: Run(case.model, settings, *job, probes=names), jobs))
+
+
+def judge(case, steps, workers=1):
+    """Runs a case; what failed, and everything as plain data."""
+    found = {"case": case.name, "steps": [case.step * part for part in steps], "variants": []}
+    failures = 0
+    for variant in case.variants:
+        runs = run_variant(case, variant, steps, workers)
+        troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs if run.trouble]
+        known = []
+        for item in variant.known:
+            values = []
+            for run in runs:
+                try:
+                    values.append(math.nan if run.trouble else item.read(run))
+                except (KeyError, IndexError, ValueError, ZeroDivisionError):
+                    values.append(math.nan)
+            good = [(v - item.value if item.below else abs(v - item.value)) <= item.allowed(run.step) for v, run in zip(values, runs)]
+            known.append({"what": item.what, "value": item.value, "ours": values, "good": good,
+                          "allowed": [item.allowed(run.step) for run in runs]})
+        rows = compare(case, runs) if case.compare and len(runs) > 1 and not troubles else []
+        failures += len(troubles) + sum(not all(k["good"]) for k in known) + sum(not row[3] for row in rows)
+        found["variants"].append({"label": variant.label, "troubles": troubles, "known": known,
+                                  "seconds": sum(run.seconds for run in runs),
+                                  "probes": [dict(zip(("what", "differences", "order", "good"), row)) for row in rows]})
+    found["failures"] = failures
+    return found
+
+
+def show(case, found, quiet=False):
+    verdict = "ok" if not found["failures"] else f"FAILED ({found['failures']})"
+    seconds = sum(v["seconds"] for v in found["variants"])
+    print(f"\n{case.name}: {verdict}, {seconds:.1f} s. {case.about}")
+    if case.because:
+        print("  " + (f"Until {case.until:g} s: " if math.isfinite(case.until) else "") + case.because)
+    print("  " + "step [s]".ljust(44) + "  ".join(f"{step:10.3g}" for step in found["steps"]))
+    for variant in found["variants"]:
+        if variant["label"]:
+            print(f"  -- {variant['label']}")
+        for trouble in variant["troubles"]:
+            print(f"  {trouble}  FAILED")
+        for k in variant["known"]:
+            if quiet and all(k["good"]):
+                continue
+            cells = "  ".join(f"{v:10.6g}" for v in k["ours"])
+            print(f"  {k['what'][:42].ljust(44)}{cells}  known {k['value']:.6g} within {k['allowed'][0]:.1g} to {k['allowed'][-1]:.1g}"
+                  + ("" if all(k["good"]) else "  FAILED at " + ", ".join(f"{s:g}" for s, g in zip(found["steps"], k["good"]) if not g)))
+        for row in variant["probes"]:
+            if quiet and row["good"]:
+                continue
+            cells = "  ".join(f"{gap:10.2e}" for gap in row["differences"])
+            print(f"  {row['what'][:42].ljust(44)}{cells}  {'order':>10} {row['order']:.1f}" + ("" if row["good"] else f"  FAILED, asked {case.order:g}"))
+    sys.stdout.flush()
+
+
+def seconds_of(text):
+    value, _, unit = text.strip().partition(" ")
+    return float(value) * {"": 1, "s": 1, "ms": 1e-3, "us": 1e-6}[unit]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="beginnings of names; left out: all")
+    parser.add_argument("--model", help="a model file instead of the cases")
+    parser.add_argument("--step", default="1 ms", help="with --model: its step, such as '2 ms'")
+    parser.add_argument("--span", help="how long it runs, such as '0.5 s'")
+    parser.add_argument("--order", type=float, default=1, help="with --model: order that is asked")
+    parser.add_argument("--steps", help="parts of the step, such as 1,1/2,1/5,1/20,1/100")
+    parser.add_argument("--list", action="store_true", help="names of the cases, a line each")
+    parser.add_argument("--write", metavar="CASE", help="prints the model of a case")
+    parser.add_argument("--json", action="store_true", help="one JSON object a line for each case")
+    parser.add_argument("--failed", action="store_true", help="shows only what failed")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at once")
+    options = parser.parse_args()
+    if options.model:
+        cases = [Case(pathlib.Path(options.model).stem, "A model of yours.", str(pathlib.Path(options.model).resolve()),
+                      seconds_of(options.step), seconds_of(options.span or "1 s"), order=options.order)]
+    else:
+        from catalogue import CASES  # noqa: E402
+        cases = CASES
+    if options.list:
+        print("\n".join(case.name for case in cases))
+        return 0
+    if options.write:
+        print(json.dumps(next(case.model for case in cases if case.name == options.write), indent=1))
+        return 0
+    chosen = [case for case in cases if not options.cases or any(case.name.startswith(word) for word in options.cases)]
+    if not chosen:
+        parser.error(f"no case begins with {' or '.join(options.cases)}; --list names them")
+    failed = []
+    for case in chosen:
+        steps = tuple(float(fractions.Fraction(part)) for part in options.steps.split(",")) if options.steps else case.fractions
+        if options.span and not options.model:
+            case = Case(**{**vars(case), "span": seconds_of(options.span), "spans": {}})
+        found = judge(case, steps, options.jobs)
+        failed += [case.name] if found["failures"] else []
+        if options.json:
+            print(json.dumps(found))
+        else:
+            show(case, found, options.failed)
+    if len(chosen) > 1 and not options.json:
+        print(f"\n{len(chosen) - len(failed)} of {len(chosen)} cases hold." + (f" Failed: {', '.join(failed)}." if failed else ""))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
