@@ -9,7 +9,7 @@ sys.path.insert(0, str(HERE.parent))
 from support import Report, Run  # noqa: E402
 
 G, R, DT = 9.81, 0.05, 5e-3
-SURFACE = R + 1e-3 * R  # Where forces begin: gap_tolerance, 1e-3 of the ball.
+SURFACE = R  # Where forces begin.
 
 
 def heights(table):

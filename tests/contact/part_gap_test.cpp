@@ -82,6 +82,8 @@ TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
       least = std::min(least,
                        gap_at(0.2 - depth, field, {GapKind::part_triangle, 0, t, 1.0, Fade::none}));
     EXPECT_NEAR(least, -depth, 1e-12);
+    EXPECT_NEAR(gap_at(0.2 - depth, field, {GapKind::part_surface, 0, 0, 1.0, Fade::none}), -depth,
+                1e-12);
   }
 }
 
@@ -113,9 +115,9 @@ TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
       }
 }
 
-/// On a plane that is cut into triangles, edges and corners take back what triangles count twice.
-/// @tests{contact-sum-of-features}
-TEST(PartGap, SumsOverTrianglesOfAPlaneToThePlane) {
+/// On a plane that is cut into triangles a part has the gap of the plane.
+/// @tests{contact-one-gap}
+TEST(PartGap, HasOneGapOverTrianglesOfAPlane) {
   Random random(33);
   const Shape field = height_field("field", 15, 0.15, std::vector<double>(225, 0.0));
   NormalLaw law;
@@ -139,8 +141,7 @@ TEST(PartGap, SumsOverTrianglesOfAPlaneToThePlane) {
       near_feature_pairs(round.shape, field, at, ground, 1e-3, found);
       double sum = 0.0, expected = 0.0;
       for (const OrderedPair& p : found) {
-        if (p.swapped || p.pair.kind < GapKind::part_solid || p.pair.kind > GapKind::part_corner)
-          continue;
+        if (p.swapped || p.pair.kind != GapKind::part_surface) continue;
         sum += p.pair.weight * law.energy(gap(p.pair, round.shape, field, at, ground).distance);
       }
       for (int which = 0; which < parts; ++which) expected += law.energy(least(which));

@@ -44,7 +44,7 @@ struct Case {
     data.length = 0.2;
     data.history.bristle = 1e-4 * random.vector();
     data.history.normal = (n + 0.01 * random.vector()).normalized();
-    data.history.plastic = seed % 2 == 0;
+    data.end_share = seed % 2 == 0 ? 0.5 : 0.0;
   }
 };
 

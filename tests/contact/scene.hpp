@@ -269,7 +269,8 @@ inline double resting_gap(double stiffness, double tolerance, double load) {
   contact::NormalLaw law;
   law.stiffness = stiffness;
   law.tolerance = tolerance;
-  double low = -tolerance * (1.0 - 1e-9), high = tolerance;
+  law.upper = 0.0;
+  double low = -tolerance * (1.0 - 1e-9), high = 0.0;
   for (int k = 0; k < 200; ++k) {
     const double middle = 0.5 * (low + high);
     (law.force(middle) > load ? low : high) = middle;

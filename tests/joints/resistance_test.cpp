@@ -145,8 +145,14 @@ TEST_P(EveryResistance, HasTheTangentsOfItsStops) {
             joint.initialize(s, m.history.data());
             return 0;
           });
-          m.history[0] = names.back() == "rz" ? c.value[names.size() - 1] : 0.0;
-          if (names.back() != "rz") m.history[5] = e == 0.0 ? 1.0 : 0.0;
+          const bool turns = names.back() == "rz";
+          if (turns) m.history[0] = c.value[names.size() - 1];
+          std::size_t at = turns ? 5 : 4;  // after the angle and the bristle
+          for (std::size_t k = 0; k < names.size(); ++k, at += kStopMemory) {
+            m.history[at + 3] = 2.0;                            // stiffness
+            m.history[at + 4] = 2.0, m.history[at + 5] = -2.0;  // band
+            m.history[at + 6] = 1.0;                            // closed at the lower end
+          }
           expect_tangents(joint, m);
         }
 }

@@ -67,6 +67,40 @@ analysis: {duration: 2 s, step: 5 ms}
   EXPECT_LT(summary.angular_momentum_drift, 1e-12);
 }
 
+/// A smallest gap that lies before the restart is told after it.
+TEST(NonsmoothContacts, TellTheLeastGapAcrossARestart) {
+  const auto model = [](const char* duration) {
+    return model_of(std::string(kBodies) + R"(
+contacts: {default: {restitution: 1}}
+analysis: {step: 2 ms, duration: )" +
+                    duration + "}\n");
+  };
+  Simulation whole(model("0.6 s")), first(model("0.5 s"));
+  ASSERT_EQ(whole.run().end, RunEnd::finished);
+  ASSERT_EQ(first.run().end, RunEnd::finished);
+  const double least = whole.summary().contacts->least_gap;
+  EXPECT_LT(least, 0.0);
+  EXPECT_EQ(first.summary().contacts->least_gap, least);
+  Simulation second(model("0.6 s"), first.state());
+  ASSERT_EQ(second.run().end, RunEnd::finished);
+  EXPECT_EQ(second.summary().contacts->least_gap, least);
+}
+
+TEST(NonsmoothContacts, WarnOfStepsThatDidNotConverge) {
+  Simulation run(model_of(R"(
+bodies:
+  floor: {fixed: true, shape: {plane: z}}
+  a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}
+  b: {shape: {box: [0.2, 0.2, 0.2]}, mass: 100, position: [0, 0, 0.3]}
+contacts: {default: {law: nonsmooth}, sweeps: 1}
+analysis: {duration: 20 ms, step: 5 ms}
+)"));
+  const RunSummary summary = run.run();
+  ASSERT_EQ(summary.end, RunEnd::finished);
+  ASSERT_EQ(summary.warnings.size(), 1u);
+  EXPECT_NE(summary.warnings[0].find("Raise contacts.sweeps"), std::string::npos);
+}
+
 /// Forces, a spring with a damper between two bodies and one to the ground: where nothing touches,
 /// the step is that of the other engines.
 TEST(NonsmoothContacts, MoveBodiesUnderLoadsAsOtherLawsDo) {

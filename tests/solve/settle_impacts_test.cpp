@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <polhode/solve/settle_impacts.hpp>
-#include <polhode/solve/share_impulses.hpp>
 
 #include "contact/scene.hpp"
 #include "support/random_steps.hpp"
@@ -17,7 +16,7 @@ using namespace test;
 class Stated final : public MovingContacts {
  public:
   std::vector<PairImpact> list;
-  std::vector<double> impulses, losses;
+  std::vector<SettledImpact> done;
 
   void prepare(const System&) override {}
   bool begin_step(const State&, std::span<const BodyStep>, const StepContext&) override {
@@ -32,12 +31,12 @@ class Stated final : public MovingContacts {
   double stored(const State&, std::span<const BodyStep>) override { return 0.0; }
   Work commit(State&, std::span<const BodyStep>, const StepContext&) override { return {}; }
   bool touched() const override { return true; }
-  void impacts(State&, std::vector<PairImpact>& rows) override {
+  Work impacts(State&, std::vector<PairImpact>& rows) override {
     rows.insert(rows.end(), list.begin(), list.end());
+    return {};
   }
-  void settled(std::span<const double> p, std::span<const double> lost) override {
-    impulses.assign(p.begin(), p.end());
-    losses.assign(lost.begin(), lost.end());
+  void settled(std::span<const SettledImpact> impacts) override {
+    done.assign(impacts.begin(), impacts.end());
   }
   std::string tightest() const override { return {}; }
 
@@ -106,10 +105,10 @@ struct Tumbling {
   }
 };
 
-// @tests{exit-law} @tests{solid-impulse}
+// @tests{turn-law} @tests{impact-friction} @tests{solid-impulse}
 TEST(SettleImpacts, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
   for (const bool joint : {false, true})
-    for (const double part : {0.0, 0.5, 0.9}) {
+    for (const auto& [part, mu] : {std::pair(0.0, 0.0), {0.5, 0.0}, {0.9, 0.0}, {0.5, 0.2}}) {
       Tumbling t(joint);
       Stated contacts;
       contacts.list = {t.impact(t.a, t.b, {-0.4, 0.0, 0.1}, Vec3(1.0, 0.3, -0.2).normalized()),
@@ -120,6 +119,14 @@ TEST(SettleImpacts, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
           r.impact.on_b *= -1.0;
         }
         r.impact.wanted = part * t.speed(r);
+        r.impact.given = 10.0;
+        if (mu > 0.0) {
+          r.impact.given = 0.5;
+          r.impact.mu = r.impact.mu_across = mu;
+          const Vec3 n = r.impact.on_a.head<3>();
+          r.impact.along = n.unitOrthogonal();
+          r.impact.across = n.cross(r.impact.along);
+        }
       }
       const Balance before = t.s.balance();
       const std::vector<Vec3> p_before = t.node_momenta();
@@ -129,19 +136,20 @@ TEST(SettleImpacts, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
       const Balance after = t.s.balance();
       EXPECT_LT((after.linear_momentum - before.linear_momentum).norm(), 1e-12);
       EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-12);
-      ASSERT_EQ(contacts.losses.size(), 2u);
-      const double lost = contacts.losses[0] + contacts.losses[1];
-      EXPECT_GT(lost, 1e-3);
-      EXPECT_NEAR(before.kinetic - after.kinetic, lost, 1e-12 * before.kinetic) << joint;
-      EXPECT_LT(contacts.impulses[0] + contacts.impulses[1], -0.01);
+      ASSERT_EQ(contacts.done.size(), 2u);
+      double lost = 0.0;
       for (std::size_t k = 0; k < 2; ++k) {
-        const double speed = t.speed(contacts.list[k]), wanted = contacts.list[k].impact.wanted;
-        if (contacts.impulses[k] < 0.0) {
-          EXPECT_NEAR(speed, wanted, 1e-12);
-        } else {  // the other one has slowed it by more
-          EXPECT_LE(speed, wanted + 1e-12);
+        const SettledImpact& done = contacts.done[k];
+        lost += done.normal_loss + done.friction_loss;
+        const double given = contacts.list[k].impact.given;
+        EXPECT_GE(done.normal, -given);
+        EXPECT_LE(done.friction.norm(), mu * (given + done.normal) + 1e-12);
+        if (done.normal > -given) {
+          EXPECT_NEAR(t.speed(contacts.list[k]), contacts.list[k].impact.wanted, 1e-11);
         }
       }
+      EXPECT_GT(lost, 1e-3);
+      EXPECT_NEAR(before.kinetic - after.kinetic, lost, 1e-12 * before.kinetic) << joint;
       EXPECT_LT(t.s.parting(), 1e-12);
       const std::vector<Vec3> p_after = t.node_momenta();
       for (std::size_t i = 0; i < p_after.size(); ++i)
@@ -163,38 +171,16 @@ TEST(SettleImpacts, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
   r.bodies = {a, kGround};
   r.impact.on_a << 1.0, 0.0, 0.0, 0.0, 0.0, 0.0;
   r.impact.wanted = 0.25;
+  r.impact.given = 1e6;
   contacts.list = {r};
   SettleImpacts settle(s.system);
   settle.find(s.state, contacts);
   settle.settle(s.state);
-  EXPECT_NEAR(contacts.impulses[0], -0.75 * (1.0 + mass), 1e-12);
-  EXPECT_NEAR(contacts.losses[0], 0.5 * (1.0 + mass) * (1.0 - 0.25 * 0.25), 1e-12);
+  EXPECT_NEAR(contacts.done[0].normal, -0.75 * (1.0 + mass), 1e-12);
+  EXPECT_NEAR(contacts.done[0].normal_loss, 0.5 * (1.0 + mass) * (1.0 - 0.25 * 0.25), 1e-12);
   EXPECT_NEAR(s.motion(a).v.x(), 0.25, 1e-14);
   for (int i = 0; i < s.system.nodes().count(); ++i)
     EXPECT_NEAR(s.state.node_v[3 * static_cast<std::size_t>(i)], 0.25, 1e-14);
-}
-
-TEST(ShareImpulses, TakesSpeedOnlyAndNeverGainsEnergy) {
-  Random random(2);
-  for (int k = 0; k < 200; ++k) {
-    const int n = 1 + k % 5;
-    Mat J(n, 4);  // more rows than velocities now and then
-    Vec before(n), wanted(n);
-    for (int i = 0; i < n; ++i) {
-      for (int c = 0; c < 4; ++c) J(i, c) = random.number();
-      before[i] = 0.55 + random.number(0.45);
-      wanted[i] = (0.5 + random.number(0.5)) * before[i];
-    }
-    const Mat A = J * J.transpose();
-    const SharedImpulses shared = share_impulses(A, before, wanted);
-    EXPECT_GE(shared.energy_lost, 0.0) << k;
-    EXPECT_LE(shared.impulses.maxCoeff(), 1e-8) << k;
-    EXPECT_NEAR(shared.energy_lost, -shared.impulses.dot(before + 0.5 * A * shared.impulses),
-                1e-14);
-    if (n == 1) {
-      EXPECT_NEAR(before[0] + A(0, 0) * shared.impulses[0], wanted[0], 1e-12);
-    }
-  }
 }
 
 }  // namespace

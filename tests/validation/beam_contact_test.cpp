@@ -80,7 +80,7 @@ TEST(BeamContact, CrossingRodsKeepEnergyAndMomenta) {
 
 /// The same with a rebound of less and a mass that is partly consistent: an impulse on one node
 /// moves its neighbours, too.
-// @tests{exit-law}
+// @tests{turn-law}
 TEST(BeamContact, RodsOfConsistentMassReboundWithoutGainingEnergyOrMomentum) {
   std::string text = kCrossing;
   const auto set = [&](const std::string& from, const std::string& to) {

@@ -65,10 +65,18 @@ struct Work {
   }
 };
 
-/// A relative velocity J v that jumps at the end of a step: an impact that ended in it.
+/// A relative velocity J v of an impact at the end of a step, where velocities may jump.
+/// @eq{turn-law} @eq{impact-friction}
 struct Impact {
-  Vec6 on_a, on_b;      ///< J, by (v, ω) of a and b, world.
-  double wanted = 0.0;  ///< J v afterwards.
+  Vec6 on_a, on_b;         ///< J, by (v, ω) of a and b, world.
+  double wanted = 0.0;     ///< J v afterwards.
+  double given = 0.0;      ///< Normal impulse of the step; no more than this is taken back [N s].
+  double mu = 0.0;         ///< Coefficient of friction, along `along` if it depends on direction.
+  double mu_across = 0.0;  ///< Across `along` [-].
+  Vec3 along = Vec3::Zero(), across = Vec3::Zero();  ///< Tangents, unit; zero without friction.
+  Vec3 rubbed =
+      Vec3::Zero();  ///< Impulse of friction on a in the step, part of what mu bounds [N s].
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass [m].
 };
 
 /// Which bodies an interaction acts on; kGround for none. Single-body loads use b alone.

@@ -18,6 +18,14 @@ struct PairImpact {
   Impact impact;
 };
 
+/// What the impulse of an impact did.
+struct SettledImpact {
+  double normal = 0.0;           ///< Along J [N s].
+  Vec3 friction = Vec3::Zero();  ///< On a, world [N s].
+  double normal_loss = 0.0;      ///< Energy it took [J].
+  double friction_loss = 0.0;    ///< [J]
+};
+
 /// Forces between bodies that meet and part: which pairs of bodies they couple changes during a
 /// run. Their memory is State::contacts. Steps are given by body, the ground last.
 class MovingContacts {
@@ -48,12 +56,12 @@ class MovingContacts {
                       const StepContext& context) = 0;
   /// Something acted in the step that was committed last.
   [[nodiscard]] virtual bool touched() const = 0;
-  /// The state has moved to t_{n+1}: appends the impacts that ended in the step. What they remember
-  /// goes into the state.
-  virtual void impacts(State& state, std::vector<PairImpact>& list) = 0;
-  /// They have been settled. @param impulses  Along each [N s]. @param losses  Energy each took
-  /// [J].
-  virtual void settled(std::span<const double> impulses, std::span<const double> losses) = 0;
+  /// Impacts that go on in the step or end in it, appended to the list, the state having moved to
+  /// t_{n+1}. Their memory goes into the state.
+  /// @returns the change of the stored energy, and what was dissipated by it.
+  virtual Work impacts(State& state, std::vector<PairImpact>& list) = 0;
+  /// Their impulses, in the order of the list.
+  virtual void settled(std::span<const SettledImpact> impacts) = 0;
   /// Where a step that cannot be solved is tightest: "box 'a' on 'floor'"; may be empty.
   [[nodiscard]] virtual std::string tightest() const = 0;
 };

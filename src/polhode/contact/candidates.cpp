@@ -52,7 +52,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
   const Reference ground, &r_a = reference_of(a, ground), &r_b = reference_of(b, ground);
   const Placement<double> at_a(r_a.r, r_a.Lambda, 0), at_b(r_b.r, r_b.Lambda, 6);
   std::vector<OrderedPair> found;
-  near_feature_pairs(A, B, at_a, at_b, near, found);
+  near_feature_pairs(A, B, at_a, at_b, near, found, impulses_.has_value());
   for (const OrderedPair& f : found) {
     Point p = sample;
     if (f.swapped) std::swap(p.a, p.b);
@@ -62,6 +62,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
     p.key = {(static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint64_t>(b), f.key()};
     p.data.history = {};
     p.data.history.stiffness = p.data.normal.stiffness;
+    p.data.history.bristle_stiffness = p.data.friction.stiffness;
     p.may_be_plain = is_plain(p.data);
     points.push_back(p);
   }
@@ -102,7 +103,7 @@ void ContactSet::find_candidates(double dt) {
     (s.shape.bounded() ? bounded : unbounded).push_back(i);
     if (!s.shape.bounded()) continue;
     const Reference& step = reference_of(i, ground);
-    const double tolerance = std::max(widest, 1e-3 * s.shape.size);
+    const double tolerance = std::max(widest, 1e-3 * s.shape.detail);
     bounds_.push_back(bounds_of(s.shape, step.r, step.Lambda, margin(s) + tolerance));
   }
   broad_.find(bounds_, near_);
@@ -165,7 +166,6 @@ void ContactSet::find_candidates(double dt) {
                            [](const auto& entry, const auto& key) { return entry.first < key; });
       if (found == old.end() || found->first != wanted) continue;
       p.data.history = found->second->data.history;
-      p.data.rate_damping = found->second->data.rate_damping;
       complete_law(p, dt);
     }
   points_ = std::move(points);
@@ -193,7 +193,7 @@ bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& conte
     const double span = moved(body, s.r_n1, s.Lambda_n1) + ahead(body);
     references_[body].margin = std::max(references_[body].margin, 1.5 * span);
   }
-  find_candidates(context.dt);
+  find_candidates(longest_step_);
   open_or_close(steps, context);
   return !std::equal(
       before.begin(), before.end(), pairs_.begin(), pairs_.end(),

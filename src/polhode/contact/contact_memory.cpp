@@ -9,7 +9,7 @@ namespace polhode::contact {
 namespace {
 
 /// Numbers of a point in State::contacts, after those of the references.
-constexpr std::size_t kPointNumbers = 23, kImpulseNumbers = 11;
+constexpr std::size_t kPointNumbers = 26, kImpulseNumbers = 11;
 constexpr std::size_t kReferenceNumbers = 13;
 
 }  // namespace
@@ -18,6 +18,7 @@ void ContactSet::save(State& state) {
   std::vector<double>& out = state.contacts;
   out.assign(1, static_cast<double>(totals_.size()));
   out.insert(out.end(), totals_.begin(), totals_.end());
+  out.push_back(longest_step_);
   const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
   for (const Reference& r : references_) {
     put(r.r);
@@ -40,9 +41,9 @@ void ContactSet::save(State& state) {
     put(h.bristle);
     put(h.normal);
     put(h.rolling);
-    for (const double x :
-         {h.torsion, h.approach, h.stiffness, h.closed ? 1.0 : 0.0, h.plastic ? 1.0 : 0.0,
-          h.fresh ? 1.0 : 0.0, h.slips ? 1.0 : 0.0, p.data.rate_damping, h.gap})
+    for (const double x : {h.torsion, h.approach, h.restitution, h.stiffness, h.reach, h.floor,
+                           h.force, h.bristle_stiffness, h.closed ? 1.0 : 0.0,
+                           static_cast<double>(h.phase), h.slips ? 1.0 : 0.0, h.gap})
       out.push_back(x);
   }
   saved_ = out;
@@ -56,9 +57,12 @@ void ContactSet::load(const State& state) {
   loaded_ = true;
   saved_ = in;
   for (Reference& r : references_) r.margin = -1.0;
+  longest_step_ = 0.0;
   if (in.empty()) return;
   totals_ = totals_in(state);
-  const std::size_t head = 1 + totals_.size();
+  const std::size_t head = 2 + totals_.size();
+  if (in.size() < head) return;
+  longest_step_ = in[head - 1];
   const std::size_t references = head + kReferenceNumbers * references_.size();
   if (in.size() < references) return;
   for (std::size_t k = 0; k < references_.size(); ++k) {
@@ -88,13 +92,16 @@ void ContactSet::load(const State& state) {
     h.rolling = Eigen::Map<const Vec3>(x + 11);
     h.torsion = x[14];
     h.approach = x[15];
-    h.stiffness = x[16];
-    h.closed = x[17] != 0.0;
-    h.plastic = x[18] != 0.0;
-    h.fresh = x[19] != 0.0;
-    h.slips = x[20] != 0.0;
-    p.data.rate_damping = x[21];
-    h.gap = x[22];
+    h.restitution = x[16];
+    h.stiffness = x[17];
+    h.reach = x[18];
+    h.floor = x[19];
+    h.force = x[20];
+    h.bristle_stiffness = x[21];
+    h.closed = x[22] != 0.0;
+    h.phase = static_cast<ContactPhase>(static_cast<int>(x[23]));
+    h.slips = x[24] != 0.0;
+    h.gap = x[25];
     points_.push_back(p);
   }
 }
@@ -102,8 +109,10 @@ void ContactSet::load(const State& state) {
 void ContactSet::keep_totals(State& state, const std::vector<double>& totals) {
   totals_ = totals;
   if (state.contacts.size() <= totals.size()) return;  // nothing was saved yet
+  const auto before = static_cast<std::ptrdiff_t>(state.contacts[0]);
+  state.contacts.erase(state.contacts.begin() + 1, state.contacts.begin() + 1 + before);
   state.contacts[0] = static_cast<double>(totals.size());
-  std::copy(totals.begin(), totals.end(), state.contacts.begin() + 1);
+  state.contacts.insert(state.contacts.begin() + 1, totals.begin(), totals.end());
   saved_ = state.contacts;
 }
 

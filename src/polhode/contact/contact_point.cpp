@@ -47,6 +47,7 @@ Vec3 near_contact(const PointData& data, const BodyStep& a) {
     case GapKind::point_triangle:
     case GapKind::point_edge:
     case GapKind::point_corner:
+    case GapKind::point_surface:
       return a.r_n + a.Lambda_n * A.corners[data.pair.i];
     case GapKind::edge_edge: {
       const Shape::Edge& e = A.edges[data.pair.i];
@@ -57,6 +58,7 @@ Vec3 near_contact(const PointData& data, const BodyStep& a) {
     case GapKind::part_triangle:
     case GapKind::part_edge:
     case GapKind::part_corner:
+    case GapKind::part_surface:
     case GapKind::round_edge:
     case GapKind::round_round:
       break;
@@ -126,7 +128,7 @@ class Evaluation {
     w.moment_a = cross(arm - r_a_, w.force) + couple_;
     w.moment_b = -cross(arm - r_b_, w.force) - couple_;
     if (report) start_report(*report, g_0, g_1);
-    if (data_.friction.acts() && data_.friction_share > 0.0 && data_.pair.weight > 0.0)
+    if (data_.friction.acts() && !data_.history.in_impact() && data_.pair.weight > 0.0)
       add_friction(w, report);
     if (report) report->force = value(w.force);
     return w;
@@ -157,8 +159,14 @@ class Evaluation {
     u_ = move_a_.u + cross(move_a_.theta, c_ - r_a_) - move_b_.u - cross(move_b_.theta, c_ - r_b_);
     const V3<T> turn = move_a_.theta - move_b_.theta;
     const V3<T> w = cross(n_, turn);
-    const T square = dot(w, w), miss = change_ - dot(n_, u_);
-    const double angle = std::sqrt(value(square));
+    const T slope = 0.5 * (g_0.slope + g_1.slope);
+    share_ = 0.5 * (g_0.share + g_1.share);
+    if (data_.pair.kind == GapKind::point_surface) {
+      along_the_corner(slope);
+      return;
+    }
+    const T square = slope * dot(w, w), miss = change_ - slope * dot(n_, u_);
+    const double angle = value(w).norm();
     V3<T> u = u_;
     point_N_ = c_;
     if (angle > kNoTurn && std::abs(value(miss)) < kLargestShift * data_.length * angle) {
@@ -166,10 +174,24 @@ class Evaluation {
       point_N_ = c_ + shift;
       u = u_ + cross(turn, shift);
     }
-    N_ = n_;
+    correct(slope, u);
+  }
+
+  /// A corner has one distance from a surface, whatever turns about it: force and correction act
+  /// there. All normals of features of the surface pass through it.
+  void along_the_corner(const T& slope) {
+    const Vec3& Z = data_.a->corners[data_.pair.i];
+    point_N_ = average(n_a_.point(Z), e_a_.point(Z), 0.5);
+    correct(slope, move_a_.u + cross(move_a_.theta, point_N_ - r_a_) - move_b_.u -
+                       cross(move_b_.theta, point_N_ - r_b_));
+  }
+
+  /// The discrete gradient along a displacement.
+  void correct(const T& slope, const V3<T>& u) {
+    N_ = slope * n_;
     const T length = dot(u, u);
     const double least = kNoMove * data_.length;
-    if (value(length) > least * least) N_ = n_ + ((change_ - dot(n_, u)) / length) * u;
+    if (value(length) > least * least) N_ = N_ + ((change_ - dot(N_, u)) / length) * u;
   }
 
   /// Normal force and, if the potential fades, the couple on the fading directions.
@@ -182,8 +204,8 @@ class Evaluation {
       const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;
       lambda_ = value(factor) > 0.0 ? factor * lambda_ : T(0.0);
     }
-    if (data_.history.plastic && data_.pair.weight > 0.0)
-      lambda_ = (1.0 - kPlasticShare) * lambda_ + kPlasticShare * law.force(g_1.distance);
+    if (data_.end_share > 0.0 && data_.pair.weight > 0.0)
+      lambda_ = (1.0 - data_.end_share) * lambda_ + data_.end_share * law.force(g_1.distance);
     couple_ = constant<T>(Vec3::Zero());
     if (data_.pair.fade != Fade::none) fade(g_0, g_1);
     lambda_ = data_.pair.weight * lambda_;
@@ -254,7 +276,7 @@ class Evaluation {
   void alpha_corrections(const Gap<double>& g_0, const Gap<T>& g_1) {
     const double e = context_.ga.alpha_f - 0.5;
     if (e == 0.0) return;
-    N_ = N_ + e * (g_1.normal - g_0.normal);
+    N_ = N_ + e * (g_1.slope * g_1.normal - g_0.slope * g_0.normal);
     const V3<T> moved = e * (g_1.point - g_0.point);
     point_N_ = point_N_ + moved;
     c_ = c_ + moved;
@@ -266,13 +288,13 @@ class Evaluation {
 
   void add_friction(Wrenches<T>& w, PointReport* report) {
     const FrictionLaw& f = data_.friction;
-    const T normal_force = value(lambda_) > 0.0 ? data_.friction_share * lambda_ : T(0.0);
+    const T normal_force = value(lambda_) > 0.0 ? share_ * lambda_ : T(0.0);
     const Vec3 n = value(n_);
     const T spin = 0.5 * dot(n_, move_a_.theta + move_b_.theta);
     double dissipated = 0.0, stored = 0.0;
     if (f.mu > 0.0) {
-      const double mu = !data_.history.slips && f.mu_static > 0.0 ? f.mu_static : f.mu;
-      const Cone<T> cone = friction_cone((mu / f.stiffness) * normal_force, f);
+      const Cone<T> cone =
+          friction_cone((1.0 / f.stiffness) * friction_limit(data_, normal_force), f);
       const V3<T> u_T = u_ - dot(n_, u_) * n_;
       const V3<T> s_0 = start(data_.history.bristle, spin, cone);
       const V3<T> middle = s_0 + (0.5 + f.damping / (f.stiffness * context_.dt)) * u_T;
@@ -386,7 +408,7 @@ class Evaluation {
   Placement<double> n_a_, n_b_;  ///< At t_n.
   Placement<T> e_a_, e_b_;       ///< At t_{n+1}.
   Motion<T> move_a_, move_b_;
-  T change_{}, lambda_{};
+  T change_{}, lambda_{}, share_{1.0};
   double stiffness_ = 0.0;
   Mat3 friction_C_ = Mat3::Zero();
   V3<T> c_, n_, u_, N_, point_N_, r_a_, r_b_, couple_;
@@ -440,10 +462,10 @@ NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, dou
     f.slope = factor > 0.0 ? factor * f.slope - data.rate_damping / dt * f.value : 0.0;
     f.value *= factor;
   }
-  if (data.history.plastic && data.pair.weight > 0.0) {
+  if (data.end_share > 0.0 && data.pair.weight > 0.0) {
     const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);
-    f.value = (1.0 - kPlasticShare) * f.value + kPlasticShare * end.value;
-    f.slope = (1.0 - kPlasticShare) * f.slope + kPlasticShare * end.slope;
+    f.value = (1.0 - data.end_share) * f.value + data.end_share * end.value;
+    f.slope = (1.0 - data.end_share) * f.slope + data.end_share * end.slope;
   }
   const double weight = data.pair.weight;
   return {weight * f.value, -weight * f.slope, weight * quotient};

@@ -24,6 +24,14 @@ struct FrictionLaw {
   [[nodiscard]] bool acts() const { return mu > 0.0 || rolling > 0.0 || torsion > 0.0; }
 };
 
+/// Phases of a contact, from closing to opening.
+enum class ContactPhase : unsigned char {
+  rest,         ///< Lasting contact.
+  landing,      ///< Lasting contact that has closed slowly and has not turned yet.
+  compression,  ///< An impact before its turn.
+  restitution,  ///< An impact after its turn.
+};
+
 /// What a contact point remembers from step to step.
 struct PointHistory {
   Vec3 bristle = Vec3::Zero();  ///< World, in the tangent plane [m].
@@ -31,15 +39,22 @@ struct PointHistory {
   Vec3 rolling = Vec3::Zero();  ///< World, in the tangent plane [rad].
   double torsion = 0.0;         ///< [rad]
   double approach = 0.0;        ///< w_pre: normal velocity when it closed [m/s], negative.
+  double restitution = 0.0;     ///< e of the impact; 0 where the rebound would be too short [-].
   double stiffness = 0.0;       ///< k of the normal law, kept while closed.
-  double gap = 0.0;             ///< Of a closed point at t_n, as the last step left it [m].
-  Vec3 impulse = Vec3::Zero();  ///< Of the last step on a, world; of the non-smooth law [N s].
-  Vec3 turning = Vec3::Zero();  ///< Likewise, against rolling and drilling [N m s].
-  bool closed = false;          ///< The gap was within reach at t_n.
-  bool plastic = false;         ///< No rebound: part of the force is that of the end of the step.
-  bool fresh = true;            ///< Has not turned since it closed.
+  double reach = 0.0, floor = 0.0;  ///< Of the normal law, likewise [m].
+  double force = 0.0;               ///< λ of the last step, of a closed point [N].
+  double bristle_stiffness = 0.0;   ///< k_T, kept while closed [N/m].
+  double gap = 0.0;                 ///< Of a closed point at t_n, as the last step left it [m].
+  Vec3 impulse = Vec3::Zero();      ///< Of the last step on a, world; of the non-smooth law [N s].
+  Vec3 turning = Vec3::Zero();      ///< Likewise, against rolling and drilling [N m s].
+  bool closed = false;              ///< The gap was within reach at t_n.
+  ContactPhase phase = ContactPhase::rest;
   bool slips = false;
 
+  /// Friction then acts as an impulse at the end of the step.
+  [[nodiscard]] bool in_impact() const {
+    return phase == ContactPhase::compression || phase == ContactPhase::restitution;
+  }
   /// There is something to carry to the next step.
   [[nodiscard]] bool remembers() const { return closed || !impulse.isZero(0.0); }
   /// The same with bristles that hold nothing.
@@ -52,6 +67,15 @@ struct PointHistory {
   }
 };
 
+/// Bound of a point's friction as part of its patch: μ λ and what it holds already, as long as it
+/// is pressed on. @eq{contact-patch}
+struct FrictionShare {
+  double mu = -1.0;     ///< Negative: the law's own [-].
+  double held = 0.0;    ///< [N]
+  double load = 0.0;    ///< Normal force below a part of which `held` fades [N].
+  bool slides = false;  ///< The patch slid at t_n.
+};
+
 /// A contact point in a step: features, laws, history.
 struct PointData {
   FeaturePair pair;
@@ -59,11 +83,26 @@ struct PointData {
   const Shape* b = nullptr;
   NormalLaw normal;
   FrictionLaw friction;
-  double rate_damping = 0.0;    ///< c of λ·max(0, 1 − c Δg/Δt) [s/m].
-  double friction_share = 1.0;  ///< Part of the normal force that carries friction [-].
-  double length = 1.0;          ///< L of the pair [m].
+  double rate_damping = 0.0;  ///< c of λ·max(0, 1 − c Δg/Δt) [s/m].
+  double end_share = 0.0;     ///< Part of the normal force that is that of the end of the step [-].
+  double length = 1.0;        ///< L of the pair [m].
+  FrictionShare share;        ///< Of this step.
   PointHistory history;
 };
+
+/// The largest friction of a point that is pressed on by a force [N].
+template <class T>
+[[nodiscard]] T friction_limit(const PointData& data, const T& normal_force) {
+  constexpr double kFades = 0.1;  // of the load
+  const FrictionLaw& f = data.friction;
+  const FrictionShare& s = data.share;
+  if (s.mu < 0.0)
+    return (!data.history.slips && f.mu_static > 0.0 ? f.mu_static : f.mu) * normal_force;
+  if (s.held == 0.0) return s.mu * normal_force;
+  const double full = kFades * s.load;
+  if (value(normal_force) >= full) return s.mu * normal_force + s.held;
+  return (s.mu + s.held / full) * normal_force;
+}
 
 /// What happened at a contact point over a step.
 struct PointReport {
@@ -77,9 +116,6 @@ struct PointReport {
   double normal_loss = 0.0;  ///< The part of it that the normal force took [J].
   PointHistory after;        ///< Bristles at t_{n+1}; flags as they were.
 };
-
-/// Share of the force that plastic points take from the end of the step. @eq{contact-plastic}
-inline constexpr double kPlasticShare = 0.5;
 
 /// Adds the wrenches of a contact point on bodies a and b, and with StepContext::tangents the
 /// tangents, to terms.
@@ -101,7 +137,7 @@ struct PointForce {
 [[nodiscard]] PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep& b,
                                      const StepContext& context);
 
-/// Normal force of a point whose potential does not fade: law, damper, plastic share and weight.
+/// Normal force of a point whose potential does not fade: law, damper, share of the end, weight.
 struct NormalForce {
   double lambda = 0.0;     ///< [N]
   double stiffness = 0.0;  ///< −dλ/dg_{n+1} [N/m].

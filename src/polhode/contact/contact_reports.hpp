@@ -17,9 +17,8 @@ struct ShapePairReport {
   Vec3 point = Vec3::Zero();     ///< Mean of the points, by normal force [m].
   int points = 0;
   ContactStatus status = ContactStatus::open;
-  double dissipated = 0.0;      ///< In the step, impacts included [J].
-  double impact_loss = 0.0;     ///< The part of it that impacts took [J].
-  double impact_impulse = 0.0;  ///< Along the normal, of velocities that jumped [N s].
+  double dissipated = 0.0;   ///< In the step, impacts included [J].
+  double impact_loss = 0.0;  ///< The part of it that impacts took [J].
 };
 
 /// Two shapes that overlap.

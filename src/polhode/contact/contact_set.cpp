@@ -12,9 +12,18 @@ namespace polhode::contact {
 
 namespace {
 
-/// The barrier stops an impact that rebounds with at least this part of its band left. Deeper,
-/// where it is stopped within a step, the last digit of a displacement would be worth energy.
-constexpr double kDeepest = 1e-2;
+/// Where lasting contact carries its reference load, as a part of the tolerance below the surface;
+/// k d̂ of the barrier over the load there: 3/(1/s² − 3 + 2s) at s = 0.95.
+constexpr double kRestStiffness = 373.0;
+/// Slope of that barrier under its load, which is the stiffness of a bristle beside it: a much
+/// softer one lets bodies rock, and Newton finds no end between sticking and sliding.
+constexpr double kRestSlope = 38.6;
+/// Stiffness of a linear spring that carries the load at the whole tolerance or less.
+constexpr double kSoftStiffness = 0.75;
+/// Of critical damping of lasting contact that takes energy.
+constexpr double kRestDamping = 0.3;
+/// Of a shape with a core, the tolerance is at most this part of its rounding.
+constexpr double kOfRounding = 0.85;
 /// Candidates are found anew when their margin is so many times what is needed, as after an
 /// iteration that went astray.
 constexpr double kWideMargin = 8.0;
@@ -33,10 +42,10 @@ void check_law(const ContactLaw& law) {
     if (!(x >= 0.0)) refuse("a constant of the contact law", x, "Give it zero or positive");
   if (law.damped && law.potential == NormalPotential::barrier)
     refuse("the damped rebound with the barrier", law.restitution,
-           "Choose the linear or the Hertz law for it, or leave the rebound to the exit law");
+           "Choose the linear or the Hertz law for it, or leave out rebound: damped");
   if (law.damped && law.restitution < 0.05)
     refuse("the restitution of a damped rebound", law.restitution,
-           "Give at least 0.05, or leave the rebound to the exit law");
+           "Give at least 0.05, or leave out rebound: damped");
 }
 
 /// c |w_pre| of the damper with which a mass rebounds with e, from
@@ -132,50 +141,65 @@ void ContactSet::complete_law(Point& p, double dt) const {
     return s.body == kGround ? 0.0 : 1.0 / carried_mass_[s.body];
   };
   const double mass = 1.0 / (inverse_mass(a) + inverse_mass(b));
-  const double length = std::min(a.shape.size, b.shape.size);
+  const bool barrier = law.potential == NormalPotential::barrier;
+  const bool hertz = law.potential == NormalPotential::hertz;
   const bool plane = !a.shape.bounded() || !b.shape.bounded();
   const double rounding = a.shape.rounding + b.shape.rounding;
   PointData& d = p.data;
-  d.length = length;
+  d.length = std::min(a.shape.size, b.shape.size);
   d.normal.potential = law.potential;
-  d.normal.tolerance = law.tolerance > 0.0 ? law.tolerance : 1e-3 * length;
-  if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, rounding);
-  const double weight =
-      law.reference_load > 0.0 ? law.reference_load : mass * system_->gravity().norm();
-  double k = law.stiffness;
+  d.normal.tolerance =
+      law.tolerance > 0.0 ? law.tolerance : 1e-3 * std::min(a.shape.detail, b.shape.detail);
+  if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, kOfRounding * rounding);
+  const double tolerance = d.normal.tolerance;
+  const double weight = mass * system_->gravity().norm();
+  const double load = law.reference_load > 0.0 ? law.reference_load : weight;
+  const double by_step = mass / (dt * dt);
+  const double soft = std::max(kSoftStiffness * load / tolerance, by_step);
+  double k = law.stiffness, k_T = law.stiffness;
+  p.open_stiffness = k == 0.0 && barrier;
   if (k == 0.0) {
-    const double band = 2.0 * d.normal.tolerance;
-    k = std::max(1.5 * weight / band, mass / (dt * dt));
-    if (law.potential == NormalPotential::hertz) k /= std::sqrt(d.normal.tolerance);
+    k_T = barrier ? std::max(kRestSlope * load / tolerance, by_step) : soft;
+    k = barrier ? std::max(kRestStiffness * load / tolerance, by_step)
+        : hertz ? soft / std::sqrt(tolerance)
+                : soft;
+  } else if (hertz) {
+    k_T = k * std::sqrt(tolerance);
   }
   p.mass = mass;
-  p.chosen_stiffness = law.stiffness == 0.0 && law.potential == NormalPotential::barrier ? k : 0.0;
-  if (d.history.closed && d.history.stiffness > 0.0) k = d.history.stiffness;
-  stiffen(p, k);
+  p.rest_stiffness = k;
+  p.bristle_stiffness = k_T;
+  p.rest_damping = 0.0;
+  if (weight > 0.0) {
+    const double slope = barrier ? 2.0 * std::sqrt(k * weight / tolerance)
+                         : hertz ? 1.5 * std::cbrt(k * k * weight)
+                                 : k;
+    p.rest_damping = 2.0 * kRestDamping * std::sqrt(slope * mass) / weight;
+  }
   p.restitution = law.damped ? 1.0 : law.restitution;
   p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
   p.may_be_plain = d.a && is_plain(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
-  p.least_gap =
-      plane || law.potential == NormalPotential::barrier ? d.normal.floor() : -0.9 * rounding;
-}
+  const PointHistory& h = d.history;
+  if (h.closed && h.stiffness > 0.0)
+    set_band(p, h.stiffness, h.reach, h.floor);
+  else
+    set_band(p, k, 0.0, -tolerance);
+  if (!barrier) p.least_gap = plane ? -std::numeric_limits<double>::infinity() : -0.9 * rounding;
+  set_phase(p, h.phase);
+  if (p.damped && h.closed && h.approach < 0.0) d.rate_damping = p.damping_number / -h.approach;
 
-/// Bristles that the law leaves open go with the stiffness of the normal law.
-void ContactSet::stiffen(Point& p, double k) const {
-  const ContactLaw& law = this->law(p.a, p.b);
-  PointData& d = p.data;
-  d.normal.stiffness = d.history.stiffness = k;
   d.friction = law.friction;
   FrictionLaw& f = d.friction;
-  const double k_T =
-      law.potential == NormalPotential::hertz ? k * std::sqrt(d.normal.tolerance) : k;
-  if (f.stiffness == 0.0) f.stiffness = k_T;
-  if (f.damping == 0.0) f.damping = 0.7 * std::sqrt(f.stiffness * p.mass);
+  if (f.stiffness == 0.0)
+    f.stiffness = h.closed && h.bristle_stiffness > 0.0 ? h.bristle_stiffness : k_T;
+  d.history.bristle_stiffness = f.stiffness;
+  if (f.damping == 0.0) f.damping = 0.7 * std::sqrt(f.stiffness * mass);
   if (f.turning_stiffness == 0.0) f.turning_stiffness = f.stiffness * d.length * d.length;
   if (f.turning_damping == 0.0)
-    f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * p.mass * d.length * d.length);
+    f.turning_damping = 0.7 * std::sqrt(f.turning_stiffness * mass * d.length * d.length);
 }
 
 void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContext& context) {
@@ -185,10 +209,9 @@ void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContex
     open_or_close(points_[i], balls_[i], steps, context);
     if (context.ga.alpha_f != 0.5) balls_[i].holds = false;
   }
+  if (!impulses_) share_friction();
 }
 
-/// A point that is open gets its approach speed, and with it the decision whether it will rebound:
-/// not if the flight would be shorter than the step. @eq{exit-law}
 void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                                const StepContext& context) const {
   PointHistory& h = p.data.history;
@@ -202,12 +225,6 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
   balls = p.plain ? approach_of_balls(p.data, a, b) : ApproachOfBalls{};
   balls.a = at_a;
   balls.b = at_b;
-  balls.reach = p.data.normal.reach();
-  balls.least_gap = p.least_gap;
-  if (h.closed) {
-    p.gap_n = balls.gap_n = h.gap;
-    return;
-  }
   Vec3 c, n;
   if (balls.holds) {
     p.gap_n = balls.gap_n;
@@ -217,31 +234,21 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
     const Gap<double> g =
         gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r_n, a.Lambda_n, 0),
             Placement<double>(b.r_n, b.Lambda_n, 6));
-    p.gap_n = balls.gap_n = g.distance;
+    p.gap_n = g.distance;
     c = value(g.point);
     n = value(g.normal);
   }
+  if (h.closed) p.gap_n = h.gap;
+  balls.gap_n = p.gap_n;
   p.normal_n = n;
   p.place_n = c;
-  if (impulses_) return;
-  const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
-  const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
-  h.approach = std::min(0.0, n.dot(v_a - v_b));
-  const double slow = kSlowReboundSteps * system_->gravity().norm() * context.dt;
-  h.plastic = !p.damped &&
-              (p.restitution == 0.0 || (p.restitution < 1.0 && -p.restitution * h.approach < slow));
-  h.fresh = true;
-  if (p.chosen_stiffness > 0.0) {
-    const double band = 2.0 * p.data.normal.tolerance;
-    double k = p.chosen_stiffness;
-    if (!h.plastic && !p.damped)
-      k = std::max(k, 1.5 * kDeepest * p.mass * h.approach * h.approach / (band * band));
-    if (k != p.data.normal.stiffness) stiffen(p, k);
+  if (!impulses_) {
+    const Vec3 v_a = a.v_n + (a.Lambda_n * a.W_n).cross(c - a.r_n);
+    const Vec3 v_b = b.v_n + (b.Lambda_n * b.W_n).cross(c - b.r_n);
+    begin_phase(p, n.dot(v_a - v_b), context.dt);
   }
-  if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
-  if (p.gap_n >= p.data.normal.reach()) return;
-  h.closed = true;
-  h.gap = p.gap_n;
+  balls.reach = p.data.normal.reach();
+  balls.least_gap = p.least_gap;
 }
 
 bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
@@ -250,8 +257,10 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
   const std::vector<Participants> before = pairs_;
   if (!same) {
     load(state);
-    if (points_.size() + state.contacts.size() > 0) find_candidates(context.dt);
+    longest_step_ = std::max(longest_step_, std::abs(context.dt));
+    if (points_.size() + state.contacts.size() > 0) find_candidates(longest_step_);
   }
+  longest_step_ = std::max(longest_step_, std::abs(context.dt));
   bool stale = false;
   for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
     if (reach_of_body_[body] == 0.0) continue;
@@ -265,10 +274,10 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
   if (stale) {
     for (Reference& r : references_) r.margin = -1.0;
     refer(steps, context);
-    find_candidates(context.dt);
+    find_candidates(longest_step_);
   }
   for (Point& p : points_)
-    if (p.law_dt != context.dt) complete_law(p, context.dt);
+    if (p.law_dt != longest_step_) complete_law(p, longest_step_);
   open_or_close(steps, context);
   tightest_ = -1;
   return !std::equal(
@@ -292,6 +301,7 @@ void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& co
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     const Point& p = points_[i];
     const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+    if (least_gap_at_end(p, a, b) >= p.data.normal.reach()) continue;
     if (!acts(i, gap_at_end(i, a, b), least)) continue;
     PairTerms& t = terms[p.pair];
     if (!p.swapped) {
@@ -324,6 +334,16 @@ void release_bristles(const FrictionLaw& f, PointReport& r) {
 
 }  // namespace
 
+double ContactSet::least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const {
+  // The one gap of several features falls below the nearest of them by less than this.
+  const double nearer = 1e-3 * p.data.length;
+  const auto moved = [&](int shape, const BodyStep& s) {
+    const int body = shapes_[shape].body;
+    return body == kGround ? 0.0 : s.u.norm() + s.theta.norm() * reach_of_body_[body];
+  };
+  return p.gap_n - moved(p.a, a) - moved(p.b, b) - nearer;
+}
+
 double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) const {
   const Point& p = points_[point];
   return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
@@ -352,6 +372,7 @@ std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const Body
       gap_1 = balls.gap_n1(a, b);
       if (balls.gap_n >= balls.reach && gap_1 >= balls.reach) continue;
     } else {
+      if (least_gap_at_end(points_[i], a, b) >= points_[i].data.normal.reach()) continue;
       gap_1 = gap_at_end(i, a, b);
     }
     if (!acts(i, gap_1, least)) continue;
@@ -382,8 +403,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     const double gap_1 = gap_at_end(i, a, b);
     const double reach = p.data.normal.reach();
     PointHistory& h = p.data.history;
-    p.impact_loss = 0.0;
-    p.impact_impulse = 0.0;
+    p.impact_loss = p.friction_loss = 0.0;
     const bool touched_before = p.touched;
     p.touched = acts(i, gap_1, least);
     touched_ = touched_ || p.touched;
@@ -391,8 +411,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       if (touched_before) p.report = {};
       p.report.gap_n = p.gap_n;
       p.report.gap_n1 = gap_1;
-      h.bristle.setZero();
-      h.closed = false;
+      h = {.stiffness = h.stiffness, .bristle_stiffness = h.bristle_stiffness};
       continue;
     }
     unused.wrench_a.setZero();
@@ -405,29 +424,29 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       add_contact(p.data, a, b, values, unused, &p.report);
     }
     if (gap_1 >= reach) release_bristles(p.data.friction, p.report);
+    if (h.in_impact()) {  // friction is an impulse now: what the bristles held is lost
+      const FrictionLaw& f = p.data.friction;
+      p.report.work.dissipated +=
+          0.5 * f.stiffness * h.bristle.squaredNorm() +
+          0.5 * f.turning_stiffness * (h.rolling.squaredNorm() + h.torsion * h.torsion);
+    }
     const PointReport& r = p.report;
     if (shapes_[p.a].body != kGround) wrenches_[shapes_[p.a].body] += unused.wrench_a;
     if (shapes_[p.b].body != kGround) wrenches_[shapes_[p.b].body] += unused.wrench_b;
     work.stored += r.work.stored;
     work.dissipated += r.work.dissipated;
     lost_by_friction_ += r.work.dissipated;
-    const auto speed = [&](const Vec3& v, const Vec3& W, const Mat3& Lambda, const BodyStep& s) {
-      return Vec3(v + (Lambda * W).cross(r.point - s.r_n - 0.5 * s.u));
-    };
-    p.speed_n =
-        r.normal.dot(speed(a.v_n, a.W_n, a.Lambda_n, a) - speed(b.v_n, b.W_n, b.Lambda_n, b));
-    p.speed_n1 =
-        r.normal.dot(speed(a.v_n1, a.W_n1, a.Lambda_n1, a) - speed(b.v_n1, b.W_n1, b.Lambda_n1, b));
-    p.elastic_force = p.data.normal.quotient(r.gap_n, r.gap_n1);
-    const PointHistory kept = h;
-    h = r.after;
-    h.approach = kept.approach;
-    h.stiffness = kept.stiffness;
-    h.plastic = kept.plastic;
-    h.fresh = kept.fresh;
+    h.bristle = r.after.bristle;
+    h.normal = r.after.normal;
+    h.rolling = r.after.rolling;
+    h.torsion = r.after.torsion;
+    h.slips = r.after.slips;
     h.closed = gap_1 < reach;
     h.gap = r.gap_n1;
+    h.force = r.normal_force;
   }
+  step_length_ = context.dt;
+  release_patches();
   save(state);
   return work;
 }

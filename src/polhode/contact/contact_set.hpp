@@ -25,7 +25,7 @@ struct ContactLaw {
   double stiffness = 0.0;       ///< k [N/m]; Hertz [N/m^{3/2}].
   double tolerance = 0.0;       ///< g_tol of the barrier [m].
   double reference_load = 0.0;  ///< That a point carries at gap 0 [N]; chooses the stiffness.
-  double restitution = 0.0;     ///< e, 0 to 1, by the exit law.
+  double restitution = 0.0;     ///< e, 0 to 1.
   /// Hertz and linear: speed of rebound by a damper instead (Gonthier, Carvalho and Martins);
   /// needs some twenty steps per contact.
   bool damped = false;
@@ -111,8 +111,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
   bool touched() const override { return touched_; }
-  void impacts(State& state, std::vector<PairImpact>& list) override;
-  void settled(std::span<const double> impulses, std::span<const double> losses) override;
+  Work impacts(State& state, std::vector<PairImpact>& list) override;
+  void settled(std::span<const SettledImpact> impacts) override;
   std::string tightest() const override;
 
   const ImpulseOptions* impulses() const override { return impulses_ ? &*impulses_ : nullptr; }
@@ -139,18 +139,21 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double damping_number = 0.0;  ///< c |w_pre| of a damped rebound [-].
     bool may_be_plain = false;    ///< Closed forms hold at ρ∞ = 1.
     bool sensor = false;
-    bool plain = false;             ///< They hold in this step.
-    double law_dt = 0.0;            ///< Step the constants of the law were chosen for [s].
-    double mass = 0.0;              ///< Reduced, of both bodies [kg].
-    double chosen_stiffness = 0.0;  ///< Of the barrier, if the law leaves it open; else 0 [N/m].
+    bool plain = false;              ///< They hold in this step.
+    double law_dt = 0.0;             ///< Step the constants of the law were chosen for [s].
+    double mass = 0.0;               ///< Reduced, of both bodies [kg].
+    double rest_stiffness = 0.0;     ///< k of lasting contact.
+    double bristle_stiffness = 0.0;  ///< k_T, if the law leaves it open [N/m].
+    double rest_damping = 0.0;       ///< c of lasting contact that takes energy [s/m].
+    bool open_stiffness = false;     ///< A barrier of which the law states no stiffness.
     double gap_n = 0.0;
     Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
-    bool listed = false;   ///< Among the points that act by impulses in this step.
-    PointReport report;    ///< Of the last accepted step.
-    bool touched = false;  ///< It acted in that step.
-    double elastic_force = 0.0;
-    double speed_n = 0.0, speed_n1 = 0.0;  ///< Along the normal [m/s].
-    double impact_loss = 0.0, impact_impulse = 0.0;
+    bool listed = false;         ///< Among the points that act by impulses in this step.
+    PointReport report;          ///< Of the last accepted step.
+    bool touched = false;        ///< It acted in that step.
+    double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
+    double impact_loss = 0.0;    ///< In impulses, along the normal [J].
+    double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
   /// Where a body was when candidates were found, and how far it may go from there.
   struct Reference {
@@ -159,10 +162,20 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double margin = -1.0;
   };
 
-  [[nodiscard]] std::optional<double> exit_speed(const Point& p) const;
+  [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
+  [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
+  void set_phase(Point& p, ContactPhase phase) const;
+  void set_band(Point& p, double stiffness, double upper, double lower) const;
+  void start_band(Point& p) const;
+  void store_again(Point& p, double stiffness, double energy) const;
+  void begin_phase(Point& p, double speed, double dt) const;
+  [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
   struct Followed;
-  [[nodiscard]] Gap<double> gap_along(const Point& p, std::span<const BodyStep> steps,
+  [[nodiscard]] Gap<double> gap_along(const Point& p, const FeaturePair& pair,
+                                      std::span<const BodyStep> steps,
                                       std::span<const Vec6> increments, double part) const;
+  [[nodiscard]] double advance_over_surface(int point, std::span<const BodyStep> steps,
+                                            std::span<const Vec6> increments, double most);
   [[nodiscard]] double advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
                                std::span<const Vec6> increments, double most);
   void load(const State& state);
@@ -171,7 +184,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
   void complete_law(Point& p, double dt) const;
-  void stiffen(Point& p, double k) const;
+  /// A bound of the gap at t_{n+1} from below, by how far the bodies have moved [m].
+  [[nodiscard]] double least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
   [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
   /// Whether a point acts in a step that ends with this gap. @param least  Room of the tightest
   /// point so far, renewed with tightest_ [m].
@@ -179,6 +193,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void open_or_close(std::span<const BodyStep> steps, const StepContext& context);
   void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                      const StepContext& context) const;
+  void share_friction();
+  void release_patches();
   [[nodiscard]] double margin_of(int body, const BodyStep& s, double dt) const;
   /// Part of the increments that is no farther than a step of Newton should go.
   [[nodiscard]] double sensible_part(std::span<const Vec6> increments) const;
@@ -211,7 +227,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   std::vector<ActingPoint> acting_, acting_before_;  ///< When forces were asked for last.
   bool renewed_ = true;                              ///< Points are others since then.
   std::vector<Participants> pairs_;
-  std::vector<int> settling_;  ///< Points of the impacts that were told last.
+  std::vector<int> settling_;  ///< Points of the impacts that were listed last.
+  double step_length_ = 0.0;   ///< Of the step that was committed last [s].
+  double longest_step_ = 0.0;  ///< So far: what is chosen by the step stays when one is cut [s].
   std::vector<double> saved_, totals_;
   bool loaded_ = false, touched_ = false;
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;

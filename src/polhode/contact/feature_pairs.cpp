@@ -18,7 +18,7 @@ namespace {
 class Finder {
  public:
   Finder(const Shape& a, const Shape& b, const Placement<double>& at_a,
-         const Placement<double>& at_b, double distance, bool swapped,
+         const Placement<double>& at_b, double distance, bool swapped, bool each_triangle,
          std::vector<OrderedPair>& found)
       : a_(a),
         b_(b),
@@ -26,6 +26,7 @@ class Finder {
         at_b_(at_b),
         distance_(distance),
         swapped_(swapped),
+        each_triangle_(each_triangle),
         found_(found) {
     find_region();
   }
@@ -38,7 +39,10 @@ class Finder {
     for (int i : faces ? a_.face_points : a_.points) {
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
-        if (!out_of_ball(x, 0.0) && in_region({x}))
+        if (out_of_ball(x, 0.0) || !in_region({x})) continue;
+        if (!each_triangle_)
+          add({GapKind::point_surface, i, 0, 1.0, Fade::none});
+        else
           over_surface({GapKind::point_triangle, GapKind::point_edge, GapKind::point_corner}, i, x,
                        0.0);
         continue;
@@ -80,7 +84,9 @@ class Finder {
     }
     if (out_of_ball(in_b(a_.bound_centre), a_.bound_radius)) return;
     for (int i = 0; i < parts; ++i)
-      if (b_.solid == Solid::surface) {
+      if (b_.solid == Solid::surface && !each_triangle_) {
+        add({GapKind::part_surface, i, 0, 1.0, Fade::none});
+      } else if (b_.solid == Solid::surface) {
         const Shape part = part_of(a_, i);
         over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
                      in_b(part.centre), part.half.maxCoeff());
@@ -168,7 +174,7 @@ class Finder {
   const Shape &a_, &b_;
   const Placement<double>&at_a_, &at_b_;
   double distance_;
-  bool swapped_;
+  bool swapped_, each_triangle_;
   std::vector<OrderedPair>& found_;
   Eigen::AlignedBox3d region_;
   std::vector<int> corners_, edges_, triangles_;  ///< Of b, in the region.
@@ -178,11 +184,11 @@ class Finder {
 
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found) {
+                        std::vector<OrderedPair>& found, bool each_triangle) {
   if (!first.bounded() && !second.bounded()) return;
   const auto start = static_cast<std::ptrdiff_t>(found.size());
-  Finder forth(first, second, at_first, at_second, distance, false, found);
-  Finder back(second, first, at_second, at_first, distance, true, found);
+  Finder forth(first, second, at_first, at_second, distance, false, each_triangle, found);
+  Finder back(second, first, at_second, at_first, distance, true, each_triangle, found);
   forth.points();
   back.points();
   forth.edges();

@@ -26,8 +26,11 @@ struct OrderedPair {
 ///
 /// Corners of each meet the solid of the other, edges meet edges; round solids meet planes by
 /// their extreme points, edges, and each other. @eq{contact-sum-of-features}
+///
+/// @param each_triangle  Triangles, edges and corners of surfaces as pairs of their own, for
+/// impulses.
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,
-                        std::vector<OrderedPair>& found);
+                        std::vector<OrderedPair>& found, bool each_triangle = false);
 
 }  // namespace polhode::contact

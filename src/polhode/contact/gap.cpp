@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/nearest.hpp>
+#include <polhode/contact/surface_features.hpp>
 
 namespace polhode::contact {
 
-namespace {
-
-/// A point against a triangle of b, whose part nearest to it is known.
 template <class T>
 Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
                      const TriangleRegion& r, const Placement<T>& at_b) {
@@ -35,6 +33,8 @@ Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
   }
   return g;
 }
+
+namespace {
 
 template <class T>
 Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
@@ -222,6 +222,8 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
       g.feature = -1 - pair.j;
       return g;
     }
+    case GapKind::point_surface:
+      return point_over_surface(x(), a.rounding, surface_reach(a, b), b, at_b);
     case GapKind::edge_edge:
       return edges(a, b, pair.i, pair.j, at_a, at_b);
     case GapKind::extreme_plane: {
@@ -233,7 +235,8 @@ Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b, const Placem
     case GapKind::part_triangle:
     case GapKind::part_edge:
     case GapKind::part_corner:
-      return part_gap(part_of(a, pair.i), pair, b, at_a, at_b);
+    case GapKind::part_surface:
+      return part_gap(part_of(a, pair.i), surface_reach(a, b), pair, b, at_a, at_b);
     case GapKind::round_edge:
       return round_over_edge(a, b, pair.j, at_a, at_b);
     case GapKind::round_round:
@@ -271,5 +274,14 @@ template Gap<double> point_over_solid(const V3<double>&, double, const Shape&,
                                       const Placement<double>&);
 template Gap<Fine> point_over_solid(const V3<Fine>&, double, const Shape&, const Placement<Fine>&);
 template Gap<Dual> point_over_solid(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
+
+template Gap<double> over_triangle(const V3<double>&, double, const Shape&, int,
+                                   const TriangleRegion&, const Placement<double>&);
+
+template Gap<Dual> over_triangle(const V3<Dual>&, double, const Shape&, int, const TriangleRegion&,
+                                 const Placement<Dual>&);
+
+template Gap<Fine> over_triangle(const V3<Fine>&, double, const Shape&, int, const TriangleRegion&,
+                                 const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -12,12 +12,14 @@ enum class GapKind {
   point_triangle,  ///< Corner i of a, triangle j of the surface b.
   point_edge,      ///< Corner i of a, edge j of the surface b.
   point_corner,    ///< Corner i of a, corner j of the surface b.
+  point_surface,   ///< Corner i of a, the whole surface of triangles b.
   edge_edge,       ///< Edge i of a, edge j of b.
   extreme_plane,   ///< Extreme point i of the round a, the plane b.
   part_solid,      ///< Part i of the round a, the whole convex polyhedron b.
   part_triangle,   ///< Part i of the round a, triangle j of the surface b.
   part_edge,       ///< Part i of the round a, edge j of the surface b.
   part_corner,     ///< Part i of the round a, corner j of the surface b.
+  part_surface,    ///< Part i of the round a, the whole surface of triangles b.
   round_edge,      ///< The round solid of a, edge j of b.
   round_round,     ///< The round solids of a and b.
 };
@@ -45,6 +47,8 @@ struct Gap {
   T distance{};     ///< g, roundings subtracted; negative: they overlap [m].
   V3<T> normal;     ///< Unit.
   V3<T> point;      ///< Midway between the two surfaces, world [m].
+  T slope{1.0};     ///< |∂g/∂x|: below or above 1 where several features count.
+  T share{1.0};     ///< Of forces of all features, by size, over that of the gap.
   int feature = 0;  ///< Which part of b was nearest: 0 its face, else an edge or corner.
 };
 

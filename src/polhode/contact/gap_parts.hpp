@@ -3,6 +3,7 @@
 #pragma once
 
 #include <polhode/contact/gap.hpp>
+#include <polhode/contact/nearest.hpp>
 
 namespace polhode::contact {
 
@@ -41,9 +42,19 @@ template <class T>
 [[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
                                   const Placement<T>& at_a);
 /// @param part  See part_of(); moves with a.
+/// @param reach  See surface_reach().
 template <class T>
-[[nodiscard]] Gap<T> part_gap(const Shape& part, const FeaturePair& pair, const Shape& b,
-                              const Placement<T>& at_a, const Placement<T>& at_b);
+[[nodiscard]] Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair,
+                              const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b);
+/// A point x with a ball of radius rho around it against the whole surface of b.
+/// @param reach  Features with gaps above this do not count beside a nearer one [m].
+template <class T>
+[[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
+                                        const Placement<T>& at_b);
+/// A point against a triangle of b, whose part nearest to it is known.
+template <class T>
+[[nodiscard]] Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
+                                   const TriangleRegion& r, const Placement<T>& at_b);
 template <class T>
 [[nodiscard]] Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge,
                                      const Placement<T>& at_a, const Placement<T>& at_b);

@@ -238,7 +238,7 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
-    p.impact_loss = p.impact_impulse = 0.0;
+    p.impact_loss = p.friction_loss = 0.0;
     p.touched = false;
     p.report = {};
     p.report.gap_n = p.gap_n;

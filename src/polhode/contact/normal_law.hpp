@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <polhode/contact/dual.hpp>
 
 namespace polhode::contact {
@@ -10,13 +12,13 @@ enum class NormalPotential { barrier, linear, hertz };
 
 /// The potential b(g) of a contact point as a function of its gap g, its force and its quotient.
 ///
-/// The barrier lives on the band g < tolerance and is infinite at g = −tolerance: with
-/// s = (g + tolerance)/d̂, d̂ = 2 tolerance,
+/// The barrier lives on the band between its floor, where it is infinite, and its reach: with
+/// s = (g − floor)/d̂, d̂ = reach − floor,
 ///
 ///   b = (k d̂²/3)(1/s − 3 + 3s − s²),   f = −b' = (k d̂/3)(1/s² − 3 + 2s)
 ///
-/// for s < 1 and zero beyond, twice continuously differentiable and convex. The others act from
-/// g = 0 on: linear b = ½ k g², Hertz b = (2/5) k |g|^{5/2}.
+/// for s < 1 and zero beyond, twice continuously differentiable and convex. The others act on the
+/// depth δ = reach − g: linear b = ½ k δ², Hertz b = (2/5) k δ^{5/2}.
 ///
 /// The quotient λ = −(b(g_1) − b(g_0))/(g_1 − g_0) is written without the difference, so it has no
 /// 0/0; it is never negative. With it the step gives back exactly what it stored.
@@ -24,17 +26,22 @@ enum class NormalPotential { barrier, linear, hertz };
 struct NormalLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 1.0;   ///< k [N/m]; Hertz: [N/m^{3/2}].
-  double tolerance = 1e-3;  ///< Half the band of the barrier [m].
+  double tolerance = 1e-3;  ///< Of the gap [m].
+  /// Ends of the band, where they are not ±tolerance of a barrier, or 0 of another potential [m].
+  std::optional<double> upper, lower;
 
   /// Gaps from here on carry no force [m].
   [[nodiscard]] double reach() const {
-    return potential == NormalPotential::barrier ? tolerance : 0.0;
+    return upper ? *upper : potential == NormalPotential::barrier ? tolerance : 0.0;
   }
   /// No step may bring the gap to this [m]; −∞ if the law lets bodies overlap.
   [[nodiscard]] double floor() const;
+  [[nodiscard]] double band() const { return reach() - floor(); }
 
   [[nodiscard]] double energy(double gap) const;     ///< b [J]
   [[nodiscard]] double gap_of(double energy) const;  ///< Where b is that; reach() if it is zero.
+  /// The reach with which the law stores an energy at a gap [m]. @eq{contact-same-energy}
+  [[nodiscard]] double reach_for(double gap, double energy) const;
   template <class T>
   [[nodiscard]] T force(const T& gap) const;  ///< f = −b' [N]
   template <class T>

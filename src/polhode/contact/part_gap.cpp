@@ -6,6 +6,7 @@
 
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/nearest.hpp>
+#include <polhode/contact/surface_features.hpp>
 
 namespace polhode::contact {
 
@@ -60,6 +61,15 @@ class SeenPart {
     return distance;
   }
 
+  /// Distances from a convex body lie above their tangent planes: no point of a box is nearer.
+  [[nodiscard]] double bound(const Vec3& low, const Vec3& high) const {
+    const Vec3 y = axes_.transpose() * (0.5 * (low + high) - centre_);
+    const double root = nearest_on_ellipsoid(half_, y);
+    const Vec3 n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
+    if (!n.allFinite()) return -farthest_ - (high - low).norm();
+    return n.dot(y) - half_.cwiseProduct(n).norm() - 0.5 * (axes_ * n).cwiseAbs().dot(high - low);
+  }
+
   void edge(const Shape& b, int index, Nearest& best) const {
     const Vec3 &p = b.corners[b.edges[index].i], v = b.corners[b.edges[index].j] - p;
     const double middle = std::clamp((centre_ - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
@@ -104,6 +114,54 @@ class SeenPart {
   Mat3 axes_;
   double farthest_;
 };
+
+/// What part_gap() needs of each triangle, edge and corner of a surface.
+struct SeenSurface {
+  const SeenPart& part;
+  const Shape& b;
+  double round;
+
+  [[nodiscard]] SurfacePlace place(const Nearest& n) const {
+    const int kind = n.kind == Nearest::face ? 0 : n.kind == Nearest::edge ? 1 : 2;
+    return {kind, n.index, n.distance - round, n.t, 0};
+  }
+  [[nodiscard]] SurfacePlace triangle(int t) const {
+    Nearest best;
+    part.face(b, t, 2, best);
+    if (best.kind != Nearest::face)
+      for (const int e : b.triangle_edges[t]) part.edge(b, e, best);
+    return place(best);
+  }
+  [[nodiscard]] SurfacePlace edge(int e) const {
+    Nearest best;
+    part.edge(b, e, best);
+    return place(best);
+  }
+  [[nodiscard]] SurfacePlace corner(int k) const {
+    Nearest n{Nearest::corner, k, 0.0, part.bound(b.corners[k], b.corners[k])};
+    return place(n);
+  }
+};
+
+/// The places of a surface that count, or the nearest one alone.
+std::vector<SurfacePlace> places_of(const SeenPart& part, const Shape& b, double round,
+                                    double reach) {
+  const SeenSurface seen{part, b, round};
+  std::vector<int> near;
+  b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < reach; },
+                [&](int t) { near.push_back(t); });
+  std::vector<SurfacePlace> places = places_that_count(b, near, reach, seen);
+  if (!places.empty()) return places;
+  SurfacePlace best;
+  best.gap = std::numeric_limits<double>::infinity();
+  b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < best.gap; },
+                [&](int t) {
+                  const SurfacePlace one = seen.triangle(t);
+                  if (one.gap < best.gap) best = one;
+                });
+  best.count = 1;
+  return {best};
+}
 
 Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
   Nearest best;
@@ -194,32 +252,42 @@ Shape part_of(const Shape& a, int which) {
 }
 
 template <class T>
-Gap<T> part_gap(const Shape& part, const FeaturePair& pair, const Shape& b,
+Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
                 const Placement<T>& at_a, const Placement<T>& at_b) {
   const SeenPart seen(part, at_a, at_b);
-  const Nearest n = nearest_of(pair, b, seen);
-  switch (n.kind) {
-    case Nearest::face: {
+  const auto over = [&](const Nearest& n) {
+    if (n.kind == Nearest::face) {
       const auto& plane = b.planes[n.index];
       const bool behind =
           b.solid == Solid::surface && plane.normal.dot(seen.centre()) < plane.offset;
       return over_face(part, b, n.index, behind, at_a, at_b);
     }
-    case Nearest::edge:
-      return over_edge(part, b, n.index, n.t, at_a, at_b);
-    case Nearest::corner:
-    case Nearest::none:
-      break;
+    if (n.kind == Nearest::edge) return over_edge(part, b, n.index, n.t, at_a, at_b);
+    return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
+                        -1 - n.index);
+  };
+  if (pair.kind != GapKind::part_surface) return over(nearest_of(pair, b, seen));
+  std::vector<Gap<T>> gaps;
+  std::vector<int> counts;
+  for (const SurfacePlace& p : places_of(seen, b, part.rounding + b.rounding, reach)) {
+    Nearest n;
+    n.kind = p.kind == 0 ? Nearest::face : p.kind == 1 ? Nearest::edge : Nearest::corner;
+    n.index = p.index;
+    n.t = p.t;
+    const Gap<T> g = over(n);
+    if (!(value(g.distance) < reach) && !gaps.empty()) continue;
+    gaps.push_back(g);
+    counts.push_back(p.count);
   }
-  return turned_round(point_over_solid(at_b.point(b.corners[n.index]), b.rounding, part, at_a),
-                      -1 - n.index);
+  if (!(value(gaps.front().distance) < reach)) return gaps.front();
+  return one_gap(gaps, counts, reach);
 }
 
-template Gap<double> part_gap(const Shape&, const FeaturePair&, const Shape&,
+template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
                               const Placement<double>&, const Placement<double>&);
-template Gap<Dual> part_gap(const Shape&, const FeaturePair&, const Shape&, const Placement<Dual>&,
-                            const Placement<Dual>&);
-template Gap<Fine> part_gap(const Shape&, const FeaturePair&, const Shape&, const Placement<Fine>&,
-                            const Placement<Fine>&);
+template Gap<Dual> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
+                            const Placement<Dual>&, const Placement<Dual>&);
+template Gap<Fine> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
+                            const Placement<Fine>&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -126,13 +126,12 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
   }
 
   const FrictionLaw& f = data.friction;
-  const double normal_force = data.friction_share * normal.lambda;
+  const double normal_force = data.history.in_impact() ? 0.0 : normal.lambda;
   if (f.mu > 0.0 && normal_force > 0.0) {
     const Vec3 u = a.u + a.theta.cross(out.arm_a) - b.u - b.theta.cross(out.arm_b);
     const Vec3 u_T = u - n.dot(u) * n;
     const double spin = 0.5 * n.dot(a.theta + b.theta);
-    const double mu = !data.history.slips && f.mu_static > 0.0 ? f.mu_static : f.mu;
-    const double radius = mu / f.stiffness * normal_force;
+    const double radius = friction_limit(data, normal_force) / f.stiffness;
     const Vec3 s_0 = value(in_disc(
         transported<double>(data.history.bristle, data.history.normal, v3(n), spin), radius));
     const double factor = 0.5 + f.damping / (f.stiffness * context.dt);
@@ -163,7 +162,8 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
     out.C = k * n * n.transpose();
     if (report && f.mu > 0.0) {
       report->after.normal = n;
-      report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
+      if (!data.history.in_impact())
+        report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
     }
   }
   if (report) report->force = out.force;

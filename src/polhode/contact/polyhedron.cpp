@@ -12,8 +12,9 @@ namespace polhode::contact {
 
 namespace {
 
-/// Two faces whose normals differ by less (in sine) lie in one plane.
-constexpr double kFlat = 1e-6;
+/// Two faces whose normals differ by less (in sine) lie in one plane: between them an edge stands
+/// out by less than a tenth of the rounding of a mesh. Files with single precision have such.
+constexpr double kFlat = 1e-4;
 
 Vec3 normal_of(const TriangleSurface& s, const std::array<int, 3>& t) {
   return (s.points[t[1]] - s.points[t[0]]).cross(s.points[t[2]] - s.points[t[0]]).normalized();

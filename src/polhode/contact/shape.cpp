@@ -9,6 +9,7 @@
 #include <polhode/contact/hull.hpp>
 #include <polhode/contact/polyhedron.hpp>
 #include <polhode/contact/shape.hpp>
+#include <polhode/contact/triangle_tree.hpp>
 
 namespace polhode::contact {
 
@@ -146,7 +147,7 @@ Shape sphere(std::string_view where, double diameter, const ShapePlace& place) {
   check_positive(where, "diameter", diameter);
   Shape s;
   s.solid = Solid::ball;
-  s.rounding = 0.5 * diameter;
+  s.rounding = s.detail = 0.5 * diameter;
   s.centre = place.origin;
   s.corners = {place.origin};
   all_corners_meet(s);
@@ -159,7 +160,7 @@ Shape capsule(std::string_view where, double diameter, double length, const Shap
   check_positive(where, "length", length);
   Shape s;
   s.solid = Solid::segment;
-  s.rounding = 0.5 * diameter;
+  s.rounding = s.detail = 0.5 * diameter;
   s.centre = place.origin;
   const Vec3 to_end = 0.5 * length * place.axes.col(2);
   s.corners = {place.origin - to_end, place.origin + to_end};
@@ -180,7 +181,9 @@ Shape box(std::string_view where, const Vec3& size, const ShapePlace& place, dou
                                                               k & 2 ? half[1] : -half[1],
                                                               k & 4 ? half[2] : -half[2]));
   outside = convex_hull(where, outside.points);
-  return polyhedron(where, outside, rounding);
+  Shape s = polyhedron(where, outside, rounding);
+  s.detail = half.minCoeff();
+  return s;
 }
 
 Shape cylinder(std::string_view where, double diameter, double length, const ShapePlace& place) {
@@ -190,6 +193,7 @@ Shape cylinder(std::string_view where, double diameter, double length, const Sha
   const double radius = 0.5 * diameter - rounding;
   Shape s = round_body(Solid::cylinder, {radius, radius, 0.5 * length - rounding}, place);
   s.rounding = rounding;
+  s.detail = 0.5 * std::min(diameter, length);
   add_rim(s, -s.half[2]);
   add_rim(s, s.half[2]);
   finish_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
@@ -210,6 +214,7 @@ Shape cone(std::string_view where, double diameter, double length, const ShapePl
   Shape s = round_body(Solid::cone, {core_radius, core_radius, 0.5 * core_length}, place);
   s.centre += 0.5 * (above_base - below_apex) * s.axes.col(2);
   s.rounding = rounding;
+  s.detail = 0.5 * std::min(radius, length);
   add_rim(s, -s.half[2]);
   s.points.push_back(static_cast<int>(s.corners.size()));
   s.face_points.push_back(s.points.back());
@@ -223,13 +228,14 @@ Shape ellipsoid(std::string_view where, const Vec3& size, const ShapePlace& plac
   const double rounding = 0.5 * kRounding * size.minCoeff();
   Shape s = round_body(Solid::ellipsoid, 0.5 * size - Vec3::Constant(rounding), place);
   s.rounding = rounding;
+  s.detail = 0.5 * size.minCoeff();
   finish_bounds(s, place.origin, 0.5 * size.maxCoeff());
   return s;
 }
 
 Shape plane(const ShapePlace& place) {
   Shape s = round_body(Solid::half_space, Vec3::Zero(), place);
-  s.bound_radius = s.size = s.reach = std::numeric_limits<double>::infinity();
+  s.bound_radius = s.size = s.detail = s.reach = std::numeric_limits<double>::infinity();
   return s;
 }
 
@@ -242,7 +248,9 @@ Shape hull(std::string_view where, std::span<const Vec3> points, const ShapePlac
     throw InputError(where, "the points lie almost in a plane, so their hull has no volume",
                      "Give points that do not lie in one plane");
   check_rounding(where, rounding, 0.5 * size);
-  return polyhedron(where, outside, rounding == 0.0 ? kRounding * size : rounding);
+  Shape s = polyhedron(where, outside, rounding == 0.0 ? kRounding * size : rounding);
+  s.detail = size;
+  return s;
 }
 
 Shape mesh(std::string_view where, const TriangleSurface& surface, const ShapePlace& place,
@@ -260,8 +268,9 @@ Shape mesh(std::string_view where, const TriangleSurface& surface, const ShapePl
   s.rounding = rounding == 0.0 ? kRounding * edge : rounding;
   take_triangles(s, shrunk(outside, s.rounding));
   take_convex_corners(s);
+  s.tree = std::make_shared<const TriangleTree>(s.corners, s.triangles);
   bound_corners(s);
-  s.size = edge;
+  s.size = s.detail = edge;
   return s;
 }
 
@@ -296,8 +305,9 @@ Shape height_field(std::string_view where, int columns, double spacing,
   s.rounding = rounding == 0.0 ? kRounding * spacing : rounding;
   take_triangles(s, shrunk(field, s.rounding));
   take_convex_corners(s);
+  s.tree = std::make_shared<const TriangleTree>(s.corners, s.triangles);
   bound_corners(s);
-  s.size = spacing;
+  s.size = s.detail = spacing;
   return s;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,8 @@
 #include <polhode/body/triangle_surface.hpp>
 
 namespace polhode::contact {
+
+class TriangleTree;
 
 /// What a shape is to a point that comes near it.
 enum class Solid { ball, segment, polyhedron, cylinder, cone, ellipsoid, half_space, surface };
@@ -49,6 +52,7 @@ struct Shape {
   std::vector<std::array<int, 3>> triangles;       ///< Of polyhedron and surface, outward.
   std::vector<std::array<int, 3>> triangle_edges;  ///< Edge k lies from corner k to k + 1.
   std::vector<Plane> planes;                       ///< Of polyhedron, by triangle.
+  std::shared_ptr<const TriangleTree> tree;        ///< Of a surface.
 
   Vec3 centre = Vec3::Zero();        ///< Of sphere, cylinder, cone (mid height), ellipsoid ...
   Mat3 axes = Mat3::Identity();      ///< Columns; cylinder and cone along the third.
@@ -56,7 +60,8 @@ struct Shape {
   Vec3 bound_centre = Vec3::Zero();  ///< Ball around everything; a plane has none.
   double bound_radius = 0.0;         ///< [m]; infinite for a plane.
   double size = 0.0;                 ///< L: bounding radius, of a surface its median edge [m].
-  double reach = 0.0;                ///< Farthest point from the centre of mass [m].
+  double detail = 0.0;  ///< Smallest half size, of a surface its median edge; of a plane ∞ [m].
+  double reach = 0.0;   ///< Farthest point from the centre of mass [m].
 
   [[nodiscard]] bool bounded() const { return solid != Solid::half_space; }
   /// Has a smooth convex surface of its own beside corners and edges.

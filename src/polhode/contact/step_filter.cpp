@@ -5,6 +5,7 @@
 
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/contact/plain_point.hpp>
+#include <polhode/contact/triangle_tree.hpp>
 
 namespace polhode::contact {
 
@@ -28,7 +29,8 @@ constexpr double kLongestTurn = 0.6;
 double lever(const Shape& s, const FeaturePair& f, bool side_a) {
   if (!s.bounded()) return 0.0;
   const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
-                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner;
+                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner ||
+                      f.kind == GapKind::point_surface;
   if (side_a && corner) return s.corners[f.i].norm();
   if (s.solid == Solid::ball) return s.centre.norm();
   return s.reach;
@@ -48,7 +50,8 @@ double approach_by_turn(const Vec3& theta, const Vec3& n, std::span<const Vec3> 
 /// Points that span side a (or b) of a feature pair, if they are few. @returns how many.
 int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec3, 2>& points) {
   const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
-                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner;
+                      f.kind == GapKind::point_edge || f.kind == GapKind::point_corner ||
+                      f.kind == GapKind::point_surface;
   if (side_a && corner) {
     points[0] = s.corners[f.i];
     return 1;
@@ -74,8 +77,9 @@ struct ContactSet::Followed {
 };
 
 /// Where a point's shapes are at a part of the increments.
-Gap<double> ContactSet::gap_along(const Point& p, std::span<const BodyStep> steps,
-                                  std::span<const Vec6> increments, double part) const {
+Gap<double> ContactSet::gap_along(const Point& p, const FeaturePair& pair,
+                                  std::span<const BodyStep> steps, std::span<const Vec6> increments,
+                                  double part) const {
   const auto placed = [&](int shape) {
     const BodyStep& s = step_of(shape, steps);
     const int body = shapes_[shape].body;
@@ -86,7 +90,7 @@ Gap<double> ContactSet::gap_along(const Point& p, std::span<const BodyStep> step
   };
   const auto [r_a, L_a] = placed(p.a);
   const auto [r_b, L_b] = placed(p.b);
-  return gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(r_a, L_a, 0),
+  return gap(pair, *p.data.a, *p.data.b, Placement<double>(r_a, L_a, 0),
              Placement<double>(r_b, L_b, 6));
 }
 
@@ -140,16 +144,28 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
       speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + A.reach + B.centre.norm());
     }
     if (speed == 0.0) continue;
+    // The one gap of several features may be used up faster than any of theirs.
+    const bool surface =
+        p.data.pair.kind == GapKind::point_surface || p.data.pair.kind == GapKind::part_surface;
+    const auto harmless = [&](double room) {
+      return most * speed <= (surface ? 0.5 : 1.0) * kHarmless * room &&
+             p.data.pair.kind != GapKind::extreme_plane;
+    };
+    if (harmless(least_gap_at_end(p, a, b) - p.least_gap)) continue;
     const double room = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
-    if (most * speed <= kHarmless * room && p.data.pair.kind != GapKind::extreme_plane) continue;
+    if (harmless(room)) continue;
     const double band = p.data.normal.reach() - p.least_gap;
     closing.push_back({i, p.least_gap + kKept * std::min(room, band)});
   }
   if (closing.empty()) return most;
   double part = advance(closing, steps, increments, most);
+  for (const Followed& f : closing)
+    if (const GapKind kind = points_[f.point].data.pair.kind;
+        kind == GapKind::point_surface || kind == GapKind::part_surface)
+      part = advance_over_surface(f.point, steps, increments, part);
   const auto loses = [&](const Followed& f) {
     const double least = points_[f.point].least_gap;
-    if (gap_along(points_[f.point], steps, increments, part).distance >=
+    if (gap_along(points_[f.point], points_[f.point].data.pair, steps, increments, part).distance >=
         least + (1.0 - kMissing) * (f.least - least))
       return false;
     tightest_ = f.point;
@@ -176,9 +192,11 @@ double ContactSet::advance(std::span<const Followed> closing, std::span<const Bo
     double advance = std::numeric_limits<double>::infinity();
     for (const Followed& c : closing) {
       const Point& p = points_[c.point];
+      if (p.data.pair.kind == GapKind::point_surface || p.data.pair.kind == GapKind::part_surface)
+        continue;  // no convex feature
       const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
       const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-      const Gap<double> g = gap_along(p, steps, increments, done);
+      const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
       const Vec3 n = value(g.normal), relative = x_a.head<3>() - x_b.head<3>();
       double speed = std::max(0.0, -n.dot(relative));
       std::array<Vec3, 2> few;
@@ -214,6 +232,122 @@ double ContactSet::advance(std::span<const Followed> closing, std::span<const Bo
     if (done >= most) return most;
   }
   return done;
+}
+
+/// Every triangle that comes near is convex, and so is what lies before its plane: the part of the
+/// increment that leaves the gap to one of both. @eq{contact-filter}
+double ContactSet::advance_over_surface(int point, std::span<const BodyStep> steps,
+                                        std::span<const Vec6> increments, double most) {
+  const Point& p = points_[point];
+  const Shape &A = *p.data.a, &B = *p.data.b;
+  const Vec6 still = Vec6::Zero();
+  const auto increment = [&](int shape) -> const Vec6& {
+    const int body = shapes_[shape].body;
+    return body == kGround ? still : increments[body];
+  };
+  const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
+  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+  const bool corner = p.data.pair.kind == GapKind::point_surface;
+  const Shape part = corner ? Shape{} : part_of(A, p.data.pair.i);
+  const Vec3 Z = corner ? A.corners[p.data.pair.i] : part.centre;
+  const double farthest = corner ? 0.0 : part.half.maxCoeff(), round = A.rounding + B.rounding;
+  const double lever_a = corner ? Z.norm() : A.reach;
+  struct Where {
+    Mat3 L_a, L_b;
+    Vec3 y;  ///< Of Z, in body coordinates of b.
+  };
+  const auto at = [&](double part_of_way) {
+    Where w{cay(part_of_way * x_a.tail<3>()) * a.Lambda_n1,
+            cay(part_of_way * x_b.tail<3>()) * b.Lambda_n1, Vec3::Zero()};
+    w.y = w.L_b.transpose() *
+          (a.r_n1 + part_of_way * x_a.head<3>() + w.L_a * Z - b.r_n1 - part_of_way * x_b.head<3>());
+    return w;
+  };
+  const Where start = at(0.0), end = at(most);
+  const Vec3 relative = x_a.head<3>() - x_b.head<3>();
+  const double turn_a = most * x_a.tail<3>().norm(), turn_b = most * x_b.tail<3>().norm();
+  const double way = most * relative.norm() + turn_a * lever_a;
+  const double bulge = 0.25 * (turn_a * turn_a * lever_a +
+                               turn_b * turn_b * (start.y.norm() + way) + 2.0 * turn_b * way);
+  const double band = p.data.normal.reach() - p.least_gap;
+  const double wide = round + farthest + bulge + std::max(0.0, p.least_gap + kKept * band);
+  std::vector<int> near;
+  B.tree->visit(
+      [&](const auto& box) {
+        double enters = 0.0, leaves = 1.0;
+        for (int k = 0; k < 3; ++k) {
+          const double from = start.y[k], along = end.y[k] - from;
+          const double low = box.low[k] - wide - from, high = box.high[k] + wide - from;
+          if (along == 0.0) {
+            if (low > 0.0 || high < 0.0) return false;
+            continue;
+          }
+          enters = std::max(enters, std::min(low / along, high / along));
+          leaves = std::min(leaves, std::max(low / along, high / along));
+        }
+        return enters <= leaves;
+      },
+      [&](int t) { near.push_back(t); });
+  const auto speed = [&](const Vec3& n, const Mat3& L_a, double left) {
+    double v = std::max(0.0, -n.dot(relative));
+    if (corner) {
+      const std::array<Vec3, 1> z{L_a * Z};
+      v += approach_by_turn(x_a.tail<3>(), n, z, left);
+    } else {
+      v += x_a.tail<3>().norm() * lever_a;
+    }
+    return v + x_b.tail<3>().norm() * B.reach;
+  };
+  for (const int t : near) {
+    const FeaturePair alone{corner ? GapKind::point_triangle : GapKind::part_triangle,
+                            p.data.pair.i, t, 1.0, Fade::none};
+    const Shape::Plane& plane = B.planes[t];
+    const double side = plane.normal.dot(start.y) < plane.offset ? -1.0 : 1.0;
+    const auto over_plane_of_it = [&](const Where& w) {
+      double deep = 0.0;
+      if (!corner)
+        deep =
+            part.half
+                .cwiseProduct(part.axes.transpose() * (w.L_a.transpose() * (w.L_b * plane.normal)))
+                .norm();
+      return side * (plane.normal.dot(w.y) - plane.offset) - deep - round;
+    };
+    const double first = over_plane_of_it(start);
+    double least = p.least_gap + kKept * std::min(first - p.least_gap, band);
+    bool least_known = first >= p.least_gap;
+    double done = 0.0, last = 0.0;
+    for (int k = 0; k < 200 && done < most; ++k) {
+      const Where w = at(done);
+      const auto next = [&](double gap, const Vec3& n) {
+        const double v = speed(n, w.L_a, most - done);
+        return gap < least ? 0.0
+               : v > 0.0   ? (gap - least) / v
+                           : std::numeric_limits<double>::infinity();
+      };
+      double step =
+          least_known ? next(over_plane_of_it(w), Vec3(side * (w.L_b * plane.normal))) : 0.0;
+      if (!(step >= most - done)) {
+        const Gap<double> g = gap_along(p, alone, steps, increments, done);
+        if (k == 0) {
+          least = p.least_gap + kKept * std::min(std::max(0.0, g.distance - p.least_gap), band);
+          least_known = true;
+        }
+        step = std::max(step, next(g.distance, value(g.normal)));
+      }
+      if (step >= most - done) {
+        done = most;
+      } else if (!(step > 0.0) || (step < kLeastAdvance * most && step < last)) {
+        most = done > 0.0 ? done : 1e-3 * most;
+        tightest_ = point;
+        break;
+      } else {
+        last = step;
+        done += step;
+      }
+    }
+    most = std::min(most, std::max(done, 1e-3 * most));
+  }
+  return most;
 }
 
 }  // namespace polhode::contact

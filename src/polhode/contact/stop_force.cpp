@@ -13,7 +13,7 @@ constexpr double kStraight = 1e-9, kStraightStatics = 1e-3;
 
 template <class Force>
 ForceAndSlope straightened(const NormalLaw& law, double gap, double part, Force&& force) {
-  const double least = law.floor() + 2.0 * part * law.tolerance;
+  const double least = law.floor() + part * law.band();
   Dual x(std::max(gap, least));
   x.d[0] = 1.0;
   const Dual f = force(x);

@@ -11,8 +11,6 @@ namespace polhode::contact {
 namespace {
 
 constexpr int kLeaf = 4;
-/// Halving 2^31 triangles takes fewer levels.
-constexpr int kDeepest = 64;
 
 }  // namespace
 
@@ -92,25 +90,6 @@ TriangleTree::Hit TriangleTree::nearest(const Vec3& x, double at_most) const {
   }
   hit.distance = std::sqrt(hit.distance);
   return hit;
-}
-
-template <class Meets, class Use>
-void TriangleTree::visit(Meets&& meets, Use&& use) const {
-  std::array<int, kDeepest> stack;
-  std::size_t depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const int index = stack[--depth];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!meets(node)) continue;
-    if (node.second_child > 0) {
-      stack[depth++] = node.second_child;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (int k = node.first; k < node.first + node.count; ++k)
-      use(order_[static_cast<std::size_t>(k)]);
-  }
 }
 
 std::vector<int> TriangleTree::near(const Vec3& x, double distance) const {

@@ -31,6 +31,11 @@ class TriangleTree {
   /// it overlap; in its own hollows 0.
   [[nodiscard]] int winding(const Vec3& x) const;
 
+  /// Calls use(triangle) for those in leaves that, like all around them, fulfil meets(box) with the
+  /// box's `low` and `high`.
+  template <class Meets, class Use>
+  void visit(Meets&& meets, Use&& use) const;
+
   [[nodiscard]] const Vec3& low() const { return nodes_.front().low; }  ///< Of all triangles [m].
   [[nodiscard]] const Vec3& high() const { return nodes_.front().high; }
 
@@ -44,13 +49,31 @@ class TriangleTree {
     }
   };
   void build(const std::vector<Vec3>& middles, int first, int last);
-  /// Calls use(triangle) for those in leaves that, like all around them, fulfil meets(node).
-  template <class Meets, class Use>
-  void visit(Meets&& meets, Use&& use) const;
+  /// Halving 2^31 triangles takes fewer levels.
+  static constexpr int kDeepest = 64;
 
   std::vector<std::array<Vec3, 3>> triangles_;
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
+
+template <class Meets, class Use>
+void TriangleTree::visit(Meets&& meets, Use&& use) const {
+  std::array<int, kDeepest> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!meets(node)) continue;
+    if (node.second_child > 0) {
+      stack[depth++] = node.second_child;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (int k = node.first; k < node.first + node.count; ++k)
+      use(order_[static_cast<std::size_t>(k)]);
+  }
+}
 
 }  // namespace polhode::contact

@@ -13,18 +13,13 @@ namespace {
 
 using contact::Cone;
 
-/// Part of the force of the end of the step in a stop that takes energy.
-constexpr double kEndShare = 0.5;
-/// A stop is plastic where it would throw the bodies back for less than this many steps.
-constexpr double kRestingSteps = 2.0;
 /// Force of a stop at t_{n+αf} and its slope by the gap at t_{n+1}.
-contact::ForceAndSlope stop_force(const JointLimits& limits, const PairStep& step, double gap_n,
-                                  double gap_n1, bool plastic) {
-  return contact::stop_force(limits.law, {.at_n = gap_n,
-                                          .at_n1 = gap_n1,
+contact::ForceAndSlope stop_force(const Stop& stop, const PairStep& step) {
+  return contact::stop_force(stop.law(), {.at_n = stop.gap_n(),
+                                          .at_n1 = stop.gap_n1(),
                                           .alpha_f = step.a.alpha_f,
                                           .conserving = step.context.conserving,
-                                          .end_share = plastic ? kEndShare : 0.0});
+                                          .end_share = stop.end_share()});
 }
 
 /// x/√y, or 0 where y is none: forces that press nothing have no direction.
@@ -108,9 +103,21 @@ void Resistance::for_limits(What&& what) const {
   int memory = 4;
   if (data_.slide) {
     what(*data_.slide, true, memory);
-    memory += 3;
+    memory += kStopMemory;
   }
   if (data_.turn) what(*data_.turn, false, memory);
+}
+
+Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Coordinate& c,
+                         int memory) {
+  CoordinateStep step{.at_n = c.at_n, .at_n1 = c.at_n1, .dt = v.step.context.dt};
+  if (step.dt != 0.0) {
+    const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
+    step.rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n);
+    step.rate_n1 =
+        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle[0].rate_at_n1(v.step.a, v.step.b);
+  }
+  return {limits, v.memory + memory, step};
 }
 
 Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
@@ -298,14 +305,11 @@ void Resistance::add(const View& v, PairTerms& t) const {
   }
   for_limits([&](const JointLimits& limits, bool slides, int memory) {
     Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const bool plastic = v.memory[memory + 1] != 0.0;
-    const auto low =
-        stop_force(limits, step, c.at_n - limits.lower, c.at_n1 - limits.lower, plastic);
-    const auto high =
-        stop_force(limits, step, limits.upper - c.at_n, limits.upper - c.at_n1, plastic);
-    c.force += low.value - high.value;
-    c.D_a += (low.slope + high.slope) * c.by_a;
-    c.D_b += (low.slope + high.slope) * c.by_b;
+    const Stop stop = stop_of(v, limits, slides, c, memory);
+    const auto force = stop_force(stop, step);
+    c.force += stop.sign() * force.value;
+    c.D_a += force.slope * c.by_a;
+    c.D_b += force.slope * c.by_b;
   });
   for (int i = 0; i < m.count; ++i) {
     const Coordinate& c = m.of[i];
@@ -343,16 +347,16 @@ Work Resistance::work(const View& v) const {
   }
   for_limits([&](const JointLimits& limits, bool slides, int memory) {
     const Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const bool plastic = v.memory[memory + 1] != 0.0;
-    for (const auto& [gap_n, gap_n1] : {std::pair(c.at_n - limits.lower, c.at_n1 - limits.lower),
-                                        std::pair(limits.upper - c.at_n, limits.upper - c.at_n1)}) {
-      w.stored += limits.law.energy(gap_n1);
-      if (context.dt == 0.0 || (!plastic && v.step.a.alpha_f == 0.5)) continue;
-      if (!std::isfinite(gap_n)) continue;  // no stop on this side
-      const double force = stop_force(limits, v.step, gap_n, gap_n1, plastic).value;
-      w.dissipated += std::max(
-          0.0, force * (gap_n - gap_n1) - (limits.law.energy(gap_n1) - limits.law.energy(gap_n)));
-    }
+    const Stop stop = stop_of(v, limits, slides, c, memory);
+    w.stored += stop.law_after().energy(stop.gap_n1());
+    if (context.dt == 0.0 || !std::isfinite(stop.gap_n()) || !stop.touched()) return;
+    const double force = stop_force(stop, v.step).value, before = stop.law().energy(stop.gap_n());
+    const double after = stop.law().energy(stop.gap_n1());
+    const double released = after - stop.law_after().energy(stop.gap_n1());
+    const bool exact = stop.end_share() == 0.0 && v.step.a.alpha_f == 0.5;
+    w.dissipated += released;
+    if (!exact)
+      w.dissipated += std::max(0.0, force * (stop.gap_n() - stop.gap_n1()) - (after - before));
   });
   return w;
 }
@@ -360,33 +364,20 @@ Work Resistance::work(const View& v) const {
 double Resistance::clearance(const View& v) const {
   double least = std::numeric_limits<double>::infinity();
   const Motion m = motion(v, false);
-  for_limits([&](const JointLimits& limits, bool slides, int) {
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], memory);
+    const contact::NormalLaw& law = stop.law();
+    least = std::min(least, (stop.gap_n1() - law.floor()) / law.band());
     const double x = m.of[slides ? m.slide : m.turn].at_n1;
-    const double gap = std::min(x - limits.lower, limits.upper - x) - limits.law.floor();
-    least = std::min(least, gap / (2.0 * limits.law.tolerance));
+    const double far = stop.sign() > 0.0 ? limits.upper - x : x - limits.lower;
+    least = std::min(least, (far + limits.law.tolerance) / limits.law.tolerance);
   });
   return least;
 }
 
 void Resistance::initialize(double* memory) const {
   std::fill(memory, memory + memory_size(), 0.0);
-  for_limits([&](const JointLimits& limits, bool, int at) {
-    memory[at + 1] = limits.restitution == 0.0 ? 1.0 : 0.0;
-    memory[at + 2] = 1.0;
-  });
 }
-
-namespace {
-
-/// How a stop stands at both ends of the step.
-struct StopStep {
-  double rate_n = 0.0, rate_n1 = 0.0;  ///< Of the coordinate.
-  double gap_n = 0.0, gap_n1 = 0.0;    ///< Of the nearer stop at t_n.
-  double sign = 1.0;                   ///< +1: the gap grows with the coordinate.
-  bool closed_n = false, closed_n1 = false;
-};
-
-}  // namespace
 
 void Resistance::commit(const View& v, double* memory) const {
   const Motion m = motion(v, false);
@@ -397,60 +388,25 @@ void Resistance::commit(const View& v, double* memory) const {
     for (int i = 0; i < 3; ++i) memory[i] = kept[i];
     memory[3] = b.slips ? 1.0 : 0.0;
   }
-  if (!has_limits()) return;
-  const double dt = std::abs(v.step.context.dt);
-  const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
   for_limits([&](const JointLimits& limits, bool slides, int at) {
-    const Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const double rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n);
-    const double rate_n1 =
-        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle[0].rate_at_n1(v.step.a, v.step.b);
-    const double reach = limits.law.reach();
-    const auto closed = [&](double x) {
-      return std::min(x - limits.lower, limits.upper - x) < reach;
-    };
-    if (!closed(c.at_n1)) {
-      if (!closed(c.at_n) && dt > 0.0) memory[at] = (rate_n1 - rate_n) / dt;
-      const double thrown = limits.restitution * std::abs(rate_n1);
-      memory[at + 1] =
-          limits.restitution < 1.0 && thrown <= kRestingSteps * std::abs(memory[at]) * dt ? 1.0
-                                                                                          : 0.0;
-      memory[at + 2] = 1.0;
-      return;
-    }
-    const double sign = c.at_n1 - limits.lower < limits.upper - c.at_n1 ? 1.0 : -1.0;
-    if (sign * rate_n < 0.0 && sign * rate_n1 > 0.0) memory[at + 2] = 0.0;  // has turned
+    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], at);
+    stop.remember(stop_force(stop, v.step).value, memory + at);
   });
 }
 
 /// @eq{joint-stop-exit}
 void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
   const Motion m = motion(v, true);
-  const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
   for_limits([&](const JointLimits& limits, bool slides, int at) {
-    if (limits.restitution == 1.0) return;
     const Coordinate& c = m.of[slides ? m.slide : m.turn];
-    const double reach = limits.law.reach();
-    const double sign =
-        std::min(c.at_n, c.at_n1) - limits.lower < limits.upper - std::max(c.at_n, c.at_n1) ? 1.0
-                                                                                            : -1.0;
-    const double end = sign > 0.0 ? limits.lower : limits.upper;
-    const double gap_n = sign * (c.at_n - end), gap_n1 = sign * (c.at_n1 - end);
-    const double w_n =
-        sign * (slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n));
-    const double w_n1 = sign * (slides ? slide_rate(v.q_n1, v.step.a, v.step.b)
-                                       : v.angle[0].rate_at_n1(v.step.a, v.step.b));
-    const bool plastic = v.memory[at + 1] != 0.0, fresh = v.memory[at + 2] != 0.0;
-    double wanted = w_n1;
-    if (!plastic && gap_n < reach && gap_n1 >= reach && w_n1 > 0.0) {
-      const double e = limits.restitution, h = gap_n1 - reach, a = -sign * v.memory[at];
-      const double w_exit = std::max(w_n1 * w_n1 + 2.0 * a * h, 0.0);
-      wanted = std::min(w_n1, std::sqrt(std::max(e * e * w_exit - 2.0 * a * h, 0.0)));
-    } else if (plastic && fresh && std::min(gap_n, gap_n1) < reach && w_n < 0.0 && w_n1 > 0.0) {
-      wanted = 0.0;
-    }
-    if (wanted == w_n1) return;
-    list.push_back({sign * c.by_a, sign * c.by_b, wanted});
+    const Stop stop = stop_of(v, limits, slides, c, at);
+    if (!stop.jumps()) return;
+    Impact impact;
+    impact.on_a = stop.sign() * c.by_a;
+    impact.on_b = stop.sign() * c.by_b;
+    impact.wanted = stop.exit_rate();
+    impact.given = v.step.context.dt * stop_force(stop, v.step).value;
+    list.push_back(impact);
   });
 }
 
@@ -470,10 +426,9 @@ ResistanceReport Resistance::report(const View& v) const {
     r.slips = v.memory[3] != 0.0;
   }
   const Motion m = motion(v, false);
-  for_limits([&](const JointLimits& limits, bool slides, int) {
-    const double x = m.of[slides ? m.slide : m.turn].at_n1;
-    (slides ? r.slide : r.turn) =
-        limits.law.force(x - limits.lower) - limits.law.force(limits.upper - x);
+  for_limits([&](const JointLimits& limits, bool slides, int memory) {
+    const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], memory);
+    (slides ? r.slide : r.turn) = stop.sign() * stop.law().force(stop.gap_n1());
   });
   return r;
 }

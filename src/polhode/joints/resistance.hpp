@@ -10,6 +10,7 @@
 #include <polhode/assembly/interaction.hpp>
 #include <polhode/contact/normal_law.hpp>
 #include <polhode/joints/parts/configuration.hpp>
+#include <polhode/joints/stop.hpp>
 
 namespace polhode {
 
@@ -27,12 +28,13 @@ struct JointFriction {
   double damping = 0.0;    ///< Of the bristle while it holds [N s/m], [N m s/rad].
 };
 
-/// Stops of one free coordinate: barriers at both ends, with restitution by the exit law.
+/// Stops of one free coordinate: barriers at both ends, with restitution.
 struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();  ///< [m] or [rad]
   double upper = std::numeric_limits<double>::infinity();
-  contact::NormalLaw law;    ///< Of each stop; its tolerance is half the band [m] or [rad].
+  contact::NormalLaw law;    ///< Of lasting contact with each; its tolerance is the band.
   double restitution = 0.0;  ///< Speed after an impact over that before [-].
+  double inertia = 0.0;      ///< That impacts stop [kg] or [kg m²]; 0: the law's stiffness does.
 
   [[nodiscard]] bool within(double x) const { return x >= lower && x <= upper; }
 };
@@ -68,9 +70,9 @@ class Resistance {
 
   [[nodiscard]] const JointResistance& data() const { return data_; }
   [[nodiscard]] bool has_limits() const { return data_.slide || data_.turn; }
-  /// Of `memory` below: the bristle, whether it slips, and three for each coordinate with stops.
+  /// Of `memory` below: the bristle, whether it slips, and those of each coordinate with stops.
   [[nodiscard]] int memory_size() const {
-    return 4 + 3 * (data_.slide ? 1 : 0) + 3 * (data_.turn ? 1 : 0);
+    return 4 + kStopMemory * ((data_.slide ? 1 : 0) + (data_.turn ? 1 : 0));
   }
 
   /// What all functions want to know of the joint in a step.
@@ -109,9 +111,12 @@ class Resistance {
   }
   [[nodiscard]] Slip slip(const View& view, int cone) const;
   [[nodiscard]] Bristle bristle(const View& view, const Motion& m) const;
-  /// Calls what(limits, coordinate's index in the motion, memory of it).
+  /// Calls what(limits, of the slide, memory of it).
   template <class What>
   void for_limits(What&& what) const;
+  /// The stop that acts on a coordinate in the step.
+  [[nodiscard]] static Stop stop_of(const View& view, const JointLimits& limits, bool slides,
+                                    const Coordinate& c, int memory);
 
   Kind kind_;
   JointResistance data_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <polhode/contact/contact_set.hpp>
@@ -10,9 +11,12 @@ namespace polhode {
 
 namespace {
 
-/// Totals: what impacts and friction took before those of pairs, and for each pair: impulse, energy
-/// lost, whether its sensor overlaps. With impulses, last: sweeps, and steps that did not converge.
-constexpr std::size_t kHead = 2, kPerPair = 3, kImpulses = 2;
+/// Totals: what impacts and friction took and the smallest gap before those of pairs, and for each
+/// pair: impulse, energy lost, whether its sensor overlaps. With impulses, last: sweeps, and steps
+/// that did not converge.
+constexpr std::size_t kHead = 3, kPerPair = 3, kImpulses = 2, kLeastGap = 2;
+/// No gap was small yet: totals are compared, which NaN would not stand.
+constexpr double kNoGap = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -23,6 +27,7 @@ std::size_t ContactKeeper::total_count() const {
 void ContactKeeper::begin(State& state) {
   if (!contacts_) return;
   totals_.assign(total_count(), 0.0);
+  totals_[kLeastGap] = kNoGap;
   look(state, false);
 }
 
@@ -31,6 +36,7 @@ void ContactKeeper::resume(const State& state) {
   totals_ = contact::ContactSet::totals_in(state);
   const std::size_t wanted = total_count();
   const ImpulseFigures search = impulse_figures();
+  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap};
   if (totals_.size() != wanted) totals_.resize(kHead);  // other pairs are kept now
   totals_.resize(wanted, 0.0);
   if (!contacts_->impulses()) return;
@@ -58,7 +64,7 @@ void ContactKeeper::look(State& state, bool sum) {
     if (r.points > 0) ++touching_;
     const int a = map_->body[static_cast<std::size_t>(r.a)];
     const int b = map_->body[static_cast<std::size_t>(r.b)];
-    if (!contacts_->law(r.a, r.b).sensor) least_gap_ = std::fmin(least_gap_, r.gap);
+    if (!contacts_->law(r.a, r.b).sensor) totals[kLeastGap] = std::fmin(totals[kLeastGap], r.gap);
     if (sum) {
       totals[0] += r.impact_loss;
       totals[1] += r.dissipated - r.impact_loss;
@@ -75,7 +81,7 @@ void ContactKeeper::look(State& state, bool sum) {
     report.points += r.points;
     report.status = std::max(report.status, static_cast<int>(r.status));
     if (!sum) continue;
-    totals[kHead + kPerPair * found->second] += r.normal_force * state.dt_last + r.impact_impulse;
+    totals[kHead + kPerPair * found->second] += r.normal_force * state.dt_last;
     totals[kHead + kPerPair * found->second + 1] += r.dissipated;
   }
   for (std::size_t k = 0; k < reports_.size(); ++k) {
@@ -110,6 +116,11 @@ ContactReport ContactKeeper::report(int pair) const {
 ImpulseFigures ContactKeeper::impulse_figures() const {
   if (!contacts_ || !contacts_->impulses() || totals_.size() < kHead + kImpulses) return {};
   return {totals_[totals_.size() - 2], totals_[totals_.size() - 1]};
+}
+
+double ContactKeeper::least_gap() const {
+  const bool known = totals_.size() >= kHead && totals_[kLeastGap] < kNoGap;
+  return known ? totals_[kLeastGap] : std::numeric_limits<double>::quiet_NaN();
 }
 
 ContactLosses ContactKeeper::losses() const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,8 +62,8 @@ class ContactKeeper {
   [[nodiscard]] ImpulseFigures impulse_figures() const;
   /// Pairs of shapes that pressed on each other in the last step.
   [[nodiscard]] int touching() const { return touching_; }
-  /// The smallest gap there was after any step of this run [m]; NaN if none was small.
-  [[nodiscard]] double least_gap() const { return least_gap_; }
+  /// The smallest gap there was after any step since the start [m]; NaN if none was small.
+  [[nodiscard]] double least_gap() const;
   /// Since the start or restart.
   [[nodiscard]] const std::vector<SensorEvent>& events() const { return events_; }
   /// By body of the system, over the last step; empty without contact.
@@ -83,7 +82,6 @@ class ContactKeeper {
   std::vector<Vec6> wrenches_;
   std::vector<SensorEvent> events_;
   int touching_ = 0;
-  double least_gap_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace polhode

@@ -14,9 +14,9 @@ constexpr double kPresliding = 1e-5;
 constexpr double kBristleDamping = 0.7;
 /// Width of a stop's barrier [rad, or part of a length].
 constexpr double kBand = 1e-3;
-/// Stiffness of a barrier whose middle carries the reference load; and that throws the bodies back
-/// in a step from so deep that rounding of the gap costs little energy.
-constexpr double kBarrier = 1.5, kBarrierByStep = 10.0;
+/// k d̂ over the reference load, of a barrier that carries it at a twentieth of its band; and
+/// k Δt² over the inertia, so that lasting contact settles within a few steps.
+constexpr double kBarrier = 373.0, kBarrierByStep = 10.0;
 /// Where a model has no gravity, loads are taken to be like weights on earth [m/s²].
 constexpr double kEarth = 9.81;
 
@@ -55,7 +55,9 @@ JointLimits limits_of(const JointLimitsSpec& spec, const AnalysisSpec& analysis,
   const double band = spec.band.value_or(kBand * length);
   const double by_step =
       analysis.step ? kBarrierByStep * inertia / (*analysis.step * *analysis.step) : 0.0;
-  limits.law.tolerance = 0.5 * band;
+  limits.law.tolerance = band;
+  limits.law.upper = 0.0;
+  if (!spec.stiffness) limits.inertia = inertia;
   limits.law.stiffness = spec.stiffness.value_or(std::max(kBarrier * load / band, by_step));
   return limits;
 }

@@ -138,6 +138,11 @@ RunSummary Simulation::summary() const {
       const ImpulseFigures search = s.contacts.impulse_figures();
       r.contacts->sweeps = {search.sweeps / static_cast<double>(std::max<std::int64_t>(l.steps, 1)),
                             static_cast<std::int64_t>(search.unconverged)};
+      if (search.unconverged > 0.0)
+        r.warnings.push_back(
+            format("contacts: {:.0f} of {} steps ended above sweep_tolerance. Raise "
+                   "contacts.sweeps, or take shorter steps",
+                   search.unconverged, l.steps));
     }
   }
   return r;

@@ -191,7 +191,7 @@ struct Simulation::Impl {
     return list;
   }
 
-  /// A joint that starts beyond its stops, or in the half of a stop's band behind the end.
+  /// A joint that starts beyond its stops by more than their band.
   void refuse_outside_limits(std::size_t index) const {
     const Joint& joint = joint_at(system, map.joint[index]);
     if (!joint.has_barrier()) return;
@@ -201,7 +201,7 @@ struct Simulation::Impl {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto& limits =
           names[k] == "z" ? joint.resistance()->data().slide : joint.resistance()->data().turn;
-      const double play = limits ? 0.5 * limits->law.tolerance : 0.0;
+      const double play = limits ? limits->law.tolerance : 0.0;
       if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
         continue;
       throw InputError(format("joints.{}", joint.name),

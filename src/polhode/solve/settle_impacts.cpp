@@ -4,16 +4,20 @@
 #include <numeric>
 
 #include <polhode/solve/settle_impacts.hpp>
-#include <polhode/solve/share_impulses.hpp>
 
 namespace polhode {
 
 namespace {
 
-/// An island with more impacts than this, and nothing that ties its bodies, is settled one impact
-/// after the other.
-constexpr std::size_t kTogether = 48;
-constexpr int kSweeps = 10;
+/// Sweeps over the rows of an island end when no impulse changes by more than this part of the
+/// largest one, or after so many.
+constexpr double kConverged = 1e-13;
+constexpr int kMostSweeps = 500;
+/// A row that its own impulse moves by less than this part of what the most mobile one does, does
+/// not move.
+constexpr double kHeld = 1e-13;
+/// A speed that is wanted to change by less than this part is left as it is.
+constexpr double kSameSpeed = 1e-12;
 
 int first_of(std::vector<int>& tie, int body) {
   while (tie[body] != body) body = tie[body] = tie[tie[body]];
@@ -61,9 +65,9 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
   of_joints_ = rows_.size();
 }
 
-void SettleImpacts::find(State& state, MovingContacts& contacts) {
+Work SettleImpacts::find(State& state, MovingContacts& contacts) {
   contacts_ = &contacts;
-  contacts.impacts(state, rows_);
+  return contacts.impacts(state, rows_);
 }
 
 std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
@@ -104,16 +108,30 @@ Vec6 SettleImpacts::velocity(const State& state, int body) const {
   return v;
 }
 
-double SettleImpacts::along(const PairImpact& row, const std::vector<Vec6>& v) const {
-  double sum = 0.0;
-  if (row.bodies.a != kGround) sum += row.impact.on_a.dot(v[place_[row.bodies.a]]);
-  if (row.bodies.b != kGround) sum += row.impact.on_b.dot(v[place_[row.bodies.b]]);
-  return sum;
-}
+/// A relative velocity J v, and how the island answers a unit impulse along it.
+struct SettleImpacts::Row {
+  int impact = 0;      ///< Its number.
+  Vec6 on_a, on_b;     ///< J.
+  int a = -1, b = -1;  ///< Places of the bodies in the island; −1: the ground.
+  std::vector<std::pair<int, Vec6>> answer;  ///< By place: X = M⁻¹ Jᵀ under G v = 0.
+  double mobility = 0.0;                     ///< J X.
+  double before = 0.0, impulse = 0.0;        ///< J v at first [m/s]; [N s].
+  bool rubs = false;                         ///< The first of two tangents.
+
+  [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
+    double sum = 0.0;
+    if (a >= 0) sum += on_a.dot(v[static_cast<std::size_t>(a)]);
+    if (b >= 0) sum += on_b.dot(v[static_cast<std::size_t>(b)]);
+    return sum;
+  }
+  void push(double p, std::vector<Vec6>& v) {
+    impulse += p;
+    for (const auto& [place, x] : answer) v[static_cast<std::size_t>(place)] += p * x;
+  }
+};
 
 void SettleImpacts::settle(State& state) {
-  impulses_.assign(rows_.size(), 0.0);
-  losses_.assign(rows_.size(), 0.0);
+  settled_.assign(rows_.size(), {});
   const std::vector<Island> all = islands();
   const bool tied = std::any_of(all.begin(), all.end(), [](const Island& i) { return i.tied; });
   std::vector<Vec6> to_admissible;
@@ -122,7 +140,16 @@ void SettleImpacts::settle(State& state) {
     if (!solver_->take_impulses(state)) return;
     to_admissible = solver_->jumps_to_admissible(state);
   }
+  const auto inert = [&](int k) {
+    const Impact& impact = rows_[k].impact;
+    if (impact.mu > 0.0) return false;
+    double speed = 0.0;
+    if (rows_[k].bodies.a != kGround) speed += impact.on_a.dot(velocity(state, rows_[k].bodies.a));
+    if (rows_[k].bodies.b != kGround) speed += impact.on_b.dot(velocity(state, rows_[k].bodies.b));
+    return std::abs(impact.wanted - speed) <= kSameSpeed * std::abs(speed);
+  };
   for (const Island& island : all) {
+    if (std::all_of(island.rows.begin(), island.rows.end(), inert)) continue;
     for (std::size_t i = 0; i < island.bodies.size(); ++i)
       place_[island.bodies[i]] = static_cast<int>(i);
     if (island.tied && system_->rows() > 0) {
@@ -130,108 +157,147 @@ void SettleImpacts::settle(State& state) {
       for (int body : island.bodies) jumps.push_back(to_admissible[body]);
       jump(state, island, jumps);
     }
-    if (island.tied || island.rows.size() <= kTogether)
-      settle_together(state, island);
-    else
-      settle_in_turn(state, island);
+    settle(state, island);
   }
-  if (!contacts_) return;
-  contacts_->settled(std::span(impulses_).subspan(of_joints_),
-                     std::span(losses_).subspan(of_joints_));
+  if (contacts_) contacts_->settled(std::span(settled_).subspan(of_joints_));
 }
 
-std::vector<std::vector<Vec6>> SettleImpacts::answers(const State& state, const Island& island) {
-  std::vector<std::vector<Vec6>> X;
+std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const Island& island) {
+  std::vector<Row> rows;
   std::vector<Vec6> impulses;
   if (island.tied) impulses.assign(tie_.size(), Vec6::Zero());
-  for (int k : island.rows) {
-    std::vector<Vec6>& x = X.emplace_back(island.bodies.size(), Vec6::Zero());
-    const auto& [a, b] = rows_[k].bodies;
-    for (const auto& [body, J] : {std::pair(a, rows_[k].impact.on_a), {b, rows_[k].impact.on_b}}) {
+  const auto add = [&](int impact, const Vec6& on_a, const Vec6& on_b, bool rubs) {
+    Row& row = rows.emplace_back();
+    row.impact = impact;
+    row.on_a = on_a;
+    row.on_b = on_b;
+    row.rubs = rubs;
+    const auto& [a, b] = rows_[impact].bodies;
+    for (const auto& [body, J, place] :
+         {std::tuple(a, &row.on_a, &row.a), std::tuple(b, &row.on_b, &row.b)}) {
       if (body == kGround) continue;
+      *place = place_[body];
       if (island.tied) {
-        impulses[body] = J;
+        impulses[body] = *J;
         continue;
       }
       const BodyData& data = system_->bodies()[body];
       const Mat3 Lambda = system_->motion(state, body).Lambda();
-      x[place_[body]] << J.head<3>() / data.mass,
-          Lambda * data.inertia.ldlt().solve(Lambda.transpose() * J.tail<3>());
+      Vec6 x;
+      x << J->head<3>() / data.mass,
+          Lambda * data.inertia.ldlt().solve(Lambda.transpose() * J->tail<3>());
+      row.answer.emplace_back(*place, x);
     }
-    if (!island.tied) continue;
-    const std::vector<Vec6> jumps = solver_->jumps(impulses);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = jumps[island.bodies[i]];
-    if (a != kGround) impulses[a].setZero();
-    if (b != kGround) impulses[b].setZero();
+    if (island.tied) {
+      const std::vector<Vec6> jumps = solver_->jumps(impulses);
+      for (std::size_t i = 0; i < island.bodies.size(); ++i)
+        row.answer.emplace_back(static_cast<int>(i), jumps[island.bodies[i]]);
+      if (a != kGround) impulses[a].setZero();
+      if (b != kGround) impulses[b].setZero();
+    }
+    for (const auto& [place, x] : row.answer)
+      row.mobility +=
+          (place == row.a ? row.on_a.dot(x) : 0.0) + (place == row.b ? row.on_b.dot(x) : 0.0);
+  };
+  for (int k : island.rows) {
+    const Impact& impact = rows_[k].impact;
+    add(k, impact.on_a, impact.on_b, false);
+    if (impact.mu == 0.0) continue;
+    for (const Vec3* t : {&impact.along, &impact.across}) {
+      Vec6 on_a, on_b;
+      on_a << *t, impact.arm_a.cross(*t);
+      on_b << -*t, -impact.arm_b.cross(*t);
+      add(k, on_a, on_b, t == &impact.along);
+    }
   }
-  return X;
+  return rows;
 }
 
-/// v += X p with X = M⁻¹ Jᵀ under G v = 0, and J X p = what is wanted.
-void SettleImpacts::settle_together(State& state, const Island& island) {
-  const auto n = static_cast<Eigen::Index>(island.rows.size());
+namespace {
+
+/// The nearest point of the friction cone, an ellipse with these half axes, along the ray to p.
+Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
+  if (!(along > 0.0 && across > 0.0)) return Eigen::Vector2d::Zero();
+  const double size = std::hypot(p.x() / along, p.y() / across);
+  return size > 1.0 ? Eigen::Vector2d(p / size) : p;
+}
+
+}  // namespace
+
+/// Projected Gauss-Seidel over all impulses of an island: normals go to the speeds they want, as
+/// far as they take back no more than the step gave, friction ends the slip as far as its cone
+/// allows. Impulses that would give energy are scaled back to where they do not.
+/// @eq{turn-law} @eq{impact-friction}
+void SettleImpacts::settle(State& state, const Island& island) {
   std::vector<Vec6> v;
   for (int body : island.bodies) v.push_back(velocity(state, body));
-  const std::vector<std::vector<Vec6>> X = answers(state, island);
-  Mat A(n, n);
-  Vec before(n), wanted(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const PairImpact& row = rows_[island.rows[i]];
-    before[i] = along(row, v);
-    wanted[i] = row.impact.wanted;
-    for (Eigen::Index k = 0; k < n; ++k) A(i, k) = along(row, X[k]);
+  const std::vector<Vec6> start = v;
+  std::vector<Row> rows = rows_of(state, island);
+  double most = 0.0;
+  for (Row& row : rows) {
+    row.before = row.speed(v);
+    most = std::max(most, row.mobility);
   }
-  const SharedImpulses shared = share_impulses(0.5 * (A + A.transpose()), before, wanted);
-  if (shared.impulses.isZero(0.0)) return;
-  std::vector<Vec6> jumps(island.bodies.size(), Vec6::Zero());
-  for (Eigen::Index k = 0; k < n; ++k)
-    for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] += shared.impulses[k] * X[k][i];
-  const double lost = shared.energy_lost + jump(state, island, jumps);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    impulses_[island.rows[k]] = shared.impulses[k];
-    losses_[island.rows[k]] = lost / static_cast<double>(n);
-  }
-}
-
-/// Each impulse takes energy, in whatever order.
-void SettleImpacts::settle_in_turn(State& state, const Island& island) {
-  const std::size_t n = island.bodies.size();
-  std::vector<Vec6> v, start;
-  std::vector<Mat3> inverse_inertia;
-  for (int body : island.bodies) {
-    v.push_back(velocity(state, body));
-    const Mat3 Lambda = system_->motion(state, body).Lambda();
-    inverse_inertia.emplace_back(Lambda * system_->bodies()[body].inertia.inverse() *
-                                 Lambda.transpose());
-  }
-  start = v;
-  const auto answer = [&](int body, const Vec6& J) {
-    Vec6 x;
-    x << J.head<3>() / system_->bodies()[body].mass, inverse_inertia[place_[body]] * J.tail<3>();
-    return x;
-  };
-  std::vector<double> per_impulse;
-  for (int k : island.rows) {
-    const auto& [bodies, J] = rows_[k];
-    double sum = 0.0;
-    if (bodies.a != kGround) sum += J.on_a.dot(answer(bodies.a, J.on_a));
-    if (bodies.b != kGround) sum += J.on_b.dot(answer(bodies.b, J.on_b));
-    per_impulse.push_back(sum);
-  }
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (std::size_t i = 0; i < island.rows.size(); ++i) {
-      const int k = island.rows[i];
-      const auto& [bodies, J] = rows_[k];
-      const double speed = along(rows_[k], v);
-      if (!(speed > J.wanted)) continue;
-      const double p = (J.wanted - speed) / per_impulse[i];
-      if (bodies.a != kGround) v[place_[bodies.a]] += p * answer(bodies.a, J.on_a);
-      if (bodies.b != kGround) v[place_[bodies.b]] += p * answer(bodies.b, J.on_b);
-      impulses_[k] += p;
-      losses_[k] -= 0.5 * p * (J.wanted + speed);
+  if (!(most > 0.0)) return;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double change = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      Row& row = rows[i];
+      const Impact& impact = rows_[row.impact].impact;
+      if (row.mobility > kHeld * most) {
+        double p = (impact.wanted - row.speed(v)) / row.mobility;
+        p = std::max(p, -impact.given - row.impulse);
+        if (p != 0.0) row.push(p, v);
+        change = std::max(change, std::abs(p));
+      }
+      const double normal = std::max(0.0, impact.given + row.impulse);
+      largest = std::max(largest, normal);
+      if (i + 1 == rows.size() || !rows[i + 1].rubs) continue;
+      Row &along = rows[i + 1], &across = rows[i + 2];
+      i += 2;
+      const double mobility = along.mobility + across.mobility;
+      if (!(mobility > kHeld * most)) continue;
+      // The tangents' own block decouples in few sweeps where its mean is used.
+      const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
+          rubbed(impact.along.dot(impact.rubbed), impact.across.dot(impact.rubbed)),
+          before(along.impulse, across.impulse),
+          after = in_cone(rubbed + before - slip / std::max(along.mobility, across.mobility),
+                          impact.mu * normal, impact.mu_across * normal) -
+                  rubbed;
+      along.push(after.x() - before.x(), v);
+      across.push(after.y() - before.y(), v);
+      change = std::max(change, (after - before).lpNorm<Eigen::Infinity>());
     }
-  for (std::size_t i = 0; i < n; ++i) v[i] -= start[i];
-  jump(state, island, v);
+    if (!(change > kConverged * largest)) break;
+  }
+  // ΔT = Σ p (J v before + J v after)/2: along the jump a parabola.
+  double first = 0.0, second = 0.0;
+  for (const Row& row : rows) {
+    first += row.impulse * row.before;
+    second += row.impulse * (row.speed(v) - row.before);
+  }
+  const double part = first + 0.5 * second <= 0.0 || !(second > 0.0)
+                          ? 1.0
+                          : std::clamp(-2.0 * first / second, 0.0, 1.0);
+  std::vector<Vec6> jumps(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) jumps[i] = part * (v[i] - start[i]);
+  const double more = jump(state, island, jumps);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    SettledImpact& s = settled_[row.impact];
+    const double p = part * row.impulse,
+                 lost = -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
+    if (i > 0 && rows[i - 1].rubs) {
+      s.friction += p * rows_[row.impact].impact.across;
+      s.friction_loss += lost;
+    } else if (row.rubs) {
+      s.friction += p * rows_[row.impact].impact.along;
+      s.friction_loss += lost;
+    } else {
+      s.normal = p;
+      s.normal_loss += lost + more / static_cast<double>(island.rows.size());
+    }
+  }
 }
 
 double SettleImpacts::jump(State& state, const Island& island, const std::vector<Vec6>& jumps) {

@@ -9,9 +9,10 @@
 
 namespace polhode {
 
-/// Makes velocities jump where impacts ended in a step, of contacts and of the stops of joints: by
-/// impulses along them, from bodies that are as heavy as the solids they hold make them, while
-/// G v = 0. Impulses only take speed, and energy. @eq{exit-law} @eq{joint-stop-exit}
+/// Makes velocities jump at the end of a step in impacts, of contacts and of the stops of joints:
+/// by impulses along their normals and friction across, from bodies that are as heavy as the solids
+/// they hold make them, while G v = 0. They only take energy.
+/// @eq{turn-law} @eq{impact-friction} @eq{joint-stop-exit}
 class SettleImpacts {
  public:
   explicit SettleImpacts(const System& system);
@@ -20,7 +21,8 @@ class SettleImpacts {
   /// t_n. Forgets those before.
   void find(const State& state, const Trial& trial);
   /// Adds those of contacts, the state having moved to t_{n+1}.
-  void find(State& state, MovingContacts& contacts);
+  /// @returns the change of what contacts store, and what they dissipated by it.
+  Work find(State& state, MovingContacts& contacts);
   [[nodiscard]] bool any() const { return !rows_.empty(); }
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   void settle(State& state);
@@ -33,12 +35,10 @@ class SettleImpacts {
   };
   [[nodiscard]] std::vector<Island> islands() const;
   [[nodiscard]] Vec6 velocity(const State& state, int body) const;
-  /// J of a row times velocities of the island's bodies.
-  [[nodiscard]] double along(const PairImpact& row, const std::vector<Vec6>& v) const;
-  /// Velocities by which the island's bodies answer a unit impulse of each of its rows.
-  [[nodiscard]] std::vector<std::vector<Vec6>> answers(const State& state, const Island& island);
-  void settle_together(State& state, const Island& island);
-  void settle_in_turn(State& state, const Island& island);
+  struct Row;
+  /// Rows of an island: one for each normal, two more for each that rubs.
+  [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
+  void settle(State& state, const Island& island);
   /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
   ///          tell [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
@@ -51,7 +51,7 @@ class SettleImpacts {
   std::vector<PairImpact> rows_;
   MovingContacts* contacts_ = nullptr;  ///< Whose impacts the last rows are.
   std::size_t of_joints_ = 0;           ///< Rows before those.
-  std::vector<double> impulses_, losses_;
+  std::vector<SettledImpact> settled_;
 };
 
 }  // namespace polhode

@@ -134,7 +134,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
   if (MovingContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
-    impacts_.find(state, *contacts);
+    ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps start best from the velocities at t_n then
   }
   if (impacts_.any()) {

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Impacts and lasting contact: what a point does from closing to opening.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Share of the force of lasting contact that is that of the end of the step, where it takes
+/// energy. @eq{contact-plastic}
+constexpr double kRestShare = 0.5;
+/// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
+constexpr double kImpactStiffness = 1.14e4;
+/// Least part of the tolerance between a gap and the floor of its barrier.
+constexpr double kLeastBand = 0.1;
+
+/// Features of a surface of triangles, whose potentials cancel in part: their bands are equal.
+bool of_surface(GapKind kind) {
+  switch (kind) {
+    case GapKind::point_triangle:
+    case GapKind::point_edge:
+    case GapKind::point_corner:
+    case GapKind::part_triangle:
+    case GapKind::part_edge:
+    case GapKind::part_corner:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+void ContactSet::set_band(Point& p, double stiffness, double upper, double lower) const {
+  NormalLaw& law = p.data.normal;
+  law.stiffness = p.data.history.stiffness = stiffness;
+  law.upper = p.data.history.reach = upper;
+  law.lower = p.data.history.floor = lower;
+  if (law.potential == NormalPotential::barrier) p.least_gap = lower;
+}
+
+void ContactSet::set_phase(Point& p, ContactPhase phase) const {
+  PointData& d = p.data;
+  d.history.phase = phase;
+  const bool lasts = phase == ContactPhase::rest || phase == ContactPhase::landing;
+  const bool takes = p.restitution < 1.0 && !p.damped;
+  d.end_share = 0.0;
+  if (lasts && takes) d.end_share = kRestShare;
+  // An impact without rebound ends where it closes, and not as far away as it would have come.
+  if (phase == ContactPhase::compression && d.history.restitution == 0.0) d.end_share = 1.0;
+  if (!p.damped) d.rate_damping = lasts && takes ? p.rest_damping : 0.0;
+}
+
+/// A gap that is within the band although nothing stopped it on its way there, as at the start,
+/// stores nothing: the band begins there.
+void ContactSet::start_band(Point& p) const {
+  const NormalLaw& law = p.data.normal;
+  if (law.potential != NormalPotential::barrier || of_surface(p.data.pair.kind)) return;
+  const double least = kLeastBand * law.tolerance, standard = -law.tolerance;
+  const double lower = std::min(standard, p.gap_n - least);
+  const double narrower = std::min(1.0, (p.gap_n - lower) / law.tolerance);
+  set_band(p, p.open_stiffness ? law.stiffness / narrower : law.stiffness, p.gap_n, lower);
+}
+
+/// Another stiffness, and the reach with which the point stores this energy at its gap.
+/// @eq{turn-law}
+void ContactSet::store_again(Point& p, double stiffness, double energy) const {
+  NormalLaw law = p.data.normal;
+  law.stiffness = stiffness;
+  const double upper = law.reach_for(p.data.history.gap, energy);
+  set_band(p, stiffness, upper, p.data.history.floor);
+}
+
+/// At t_n. A point that is open gets its approach speed, and with it the phase it closes in: an
+/// impact is faster than what gravity adds in two steps, or, of a closed point, than what its force
+/// does. A rebound that would be shorter than that does not happen. @eq{turn-law}
+void ContactSet::begin_phase(Point& p, double speed, double dt) const {
+  PointHistory& h = p.data.history;
+  p.speed_n = speed;
+  const double gravity = system_->gravity().norm();
+  const auto impact = [&](double slow) {
+    h.approach = speed;
+    h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
+    set_phase(p, ContactPhase::compression);
+    const double tolerance = p.data.normal.tolerance;
+    return std::max(p.rest_stiffness,
+                    kImpactStiffness * p.mass * speed * speed / (tolerance * tolerance));
+  };
+  if (h.closed) {
+    if (h.in_impact() || p.damped || p.restitution == 1.0) return;
+    // Pressed into its band from rest, a body gets as fast as twice its depth under load tells.
+    const double a = std::max(gravity, h.force / p.mass);
+    const double depth = std::sqrt(p.mass * a * p.data.normal.tolerance / p.rest_stiffness);
+    const double slow = kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
+    if (!(-speed > slow)) return;
+    const double energy = p.data.normal.energy(h.gap);
+    const double k = impact(slow);
+    if (p.open_stiffness && k > h.stiffness) store_again(p, k, energy);
+    return;
+  }
+  const double slow = kSlowReboundSteps * gravity * std::abs(dt);
+  double k = p.rest_stiffness;
+  h.approach = std::min(0.0, speed);
+  if (!p.damped && -speed > slow)
+    k = impact(slow);
+  else
+    set_phase(p, ContactPhase::landing);
+  if (!p.open_stiffness) k = p.rest_stiffness;
+  set_band(p, k, 0.0, -p.data.normal.tolerance);
+  if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
+  if (p.gap_n >= p.data.normal.reach()) return;
+  h.closed = true;
+  h.gap = p.gap_n;
+  start_band(p);
+}
+
+/// Gravity along the normal against the motion apart [m/s²].
+double ContactSet::gravity_along(const Point& p, const Vec3& n) const {
+  Vec3 pull = Vec3::Zero();
+  if (shapes_[p.a].body != kGround) pull += system_->gravity();
+  if (shapes_[p.b].body != kGround) pull -= system_->gravity();
+  return -n.dot(pull);
+}
+
+/// Speed along the normal after the turn, of a point that left its band with `speed`: what it flew
+/// beyond it was under the pull of gravity alone. @eq{turn-law}
+double ContactSet::exit_speed(const Point& p, const Vec3& n, double speed) const {
+  const double e = p.data.history.restitution;
+  if (e == 1.0) return speed;
+  const double height = std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
+  const double a = gravity_along(p, n), of_surface = speed * speed + 2.0 * a * height;
+  return std::sqrt(std::max(e * e * of_surface - 2.0 * a * height, 0.0));
+}
+
+/// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
+/// are exact.
+std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
+  PointHistory& h = p.data.history;
+  if (!p.touched || p.damped || p.sensor || p.data.pair.weight < 0.0) return {};
+  if (h.phase == ContactPhase::rest || !(p.report.normal_force > 0.0)) return {};
+  PairImpact r;
+  r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
+  const auto motion = [&](int body) {
+    return body == kGround ? BodyMotion{} : system_->motion(state, body);
+  };
+  const BodyMotion a = motion(r.bodies.a), b = motion(r.bodies.b);
+  const Gap<double> g =
+      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r, a.Lambda(), 0),
+          Placement<double>(b.r, b.Lambda(), 6));
+  const Vec3 n = value(g.normal);
+  // What parted in the step is off by the gap: the lighter body gets its impulse where it touched.
+  const auto mass = [&](int body) { return body == kGround ? 0.0 : 1.0 / carried_mass_[body]; };
+  const double lean = (mass(r.bodies.a) - mass(r.bodies.b)) / (mass(r.bodies.a) + mass(r.bodies.b));
+  const Vec3 c = value(g.point) + 0.5 * lean * g.distance * n;
+  Impact& impact = r.impact;
+  impact.arm_a = c - a.r;
+  impact.arm_b = c - b.r;
+  impact.on_a << n, impact.arm_a.cross(n);
+  impact.on_b << -n, -impact.arm_b.cross(n);
+  Vec3 v = Vec3::Zero();
+  if (r.bodies.a != kGround) v += a.v + a.omega().cross(impact.arm_a);
+  if (r.bodies.b != kGround) v -= b.v + b.omega().cross(impact.arm_b);
+  const double speed = n.dot(v);
+  impact.wanted = speed;
+  impact.given = step_length_ * p.report.normal_force;
+  const bool turns = p.speed_n < 0.0 && speed >= 0.0;
+  const auto rests = [&] {
+    if (!h.closed) return;
+    const double energy = p.data.normal.energy(h.gap);
+    NormalLaw law = p.data.normal;
+    law.stiffness = p.rest_stiffness;
+    if (p.open_stiffness && law.reach_for(h.gap, energy) <= 0.0)
+      store_again(p, p.rest_stiffness, energy);
+    set_phase(p, ContactPhase::rest);
+  };
+  switch (h.phase) {
+    case ContactPhase::landing:
+      if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
+      impact.wanted = 0.0;  // the midpoint rule would throw it back
+      impact.rubbed = step_length_ * p.report.friction_force;
+      set_phase(p, ContactPhase::rest);
+      break;
+    case ContactPhase::compression:
+      if (!turns) break;
+      impact.wanted = exit_speed(p, n, speed);
+      if (h.closed && h.restitution < 1.0) {
+        const double e = h.restitution, before = p.data.normal.energy(h.gap);
+        const bool barrier = p.data.normal.potential == NormalPotential::barrier;
+        if (barrier) {
+          store_again(p, std::max(e * e * h.stiffness, p.rest_stiffness), e * e * before);
+        } else if (e > 0.0) {
+          set_band(p, e * e * h.stiffness, h.reach, h.floor);
+        }
+        const double released = before - p.data.normal.energy(h.gap);
+        work.stored -= released;
+        work.dissipated += released;
+        p.impact_loss += released;
+      }
+      h.restitution > 0.0 ? set_phase(p, ContactPhase::restitution) : rests();
+      break;
+    case ContactPhase::restitution:
+      if (!(speed > 0.0)) rests();
+      break;
+    case ContactPhase::rest:
+      break;
+  }
+  const FrictionLaw& f = p.data.friction;
+  if (!(f.mu > 0.0)) return r;
+  impact.mu = f.mu;
+  impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
+  const Vec3 slip = v - speed * n;
+  Vec3 along = a.Lambda() * f.direction;
+  along -= n.dot(along) * n;
+  if (impact.mu == impact.mu_across) along = slip;
+  if (along.squaredNorm() < 1e-24 * std::max(1e-300, v.squaredNorm()))
+    along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+  impact.along = along.normalized();
+  impact.across = n.cross(impact.along);
+  return r;
+}
+
+Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
+  settling_.clear();
+  Work work;
+  bool remembered = false;
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    Point& p = points_[i];
+    const ContactPhase before = p.data.history.phase;
+    const std::optional<PairImpact> impact = impact_of(p, state, work);
+    remembered = remembered || before != p.data.history.phase;
+    if (!impact) continue;
+    settling_.push_back(i);
+    list.push_back(*impact);
+  }
+  if (remembered) save(state);
+  return work;
+}
+
+/// Forces of the step are told with the impulses at its end.
+void ContactSet::settled(std::span<const SettledImpact> impacts) {
+  for (std::size_t k = 0; k < settling_.size(); ++k) {
+    Point& p = points_[settling_[k]];
+    const SettledImpact& s = impacts[k];
+    p.impact_loss += s.normal_loss;
+    p.friction_loss += s.friction_loss;
+    lost_in_impacts_ += s.normal_loss;
+    lost_by_friction_ += s.friction_loss;
+    if (!(step_length_ > 0.0)) continue;
+    PointReport& r = p.report;
+    r.normal_force += s.normal / step_length_;
+    r.friction_force += s.friction / step_length_;
+    r.force += (s.normal * r.normal + s.friction) / step_length_;
+  }
+}
+
+}  // namespace polhode::contact

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/surface_features.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// By this part of the rounding a point is looked at beside itself, to find out which features are
+/// nearest: over an edge or corner exactly, neighbours agree on it all the same.
+constexpr double kAside = 1e-7;
+
+/// A point as seen from a surface.
+struct SeenPoint {
+  const Shape& b;
+  Vec3 y;
+  double rho;
+
+  [[nodiscard]] SurfacePlace place(int kind, int index, const Vec3& nearest) const {
+    return {kind, index, (y - nearest).norm() - rho, 0.0, 0};
+  }
+  [[nodiscard]] SurfacePlace triangle(int t) const {
+    const auto& c = b.triangles[t];
+    const TriangleRegion r =
+        nearest_on_triangle(y, b.corners[c[0]], b.corners[c[1]], b.corners[c[2]]);
+    if (r.kind == TriangleRegion::face) return place(0, t, r.nearest);
+    if (r.kind == TriangleRegion::edge) return place(1, b.triangle_edges[t][r.k], r.nearest);
+    return place(2, c[r.k], r.nearest);
+  }
+  [[nodiscard]] SurfacePlace edge(int e) const {
+    const Vec3& p = b.corners[b.edges[e].i];
+    const Vec3 v = b.corners[b.edges[e].j] - p;
+    const double t = (y - p).dot(v) / v.squaredNorm();
+    if (t <= 0.0) return corner(b.edges[e].i);
+    if (t >= 1.0) return corner(b.edges[e].j);
+    return place(1, e, p + t * v);
+  }
+  [[nodiscard]] SurfacePlace corner(int k) const { return place(2, k, b.corners[k]); }
+};
+
+template <class T>
+Gap<T> over_place(const V3<T>& x, double rho, const Shape& b, const SurfacePlace& place,
+                  const Placement<T>& at_b) {
+  if (place.kind == 0) return over_triangle(x, rho, b, place.index, {}, at_b);
+  const Shape::Edge* edge = place.kind == 1 ? &b.edges[place.index] : nullptr;
+  const V3<T> first = at_b.point(b.corners[edge ? edge->i : place.index]);
+  const V3<T> y =
+      edge ? on_line(x, first, at_b.between(b.corners[edge->i], b.corners[edge->j])) : first;
+  Gap<T> g = between_points(x, y, rho, b.rounding);
+  g.feature = edge ? 1 + place.index : -1 - place.index;
+  return g;
+}
+
+}  // namespace
+
+/// @eq{contact-one-gap}
+template <class T>
+Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
+                          const Placement<T>& at_b) {
+  const double round = rho + b.rounding;
+  const Vec3 y = at_b.to_body(value(x)) + kAside * b.rounding * Vec3(0.618, -0.325, 0.716);
+  const TriangleTree::Hit hit = b.tree->nearest(y, std::numeric_limits<double>::infinity());
+  const auto nearest = [&] { return over_triangle(x, rho, b, hit.triangle, hit.region, at_b); };
+  if (!(hit.distance - round < reach)) return nearest();
+  const std::vector<SurfacePlace> places =
+      places_that_count(b, b.tree->near(y, reach + round), reach, SeenPoint{b, y, round});
+  if (places.empty()) return nearest();
+  std::vector<Gap<T>> gaps;
+  std::vector<int> counts;
+  for (const SurfacePlace& p : places) {
+    const Gap<T> g = over_place(x, rho, b, p, at_b);
+    if (!(value(g.distance) < reach) && !gaps.empty()) continue;
+    gaps.push_back(g);
+    counts.push_back(p.count);
+  }
+  if (!(value(gaps.front().distance) < reach)) return gaps.front();
+  return one_gap(gaps, counts, reach);
+}
+
+template Gap<double> point_over_surface(const V3<double>&, double, double, const Shape&,
+                                        const Placement<double>&);
+template Gap<Dual> point_over_surface(const V3<Dual>&, double, double, const Shape&,
+                                      const Placement<Dual>&);
+template Gap<Fine> point_over_surface(const V3<Fine>&, double, double, const Shape&,
+                                      const Placement<Fine>&);
+
+}  // namespace polhode::contact

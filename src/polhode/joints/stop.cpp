@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/joints/resistance.hpp>
+#include <polhode/joints/stop.hpp>
+
+namespace polhode {
+
+using contact::ContactPhase;
+
+namespace {
+
+/// Share of the force of lasting contact that is that of the end of the step.
+constexpr double kRestShare = 0.5;
+/// An impact is faster than what the acceleration adds in so many steps.
+constexpr double kSlowSteps = 2.0;
+/// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
+constexpr double kImpactStiffness = 1.14e4;
+/// Least part of the tolerance between a gap and the floor of its barrier.
+constexpr double kLeastBand = 0.1;
+
+/// Places of the numbers in the memory of a stop.
+enum Memory { kAcceleration, kPhase, kRestitution, kStiffness, kReach, kFloor, kSide };
+
+}  // namespace
+
+Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep& step)
+    : limits_(limits), step_(step), acceleration_(memory[kAcceleration]), law_(limits.law) {
+  closed_ = memory[kSide] != 0.0;
+  const double x = step.dt == 0.0 ? step.at_n1 : step.at_n;
+  sign_ = closed_ ? memory[kSide] : x - limits.lower <= limits.upper - x ? 1.0 : -1.0;
+  const double end = sign_ > 0.0 ? limits.lower : limits.upper;
+  gap_n_ = sign_ * (x - end);
+  gap_n1_ = sign_ * (step.at_n1 - end);
+  const double tolerance = limits.law.tolerance, w = sign_ * step.rate_n;
+  double slow = kSlowSteps * std::abs(acceleration_ * step.dt);
+  const auto impact_stiffness = [&] {
+    return std::max(limits.law.stiffness,
+                    kImpactStiffness * limits.inertia * w * w / (tolerance * tolerance));
+  };
+  const auto begin_impact = [&] {
+    phase_ = ContactPhase::compression;
+    restitution_ =
+        limits.restitution < 1.0 && -limits.restitution * w < slow ? 0.0 : limits.restitution;
+  };
+  if (closed_) {
+    phase_ = static_cast<ContactPhase>(static_cast<int>(memory[kPhase]));
+    restitution_ = memory[kRestitution];
+    law_.stiffness = memory[kStiffness];
+    law_.upper = memory[kReach];
+    law_.lower = memory[kFloor];
+    const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
+    if (limits.inertia > 0.0) {
+      // Pressed into its band from rest, the coordinate gets as fast as its depth under load tells.
+      const double a = std::abs(acceleration_);
+      const double depth = std::sqrt(limits.inertia * a * tolerance / limits.law.stiffness);
+      slow = std::max(slow, kSlowSteps * std::sqrt(a * depth));
+    }
+    if (!lasts || limits.restitution == 1.0 || !(-w > slow) || step.dt == 0.0) return;
+    const double energy = law_.energy(gap_n_);
+    begin_impact();
+    if (const double k = impact_stiffness(); k > law_.stiffness) {
+      law_.stiffness = k;
+      law_.upper = law_.reach_for(gap_n_, energy);
+    }
+    return;
+  }
+  law_.upper = 0.0;
+  law_.lower = -tolerance;
+  phase_ = ContactPhase::landing;
+  if (-w > slow) {
+    begin_impact();
+    law_.stiffness = impact_stiffness();
+  }
+  if (!(gap_n_ < 0.0)) return;
+  // Within the band although nothing stopped it on its way there: nothing is stored.
+  closed_ = true;
+  law_.lower = std::min(-tolerance, gap_n_ - kLeastBand * tolerance);
+  law_.stiffness *= tolerance / std::min(tolerance, gap_n_ - *law_.lower);
+  law_.upper = gap_n_;
+}
+
+double Stop::end_share() const {
+  if (phase_ == ContactPhase::compression) return restitution_ == 0.0 ? 1.0 : 0.0;
+  if (phase_ == ContactPhase::restitution || limits_.restitution == 1.0) return 0.0;
+  return kRestShare;
+}
+
+bool Stop::touched() const { return std::min(gap_n_, gap_n1_) < law_.reach(); }
+
+bool Stop::turns() const {
+  return touched() && sign_ * step_.rate_n < 0.0 && sign_ * step_.rate_n1 >= 0.0;
+}
+
+bool Stop::jumps() const {
+  return limits_.restitution < 1.0 && turns() &&
+         (phase_ == ContactPhase::compression || phase_ == ContactPhase::landing);
+}
+
+/// @eq{joint-stop-exit}
+double Stop::exit_rate() const {
+  const double w = sign_ * step_.rate_n1, e = restitution_;
+  if (phase_ == ContactPhase::landing) return 0.0;
+  const double h = std::max(0.0, gap_n1_ - law_.reach()), a = -sign_ * acceleration_;
+  const double at_stop = std::max(w * w + 2.0 * a * h, 0.0);
+  return std::min(w, std::sqrt(std::max(e * e * at_stop - 2.0 * a * h, 0.0)));
+}
+
+ContactPhase Stop::phase_after() const {
+  switch (phase_) {
+    case ContactPhase::landing:
+      return turns() ? ContactPhase::rest : phase_;
+    case ContactPhase::compression:
+      if (!turns()) return phase_;
+      return restitution_ > 0.0 ? ContactPhase::restitution : ContactPhase::rest;
+    case ContactPhase::restitution:
+      return sign_ * step_.rate_n1 > 0.0 ? phase_ : ContactPhase::rest;
+    case ContactPhase::rest:
+      return phase_;
+  }
+  return phase_;
+}
+
+contact::NormalLaw Stop::law_after() const {
+  contact::NormalLaw law = law_;
+  if (!(gap_n1_ < law.reach()) || limits_.restitution == 1.0) return law;
+  const double energy = law.energy(gap_n1_), k = limits_.law.stiffness;
+  if (phase_ == ContactPhase::compression && turns()) {
+    const double e = restitution_;
+    law.stiffness = std::max(e * e * law.stiffness, k);
+    law.upper = law.reach_for(gap_n1_, e * e * energy);
+  } else if (phase_ == ContactPhase::restitution && phase_after() == ContactPhase::rest) {
+    law.stiffness = k;
+    law.upper = law.reach_for(gap_n1_, energy);
+    if (*law.upper > 0.0) law = law_;
+  }
+  return law;
+}
+
+void Stop::remember(double force, double* memory) const {
+  const bool closed = gap_n1_ < law_.reach();
+  const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
+  const double change = step_.dt > 0.0 ? (step_.rate_n1 - step_.rate_n) / step_.dt : 0.0;
+  if (!touched())
+    memory[kAcceleration] = change;
+  else if (lasts && limits_.inertia > 0.0)
+    memory[kAcceleration] = change - sign_ * force / limits_.inertia;
+  const contact::NormalLaw law = law_after();
+  memory[kPhase] = static_cast<double>(phase_after());
+  memory[kRestitution] = restitution_;
+  memory[kStiffness] = law.stiffness;
+  memory[kReach] = law.reach();
+  memory[kFloor] = law.floor();
+  memory[kSide] = closed ? sign_ : 0.0;
+}
+
+}  // namespace polhode

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/normal_law.hpp>
+
+namespace polhode {
+
+struct JointLimits;
+
+/// Numbers that the stops of a coordinate remember.
+inline constexpr int kStopMemory = 7;
+
+/// A free coordinate over a step, as its stops see it.
+struct CoordinateStep {
+  double at_n = 0.0, at_n1 = 0.0;      ///< [m] or [rad]
+  double rate_n = 0.0, rate_n1 = 0.0;  ///< d/dt at both ends.
+  double dt = 0.0;                     ///< 0: an instant, t_{n+1} [s].
+};
+
+/// The stop that acts in a step, of the two of a coordinate, with its phase and its law: an impact
+/// or lasting contact as between bodies, with one normal and no friction.
+/// @eq{joint-stop-exit} @eq{turn-law}
+class Stop {
+ public:
+  /// @param memory  kStopMemory numbers of t_n.
+  Stop(const JointLimits& limits, const double* memory, const CoordinateStep& step);
+
+  [[nodiscard]] double sign() const { return sign_; }  ///< +1: the lower end.
+  [[nodiscard]] const contact::NormalLaw& law() const { return law_; }
+  [[nodiscard]] double gap_n() const { return gap_n_; }
+  [[nodiscard]] double gap_n1() const { return gap_n1_; }
+  /// Share of the force that is that of the end of the step.
+  [[nodiscard]] double end_share() const;
+  /// The force acted in the step.
+  [[nodiscard]] bool touched() const;
+  /// The rate apart at t_{n+1} is to change.
+  [[nodiscard]] bool jumps() const;
+  /// Rate apart after the step, an impact or a landing being at its turn.
+  [[nodiscard]] double exit_rate() const;
+  /// The law from the end of the step on.
+  [[nodiscard]] contact::NormalLaw law_after() const;
+  /// What goes into the memory at t_{n+1}. @param force  Of the stop over the step, apart.
+  void remember(double force, double* memory) const;
+
+ private:
+  [[nodiscard]] bool turns() const;
+  [[nodiscard]] contact::ContactPhase phase_after() const;
+
+  const JointLimits& limits_;
+  CoordinateStep step_;
+  double acceleration_ = 0.0;  ///< Of the coordinate without the stop.
+  double sign_ = 1.0, gap_n_ = 0.0, gap_n1_ = 0.0;
+  bool closed_ = false;  ///< At t_n.
+  contact::ContactPhase phase_ = contact::ContactPhase::rest;
+  double restitution_ = 0.0;  ///< Of the impact.
+  contact::NormalLaw law_;
+};
+
+}  // namespace polhode

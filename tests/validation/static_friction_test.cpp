@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Static friction above that of sliding: the bound of all points of two bodies together.
+#include <gtest/gtest.h>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+namespace {
+
+/// Speed of what is pulled with half its weight a second, so long after the start [m/s].
+double speed_after(double t, const char* bodies, const char* law, const char* step) {
+  Simulation run(read_model_text(format(R"(
+format: 1
+gravity: [0, 0, -10]
+bodies:
+  floor: {{fixed: true, shape: {{plane: z}}}}
+  {}
+loads: {{pull: {{type: force, body: a, force: ["5*t", 0, 0]}}}}
+contacts: {{default: {{law: {}, friction: 0.5, static_friction: 0.6}}}}
+analysis: {{type: dynamics, duration: {:.17g} s, step: {}}}
+)",
+                                        bodies, law, t, step),
+                                 "m.yaml"));
+  EXPECT_EQ(run.run().end, RunEnd::finished);
+  return run.body(1).v.x();
+}
+
+/// Lets go at 0.6 of the weight to 1 %, and goes on with 0.5: 12 ms at 1 m/s².
+/// @tests{contact-patch}
+TEST(StaticFriction, IsThatOfThePatch) {
+  const char* kBox = "a: {shape: {box: [0.2, 0.2, 0.1]}, mass: 1, position: [0, 0, 0.05]}";
+  const char* kCylinder = "a: {shape: {cylinder: [0.1, 0.1]}, mass: 1, position: [0, 0, 0.05]}";
+  const char* kStack =
+      "a: {shape: {box: [0.2, 0.2, 0.1]}, mass: 1, position: [0, 0, 0.15]}\n"
+      "  b: {shape: {box: [0.3, 0.3, 0.1]}, mass: 1, position: [0, 0, 0.05]}";
+  for (const char* bodies : {kBox, kCylinder, kStack})
+    for (const auto& [law, step] : {std::pair("barrier", "6 ms"), std::pair("hertz", "2 ms"),
+                                    std::pair("hertz", "0.5 ms"), std::pair("linear", "1 ms")}) {
+      EXPECT_LT(std::abs(speed_after(1.188, bodies, law, step)), 3e-3) << law << ' ' << step << '\n'
+                                                                       << bodies;
+      EXPECT_GT(speed_after(1.212, bodies, law, step), 3e-3) << law << ' ' << step << '\n'
+                                                             << bodies;
+    }
+}
+
+}  // namespace
+}  // namespace polhode
