@@ -18,7 +18,7 @@ struct PairImpact {
   Impact impact;
 };
 
-/// What the impulse of an impact did.
+/// Impulse of an impact, with its losses.
 struct SettledImpact {
   double normal = 0.0;           ///< Along J [N s].
   Vec3 friction = Vec3::Zero();  ///< On a, world [N s].

@@ -12,7 +12,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// Where lasting contact carries its reference load, as a part of the tolerance below the surface;
+/// Stiffness of lasting contact, which carries its load at a twentieth of the tolerance:
 /// k d̂ of the barrier over the load there: 3/(1/s² − 3 + 2s) at s = 0.95.
 constexpr double kRestStiffness = 373.0;
 /// Slope of that barrier under its load, which is the stiffness of a bristle beside it: a much
@@ -20,9 +20,9 @@ constexpr double kRestStiffness = 373.0;
 constexpr double kRestSlope = 38.6;
 /// Stiffness of a linear spring that carries the load at the whole tolerance or less.
 constexpr double kSoftStiffness = 0.75;
-/// Of critical damping of lasting contact that takes energy.
+/// Damping ratio of lasting contact with e < 1.
 constexpr double kRestDamping = 0.3;
-/// Of a shape with a core, the tolerance is at most this part of its rounding.
+/// Largest tolerance of shapes with a core, as a part of their rounding.
 constexpr double kOfRounding = 0.85;
 /// Candidates are found anew when their margin is so many times what is needed, as after an
 /// iteration that went astray.

@@ -240,7 +240,7 @@ Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
   return work;
 }
 
-/// Forces of the step are told with the impulses at its end.
+/// Reported forces of the step, with the impulses at its end.
 void ContactSet::settled(std::span<const SettledImpact> impacts) {
   for (std::size_t k = 0; k < settling_.size(); ++k) {
     Point& p = points_[settling_[k]];

@@ -53,7 +53,7 @@ double NormalLaw::gap_of(double energy) const {
   return 0.0;
 }
 
-/// Of the barrier, with x = g − floor = s d̂: (k x²/3) ((1 − s)/s)³ is the energy.
+/// Energy of the barrier with x = g − floor = s d̂: (k x²/3) ((1 − s)/s)³.
 double NormalLaw::reach_for(double gap, double energy) const {
   if (!(energy > 0.0)) return gap;
   switch (potential) {
