@@ -154,10 +154,8 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.arm_a = a.moves ? Vec3(at.place - a.r_n - 0.5 * a.u) : Vec3::Zero();
     p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
     const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
-    const Vec3 before = a.v_n + w_a.cross(p.arm_a) - b.v_n - w_b.cross(p.arm_b);
-    const double w = p.normal.dot(before);
-    p.least = w + least_exit_speed(at.gap, w, at.restitution, dt, slow);
-    p.wanted = before - w * p.normal;
+    p.least = at.rate + least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
+    p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
     p.friction = at.friction;
     p.push = std::max(0.0, p.normal.dot(at.impulse));
     p.rub = at.impulse - p.normal.dot(at.impulse) * p.normal;
