@@ -185,6 +185,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     point.torsion = f.torsion;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
+    point.size = p.data.length;
     point.number = i;
     p.listed = true;
     if (p.data.b->solid == Solid::surface) {
