@@ -462,27 +462,6 @@ PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep&
   return evaluation.spring(evaluation.run(nullptr));
 }
 
-NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
-  NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
-  const double quotient = f.value;
-  const bool spring = data.normal.potential != NormalPotential::barrier;
-  const auto add_share = [&] {
-    if (!(data.end_share > 0.0 && data.pair.weight > 0.0)) return;
-    const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);
-    f.value = (1.0 - data.end_share) * f.value + data.end_share * end.value;
-    f.slope = (1.0 - data.end_share) * f.slope + data.end_share * end.slope;
-  };
-  if (spring) add_share();
-  if (data.rate_damping > 0.0) {
-    const double factor = std::max(0.0, 1.0 - data.rate_damping / dt * (gap_n1 - gap_n));
-    f.slope = factor > 0.0 ? factor * f.slope - data.rate_damping / dt * f.value : 0.0;
-    f.value *= factor;
-  }
-  if (!spring) add_share();
-  const double weight = data.pair.weight;
-  return {weight * f.value, -weight * f.slope, weight * quotient};
-}
-
 bool has_closed_form(const PointData& data) {
   return data.pair.kind == GapKind::point_solid &&
          (data.b->solid == Solid::half_space || data.b->solid == Solid::ball);
