@@ -20,6 +20,9 @@ constexpr double kSameMotion = 1e-13;
 constexpr int kMostRepeats = 60;
 /// Depth of an overlap, as part of the smaller size, that no step may bring about.
 constexpr double kPressedIn = 0.1;
+/// Change of speeds in the last sweep over few points, over what gravity adds in a step, with which
+/// no step may end.
+constexpr double kFarOff = 1.0;
 /// Without gravity, the speed that tolerances are a part of: this part of the fastest.
 constexpr double kPartOfSpeed = 1e-2;
 
@@ -266,7 +269,7 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
 }
 
 /// The point that ends the step deepest, if that is a part of its bodies' size and deeper than it
-/// began; −1: none.
+/// began, or where the search is far from its end; −1: none.
 int NonsmoothEngine::pressed_in() const {
   int worst = -1;
   double deepest = -kPressedIn;
@@ -280,7 +283,13 @@ int NonsmoothEngine::pressed_in() const {
     deepest = gap;
     worst = k;
   }
-  return worst;
+  // Few bodies that go on changing speed by more than gravity makes it go anywhere.
+  if (worst >= 0 || search_.converged || !is_small() || search_.change < kFarOff) return worst;
+  const auto weaker = [](const ImpulsePoint& p, const ImpulsePoint& q) {
+    return p.impulse.squaredNorm() < q.impulse.squaredNorm();
+  };
+  return static_cast<int>(std::max_element(points_.begin(), points_.end(), weaker) -
+                          points_.begin());
 }
 
 /// What impulses took, from the motion that they have led to: −½ p·y. @eq{nonsmooth-energy}
