@@ -283,7 +283,8 @@ int NonsmoothEngine::pressed_in() const {
     deepest = gap;
     worst = k;
   }
-  // Few bodies that go on changing speed by more than gravity makes it go anywhere.
+  // Few points whose sweeps and Newton's method both failed: gaps alone do not show how far off
+  // they are where surfaces lie flush, as a corner is then near the side of the other body.
   if (worst >= 0 || search_.converged || !is_small() || search_.change < kFarOff) return worst;
   const auto weaker = [](const ImpulsePoint& p, const ImpulsePoint& q) {
     return p.impulse.squaredNorm() < q.impulse.squaredNorm();
