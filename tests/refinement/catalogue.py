@@ -3,6 +3,7 @@
 import central_impacts
 import rest
 import stops
+import surfaces
 
-CASES = [case for module in (central_impacts, rest, stops) for case in module.CASES]
+CASES = [case for module in (central_impacts, rest, stops, surfaces) for case in module.CASES]
 assert len({case.name for case in CASES}) == len(CASES), "two cases have one name"

@@ -164,6 +164,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
 
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
+  [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;
   void set_band(Point& p, double stiffness, double upper, double lower) const;
   void start_band(Point& p) const;

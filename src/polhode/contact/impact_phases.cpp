@@ -131,9 +131,13 @@ double ContactSet::gravity_along(const Point& p, const Vec3& n) const {
 double ContactSet::exit_speed(const Point& p, const Vec3& n, double speed) const {
   const double e = p.data.history.restitution;
   if (e == 1.0) return speed;
-  const double height = std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
-  const double a = gravity_along(p, n), of_surface = speed * speed + 2.0 * a * height;
-  return std::sqrt(std::max(e * e * of_surface - 2.0 * a * height, 0.0));
+  const double lost = fallen(p, n), apart = std::max(0.0, p.speed_n), kept = apart * apart;
+  return std::sqrt(std::max(kept + e * e * (speed * speed + lost - kept) - lost, 0.0));
+}
+
+/// 2 a h: what gravity took from the square of the speed since the point left its band [m²/s²].
+double ContactSet::fallen(const Point& p, const Vec3& n) const {
+  return 2.0 * gravity_along(p, n) * std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
 }
 
 /// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
@@ -167,7 +171,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const double speed = n.dot(v);
   impact.wanted = speed;
   impact.given = step_length_ * p.report.normal_force;
-  const bool turns = p.speed_n < 0.0 && speed >= 0.0;
+  const bool turns = speed >= 0.0;  // friction may have turned it at t_n
   const auto rests = [&] {
     if (!h.closed) return;
     const double energy = p.data.normal.energy(h.gap);
@@ -177,6 +181,13 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
   };
+  ImpactCourse course;
+  course.turns = turns;
+  course.restitution = h.phase == ContactPhase::restitution ? 1.0 : h.restitution;
+  course.fallen = fallen(p, n);
+  course.stored_n = p.data.normal.energy(p.report.gap_n);
+  if (h.closed) course.stored_n1 = p.data.normal.energy(h.gap);
+  const bool lands = h.phase == ContactPhase::landing;
   switch (h.phase) {
     case ContactPhase::landing:
       if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
@@ -220,6 +231,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
   impact.along = along.normalized();
   impact.across = n.cross(impact.along);
+  if (!lands) r.course = course;
   return r;
 }
 
