@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """All cases of the refinement suite."""
 import central_impacts
+import eccentric_impacts
 import rest
 import stops
 
-CASES = [case for module in (central_impacts, rest, stops) for case in module.CASES]
-assert len({case.name for case in CASES}) == len(CASES), "two cases have one name"
+ALL = [case for module in (central_impacts, eccentric_impacts, rest, stops) for case in module.CASES]
+CASES = [case for case in ALL if not case.open]
+OPEN = [case for case in ALL if case.open]
+assert len({case.name for case in ALL}) == len(ALL), "two cases have one name"
