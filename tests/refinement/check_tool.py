@@ -49,7 +49,8 @@ def strict(text):
 assert verdicts(lambda h: 0.05 * h) == [True, True]
 assert verdicts(lambda h: 0.05 * h * h, order=2) == [True, True]
 assert verdicts(lambda h: 0.05 * h, order=2) == [False, False]
-assert verdicts(lambda h: 0.05 * h**0.3) == [False, False]
+assert verdicts(lambda h: 0.05 * math.sqrt(h)) == [False, False]
+assert verdicts(lambda h: 0.05 * h * (0.2 if h == 1 else 1)) == [True, True]  # The coarsest run was lucky.
 assert verdicts(lambda h: 0.05 * (h > 0.02)) == [False, False]
 assert verdicts(lambda h: 0.01 / h) == [False, False]
 assert verdicts(lambda h: 1e-4 / h if h > 0.01 else 0) == [False, False]  # It diverges until the last step, which it is compared with.
