@@ -30,15 +30,21 @@ def bouncing_ball():
 
 def incline():
     down = G * (0.5 - 0.5 * 3**0.5 / 2)
-    speed = 0.5 + down * 0.5
     way = 0.5 * 0.5 + down / 2 * 0.5**2
     moved = lambda run: ((run.probe("slides")["x"][-1] - run.probe("slides")["x"][0]) ** 2 + (run.probe("slides")["z"][-1] - run.probe("slides")["z"][0]) ** 2) ** 0.5  # noqa: E731
-    known = (Known("way of the one that slides", moved, way, 1e-4 * way), Known("its speed", lambda run: 0.5 * (3**0.5 * last("slides", "vx")(run) - last("slides", "vz")(run)), speed, 1e-4 * speed),
+    known = (Known("way of the one that slides", moved, way, 1e-4 * way),
              # Friction sticks on springs that carry the weight within a tenth of the band.
              Known("way of the one that holds", lambda run: ((run.probe("holds")["x"][-1] - run.probe("holds")["x"][0]) ** 2 + (run.probe("holds")["z"][-1] - run.probe("holds")["z"][0]) ** 2) ** 0.5,
                    0, 2e-5, below=True))
     return example("incline", 1e-2, 0.5, "One block holds, one slides with g (sin - μ cos).", known, skip=("holds.speeds",), floor=settles(0.1, 0.5),
                    because="One stands still: its impulses are compared.")
+
+
+def incline_at_rest():
+    known = tuple(Known(f"{name}: speed off the incline at the end", lambda run, n=name: abs(0.5 * last(n, "vx")(run) + 0.5 * 3**0.5 * last(n, "vz")(run)), 0, 1e-4, below=True) for name in ("holds", "slides"))
+    return Case("incline_at_rest", "Blocks that touch at the start come to rest in their band.", "examples/incline/model.yaml", 1e-2, 0.5, (Variant("", {}, known),),
+                compare=False, because="It asks for rest.",
+                open="At 10 ms the sliding block trembles: its speed off the incline is 1.3e-3 m/s, up and down from step to step, and loses 1 % a step.")
 
 
 def card_house():
@@ -56,11 +62,13 @@ def stack():
                    because="It stands still: it is the impulses that are compared. They lack what the boxes fall until they have settled.")
 
 
-CASES = [bouncing_ball(), incline(), card_house(), stack(),
+CASES = [bouncing_ball(), incline(), incline_at_rest(), card_house(), stack(),
          example("newtons_cradle", 5e-4, 0.4, "Five balls 2 mm apart: the impact goes through.", fractions=(1, 0.5, 0.2, 0.05)),
          example("rattleback", 2e-3, 0.2, "A stone with askew axes."), example("rolling_coin", 5e-4, 0.05, "A coin wobbles."),
          example("tippe_top", 1e-3, 0.1, "A top begins to turn over."),
          example("spheres_in_a_bin", 2e-3, 0.095, "100 balls fall: until the second layer lands on the first.", until=0.095,
                  because="A pile is chaotic: where the next layer lands on the balls below, what is small grows."),
+         example("tyre_on_kerb", 4e-3, 0.05, "A soft tyre is set down and rolls.", fractions=(1, 0.5, 0.2, 0.05), because="Finer steps and the kerb take minutes."),
+         example("soft_rings", 4e-3, 0.06, "Rings of rubber meet and are pressed on each other.", fractions=(1, 0.5, 0.2), because="Finer steps take minutes."),
          example("ironing", 2e-3, 0.05, "A cylinder pressed into soft rubber.", fractions=(1, 0.5, 0.2), skip=("base",),
-                 because="Reactions of an instant jump with the prescribed velocity.")]
+                 because="Reactions of an instant jump with the prescribed velocity. Finer steps take minutes.")]
