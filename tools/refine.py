@@ -174,7 +174,7 @@ def judge(case, steps, workers=1):
     failures = 0
     for variant in case.variants:
         runs = run_variant(case, variant, steps, workers)
-        troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs if run.trouble]
+        troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs if run.trouble]  # Each is a failure.
         known = []
         for item in variant.known:
             values = []
@@ -187,6 +187,8 @@ def judge(case, steps, workers=1):
             known.append({"what": item.what, "value": item.value, "ours": values, "good": good,
                           "allowed": [item.allowed(run.step) for run in runs]})
         rows = compare(case, runs) if case.compare and len(runs) > 1 and not troubles else []
+        if not rows and not known and len(runs) > 1 and not troubles:
+            troubles.append("nothing to compare: give the model probes of what moves (output.probes)")
         failures += len(troubles) + sum(not all(k["good"]) for k in known) + sum(not row[3] for row in rows)
         found["variants"].append({"label": variant.label, "troubles": troubles, "known": known,
                                   "seconds": sum(run.seconds for run in runs),

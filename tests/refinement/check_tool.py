@@ -69,6 +69,10 @@ assert len(rows["slides places"]["differences"]) == 3 and rows["slides places"][
 code, out, err = called("--model", model, "--step", "10 ms", "--span", "0.02 s", "--steps", "1", "--json")
 assert code == 0 and strict(out)["variants"][0]["probes"] == [], (code, out, err)
 
+# Without probes there is nothing that could converge.
+code, out, err = called("--model", str(ROOT / "tests/validation/data/trolley.yaml"), "--step", "1 ms", "--span", "2 ms", "--steps", "1,1/2")
+assert code == 1 and "output.probes" in out, (code, out, err)
+
 # What cannot run fails, and says what the program said.
 code, out, err = called("--model", "no such model.yaml", "--steps", "1,1/2")
 assert code == 1 and "cannot be opened" in out, (code, out, err)
