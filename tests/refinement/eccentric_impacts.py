@@ -2,8 +2,9 @@
 """Rods, boxes and capsules meet something at one point beside their centre, at 2 m/s, without gravity.
 
 Without friction the impulse is p = (1 + e) w/(n·K n), K the sum of both bodies' mobilities at the point
-(tools/references/eccentric_impact.py). Within the step of the impact a body turns by up to ω h, and so does the arm of its
-point: what comes out differs by order h, and is exact where a step resolves the impact.
+(tools/references/eccentric_impact.py); with friction the script integrates Routh's equations. Within the step of the impact a
+body turns by up to ω h, and so does the arm of its point: what comes out differs by order h, and is exact where a step resolves
+the impact.
 """
 import math
 import pathlib
@@ -176,29 +177,44 @@ def upright_capsule():
                 1e-2, 0.024, tuple(variants), ABSOLUTE, spans=SHORT, compare=False, because=CLOSED)
 
 
-def rough(law="stronge"):
-    """With friction, against the script's solution of Routh's equations."""
-    slips = {"rod_on_edge": (-1, 0), "steep_rod": (1, 0), "rod_on_corner": (1, 0.5), "box_on_edge": (1, 0), "box_on_corner": (-0.5, 1), "capsule": (-1, 0)}
-    bodies = dict(FLOOR)
-    for i, (name, solid) in enumerate(SOLIDS.items()):
-        bodies[name] = solid.lowered((0, 3 * i, 0), (*slips[name], -W))
+SLIPS = {"rod_on_edge": (-1, 0), "steep_rod": (1, 0), "rod_on_corner": (1, 0.5), "box_on_edge": (1, 0), "box_on_corner": (-0.5, 1), "capsule": (-1, 0)}
+NEWTON = "Eccentric impacts with friction follow Newton's restitution, not the work of the normal impulse."
+
+
+def rough(title, about, names, on_plates, reason):
+    """With friction, against Routh's equations with Stronge's restitution, on the floor or on free plates."""
+    a, thick, mass, beside = 0.6, 0.1, 2.0, 0.15
+    moments = [mass * (a * a + thick * thick) / 12] * 2 + [mass * a * a / 6]
+    plate = mobility(mass, turned(rotation((0, 0, 1), 0), moments), [beside, 0, thick / 2])
+    bodies = {} if on_plates else dict(FLOOR)
+    for i, name in enumerate(names):
+        slid = SLIPS[name][0] * GAP / W  # On its way there.
+        place = (beside - slid, 3 * i, thick / 2) if on_plates else (0, 3 * i, 0)
+        bodies[name] = SOLIDS[name].lowered(place, (*SLIPS[name], -W))
+        if on_plates:
+            bodies[name + "_plate"] = {"shape": {"box": [a, a, thick]}, "mass": mass, "inertia": moments, "position": [0, 3 * i, 0]}
     variants = []
     for e in RESTITUTIONS:
         for mu in (0.1, 0.5):
             known = []
-            for name, solid in SOLIDS.items():
-                found = impact(solid.K, [*slips[name], -W], mu, e, law)
-                slack = solid.turning(found.impulse) * math.sqrt(dot(found.impulse, found.impulse))
-                for k, (axis, v) in enumerate(zip("xyz", (*slips[name], -W))):
-                    if k != 1 or name not in FLAT:
-                        known.append(Known(f"{name}: v{axis} after, {found.mode}", last(name, "v" + axis), v + found.impulse[k] / solid.mass,
-                                           lambda h, s=slack: EXACT + s * h))
+            for name in names:
+                solid, before = SOLIDS[name], (*SLIPS[name], -W)
+                K = [[x + y for x, y in zip(*row)] for row in zip(solid.K, plate)] if on_plates else solid.K
+                found = impact(K, before, mu, e)
+                size = math.sqrt(dot(found.impulse, found.impulse))
+                slack = (solid.turning(found.impulse) + (beside + thick / 2) * size / moments[0] * on_plates) * size
+                known += [Known(f"{name}: v{axis} after, {found.mode}", last(name, "v" + axis), v + found.impulse[k] / solid.mass, lambda h, s=slack: EXACT + s * h)
+                          for k, (axis, v) in enumerate(zip("xyz", before)) if k != 1 or name not in FLAT]
             variants.append(Variant(f"e {e}, mu {mu}", {"e": e, "mu": mu}, tuple(known)))
-    return Case("rough_corners_on_floor", "Eccentric impacts with friction: Routh's equations of slip with Stronge's energetic restitution.",
-                model("Rough corners on the floor", bodies, gravity=(0, 0, 0), variables={"e": 0, "mu": 0}, contacts={"default": {"restitution": "e", "friction": "mu"}},
-                      probes={name: {"body": name} for name in SOLIDS}),
-                1e-2, 0.024, tuple(variants), ABSOLUTE, spans=SHORT, compare=False, because=CLOSED,
-                open="Eccentric impacts with friction follow Newton's restitution, and slip whose direction turns is taken as straight.")
+    return Case(title.lower().replace(" ", "_"), about,
+                model(title, bodies, gravity=(0, 0, 0), variables={"e": 0, "mu": 0}, contacts={"default": {"restitution": "e", "friction": "mu"}}, probes={name: {"body": name} for name in names}),
+                1e-2, 0.024, tuple(variants), ABSOLUTE, spans=SHORT, compare=False, because=CLOSED, open=reason)
 
 
-CASES = [on_floor(), on_free_plates(), on_hinged_plates(), on_chain(), upright_capsule(), rough()]
+IN_SPACE = tuple(name for name in SOLIDS if name not in FLAT)
+CASES = [on_floor(), on_free_plates(), on_hinged_plates(), on_chain(), upright_capsule(),
+         rough("Rough edges on floor", "Impacts in a plane with friction: Routh's equations of slip with Stronge's restitution.", FLAT, False, NEWTON),
+         rough("Rough capsule on plate", "The same on a free plate, sliding from first to last: there all laws of restitution agree.", ("capsule",), True, ""),
+         rough("Rough rod on plate", "A rod that sticks, or slips back, on a free plate.", ("rod_on_edge",), True, NEWTON),
+         rough("Rough corners on floor", "Impacts in space with friction: slip turns while it lasts.", IN_SPACE, False,
+               NEWTON + " Slip that turns its direction is taken as straight.")]
