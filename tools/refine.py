@@ -172,7 +172,7 @@ def judge(case, steps, workers=1):
     """Runs a case; what failed, and everything as plain data."""
     found = {"case": case.name, "steps": [case.step * part for part in steps], "variants": []}
     failures = 0
-    for variant in case.variants:
+    for variant in case.variants() if callable(case.variants) else case.variants:
         runs = run_variant(case, variant, steps, workers)
         troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs if run.trouble]  # Each is a failure.
         known = []

@@ -42,7 +42,7 @@ class Case:
     model: typing.Any
     step: float  # [s], the base step.
     span: float  # [s]
-    variants: tuple = (Variant("", {}),)
+    variants: tuple | typing.Callable = (Variant("", {}),)  # Or a function that makes them, where that takes a while.
     fractions: tuple = FRACTIONS
     spans: dict = dataclasses.field(default_factory=dict)  # Fraction to span, where it is not that above.
     order: float = 1  # With which differences fall: 1 with impacts, whose time a step cannot resolve.
