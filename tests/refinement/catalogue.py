@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """All cases of the refinement suite."""
 import central_impacts
+import deformables
+import eccentric_impacts
+import examples_with_contact
+import motions
 import rest
+import scenes
 import stops
 import surfaces
 
-CASES = [case for module in (central_impacts, rest, stops, surfaces) for case in module.CASES]
-assert len({case.name for case in CASES}) == len(CASES), "two cases have one name"
+ALL = [case for module in (central_impacts, deformables, eccentric_impacts, examples_with_contact, motions, rest, scenes, stops, surfaces) for case in module.CASES]
+CASES = [case for case in ALL if not case.open]
+OPEN = [case for case in ALL if case.open]
+assert len({case.name for case in ALL}) == len(ALL), "two cases have one name"
