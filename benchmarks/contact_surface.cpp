@@ -4,10 +4,12 @@
 // steps, and the mean) and Newton iterations. What is far away should cost nothing.
 //
 //   benchmark_contact_surface [steps]
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <contact/scene.hpp>
