@@ -177,7 +177,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
                                       std::span<const Vec6> increments, double part) const;
   [[nodiscard]] double advance_over_surface(int point, std::span<const BodyStep> steps,
                                             std::span<const Vec6> increments, double most);
-  [[nodiscard]] double advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
+  [[nodiscard]] double advance(const Followed& followed, std::span<const BodyStep> steps,
                                std::span<const Vec6> increments, double most);
   void load(const State& state);
   void save(State& state);

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/nearest.hpp>
+#include <polhode/contact/triangle_tree.hpp>
 
 namespace polhode::contact {
 
@@ -31,12 +33,15 @@ class Finder {
     find_region();
   }
 
-  void points() {
+  /// @param other  The same the other way round: what of `a` is near.
+  void points(const Finder& other) {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
     // A ball has one corner and no other feature: the other shape's corners would repeat it.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
     const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
-    for (int i : faces ? a_.face_points : a_.points) {
+    const std::vector<int>& points = faces ? a_.face_points : a_.points;
+    for (int i : a_.tree ? other.corners_ : points) {
+      if (a_.tree && !std::binary_search(points.begin(), points.end(), i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
@@ -54,8 +59,8 @@ class Finder {
     }
   }
 
-  void edges() {
-    for (int i = 0; i < static_cast<int>(a_.edges.size()); ++i) {
+  void edges(const Finder& other) {
+    for (int i : other.edges_) {
       if (!a_.edges[i].convex) continue;
       const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
       if (out_of_ball(p + 0.5 * u, 0.5 * u.norm()) || !in_region({p, p + u})) continue;
@@ -104,27 +109,61 @@ class Finder {
   /// Where the boxes around both shapes overlap, in coordinates of b, and what of b lies there.
   void find_region() {
     Eigen::AlignedBox3d a, b;
-    for (const Vec3& X : a_.corners) a.extend(in_b(X));
+    if (a_.tree)
+      for (int k = 0; k < 8; ++k)
+        a.extend(in_b(box_of(a_).corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
+    else
+      for (const Vec3& X : a_.corners) a.extend(in_b(X));
     if (a_.round() || a_.corners.empty()) {
       const Vec3 middle = in_b(a_.bound_centre), half = Vec3::Constant(a_.bound_radius);
       if (a_.bounded()) a.extend(Vec3(middle - half)).extend(Vec3(middle + half));
     }
-    for (const Vec3& X : b_.corners) b.extend(X);
+    if (b_.tree)
+      b = box_of(b_);
+    else
+      for (const Vec3& X : b_.corners) b.extend(X);
     const Vec3 more = Vec3::Constant(reach());
     const Vec3 far = Vec3::Constant(std::numeric_limits<double>::max());
     region_ = Eigen::AlignedBox3d(Vec3(-far), far);
     if (!a.isEmpty()) region_.clamp({Vec3(a.min() - more), Vec3(a.max() + more)});
     if (!b.isEmpty() && !b_.round()) region_.clamp({Vec3(b.min() - more), Vec3(b.max() + more)});
-    const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
-    for (int k = 0; k < size(b_.corners); ++k)
-      if (in_region({b_.corners[k]})) corners_.push_back(k);
-    for (int e = 0; e < size(b_.edges); ++e)
-      if (in_region({b_.corners[b_.edges[e].i], b_.corners[b_.edges[e].j]})) edges_.push_back(e);
-    for (int t = 0; t < size(b_.triangles); ++t) {
+    const auto numbers = [](std::size_t count) {
+      std::vector<int> all(count);
+      std::iota(all.begin(), all.end(), 0);
+      return all;
+    };
+    triangles_ = numbers(b_.tree ? 0 : b_.triangles.size());
+    if (b_.tree)
+      b_.tree->visit(
+          [&](const auto& box) {
+            return region_.intersects(Eigen::AlignedBox3d(box.low, box.high));
+          },
+          [&](int t) { triangles_.push_back(t); });
+    std::erase_if(triangles_, [&](int t) {
       const auto& c = b_.triangles[t];
-      if (in_region({b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]}))
-        triangles_.push_back(t);
+      return !in_region({b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]});
+    });
+    if (b_.tree) {
+      for (int t : triangles_)
+        for (int k = 0; k < 3; ++k) {
+          edges_.push_back(b_.triangle_edges[t][k]);
+          corners_.push_back(b_.triangles[t][k]);
+        }
+      for (std::vector<int>* all : {&edges_, &corners_}) {
+        std::sort(all->begin(), all->end());
+        all->erase(std::unique(all->begin(), all->end()), all->end());
+      }
+    } else {
+      edges_ = numbers(b_.edges.size());
+      corners_ = numbers(b_.corners.size());
     }
+    std::erase_if(edges_, [&](int e) {
+      return !in_region({b_.corners[b_.edges[e].i], b_.corners[b_.edges[e].j]});
+    });
+    std::erase_if(corners_, [&](int k) { return !in_region({b_.corners[k]}); });
+  }
+  [[nodiscard]] static Eigen::AlignedBox3d box_of(const Shape& s) {
+    return {s.tree->low(), s.tree->high()};
   }
   /// Whether the box around points meets the region.
   [[nodiscard]] bool in_region(std::initializer_list<Vec3> points) const {
@@ -189,9 +228,9 @@ void near_feature_pairs(const Shape& first, const Shape& second, const Placement
   const auto start = static_cast<std::ptrdiff_t>(found.size());
   Finder forth(first, second, at_first, at_second, distance, false, each_triangle, found);
   Finder back(second, first, at_second, at_first, distance, true, each_triangle, found);
-  forth.points();
-  back.points();
-  forth.edges();
+  forth.points(back);
+  back.points(forth);
+  forth.edges(back);
   forth.round();
   back.round();
   std::sort(found.begin() + start, found.end(),

@@ -144,14 +144,15 @@ struct SeenSurface {
 };
 
 /// The places of a surface that count, or the nearest one alone.
-std::vector<SurfacePlace> places_of(const SeenPart& part, const Shape& b, double round,
-                                    double reach) {
+const std::vector<SurfacePlace>& places_of(const SeenPart& part, const Shape& b, double round,
+                                           double reach) {
   const SeenSurface seen{part, b, round};
-  std::vector<int> near;
+  SurfaceSearch& search = SurfaceSearch::of_this_thread();
+  search.triangles.clear();
   b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < reach; },
-                [&](int t) { near.push_back(t); });
-  std::vector<SurfacePlace> places = places_that_count(b, near, reach, seen);
-  if (!places.empty()) return places;
+                [&](int t) { search.triangles.push_back(t); });
+  find_places_that_count(b, search, reach, seen);
+  if (!search.places.empty()) return search.places;
   SurfacePlace best;
   best.gap = std::numeric_limits<double>::infinity();
   b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < best.gap; },
@@ -160,7 +161,8 @@ std::vector<SurfacePlace> places_of(const SeenPart& part, const Shape& b, double
                   if (one.gap < best.gap) best = one;
                 });
   best.count = 1;
-  return {best};
+  search.places.push_back(best);
+  return search.places;
 }
 
 Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
@@ -267,20 +269,15 @@ Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const 
                         -1 - n.index);
   };
   if (pair.kind != GapKind::part_surface) return over(nearest_of(pair, b, seen));
-  std::vector<Gap<T>> gaps;
-  std::vector<int> counts;
+  OneGap<T> sum(reach);
   for (const SurfacePlace& p : places_of(seen, b, part.rounding + b.rounding, reach)) {
     Nearest n;
     n.kind = p.kind == 0 ? Nearest::face : p.kind == 1 ? Nearest::edge : Nearest::corner;
     n.index = p.index;
     n.t = p.t;
-    const Gap<T> g = over(n);
-    if (!(value(g.distance) < reach) && !gaps.empty()) continue;
-    gaps.push_back(g);
-    counts.push_back(p.count);
+    sum.add(over(n), p.count);
   }
-  if (!(value(gaps.front().distance) < reach)) return gaps.front();
-  return one_gap(gaps, counts, reach);
+  return sum.gap();
 }
 
 template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,
