@@ -19,13 +19,17 @@ struct ImpulseOptions {
 /// +impulse, on b the opposite, both at the same place.
 struct ImpulsePoint {
   int a = kGround, b = kGround;
-  Vec3 normal = Vec3::UnitZ();               ///< From b to a, middle of the step.
-  Vec3 place = Vec3::Zero();                 ///< Likewise [m].
+  Vec3 normal = Vec3::UnitZ();  ///< From b to a, middle of the step.
+  /// Likewise [m]: where the displacement along the normal is the change of the gap.
+  Vec3 place = Vec3::Zero();
   double gap = 0.0;                          ///< At t_n [m].
+  double rate = 0.0;                         ///< Of the gap at t_n [m/s].
+  Vec3 velocity = Vec3::Zero();              ///< Of a against b where they touch at t_n [m/s].
   double restitution = 0.0, friction = 0.0;  ///< [-]
   double rolling = 0.0, torsion = 0.0;       ///< Turning impulse over normal impulse [m].
   Vec3 impulse = Vec3::Zero();               ///< First that of the last step [N s].
   Vec3 turning = Vec3::Zero();               ///< Against rolling and drilling [N m s].
+  double size = 1.0;                         ///< Smallest half size of both shapes [m].
   int number = 0;                            ///< Of the contacts'.
 };
 

@@ -200,16 +200,24 @@ class Evaluation {
     if constexpr (std::is_same_v<T, double>)
       stiffness_ = normal_force(data_, g_0.distance, g_1.distance, context_.dt).stiffness;
     lambda_ = law.quotient(g_0.distance, g_1.distance);
+    const bool spring = law.potential != NormalPotential::barrier;
+    if (spring) add_share(g_1);
     if (data_.rate_damping > 0.0) {
       const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;
       lambda_ = value(factor) > 0.0 ? factor * lambda_ : T(0.0);
     }
-    if (data_.end_share > 0.0 && data_.pair.weight > 0.0)
-      lambda_ = (1.0 - data_.end_share) * lambda_ + data_.end_share * law.force(g_1.distance);
+    if (!spring) add_share(g_1);
     couple_ = constant<T>(Vec3::Zero());
     if (data_.pair.fade != Fade::none) fade(g_0, g_1);
     lambda_ = data_.pair.weight * lambda_;
     couple_ = data_.pair.weight * couple_;
+  }
+
+  /// The share of the end of the step. @eq{contact-plastic}
+  void add_share(const Gap<T>& g_1) {
+    if (data_.end_share > 0.0 && data_.pair.weight > 0.0)
+      lambda_ =
+          (1.0 - data_.end_share) * lambda_ + data_.end_share * data_.normal.force(g_1.distance);
   }
 
   /// D(m b) = m̄ Δb + b̄ Δm, with Δm = q Δy and Δy = (θ_a − θ_b)·(ē_a × ē_b). @eq{contact-fading}
@@ -452,23 +460,6 @@ PointForce point_force(const PointData& data, const BodyStep& a, const BodyStep&
                        const StepContext& context) {
   Evaluation<double> evaluation(data, a, b, context);
   return evaluation.spring(evaluation.run(nullptr));
-}
-
-NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
-  NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
-  const double quotient = f.value;
-  if (data.rate_damping > 0.0) {
-    const double factor = std::max(0.0, 1.0 - data.rate_damping / dt * (gap_n1 - gap_n));
-    f.slope = factor > 0.0 ? factor * f.slope - data.rate_damping / dt * f.value : 0.0;
-    f.value *= factor;
-  }
-  if (data.end_share > 0.0 && data.pair.weight > 0.0) {
-    const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);
-    f.value = (1.0 - data.end_share) * f.value + data.end_share * end.value;
-    f.slope = (1.0 - data.end_share) * f.slope + data.end_share * end.slope;
-  }
-  const double weight = data.pair.weight;
-  return {weight * f.value, -weight * f.slope, weight * quotient};
 }
 
 bool has_closed_form(const PointData& data) {

@@ -60,7 +60,27 @@ double damping_number(double e) {
   return low;
 }
 
+/// c of lasting contact [s/m]. @param load  What rests on the point [N].
+double rest_damping(const NormalLaw& law, double k, double mass, double load) {
+  double slope = k;
+  if (law.potential == NormalPotential::barrier) slope = 2.0 * std::sqrt(k * load / law.tolerance);
+  if (law.potential == NormalPotential::hertz) slope = 1.5 * std::cbrt(k * k * load);
+  return 2.0 * kRestDamping * std::sqrt(slope * mass) / load;
+}
+
 }  // namespace
+
+/// On a spring that is made for any body of the model more may rest than its own two: a damper made
+/// for these would let it sink too slowly.
+void ContactSet::damp_load(Point& p) const {
+  const PointHistory& h = p.data.history;
+  const double gravity = system_->gravity().norm();
+  const bool spring = p.data.normal.potential != NormalPotential::barrier;
+  if (!spring || !p.open_stiffness || h.in_impact() || !(p.data.rate_damping > 0.0)) return;
+  if (p.rest_damping == 0.0 || (p.damped && h.approach < 0.0)) return;
+  const double mass = std::max(p.mass, h.force / gravity);
+  p.data.rate_damping = rest_damping(p.data.normal, h.stiffness, mass, mass * gravity);
+}
 
 int ContactSet::add_shape(PlacedShape shape) {
   shapes_.push_back(std::move(shape));
@@ -129,6 +149,9 @@ void ContactSet::prepare(const System& system) {
   }
   carried_mass_.clear();
   for (int b = 0; b < system.body_count(); ++b) carried_mass_.push_back(system.carried_mass(b));
+  heaviest_ = 0.0;
+  for (const PlacedShape& s : shapes_)
+    if (s.body != kGround) heaviest_ = std::max(heaviest_, carried_mass_[s.body]);
   references_.assign(n, {});
   wrenches_.assign(n, Vec6::Zero());
 }
@@ -153,11 +176,14 @@ void ContactSet::complete_law(Point& p, double dt) const {
   if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, kOfRounding * rounding);
   const double tolerance = d.normal.tolerance;
   const double weight = mass * system_->gravity().norm();
-  const double load = law.reference_load > 0.0 ? law.reference_load : weight;
-  const double by_step = mass / (dt * dt);
+  // Springs let bodies pass that weigh more than they were chosen for: any may lie on any other.
+  const double rests = barrier ? weight : heaviest_ * system_->gravity().norm();
+  const double load = law.reference_load > 0.0 ? law.reference_load : rests;
+  // A damper works over a time of contact, which shall not depend on the step.
+  const double by_step = law.damped && load > 0.0 ? 0.0 : mass / (dt * dt);
   const double soft = std::max(kSoftStiffness * load / tolerance, by_step);
   double k = law.stiffness, k_T = law.stiffness;
-  p.open_stiffness = k == 0.0 && barrier;
+  p.open_stiffness = k == 0.0;
   if (k == 0.0) {
     k_T = barrier ? std::max(kRestSlope * load / tolerance, by_step) : soft;
     k = barrier ? std::max(kRestStiffness * load / tolerance, by_step)
@@ -169,14 +195,8 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.mass = mass;
   p.rest_stiffness = k;
   p.bristle_stiffness = k_T;
-  p.rest_damping = 0.0;
-  if (weight > 0.0) {
-    const double slope = barrier ? 2.0 * std::sqrt(k * weight / tolerance)
-                         : hertz ? 1.5 * std::cbrt(k * k * weight)
-                                 : k;
-    p.rest_damping = 2.0 * kRestDamping * std::sqrt(slope * mass) / weight;
-  }
-  p.restitution = law.damped ? 1.0 : law.restitution;
+  p.rest_damping = weight > 0.0 ? rest_damping(d.normal, k, mass, weight) : 0.0;
+  p.restitution = law.restitution;
   p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
   p.may_be_plain = d.a && is_plain(d);
@@ -189,7 +209,6 @@ void ContactSet::complete_law(Point& p, double dt) const {
     set_band(p, k, 0.0, -tolerance);
   if (!barrier) p.least_gap = plane ? -std::numeric_limits<double>::infinity() : -0.9 * rounding;
   set_phase(p, h.phase);
-  if (p.damped && h.closed && h.approach < 0.0) d.rate_damping = p.damping_number / -h.approach;
 
   d.friction = law.friction;
   FrictionLaw& f = d.friction;
@@ -446,7 +465,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     h.force = r.normal_force;
   }
   step_length_ = context.dt;
-  release_patches();
+  release_patches(steps, context.dt);
   save(state);
   return work;
 }

@@ -145,7 +145,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double rest_stiffness = 0.0;     ///< k of lasting contact.
     double bristle_stiffness = 0.0;  ///< k_T, if the law leaves it open [N/m].
     double rest_damping = 0.0;       ///< c of lasting contact that takes energy [s/m].
-    bool open_stiffness = false;     ///< A barrier of which the law states no stiffness.
+    bool open_stiffness = false;     ///< The law states no stiffness.
     double gap_n = 0.0;
     Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
     bool listed = false;         ///< Among the points that act by impulses in this step.
@@ -169,6 +169,10 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void set_band(Point& p, double stiffness, double upper, double lower) const;
   void start_band(Point& p) const;
   void store_again(Point& p, double stiffness, double energy) const;
+  void keep_part(Point& p, double part) const;
+  void damp_load(Point& p) const;
+  [[nodiscard]] static double contact_time(const Point& p, double stiffness, double speed);
+  [[nodiscard]] double impact_stiffness(const Point& p, double speed) const;
   void begin_phase(Point& p, double speed, double dt) const;
   [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
   struct Followed;
@@ -195,7 +199,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
                      const StepContext& context) const;
   void share_friction();
-  void release_patches();
+  void release_patches(std::span<const BodyStep> steps, double dt);
   [[nodiscard]] double margin_of(int body, const BodyStep& s, double dt) const;
   /// Part of the increments that is no farther than a step of Newton should go.
   [[nodiscard]] double sensible_part(std::span<const Vec6> increments) const;
@@ -219,6 +223,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
 
   const System* system_ = nullptr;
   std::vector<double> carried_mass_;  ///< By body: its own and that of the solids it holds [kg].
+  double heaviest_ = 0.0;             ///< Largest of them, of bodies with shapes [kg].
   std::vector<double> reach_of_body_, size_of_body_;
   std::vector<double> stride_;  ///< Longest way of a body in one iteration of this step [m].
   std::vector<Vec6> wrenches_;

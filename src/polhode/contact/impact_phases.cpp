@@ -2,6 +2,7 @@
 // Impacts and lasting contact: what a point does from closing to opening.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <polhode/contact/contact_set.hpp>
@@ -15,6 +16,13 @@ namespace {
 constexpr double kRestShare = 0.5;
 /// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
+/// Likewise of springs, with which they stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
+/// w²).
+constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
+/// Time of a Hertz impact, as part of the greatest depth over the speed.
+constexpr double kHertzTime = 2.9432;
+/// Steps in an impact that a damper needs.
+constexpr double kResolved = 20.0;
 /// Least part of the tolerance between a gap and the floor of its barrier.
 constexpr double kLeastBand = 0.1;
 
@@ -47,12 +55,14 @@ void ContactSet::set_phase(Point& p, ContactPhase phase) const {
   PointData& d = p.data;
   d.history.phase = phase;
   const bool lasts = phase == ContactPhase::rest || phase == ContactPhase::landing;
-  const bool takes = p.restitution < 1.0 && !p.damped;
+  const bool by_damper = p.damped && d.history.approach < 0.0;
+  const bool takes = p.restitution < 1.0 && !by_damper;
   d.end_share = 0.0;
   if (lasts && takes) d.end_share = kRestShare;
   // An impact without rebound ends where it closes, and not as far away as it would have come.
   if (phase == ContactPhase::compression && d.history.restitution == 0.0) d.end_share = 1.0;
-  if (!p.damped) d.rate_damping = lasts && takes ? p.rest_damping : 0.0;
+  d.rate_damping = lasts && takes ? p.rest_damping : 0.0;
+  if (by_damper) d.rate_damping = p.damping_number / -d.history.approach;
 }
 
 /// A gap that is within the band although nothing stopped it on its way there, as at the start,
@@ -75,23 +85,45 @@ void ContactSet::store_again(Point& p, double stiffness, double energy) const {
   set_band(p, stiffness, upper, p.data.history.floor);
 }
 
-/// At t_n. A point that is open gets its approach speed, and with it the phase it closes in: an
+/// Stiffness that stops the bodies within the tolerance [N/m]; Hertz [N/m^{3/2}].
+double ContactSet::impact_stiffness(const Point& p, double speed) const {
+  const double tolerance = p.data.normal.tolerance;
+  const double per_square = speed * speed / (tolerance * tolerance);
+  switch (p.data.normal.potential) {
+    case NormalPotential::linear:
+      return kLinearImpact * p.mass * per_square;
+    case NormalPotential::hertz:
+      return kHertzImpact * p.mass * per_square / std::sqrt(tolerance);
+    case NormalPotential::barrier:
+      break;
+  }
+  return kImpactStiffness * p.mass * per_square;
+}
+
+/// Time from closing to opening of an elastic impact on a spring of that stiffness [s].
+double ContactSet::contact_time(const Point& p, double stiffness, double speed) {
+  const double m = p.mass, w = -speed;
+  if (p.data.normal.potential == NormalPotential::hertz)
+    return kHertzTime * std::pow(1.25 * m * w * w / stiffness, 0.4) / w;
+  return std::numbers::pi * std::sqrt(m / stiffness);
+}
+
+/// At t_n. A point that is open gets the phase it closes in: an
 /// impact is faster than what gravity adds in two steps, or, of a closed point, than what its force
-/// does. A rebound that would be shorter than that does not happen. @eq{turn-law}
+/// does. A rebound that would be shorter than that does not happen. A damper takes the place of
+/// that law where steps resolve it. @eq{turn-law}
 void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
   const double gravity = system_->gravity().norm();
   const auto impact = [&](double slow) {
-    h.approach = speed;
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
     set_phase(p, ContactPhase::compression);
-    const double tolerance = p.data.normal.tolerance;
-    return std::max(p.rest_stiffness,
-                    kImpactStiffness * p.mass * speed * speed / (tolerance * tolerance));
+    return std::max(p.rest_stiffness, impact_stiffness(p, speed));
   };
   if (h.closed) {
-    if (h.in_impact() || p.damped || p.restitution == 1.0) return;
+    damp_load(p);
+    if (h.in_impact() || (p.damped && h.approach < 0.0) || p.restitution == 1.0) return;
     // Pressed into its band from rest, a body gets as fast as twice its depth under load tells.
     const double a = std::max(gravity, h.force / p.mass);
     const double depth = std::sqrt(p.mass * a * p.data.normal.tolerance / p.rest_stiffness);
@@ -104,18 +136,37 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   }
   const double slow = kSlowReboundSteps * gravity * std::abs(dt);
   double k = p.rest_stiffness;
-  h.approach = std::min(0.0, speed);
-  if (!p.damped && -speed > slow)
-    k = impact(slow);
-  else
+  h.approach = 0.0;
+  if (p.damped && p.open_stiffness && speed < 0.0) {
+    const double rests = gravity > 0.0 ? p.rest_stiffness : 0.0;
+    k = std::max(rests, impact_stiffness(p, speed));
+  }
+  if (p.damped && speed < 0.0 && contact_time(p, k, speed) > kResolved * std::abs(dt)) {
+    h.approach = speed;
     set_phase(p, ContactPhase::landing);
+  } else if (-speed > slow) {
+    k = impact(slow);
+  } else {
+    set_phase(p, ContactPhase::landing);
+  }
   if (!p.open_stiffness) k = p.rest_stiffness;
   set_band(p, k, 0.0, -p.data.normal.tolerance);
-  if (p.damped && h.approach < 0.0) p.data.rate_damping = p.damping_number / -h.approach;
   if (p.gap_n >= p.data.normal.reach()) return;
   h.closed = true;
   h.gap = p.gap_n;
   start_band(p);
+}
+
+/// The part of the stored energy that an impact gives back, with a stiffness that falls by it. A
+/// spring keeps what brings it back to its tolerance. @eq{turn-law}
+void ContactSet::keep_part(Point& p, double part) const {
+  const PointHistory& h = p.data.history;
+  const double energy = part * p.data.normal.energy(h.gap);
+  const double k = std::max(part * h.stiffness, p.rest_stiffness);
+  store_again(p, k, energy);
+  const double deepest = -p.data.normal.tolerance;
+  if (p.data.normal.potential != NormalPotential::barrier && h.reach < deepest)
+    set_band(p, k, deepest, h.floor);
 }
 
 /// Gravity along the normal against the motion apart [m/s²].
@@ -144,7 +195,8 @@ double ContactSet::fallen(const Point& p, const Vec3& n) const {
 /// are exact.
 std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
   PointHistory& h = p.data.history;
-  if (!p.touched || p.damped || p.sensor || p.data.pair.weight < 0.0) return {};
+  if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
+    return {};
   if (h.phase == ContactPhase::rest || !(p.report.normal_force > 0.0)) return {};
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
@@ -201,8 +253,8 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       if (h.closed && h.restitution < 1.0) {
         const double e = h.restitution, before = p.data.normal.energy(h.gap);
         const bool barrier = p.data.normal.potential == NormalPotential::barrier;
-        if (barrier) {
-          store_again(p, std::max(e * e * h.stiffness, p.rest_stiffness), e * e * before);
+        if (barrier || p.open_stiffness) {
+          keep_part(p, e * e);
         } else if (e > 0.0) {
           set_band(p, e * e * h.stiffness, h.reach, h.floor);
         }

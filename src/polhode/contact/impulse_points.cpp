@@ -36,6 +36,10 @@ constexpr double kFades = 0.5;
 /// Normals of the middle of the step that turn by more than this (cosine) since its start come from
 /// bodies that would pass one another.
 constexpr double kPasses = 0.5;
+/// Turns and displacements below these, the latter as part of the size, have no direction.
+constexpr double kNoTurn = 1e-6, kNoMove = 1e-6;
+/// A place is moved by at most this part of the size, a normal turned by at most this.
+constexpr double kLargestShift = 0.1, kLargestTilt = 0.1;
 /// Points of one surface that are closer than this part of the rounding are one.
 constexpr double kSamePlace = 1e-6;
 
@@ -90,6 +94,24 @@ struct Middle {
       : r(s.r_n + 0.5 * s.u), Lambda(0.5 * (s.Lambda_n + s.Lambda_n1)) {}
 };
 
+/// Moves the place, or turns the normal, so that the bodies move apart along it by as much as the
+/// gap opens: what touches all the time does so without work. @eq{contact-direction}
+void follow_gap(const PointData& d, double change, const BodyStep& a, const BodyStep& b,
+                ImpulsePoint& at) {
+  const Vec3 turn = a.theta - b.theta, across = at.normal.cross(turn);
+  const auto apart = [&] {
+    return Vec3(a.u + a.theta.cross(at.place - a.r_n - 0.5 * a.u) - b.u -
+                b.theta.cross(at.place - b.r_n - 0.5 * b.u));
+  };
+  const Vec3 u = apart();
+  const double miss = change - at.normal.dot(u), angle = across.norm();
+  if (angle > kNoTurn && std::abs(miss) < kLargestShift * d.length * angle) {
+    at.place += miss / (angle * angle) * across;
+  } else if (u.norm() > kNoMove * d.length && std::abs(miss) < kLargestTilt * u.norm()) {
+    at.normal = (at.normal + miss / u.squaredNorm() * u).normalized();
+  }
+}
+
 Vec3 relative(const Vec3& v_a, const Vec3& w_a, const Vec3& arm_a, const Vec3& v_b, const Vec3& w_b,
               const Vec3& arm_b) {
   return v_a + w_a.cross(arm_a) - v_b - w_b.cross(arm_b);
@@ -125,8 +147,9 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
     const Vec3 &n = p.normal_n, &c = p.place_n;
     const Vec3 arm_a = c - a.r_n, arm_b = c - b.r_n;
-    const double w =
-        n.dot(relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b));
+    const Vec3 velocity =
+        relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b);
+    const double w = n.dot(velocity);
     // Either of them may be stopped by something else.
     const double of_a = n.dot(a.u + a.theta.cross(arm_a)), of_b = n.dot(b.u + b.theta.cross(arm_b));
     const double way = std::min({of_a - of_b, of_a, -of_b});
@@ -135,6 +158,8 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     if (!acted && 2.0 * way / dt - w >= least) continue;
     ImpulsePoint point;
     point.gap = p.gap_n;
+    point.rate = w;
+    point.velocity = velocity;
     point.normal = n;
     point.place = c;
     if (!balls_[i].holds) {
@@ -146,6 +171,9 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
         point.gap = g.distance;
         point.normal = value(g.normal);
         point.place = value(g.point);
+        point.velocity = relative(a.v_n, a.Lambda_n * a.W_n, point.place - a.r_n, b.v_n,
+                                  b.Lambda_n * b.W_n, point.place - b.r_n);
+        point.rate = point.normal.dot(point.velocity);
       }
     }
     point.a = shapes_[p.a].body;
@@ -157,6 +185,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     point.torsion = f.torsion;
     point.impulse = p.data.history.impulse;
     point.turning = p.data.history.turning;
+    point.size = p.data.length;
     point.number = i;
     p.listed = true;
     if (p.data.b->solid == Solid::surface) {
@@ -209,7 +238,10 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     } else {
       at.normal = p.normal_n;
       at.place = p.place_n + 0.5 * a.u;
+      continue;
     }
+    if (p.data.pair.kind != GapKind::edge_edge)
+      follow_gap(p.data, gap_at_end(at.number, a, b) - p.gap_n, a, b, at);
   }
 }
 

@@ -118,6 +118,11 @@ void BallSweeps::give_back(ImpulseSweeps& to) const {
     p.push = q.push;
     p.rub = Vec3(q.rub[0], q.rub[1], q.rub[2]);
   }
+  for (std::size_t b = 0; b < to.bodies.size(); ++b) {
+    if (to.bodies[b].inverse_mass == 0.0) continue;
+    to.bodies[b].v = Vec3(bodies_[b].v[0], bodies_[b].v[1], bodies_[b].v[2]);
+    to.bodies[b].w = Vec3(bodies_[b].w[0], bodies_[b].w[1], bodies_[b].w[2]);
+  }
 }
 
 }  // namespace polhode

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
 #include <polhode/solve/nonsmooth_engine.hpp>
 #include <polhode/time/mean_turn.hpp>
 
@@ -17,6 +18,8 @@ constexpr int kMostRounds = 4;
 /// Loads that depend on the motion are repeated until the motion changes by less than this part.
 constexpr double kSameMotion = 1e-13;
 constexpr int kMostRepeats = 60;
+/// Depth of an overlap, as part of the smaller size, that no step may bring about.
+constexpr double kPressedIn = 0.1;
 /// Without gravity, the speed that tolerances are a part of: this part of the fastest.
 constexpr double kPartOfSpeed = 1e-2;
 
@@ -154,10 +157,8 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.arm_a = a.moves ? Vec3(at.place - a.r_n - 0.5 * a.u) : Vec3::Zero();
     p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
     const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
-    const Vec3 before = a.v_n + w_a.cross(p.arm_a) - b.v_n - w_b.cross(p.arm_b);
-    const double w = p.normal.dot(before);
-    p.least = w + least_exit_speed(at.gap, w, at.restitution, dt, slow);
-    p.wanted = before - w * p.normal;
+    p.least = at.rate + least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
+    p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
     p.friction = at.friction;
     p.push = std::max(0.0, p.normal.dot(at.impulse));
     p.rub = at.impulse - p.normal.dot(at.impulse) * p.normal;
@@ -176,6 +177,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
   }
 }
 
+/// Where sweeps do not end, Newton's method goes on from what they left, if there are few points.
 void NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   const bool balls = BallSweeps::suit(sweeps_);
@@ -189,6 +191,10 @@ void NonsmoothEngine::sweep() {
     search_.converged = change <= enough;
   } while (!search_.converged && search_.sweeps < options_.sweeps);
   if (balls) balls_.give_back(sweeps_);
+  if (!search_.converged && is_small()) {
+    if (balls) sweeps_.prepare();
+    search_.converged = solve_impulses(sweeps_, enough);
+  }
   for (int k = 0; k < point_count(); ++k) {
     const ImpulseSweeps::Point& p = sweeps_.points[k];
     points_[k].impulse = p.push * p.normal + p.rub;
@@ -237,6 +243,15 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     if (impulsive_->covers(steps_)) break;
     contacts_->cover(steps_, trial.context, nowhere_);
   }
+  if (const int k = pressed_in(); k >= 0) {
+    const auto name = [&](int body) {
+      return body == kGround ? std::string("the ground")
+                             : format("body '{}'", system_->bodies()[body].name);
+    };
+    done.reason = format("impulses were not found in {} sweeps, and {} and {} would overlap",
+                         search_.sweeps, name(points_[k].a), name(points_[k].b));
+    return done;
+  }
   for (int b = 0; b < bodies_; ++b) {
     const BodyStep& s = steps_[b];
     if (!s.u.allFinite() || !s.theta.allFinite()) return done;
@@ -246,6 +261,24 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
   add_up(trial.context.dt);
   done.solved = true;
   return done;
+}
+
+/// The point that ends the step deepest, if that is a part of its bodies' size and deeper than it
+/// began; −1: none.
+int NonsmoothEngine::pressed_in() const {
+  int worst = -1;
+  double deepest = -kPressedIn;
+  for (int k = 0; k < point_count(); ++k) {
+    const ImpulsePoint& p = points_[k];
+    const BodyStep &a = steps_[index(p.a)], &b = steps_[index(p.b)];
+    const Vec3 apart = a.u + a.theta.cross(p.place - a.r_n - 0.5 * a.u) - b.u -
+                       b.theta.cross(p.place - b.r_n - 0.5 * b.u);
+    const double opens = p.normal.dot(apart), gap = (p.gap + opens) / p.size;
+    if (!(opens < 0.0) || gap >= deepest) continue;
+    deepest = gap;
+    worst = k;
+  }
+  return worst;
 }
 
 /// What impulses took, from the motion that they have led to: −½ p·y. @eq{nonsmooth-energy}

@@ -7,6 +7,7 @@
 #include <polhode/assembly/impulsive_contacts.hpp>
 #include <polhode/assembly/moving_contacts.hpp>
 #include <polhode/solve/ball_sweeps.hpp>
+#include <polhode/solve/impulse_newton.hpp>
 #include <polhode/solve/impulse_sweeps.hpp>
 #include <polhode/solve/newton_system.hpp>
 
@@ -42,7 +43,11 @@ class NonsmoothEngine final : public NewtonEngine {
   [[nodiscard]] bool search(const State& state, const Trial& trial);
   void set_up(double dt, bool first);
   void sweep();
+  [[nodiscard]] bool is_small() const {
+    return point_count() <= kMostDensePoints && sweeps_.turns.empty();
+  }
   void add_up(double dt);
+  [[nodiscard]] int pressed_in() const;
 
   const System* system_;
   MovingContacts* contacts_;
