@@ -7,10 +7,12 @@ import examples_with_contact
 import motions
 import rest
 import scenes
+import several_contacts
 import stops
 import surfaces
 
-ALL = [case for module in (central_impacts, deformables, eccentric_impacts, examples_with_contact, motions, rest, scenes, stops, surfaces) for case in module.CASES]
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_with_contact, motions, rest, scenes, several_contacts, stops, surfaces)
+ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]
 OPEN = [case for case in ALL if case.open]
 assert len({case.name for case in ALL}) == len(ALL), "two cases have one name"
