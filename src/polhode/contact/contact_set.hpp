@@ -152,6 +152,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     PointReport report;          ///< Of the last accepted step.
     bool touched = false;        ///< It acted in that step.
     double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
+    double force_n = 0.0;        ///< Of lasting contact at t_n [N].
     double impact_loss = 0.0;    ///< In impulses, along the normal [J].
     double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
@@ -164,6 +165,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
 
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
+  [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
+  [[nodiscard]] bool pressed(const Point& p) const;
   [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;
   void set_band(Point& p, double stiffness, double upper, double lower) const;
