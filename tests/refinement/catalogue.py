@@ -4,6 +4,7 @@ import central_impacts
 import deformables
 import eccentric_impacts
 import examples_with_contact
+import flat
 import motions
 import rest
 import scenes
@@ -11,7 +12,7 @@ import several_contacts
 import stops
 import surfaces
 
-MODULES = (central_impacts, deformables, eccentric_impacts, examples_with_contact, motions, rest, scenes, several_contacts, stops, surfaces)
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_with_contact, flat, motions, rest, scenes, several_contacts, stops, surfaces)
 ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]
 OPEN = [case for case in ALL if case.open]

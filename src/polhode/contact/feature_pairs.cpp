@@ -11,6 +11,7 @@
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/nearest.hpp>
 #include <polhode/contact/triangle_tree.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -39,13 +40,17 @@ class Finder {
     // A ball has one corner and no other feature: the other shape's corners would repeat it.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
     const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
-    const std::vector<int>& points = faces ? a_.face_points : a_.points;
-    for (int i : a_.tree ? other.corners_ : points) {
-      if (a_.tree && !std::binary_search(points.begin(), points.end(), i)) continue;
+    // A tube stands on a plane as a cylinder does.
+    const bool stands = stands_on_plane(), some = a_.tree && !stands;
+    const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
+    for (int i : some ? other.corners_ : points) {
+      if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
-        if (!each_triangle_)
+        if (is_tube(b_) && !each_triangle_)
+          add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+        else if (!each_triangle_)
           add({GapKind::point_surface, i, 0, 1.0, Fade::none});
         else
           over_surface({GapKind::point_triangle, GapKind::point_edge, GapKind::point_corner}, i, x,
@@ -53,7 +58,8 @@ class Finder {
         continue;
       }
       // A fixed point of a rim acts on a plane where the rim lies flat.
-      const bool rim = a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
+      const bool rim =
+          stands || a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
       add({GapKind::point_solid, i, 0, 1.0,
            rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none});
     }
@@ -76,8 +82,8 @@ class Finder {
 
   /// Side a is round.
   void round() {
-    if (!a_.round()) return;
-    const int parts = a_.solid == Solid::cylinder ? 2 : 1;
+    if (!a_.round() && !stands_on_plane()) return;
+    const int parts = a_.solid == Solid::cylinder || stands_on_plane() ? 2 : 1;
     const Fade fade = a_.solid == Solid::ellipsoid ? Fade::none : Fade::parallel;
     if (b_.solid == Solid::half_space) {
       for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
@@ -91,6 +97,7 @@ class Finder {
     for (int i = 0; i < parts; ++i)
       if (b_.solid == Solid::surface && !each_triangle_) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});
+        if (is_tube(b_)) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       } else if (b_.solid == Solid::surface) {
         const Shape part = part_of(a_, i);
         over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
@@ -172,6 +179,9 @@ class Finder {
     return region_.intersects(box);
   }
 
+  [[nodiscard]] bool stands_on_plane() const {
+    return is_tube(a_) && b_.solid == Solid::half_space && !each_triangle_;
+  }
   [[nodiscard]] int cone_apex() const { return static_cast<int>(a_.corners.size()) - 1; }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }

@@ -7,6 +7,7 @@
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/nearest.hpp>
 #include <polhode/contact/surface_features.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -127,6 +128,7 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace triangle(int t) const {
     Nearest best;
+    if (is_tube(b) && is_inner_side(b, t)) return place(best);
     part.face(b, t, 2, best);
     if (best.kind != Nearest::face)
       for (const int e : b.triangle_edges[t]) part.edge(b, e, best);
@@ -134,10 +136,13 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace edge(int e) const {
     Nearest best;
+    if (is_tube(b) && on_inner_side(b, b.edges[e].i) && on_inner_side(b, b.edges[e].j))
+      return place(best);
     part.edge(b, e, best);
     return place(best);
   }
   [[nodiscard]] SurfacePlace corner(int k) const {
+    if (is_tube(b) && on_inner_side(b, k)) return place({});
     Nearest n{Nearest::corner, k, 0.0, part.bound(b.corners[k], b.corners[k])};
     return place(n);
   }
@@ -237,6 +242,48 @@ Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Pl
   return turned_round(point_over_solid(p + at * v, b.rounding, part, at_a), 1 + edge);
 }
 
+/// The point of the part that is farthest from the axis of a tube about it: where it touches the
+/// inner side. The extent n·x of a convex body is largest there over all n across the axis.
+template <class T>
+V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T>& at_a,
+                         const Placement<T>& at_b) {
+  const V3<T> e = at_b.vector(tube.axes.col(0)), f = at_b.vector(tube.axes.col(1));
+  const V3<T> centre = at_a.point(part.centre), from = at_b.point(tube.centre);
+  V3<T> axis[3];
+  for (int i = 0; i < 3; ++i) axis[i] = at_a.vector(part.axes.col(i));
+  const Vec3 squares = part.half.cwiseAbs2();
+  const auto support = [&](const V3<T>& n) {
+    T length(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const T along = dot(axis[i], n);
+      length = length + squares[i] * (along * along);
+    }
+    length = sqrt(length);
+    V3<T> x = centre;
+    for (int i = 0; i < 3; ++i) x = x + (squares[i] * dot(axis[i], n) / length) * axis[i];
+    return x;
+  };
+  const Vec3 e_0 = value(e), f_0 = value(f), middle = value(centre - from);
+  Mat3 shape = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) shape += squares[i] * value(axis[i]) * value(axis[i]).transpose();
+  double angle = std::atan2(f_0.dot(middle), e_0.dot(middle)), curvature = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 n = std::cos(angle) * e_0 + std::sin(angle) * f_0,
+               t = std::cos(angle) * f_0 - std::sin(angle) * e_0;
+    const double length = std::sqrt(n.dot(shape * n));
+    const Vec3 s = shape * n / length, x = middle + s;
+    curvature = t.dot(shape * t) / length - t.dot(s) * t.dot(s) / length - n.dot(x);
+    const double slope = t.dot(x), newton = curvature < 0.0 ? -slope / curvature : 1.0;
+    if (std::abs(slope) <= 1e-15 * x.norm()) break;
+    angle += std::abs(newton) < 0.3 ? newton : std::atan2(slope, n.dot(x));
+  }
+  const V3<T> n = std::cos(angle) * e + std::sin(angle) * f,
+              t = std::cos(angle) * f - std::sin(angle) * e;
+  if (!(curvature < -1e-9 * part.half.maxCoeff())) return support(n);
+  const T turn = (-1.0 / curvature) * dot(t, support(n) - from);
+  return support(n + turn * t);
+}
+
 }  // namespace
 
 Shape part_of(const Shape& a, int which) {
@@ -256,6 +303,8 @@ Shape part_of(const Shape& a, int which) {
 template <class T>
 Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
                 const Placement<T>& at_a, const Placement<T>& at_b) {
+  if (is_tube(b) && pair.kind == GapKind::part_solid)
+    return point_over_solid(farthest_from_axis(part, b, at_a, at_b), part.rounding, b, at_b);
   const SeenPart seen(part, at_a, at_b);
   const auto over = [&](const Nearest& n) {
     if (n.kind == Nearest::face) {

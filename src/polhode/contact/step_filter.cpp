@@ -6,6 +6,7 @@
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/contact/plain_point.hpp>
 #include <polhode/contact/surface_features.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -197,18 +198,22 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
   const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
   const Vec3 relative = x_a.head<3>() - x_b.head<3>();
+  // A straight way may come nearer to a hollow side faster than along the normal of where it is.
+  const GapKind kind = p.data.pair.kind;
+  const bool hollow =
+      (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
   double done = 0.0, last = 0.0;
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
     const Vec3 n = value(g.normal);
-    double speed = std::max(0.0, -n.dot(relative));
+    double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));
     std::array<Vec3, 2> few;
     const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
                            bool side_a) {
       if (theta.isZero(0.0)) return 0.0;
       const Shape& shape = side_a ? *p.data.a : *p.data.b;
       const int count = few_points(shape, p.data.pair, side_a, few);
-      if (count == 0) return theta.norm() * lever(shape, p.data.pair, side_a);
+      if (count == 0 || hollow) return theta.norm() * lever(shape, p.data.pair, side_a);
       const Mat3 L = done > 0.0 ? Mat3(cay(done * theta) * Lambda) : Lambda;
       for (int m = 0; m < count; ++m) few[m] = L * few[m];
       return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
@@ -290,7 +295,9 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
         }
         return enters <= leaves;
       },
-      [&](int t) { near.push_back(t); });
+      [&](int t) {
+        if (!is_tube(B) || !is_inner_side(B, t)) near.push_back(t);
+      });
   const auto speed = [&](const Vec3& n, const Mat3& L_a, double left) {
     double v = std::max(0.0, -n.dot(relative));
     if (corner) {
