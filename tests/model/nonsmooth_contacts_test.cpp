@@ -92,7 +92,7 @@ bodies:
   floor: {fixed: true, shape: {plane: z}}
   a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}
   b: {shape: {box: [0.2, 0.2, 0.2]}, mass: 100, position: [0, 0, 0.3]}
-contacts: {default: {law: nonsmooth}, sweeps: 1}
+contacts: {default: {law: nonsmooth, rolling_friction: 1 mm}, sweeps: 1}
 analysis: {duration: 20 ms, step: 5 ms}
 )"));
   const RunSummary summary = run.run();

@@ -156,7 +156,7 @@ void ContactSet::prepare(const System& system) {
   wrenches_.assign(n, Vec6::Zero());
 }
 
-/// @eq{contact-stiffness}
+/// @eq{contact-stiffness} @eq{spring-stiffness}
 void ContactSet::complete_law(Point& p, double dt) const {
   const PlacedShape &a = shapes_[p.a], &b = shapes_[p.b];
   const ContactLaw& law = this->law(p.a, p.b);

@@ -94,6 +94,13 @@ struct Middle {
       : r(s.r_n + 0.5 * s.u), Lambda(0.5 * (s.Lambda_n + s.Lambda_n1)) {}
 };
 
+/// Points over triangles and edges that cross: what turns there is none of these features alone,
+/// and a body that leaves one of them does not come away from the surface.
+bool of_flat_pieces(GapKind kind) {
+  return kind == GapKind::edge_edge || kind == GapKind::point_triangle ||
+         kind == GapKind::point_edge || kind == GapKind::point_corner;
+}
+
 /// Moves the place, or turns the normal, so that the bodies move apart along it by as much as the
 /// gap opens: what touches all the time does so without work. @eq{contact-direction}
 void follow_gap(const PointData& d, double change, const BodyStep& a, const BodyStep& b,
@@ -240,7 +247,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
       at.place = p.place_n + 0.5 * a.u;
       continue;
     }
-    if (p.data.pair.kind != GapKind::edge_edge)
+    if (!of_flat_pieces(p.data.pair.kind))
       follow_gap(p.data, gap_at_end(at.number, a, b) - p.gap_n, a, b, at);
   }
 }

@@ -16,7 +16,7 @@ constexpr int kMostIterations = 60, kMostHalvings = 8;
 /// The merit may rise above that of the last iterate, but not above those of so many.
 constexpr std::size_t kLookBack = 5;
 /// Share of D on its diagonal by which points that carry a load together become unique.
-constexpr double kUnique = 1e-10;
+constexpr double kUnique = 1e-12;
 
 using Frame = std::array<Vec3, 3>;  ///< Normal and two tangents.
 

@@ -248,8 +248,10 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
       return body == kGround ? std::string("the ground")
                              : format("body '{}'", system_->bodies()[body].name);
     };
-    done.reason = format("impulses were not found in {} sweeps, and {} and {} would overlap",
-                         search_.sweeps, name(points_[k].a), name(points_[k].b));
+    done.reason = format(
+        "{2} and {1} would overlap, as impulses were not found in {0} sweeps: raise "
+        "contacts.sweeps",
+        search_.sweeps, name(points_[k].a), name(points_[k].b));
     return done;
   }
   for (int b = 0; b < bodies_; ++b) {
