@@ -67,7 +67,11 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
     json["largest_force"] = s.statics->force;
     json["unstable_directions"] = s.statics->unstable;
     json["free_motions"] = s.statics->free_motions;
-    json["limit_points"] = s.statics->limit_points;
+    json["limit_points"] = nlohmann::ordered_json::array();
+    for (const LimitPoint& p : s.statics->limit_points)
+      json["limit_points"].push_back({{"load_factor", p.load_factor},
+                                      {"unstable_directions", p.unstable},
+                                      {"motion", p.motion}});
   }
   if (s.contacts) {
     const RunSummary::Contacts& c = *s.contacts;
@@ -107,9 +111,9 @@ std::string statics_table(const RunSummary& s) {
   std::string text = table(rows);
   for (const std::string& motion : r.free_motions)
     text += format("  Nothing resists that {}.\n", motion);
-  for (double factor : r.limit_points)
-    text +=
-        format("  Stability changed before load factor {:.6g}: a limit point or branch.\n", factor);
+  for (const LimitPoint& p : r.limit_points)
+    text += format("  Limit point or branch at load factor {:.6g}: {} there.\n", p.load_factor,
+                   p.motion.empty() ? "stability changes" : p.motion);
   return text;
 }
 

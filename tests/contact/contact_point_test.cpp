@@ -232,7 +232,9 @@ std::string pair_name(const testing::TestParamInfo<std::tuple<int, int>>& info) 
 
 // Planes and height fields stand still in all models; every other shape meets every one.
 INSTANTIATE_TEST_SUITE_P(All, EveryPairOfShapes,
-                         testing::Combine(testing::Range(0, 8), testing::Range(0, 10)), pair_name);
+                         testing::Combine(testing::Range(0, 8), testing::Range(0, 11)), pair_name);
+INSTANTIATE_TEST_SUITE_P(Tubes, EveryPairOfShapes,
+                         testing::Combine(testing::Values(10), testing::Range(0, 11)), pair_name);
 
 }  // namespace
 }  // namespace polhode

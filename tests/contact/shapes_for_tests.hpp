@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <polhode/body/shapes.hpp>
 #include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/tube.hpp>
 
 #include "support/random_steps.hpp"
 
@@ -46,6 +48,14 @@ inline std::vector<Vec3> stone(unsigned seed) {
   return points;
 }
 
+/// Diameters and length of a tube, with the flat sides that it has for edges and faces.
+inline contact::Shape round_tube(double outer, double inner, double length,
+                                 const contact::ShapePlace& place = {}) {
+  const std::vector<double> sizes{outer, inner, length};
+  return contact::tube("tube", outer, inner, length,
+                       shape_surface(*find_shape_kind("tube"), sizes, 48), place);
+}
+
 /// One of every kind, about a metre in size, not centred in its body.
 inline std::vector<NamedShape> every_shape() {
   using namespace contact;
@@ -61,7 +71,8 @@ inline std::vector<NamedShape> every_shape() {
           {"hull", hull("hull", stone(5), place)},
           {"mesh", mesh("mesh", torus(0.35, 0.15), place)},
           {"height_field", height_field("height_field", 6, 0.3, heights, place)},
-          {"plane", plane(place)}};
+          {"plane", plane(place)},
+          {"tube", round_tube(0.8, 0.5, 0.7, place)}};
 }
 
 }  // namespace polhode::test

@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """All cases of the refinement suite."""
 import central_impacts
+import deformables
+import eccentric_impacts
+import examples_with_contact
+import flat
+import motions
 import rest
+import scenes
+import several_contacts
 import stops
+import surfaces
 
-CASES = [case for module in (central_impacts, rest, stops) for case in module.CASES]
-assert len({case.name for case in CASES}) == len(CASES), "two cases have one name"
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_with_contact, flat, motions, rest, scenes, several_contacts, stops, surfaces)
+ALL = [case for module in MODULES for case in module.CASES]
+CASES = [case for case in ALL if not case.open]
+OPEN = [case for case in ALL if case.open]
+assert len({case.name for case in ALL}) == len(ALL), "two cases have one name"

@@ -80,6 +80,8 @@ struct Tumbling {
     };
     r.impact.on_a = side(x, 1.0);
     r.impact.on_b = side(y, -1.0);
+    r.impact.arm_a = place - s.motion(x).r;
+    r.impact.arm_b = place - s.motion(y).r;
     return r;
   }
   [[nodiscard]] double speed(const PairImpact& r) const {

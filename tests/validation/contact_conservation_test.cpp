@@ -72,7 +72,8 @@ TEST_P(Tied, BodiesCollideForThousandsOfStepsAndLoseNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Tied,
                          testing::Values(Tie{0, 0, 5e-3}, Tie{2, 2, 2.5e-3}, Tie{6, 6, 2.5e-3},
-                                         Tie{0, 7, 1e-3}, Tie{7, 7, 1e-3}, Tie{2, 1, 2.5e-3}),
+                                         Tie{0, 7, 1e-3}, Tie{7, 7, 1e-3}, Tie{0, 10, 1e-3},
+                                         Tie{2, 1, 2.5e-3}),
                          [](const auto& tied) {
                            const auto all = every_shape();
                            return all[tied.param.first].name + "_" + all[tied.param.second].name;

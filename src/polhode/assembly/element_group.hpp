@@ -47,6 +47,10 @@ struct ElementSample {
   Vec3 principal_stretches = Vec3::Ones();  ///< Largest first [-].
   double strain_energy_density = 0.0;       ///< Per reference volume [J/m³].
   double volume = 0.0;                      ///< Reference [m³].
+  /// Cauchy stress and energy density at its nodes, from those at the points of integration; empty
+  /// where an element has none.
+  std::vector<Mat3> cauchy_at_nodes;
+  std::vector<double> energy_at_nodes;
 };
 
 /// Elements of one type, material and solid, or a load on nodes: what acts on nodes meets the

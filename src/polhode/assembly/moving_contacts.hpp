@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,10 +13,21 @@ namespace polhode {
 
 class System;
 
+/// Phase of an impact with friction in a step, for the law that follows it where it shares its
+/// bodies with no other one. @eq{routh}
+struct ImpactCourse {
+  bool turns = false;        ///< The end of compression lies in the step.
+  double restitution = 0.0;  ///< e, Stronge's.
+  double stored_n = 0.0;     ///< Energy that the contact stores at t_n [J].
+  double stored_n1 = 0.0;    ///< At t_{n+1}, before any of it is lost [J].
+  double fallen = 0.0;  ///< 2 a h by what pulled the bodies together after they parted [m²/s²].
+};
+
 /// An impact between two bodies, or of one with the ground.
 struct PairImpact {
   Participants bodies;
   Impact impact;
+  std::optional<ImpactCourse> course;
 };
 
 /// Impulse of an impact, with its losses.

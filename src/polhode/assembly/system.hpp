@@ -18,6 +18,7 @@ struct BodyData {
   std::string name;
   double mass = 1.0;                ///< [kg]
   Mat3 inertia = Mat3::Identity();  ///< J_r about the centre of mass, body axes [kg m²].
+  bool point_mass = false;          ///< Nothing turns it: statics and modes leave its turns out.
 };
 
 /// One interaction with its place in the numbering.

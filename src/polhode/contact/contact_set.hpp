@@ -152,6 +152,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     PointReport report;          ///< Of the last accepted step.
     bool touched = false;        ///< It acted in that step.
     double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
+    double force_n = 0.0;        ///< Of lasting contact at t_n [N].
     double impact_loss = 0.0;    ///< In impulses, along the normal [J].
     double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
@@ -164,6 +165,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
 
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
+  [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
+  [[nodiscard]] bool pressed(const Point& p) const;
+  [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;
   void set_band(Point& p, double stiffness, double upper, double lower) const;
   void start_band(Point& p) const;
@@ -180,7 +184,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
                                       std::span<const Vec6> increments, double part) const;
   [[nodiscard]] double advance_over_surface(int point, std::span<const BodyStep> steps,
                                             std::span<const Vec6> increments, double most);
-  [[nodiscard]] double advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
+  [[nodiscard]] double advance(const Followed& followed, std::span<const BodyStep> steps,
                                std::span<const Vec6> increments, double most);
   void load(const State& state);
   void save(State& state);

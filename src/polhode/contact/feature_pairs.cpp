@@ -4,11 +4,14 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/nearest.hpp>
+#include <polhode/contact/triangle_tree.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -31,16 +34,23 @@ class Finder {
     find_region();
   }
 
-  void points() {
+  /// @param other  The same the other way round: what of `a` is near.
+  void points(const Finder& other) {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
     // A ball has one corner and no other feature: the other shape's corners would repeat it.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
     const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
-    for (int i : faces ? a_.face_points : a_.points) {
+    // A tube stands on a plane as a cylinder does.
+    const bool stands = stands_on_plane(), some = a_.tree && !stands;
+    const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
+    for (int i : some ? other.corners_ : points) {
+      if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
-        if (!each_triangle_)
+        if (is_tube(b_) && !each_triangle_)
+          add({GapKind::point_solid, i, 0, 1.0, Fade::none});
+        else if (!each_triangle_)
           add({GapKind::point_surface, i, 0, 1.0, Fade::none});
         else
           over_surface({GapKind::point_triangle, GapKind::point_edge, GapKind::point_corner}, i, x,
@@ -48,14 +58,15 @@ class Finder {
         continue;
       }
       // A fixed point of a rim acts on a plane where the rim lies flat.
-      const bool rim = a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
+      const bool rim =
+          stands || a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
       add({GapKind::point_solid, i, 0, 1.0,
            rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none});
     }
   }
 
-  void edges() {
-    for (int i = 0; i < static_cast<int>(a_.edges.size()); ++i) {
+  void edges(const Finder& other) {
+    for (int i : other.edges_) {
       if (!a_.edges[i].convex) continue;
       const Vec3 p = in_b(a_.corners[a_.edges[i].i]), u = in_b(a_.corners[a_.edges[i].j]) - p;
       if (out_of_ball(p + 0.5 * u, 0.5 * u.norm()) || !in_region({p, p + u})) continue;
@@ -71,8 +82,8 @@ class Finder {
 
   /// Side a is round.
   void round() {
-    if (!a_.round()) return;
-    const int parts = a_.solid == Solid::cylinder ? 2 : 1;
+    if (!a_.round() && !stands_on_plane()) return;
+    const int parts = a_.solid == Solid::cylinder || stands_on_plane() ? 2 : 1;
     const Fade fade = a_.solid == Solid::ellipsoid ? Fade::none : Fade::parallel;
     if (b_.solid == Solid::half_space) {
       for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
@@ -86,6 +97,7 @@ class Finder {
     for (int i = 0; i < parts; ++i)
       if (b_.solid == Solid::surface && !each_triangle_) {
         add({GapKind::part_surface, i, 0, 1.0, Fade::none});
+        if (is_tube(b_)) add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       } else if (b_.solid == Solid::surface) {
         const Shape part = part_of(a_, i);
         over_surface({GapKind::part_triangle, GapKind::part_edge, GapKind::part_corner}, i,
@@ -104,27 +116,61 @@ class Finder {
   /// Where the boxes around both shapes overlap, in coordinates of b, and what of b lies there.
   void find_region() {
     Eigen::AlignedBox3d a, b;
-    for (const Vec3& X : a_.corners) a.extend(in_b(X));
+    if (a_.tree)
+      for (int k = 0; k < 8; ++k)
+        a.extend(in_b(box_of(a_).corner(static_cast<Eigen::AlignedBox3d::CornerType>(k))));
+    else
+      for (const Vec3& X : a_.corners) a.extend(in_b(X));
     if (a_.round() || a_.corners.empty()) {
       const Vec3 middle = in_b(a_.bound_centre), half = Vec3::Constant(a_.bound_radius);
       if (a_.bounded()) a.extend(Vec3(middle - half)).extend(Vec3(middle + half));
     }
-    for (const Vec3& X : b_.corners) b.extend(X);
+    if (b_.tree)
+      b = box_of(b_);
+    else
+      for (const Vec3& X : b_.corners) b.extend(X);
     const Vec3 more = Vec3::Constant(reach());
     const Vec3 far = Vec3::Constant(std::numeric_limits<double>::max());
     region_ = Eigen::AlignedBox3d(Vec3(-far), far);
     if (!a.isEmpty()) region_.clamp({Vec3(a.min() - more), Vec3(a.max() + more)});
     if (!b.isEmpty() && !b_.round()) region_.clamp({Vec3(b.min() - more), Vec3(b.max() + more)});
-    const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
-    for (int k = 0; k < size(b_.corners); ++k)
-      if (in_region({b_.corners[k]})) corners_.push_back(k);
-    for (int e = 0; e < size(b_.edges); ++e)
-      if (in_region({b_.corners[b_.edges[e].i], b_.corners[b_.edges[e].j]})) edges_.push_back(e);
-    for (int t = 0; t < size(b_.triangles); ++t) {
+    const auto numbers = [](std::size_t count) {
+      std::vector<int> all(count);
+      std::iota(all.begin(), all.end(), 0);
+      return all;
+    };
+    triangles_ = numbers(b_.tree ? 0 : b_.triangles.size());
+    if (b_.tree)
+      b_.tree->visit(
+          [&](const auto& box) {
+            return region_.intersects(Eigen::AlignedBox3d(box.low, box.high));
+          },
+          [&](int t) { triangles_.push_back(t); });
+    std::erase_if(triangles_, [&](int t) {
       const auto& c = b_.triangles[t];
-      if (in_region({b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]}))
-        triangles_.push_back(t);
+      return !in_region({b_.corners[c[0]], b_.corners[c[1]], b_.corners[c[2]]});
+    });
+    if (b_.tree) {
+      for (int t : triangles_)
+        for (int k = 0; k < 3; ++k) {
+          edges_.push_back(b_.triangle_edges[t][k]);
+          corners_.push_back(b_.triangles[t][k]);
+        }
+      for (std::vector<int>* all : {&edges_, &corners_}) {
+        std::sort(all->begin(), all->end());
+        all->erase(std::unique(all->begin(), all->end()), all->end());
+      }
+    } else {
+      edges_ = numbers(b_.edges.size());
+      corners_ = numbers(b_.corners.size());
     }
+    std::erase_if(edges_, [&](int e) {
+      return !in_region({b_.corners[b_.edges[e].i], b_.corners[b_.edges[e].j]});
+    });
+    std::erase_if(corners_, [&](int k) { return !in_region({b_.corners[k]}); });
+  }
+  [[nodiscard]] static Eigen::AlignedBox3d box_of(const Shape& s) {
+    return {s.tree->low(), s.tree->high()};
   }
   /// Whether the box around points meets the region.
   [[nodiscard]] bool in_region(std::initializer_list<Vec3> points) const {
@@ -133,6 +179,9 @@ class Finder {
     return region_.intersects(box);
   }
 
+  [[nodiscard]] bool stands_on_plane() const {
+    return is_tube(a_) && b_.solid == Solid::half_space && !each_triangle_;
+  }
   [[nodiscard]] int cone_apex() const { return static_cast<int>(a_.corners.size()) - 1; }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
@@ -189,9 +238,9 @@ void near_feature_pairs(const Shape& first, const Shape& second, const Placement
   const auto start = static_cast<std::ptrdiff_t>(found.size());
   Finder forth(first, second, at_first, at_second, distance, false, each_triangle, found);
   Finder back(second, first, at_second, at_first, distance, true, each_triangle, found);
-  forth.points();
-  back.points();
-  forth.edges();
+  forth.points(back);
+  back.points(forth);
+  forth.edges(back);
   forth.round();
   back.round();
   std::sort(found.begin() + start, found.end(),

@@ -2,6 +2,7 @@
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/nearest.hpp>
 #include <polhode/contact/surface_features.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -85,6 +86,31 @@ Gap<T> over_cylinder(const V3<T>& x, double rho_a, const Shape& b, const Placeme
   if (beside || (!beyond && R - q < H - std::abs(h)))
     return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
   return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
+}
+
+/// The nearest of a ring with a rectangle for its section, of two round faces and two flat ones.
+template <class T>
+Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const Meridian<T> m(x, b, at_b);
+  const double R = b.half[0], r = b.half[1], H = b.half[2], h = value(m.h), q = value(m.q);
+  const double side = h < 0.0 ? -1.0 : 1.0, beyond = std::abs(h) - H;
+  const double outside = q - R, inside = r - q;
+  const auto end = [&] {
+    return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
+  };
+  const auto outer = [&] {
+    return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
+  };
+  const auto inner = [&] {
+    return over_plane(x, m.point(at_b, b, 0.0, r), -m.outward, rho_a, b.rounding);
+  };
+  if (beyond > 0.0) {
+    if (outside <= 0.0 && inside <= 0.0) return end();
+    return between_points(x, m.point(at_b, b, side * H, outside > 0.0 ? R : r), rho_a, b.rounding);
+  }
+  if (outside > 0.0 || (outside >= inside && outside >= beyond)) return outer();
+  if (inside > 0.0 || inside >= beyond) return inner();
+  return end();
 }
 
 template <class T>
@@ -194,8 +220,10 @@ Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Plac
       return over_cone(x, rho_a, b, at_b);
     case Solid::ellipsoid:
       return over_ellipsoid(x, rho_a, b, at_b);
-    case Solid::half_space:
     case Solid::surface:
+      if (is_tube(b)) return over_tube(x, rho_a, b, at_b);
+      break;
+    case Solid::half_space:
       break;
   }
   return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);

@@ -108,6 +108,21 @@ double ContactSet::contact_time(const Point& p, double stiffness, double speed) 
   return std::numbers::pi * std::sqrt(m / stiffness);
 }
 
+/// Speed that lasting contact under a force may have: what the force does in two steps, and what a
+/// body gets that is pressed into its band from rest.
+double ContactSet::slow_speed(const Point& p, double force, double dt) const {
+  const double a = std::max(system_->gravity().norm(), force / p.mass);
+  const double depth = std::sqrt(p.mass * a * p.data.normal.tolerance / p.rest_stiffness);
+  return kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
+}
+
+/// A lasting contact that had to carry the impulse of an impact elsewhere in the step.
+bool ContactSet::pressed(const Point& p) const {
+  if (p.restitution == 1.0) return false;
+  const double impulse = step_length_ * (p.report.normal_force - p.force_n);
+  return impulse > p.mass * slow_speed(p, p.force_n, step_length_);
+}
+
 /// At t_n. A point that is open gets the phase it closes in: an
 /// impact is faster than what gravity adds in two steps, or, of a closed point, than what its force
 /// does. A rebound that would be shorter than that does not happen. A damper takes the place of
@@ -115,6 +130,7 @@ double ContactSet::contact_time(const Point& p, double stiffness, double speed) 
 void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
+  p.force_n = h.closed ? h.force : 0.0;
   const double gravity = system_->gravity().norm();
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
@@ -124,10 +140,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   if (h.closed) {
     damp_load(p);
     if (h.in_impact() || (p.damped && h.approach < 0.0) || p.restitution == 1.0) return;
-    // Pressed into its band from rest, a body gets as fast as twice its depth under load tells.
-    const double a = std::max(gravity, h.force / p.mass);
-    const double depth = std::sqrt(p.mass * a * p.data.normal.tolerance / p.rest_stiffness);
-    const double slow = kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
+    const double slow = slow_speed(p, h.force, dt);
     if (!(-speed > slow)) return;
     const double energy = p.data.normal.energy(h.gap);
     const double k = impact(slow);
@@ -182,9 +195,13 @@ double ContactSet::gravity_along(const Point& p, const Vec3& n) const {
 double ContactSet::exit_speed(const Point& p, const Vec3& n, double speed) const {
   const double e = p.data.history.restitution;
   if (e == 1.0) return speed;
-  const double height = std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
-  const double a = gravity_along(p, n), of_surface = speed * speed + 2.0 * a * height;
-  return std::sqrt(std::max(e * e * of_surface - 2.0 * a * height, 0.0));
+  const double lost = fallen(p, n), apart = std::max(0.0, p.speed_n), kept = apart * apart;
+  return std::sqrt(std::max(kept + e * e * (speed * speed + lost - kept) - lost, 0.0));
+}
+
+/// 2 a h: what gravity took from the square of the speed since the point left its band [m²/s²].
+double ContactSet::fallen(const Point& p, const Vec3& n) const {
+  return 2.0 * gravity_along(p, n) * std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
 }
 
 /// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
@@ -193,7 +210,8 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   PointHistory& h = p.data.history;
   if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
     return {};
-  if (h.phase == ContactPhase::rest || !(p.report.normal_force > 0.0)) return {};
+  if (!(p.report.normal_force > 0.0)) return {};
+  if (h.phase == ContactPhase::rest && !pressed(p)) return {};
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
   const auto motion = [&](int body) {
@@ -219,7 +237,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const double speed = n.dot(v);
   impact.wanted = speed;
   impact.given = step_length_ * p.report.normal_force;
-  const bool turns = p.speed_n < 0.0 && speed >= 0.0;
+  const bool turns = speed >= 0.0;  // friction may have turned it at t_n
   const auto rests = [&] {
     if (!h.closed) return;
     const double energy = p.data.normal.energy(h.gap);
@@ -229,6 +247,13 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
   };
+  ImpactCourse course;
+  course.turns = turns;
+  course.restitution = h.phase == ContactPhase::restitution ? 1.0 : h.restitution;
+  course.fallen = fallen(p, n);
+  course.stored_n = p.data.normal.energy(p.report.gap_n);
+  if (h.closed) course.stored_n1 = p.data.normal.energy(h.gap);
+  const bool lasts = h.phase == ContactPhase::landing || h.phase == ContactPhase::rest;
   switch (h.phase) {
     case ContactPhase::landing:
       if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
@@ -257,8 +282,20 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     case ContactPhase::restitution:
       if (!(speed > 0.0)) rests();
       break;
-    case ContactPhase::rest:
+    case ContactPhase::rest: {
+      // It carries the impulse as it comes, and gives nothing of it back.
+      impact.wanted = 0.0;
+      impact.rubbed = step_length_ * p.report.friction_force;
+      const double now = h.closed ? p.data.normal.energy(h.gap) : 0.0;
+      const double kept = std::min(now, p.data.normal.energy(p.report.gap_n));
+      if (!(kept < now) || p.data.normal.potential != NormalPotential::barrier) break;
+      store_again(p, p.data.normal.stiffness, kept);
+      const double released = now - p.data.normal.energy(h.gap);
+      work.stored -= released;
+      work.dissipated += released;
+      p.impact_loss += released;
       break;
+    }
   }
   const FrictionLaw& f = p.data.friction;
   if (!(f.mu > 0.0)) return r;
@@ -272,6 +309,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
   impact.along = along.normalized();
   impact.across = n.cross(impact.along);
+  if (!lasts) r.course = course;
   return r;
 }
 

@@ -7,6 +7,7 @@
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/nearest.hpp>
 #include <polhode/contact/surface_features.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -127,6 +128,7 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace triangle(int t) const {
     Nearest best;
+    if (is_tube(b) && is_inner_side(b, t)) return place(best);
     part.face(b, t, 2, best);
     if (best.kind != Nearest::face)
       for (const int e : b.triangle_edges[t]) part.edge(b, e, best);
@@ -134,24 +136,28 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace edge(int e) const {
     Nearest best;
+    if (is_tube(b) && on_inner_side(b, b.edges[e].i) && on_inner_side(b, b.edges[e].j))
+      return place(best);
     part.edge(b, e, best);
     return place(best);
   }
   [[nodiscard]] SurfacePlace corner(int k) const {
+    if (is_tube(b) && on_inner_side(b, k)) return place({});
     Nearest n{Nearest::corner, k, 0.0, part.bound(b.corners[k], b.corners[k])};
     return place(n);
   }
 };
 
 /// The places of a surface that count, or the nearest one alone.
-std::vector<SurfacePlace> places_of(const SeenPart& part, const Shape& b, double round,
-                                    double reach) {
+const std::vector<SurfacePlace>& places_of(const SeenPart& part, const Shape& b, double round,
+                                           double reach) {
   const SeenSurface seen{part, b, round};
-  std::vector<int> near;
+  SurfaceSearch& search = SurfaceSearch::of_this_thread();
+  search.triangles.clear();
   b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < reach; },
-                [&](int t) { near.push_back(t); });
-  std::vector<SurfacePlace> places = places_that_count(b, near, reach, seen);
-  if (!places.empty()) return places;
+                [&](int t) { search.triangles.push_back(t); });
+  find_places_that_count(b, search, reach, seen);
+  if (!search.places.empty()) return search.places;
   SurfacePlace best;
   best.gap = std::numeric_limits<double>::infinity();
   b.tree->visit([&](const auto& box) { return part.bound(box.low, box.high) - round < best.gap; },
@@ -160,7 +166,8 @@ std::vector<SurfacePlace> places_of(const SeenPart& part, const Shape& b, double
                   if (one.gap < best.gap) best = one;
                 });
   best.count = 1;
-  return {best};
+  search.places.push_back(best);
+  return search.places;
 }
 
 Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part) {
@@ -235,6 +242,48 @@ Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Pl
   return turned_round(point_over_solid(p + at * v, b.rounding, part, at_a), 1 + edge);
 }
 
+/// The point of the part that is farthest from the axis of a tube about it: where it touches the
+/// inner side. The extent n·x of a convex body is largest there over all n across the axis.
+template <class T>
+V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T>& at_a,
+                         const Placement<T>& at_b) {
+  const V3<T> e = at_b.vector(tube.axes.col(0)), f = at_b.vector(tube.axes.col(1));
+  const V3<T> centre = at_a.point(part.centre), from = at_b.point(tube.centre);
+  V3<T> axis[3];
+  for (int i = 0; i < 3; ++i) axis[i] = at_a.vector(part.axes.col(i));
+  const Vec3 squares = part.half.cwiseAbs2();
+  const auto support = [&](const V3<T>& n) {
+    T length(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const T along = dot(axis[i], n);
+      length = length + squares[i] * (along * along);
+    }
+    length = sqrt(length);
+    V3<T> x = centre;
+    for (int i = 0; i < 3; ++i) x = x + (squares[i] * dot(axis[i], n) / length) * axis[i];
+    return x;
+  };
+  const Vec3 e_0 = value(e), f_0 = value(f), middle = value(centre - from);
+  Mat3 shape = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) shape += squares[i] * value(axis[i]) * value(axis[i]).transpose();
+  double angle = std::atan2(f_0.dot(middle), e_0.dot(middle)), curvature = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 n = std::cos(angle) * e_0 + std::sin(angle) * f_0,
+               t = std::cos(angle) * f_0 - std::sin(angle) * e_0;
+    const double length = std::sqrt(n.dot(shape * n));
+    const Vec3 s = shape * n / length, x = middle + s;
+    curvature = t.dot(shape * t) / length - t.dot(s) * t.dot(s) / length - n.dot(x);
+    const double slope = t.dot(x), newton = curvature < 0.0 ? -slope / curvature : 1.0;
+    if (std::abs(slope) <= 1e-15 * x.norm()) break;
+    angle += std::abs(newton) < 0.3 ? newton : std::atan2(slope, n.dot(x));
+  }
+  const V3<T> n = std::cos(angle) * e + std::sin(angle) * f,
+              t = std::cos(angle) * f - std::sin(angle) * e;
+  if (!(curvature < -1e-9 * part.half.maxCoeff())) return support(n);
+  const T turn = (-1.0 / curvature) * dot(t, support(n) - from);
+  return support(n + turn * t);
+}
+
 }  // namespace
 
 Shape part_of(const Shape& a, int which) {
@@ -254,6 +303,8 @@ Shape part_of(const Shape& a, int which) {
 template <class T>
 Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const Shape& b,
                 const Placement<T>& at_a, const Placement<T>& at_b) {
+  if (is_tube(b) && pair.kind == GapKind::part_solid)
+    return point_over_solid(farthest_from_axis(part, b, at_a, at_b), part.rounding, b, at_b);
   const SeenPart seen(part, at_a, at_b);
   const auto over = [&](const Nearest& n) {
     if (n.kind == Nearest::face) {
@@ -267,20 +318,15 @@ Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair, const 
                         -1 - n.index);
   };
   if (pair.kind != GapKind::part_surface) return over(nearest_of(pair, b, seen));
-  std::vector<Gap<T>> gaps;
-  std::vector<int> counts;
+  OneGap<T> sum(reach);
   for (const SurfacePlace& p : places_of(seen, b, part.rounding + b.rounding, reach)) {
     Nearest n;
     n.kind = p.kind == 0 ? Nearest::face : p.kind == 1 ? Nearest::edge : Nearest::corner;
     n.index = p.index;
     n.t = p.t;
-    const Gap<T> g = over(n);
-    if (!(value(g.distance) < reach) && !gaps.empty()) continue;
-    gaps.push_back(g);
-    counts.push_back(p.count);
+    sum.add(over(n), p.count);
   }
-  if (!(value(gaps.front().distance) < reach)) return gaps.front();
-  return one_gap(gaps, counts, reach);
+  return sum.gap();
 }
 
 template Gap<double> part_gap(const Shape&, double, const FeaturePair&, const Shape&,

@@ -5,7 +5,8 @@
 
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/contact/plain_point.hpp>
-#include <polhode/contact/triangle_tree.hpp>
+#include <polhode/contact/surface_features.hpp>
+#include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
 
@@ -83,7 +84,7 @@ Gap<double> ContactSet::gap_along(const Point& p, const FeaturePair& pair,
   const auto placed = [&](int shape) {
     const BodyStep& s = step_of(shape, steps);
     const int body = shapes_[shape].body;
-    if (body == kGround) return std::pair(s.r_n1, s.Lambda_n1);
+    if (body == kGround || part == 0.0) return std::pair(s.r_n1, s.Lambda_n1);
     const Vec6& x = increments[body];
     return std::pair(Vec3(s.r_n1 + part * x.head<3>()),
                      Mat3(cay(part * x.tail<3>()) * s.Lambda_n1));
@@ -158,11 +159,17 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     closing.push_back({i, p.least_gap + kKept * std::min(room, band)});
   }
   if (closing.empty()) return most;
-  double part = advance(closing, steps, increments, most);
-  for (const Followed& f : closing)
-    if (const GapKind kind = points_[f.point].data.pair.kind;
-        kind == GapKind::point_surface || kind == GapKind::part_surface)
+  double part = most;
+  for (const Followed& f : closing) {
+    const GapKind kind = points_[f.point].data.pair.kind;
+    if (kind != GapKind::point_surface && kind != GapKind::part_surface)
+      part = advance(f, steps, increments, part);
+  }
+  for (const Followed& f : closing) {
+    const GapKind kind = points_[f.point].data.pair.kind;
+    if (kind == GapKind::point_surface || kind == GapKind::part_surface)
       part = advance_over_surface(f.point, steps, increments, part);
+  }
   const auto loses = [&](const Followed& f) {
     const double least = points_[f.point].least_gap;
     if (gap_along(points_[f.point], points_[f.point].data.pair, steps, increments, part).distance >=
@@ -180,56 +187,52 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
 /// normal n of where they are no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a
 /// gap can be followed by steps of its own size.
 /// @eq{contact-filter}
-double ContactSet::advance(std::span<const Followed> closing, std::span<const BodyStep> steps,
+double ContactSet::advance(const Followed& followed, std::span<const BodyStep> steps,
                            std::span<const Vec6> increments, double most) {
   const Vec6 still = Vec6::Zero();
   const auto increment = [&](int shape) -> const Vec6& {
     const int body = shapes_[shape].body;
     return body == kGround ? still : increments[body];
   };
+  const Point& p = points_[followed.point];
+  const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
+  const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
+  const Vec3 relative = x_a.head<3>() - x_b.head<3>();
+  // A straight way may come nearer to a hollow side faster than along the normal of where it is.
+  const GapKind kind = p.data.pair.kind;
+  const bool hollow =
+      (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
   double done = 0.0, last = 0.0;
   for (int k = 0; k < 200; ++k) {
-    double advance = std::numeric_limits<double>::infinity();
-    for (const Followed& c : closing) {
-      const Point& p = points_[c.point];
-      if (p.data.pair.kind == GapKind::point_surface || p.data.pair.kind == GapKind::part_surface)
-        continue;  // no convex feature
-      const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
-      const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
-      const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
-      const Vec3 n = value(g.normal), relative = x_a.head<3>() - x_b.head<3>();
-      double speed = std::max(0.0, -n.dot(relative));
-      std::array<Vec3, 2> few;
-      const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
-                             bool side_a) {
-        const Shape& shape = side_a ? *p.data.a : *p.data.b;
-        const int count = few_points(shape, p.data.pair, side_a, few);
-        if (count == 0) return theta.norm() * lever(shape, p.data.pair, side_a);
-        const Mat3 L = cay(done * theta) * Lambda;
-        for (int m = 0; m < count; ++m) few[m] = L * few[m];
-        return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
-      };
-      speed += turns(x_a.tail<3>(), a.Lambda_n1, n, true);
-      if (p.data.b->bounded())
-        speed += turns(x_b.tail<3>(), b.Lambda_n1, -n, false);
-      else
-        speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + x_a.norm() + p.data.a->reach +
-                                         p.data.b->centre.norm());
-      if (speed <= 0.0) continue;
-      const double next = (g.distance - c.least) / speed;
-      if (next < advance) {
-        advance = next;
-        tightest_ = c.point;
-      }
-    }
+    const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
+    const Vec3 n = value(g.normal);
+    double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));
+    std::array<Vec3, 2> few;
+    const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
+                           bool side_a) {
+      if (theta.isZero(0.0)) return 0.0;
+      const Shape& shape = side_a ? *p.data.a : *p.data.b;
+      const int count = few_points(shape, p.data.pair, side_a, few);
+      if (count == 0 || hollow) return theta.norm() * lever(shape, p.data.pair, side_a);
+      const Mat3 L = done > 0.0 ? Mat3(cay(done * theta) * Lambda) : Lambda;
+      for (int m = 0; m < count; ++m) few[m] = L * few[m];
+      return approach_by_turn(theta, towards, std::span(few).first(count), most - done);
+    };
+    speed += turns(x_a.tail<3>(), a.Lambda_n1, n, true);
+    if (p.data.b->bounded())
+      speed += turns(x_b.tail<3>(), b.Lambda_n1, -n, false);
+    else
+      speed += x_b.tail<3>().norm() *
+               ((a.r_n1 - b.r_n1).norm() + x_a.norm() + p.data.a->reach + p.data.b->centre.norm());
+    const double step = speed > 0.0 ? (g.distance - followed.least) / speed
+                                    : std::numeric_limits<double>::infinity();
+    if (step >= most - done) return most;
+    tightest_ = followed.point;
     // Bodies that part from a narrow gap start with small advances, each larger than the last.
-    if (advance == std::numeric_limits<double>::infinity()) return most;
-    if (!(advance > 0.0) || (advance < kLeastAdvance * most && advance < last))
+    if (!(step > 0.0) || (step < kLeastAdvance * most && step < last))
       return done > 0.0 ? done : 1e-3 * most;
-    if (!(advance < most - done)) return most;
-    last = advance;
-    done += advance;
-    if (done >= most) return most;
+    last = step;
+    done += step;
   }
   return done;
 }
@@ -271,9 +274,14 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
                                turn_b * turn_b * (start.y.norm() + way) + 2.0 * turn_b * way);
   const double band = p.data.normal.reach() - p.least_gap;
   const double wide = round + farthest + bulge + std::max(0.0, p.least_gap + kKept * band);
-  std::vector<int> near;
+  // Free to be used: single triangles, all that is asked for below, search nothing.
+  std::vector<int>& near = SurfaceSearch::of_this_thread().triangles;
+  near.clear();
+  const Vec3 middle = 0.5 * (start.y + end.y);
+  const double around = wide + 0.5 * (end.y - start.y).norm();
   B.tree->visit(
       [&](const auto& box) {
+        if (box.squared_distance(middle) > around * around) return false;
         double enters = 0.0, leaves = 1.0;
         for (int k = 0; k < 3; ++k) {
           const double from = start.y[k], along = end.y[k] - from;
@@ -287,7 +295,9 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
         }
         return enters <= leaves;
       },
-      [&](int t) { near.push_back(t); });
+      [&](int t) {
+        if (!is_tube(B) || !is_inner_side(B, t)) near.push_back(t);
+      });
   const auto speed = [&](const Vec3& n, const Mat3& L_a, double left) {
     double v = std::max(0.0, -n.dot(relative));
     if (corner) {

@@ -24,92 +24,133 @@ struct SurfacePlace {
   int count = 0;            ///< How often it counts.
 };
 
+/// Lists of a search among features of a surface, kept from one search to the next of a thread.
+struct SurfaceSearch {
+  std::vector<int> triangles, edges, corners;
+  std::vector<SurfacePlace> places;
+
+  static SurfaceSearch& of_this_thread() {
+    thread_local SurfaceSearch search;
+    return search;
+  }
+};
+
 /// Places that count at a gap below `reach`, nearest first. Each triangle counts once, less each
 /// edge that two share, plus each inner corner: neighbours that are nearest by what they have in
 /// common cancel, by number, so over what is flat one face is left. In order of their gaps places
 /// sum up to one at least, as over a pit that is narrower than a ball. @eq{contact-one-gap}
 ///
+/// @param search  Its triangles are those that may be near; gets the places.
 /// @param seen  triangle(t), edge(e), corner(k) → SurfacePlace.
 template <class Seen>
-std::vector<SurfacePlace> places_that_count(const Shape& b, const std::vector<int>& near,
-                                            double reach, const Seen& seen) {
-  std::vector<SurfacePlace> list;
+void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
+  std::vector<SurfacePlace>& list = search.places;
+  list.clear();
+  search.edges.clear();
+  search.corners.clear();
+  for (const int t : search.triangles) {
+    SurfacePlace place = seen.triangle(t);
+    if (!(place.gap < reach)) continue;
+    place.count = 1;
+    list.push_back(place);
+    // An edge or corner is as near as one of its triangles at most.
+    for (int k = 0; k < 3; ++k) {
+      const int e = b.triangle_edges[t][k], c = b.triangles[t][k];
+      if (!b.edges[e].open) search.edges.push_back(e);
+      if (!b.border_corner[c]) search.corners.push_back(c);
+    }
+  }
+  for (std::vector<int>* all : {&search.edges, &search.corners}) {
+    std::sort(all->begin(), all->end());
+    all->erase(std::unique(all->begin(), all->end()), all->end());
+  }
   const auto take = [&](SurfacePlace place, int count) {
     if (!(place.gap < reach)) return;
     place.count = count;
     list.push_back(place);
   };
-  std::vector<int> edges, corners;
-  for (const int t : near) {
-    take(seen.triangle(t), 1);
-    for (const int e : b.triangle_edges[t])
-      if (!b.edges[e].open) edges.push_back(e);
-    for (const int k : b.triangles[t])
-      if (!b.border_corner[k]) corners.push_back(k);
-  }
-  for (std::vector<int>* all : {&edges, &corners}) {
-    std::sort(all->begin(), all->end());
-    all->erase(std::unique(all->begin(), all->end()), all->end());
-  }
-  for (const int e : edges) take(seen.edge(e), -1);
-  for (const int k : corners) take(seen.corner(k), 1);
+  for (const int e : search.edges) take(seen.edge(e), -1);
+  for (const int k : search.corners) take(seen.corner(k), 1);
+  const auto uncounted = [](const SurfacePlace& p) { return p.count == 0; };
   std::sort(list.begin(), list.end(), [](const SurfacePlace& x, const SurfacePlace& y) {
     return x.kind != y.kind ? x.kind < y.kind : x.index < y.index;
   });
-  std::vector<SurfacePlace> counted;
-  for (const SurfacePlace& p : list)
-    if (!counted.empty() && counted.back().kind == p.kind && counted.back().index == p.index)
-      counted.back().count += p.count;
-    else
-      counted.push_back(p);
-  std::erase_if(counted, [](const SurfacePlace& p) { return p.count == 0; });
-  std::stable_sort(counted.begin(), counted.end(),
-                   [](const SurfacePlace& x, const SurfacePlace& y) { return x.gap < y.gap; });
+  for (std::size_t k = 1; k < list.size(); ++k) {
+    SurfacePlace &before = list[k - 1], &here = list[k];
+    if (before.kind != here.kind || before.index != here.index) continue;
+    here.t = before.t, here.gap = before.gap;
+    here.count += before.count;
+    before.count = 0;
+  }
+  std::erase_if(list, uncounted);
+  std::sort(list.begin(), list.end(), [](const SurfacePlace& x, const SurfacePlace& y) {
+    if (x.gap != y.gap) return x.gap < y.gap;
+    return x.kind != y.kind ? x.kind < y.kind : x.index < y.index;
+  });
   int open = 0, places = 0;
-  for (SurfacePlace& p : counted) {
+  for (SurfacePlace& p : list) {
     open += p.count;
     p.count = std::max(1, open) - places;
     places += p.count;
   }
-  std::erase_if(counted, [](const SurfacePlace& p) { return p.count == 0; });
-  return counted;
+  std::erase_if(list, uncounted);
 }
 
 /// One gap with the potential of all, β(g) = (reach − g)³ of each. @eq{contact-one-gap}
-///
-/// @param rho_a  What is round about side a [m].
 template <class T>
-Gap<T> one_gap(const std::vector<Gap<T>>& gaps, const std::vector<int>& counts, double reach) {
-  if (gaps.size() == 1) return gaps.front();
-  T cube(0.0);
-  for (std::size_t k = 0; k < gaps.size(); ++k) {
-    const T p = reach - gaps[k].distance;
-    cube = cube + static_cast<double>(counts[k]) * (p * p * p);
+class OneGap {
+ public:
+  explicit OneGap(double reach) : reach_(reach), gaps_(list()) { gaps_.clear(); }
+
+  /// The nearest one comes first; others beyond the reach do not count.
+  void add(const Gap<T>& gap, int count) {
+    if (gaps_.empty() || value(gap.distance) < reach_) gaps_.push_back({gap, double(count)});
   }
-  T P(std::cbrt(value(cube)));
-  for (int step = 0; step < 2; ++step)
-    P = P - (1.0 / (3.0 * value(P) * value(P))) * (P * P * P - cube);
-  Gap<T> g;
-  g.feature = gaps.front().feature;
-  g.distance = reach - P;
-  V3<T> pull = constant<T>(Vec3::Zero()), point = pull;
-  const V3<T> from = gaps.front().point;
-  T share(0.0);
-  for (std::size_t k = 0; k < gaps.size(); ++k) {
-    const T p = (reach - gaps[k].distance) / P;
-    const T force = static_cast<double>(counts[k]) * (p * p);
-    pull = pull + force * gaps[k].normal;
-    point = point + force * (gaps[k].point - from);
-    share = share + force;
+  [[nodiscard]] Gap<T> gap() const {
+    const Gap<T>& nearest = gaps_.front().gap;
+    if (gaps_.size() == 1 || !(value(nearest.distance) < reach_)) return nearest;
+    T cube(0.0);
+    for (const auto& [g, count] : gaps_) {
+      const T p = reach_ - g.distance;
+      cube = cube + count * (p * p * p);
+    }
+    T P(std::cbrt(value(cube)));
+    for (int step = 0; step < 2; ++step)
+      P = P - (1.0 / (3.0 * value(P) * value(P))) * (P * P * P - cube);
+    Gap<T> one;
+    one.feature = nearest.feature;
+    one.distance = reach_ - P;
+    V3<T> pull = constant<T>(Vec3::Zero()), point = pull;
+    T share(0.0);
+    for (const auto& [g, count] : gaps_) {
+      const T p = (reach_ - g.distance) / P;
+      const T force = count * (p * p);
+      pull = pull + force * g.normal;
+      point = point + force * (g.point - nearest.point);
+      share = share + force;
+    }
+    one.slope = norm(pull);
+    one.share = share;
+    one.point = nearest.point + (T(1.0) / share) * point;
+    if (value(one.slope) > 1e-9)
+      one.normal = (T(1.0) / one.slope) * pull;
+    else
+      one.normal = nearest.normal, one.slope = T(0.0);
+    return one;
   }
-  g.slope = norm(pull);
-  g.share = share;
-  g.point = from + (T(1.0) / share) * point;
-  if (value(g.slope) > 1e-9)
-    g.normal = (T(1.0) / g.slope) * pull;
-  else
-    g.normal = gaps.front().normal, g.slope = T(0.0);
-  return g;
-}
+
+ private:
+  struct Counted {
+    Gap<T> gap;
+    double count;
+  };
+  static std::vector<Counted>& list() {
+    thread_local std::vector<Counted> gaps;
+    return gaps;
+  }
+
+  double reach_;
+  std::vector<Counted>& gaps_;  ///< One OneGap at a time in a thread.
+};
 
 }  // namespace polhode::contact

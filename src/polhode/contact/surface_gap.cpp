@@ -62,19 +62,17 @@ Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape&
   const TriangleTree::Hit hit = b.tree->nearest(y, std::numeric_limits<double>::infinity());
   const auto nearest = [&] { return over_triangle(x, rho, b, hit.triangle, hit.region, at_b); };
   if (!(hit.distance - round < reach)) return nearest();
-  const std::vector<SurfacePlace> places =
-      places_that_count(b, b.tree->near(y, reach + round), reach, SeenPoint{b, y, round});
-  if (places.empty()) return nearest();
-  std::vector<Gap<T>> gaps;
-  std::vector<int> counts;
-  for (const SurfacePlace& p : places) {
-    const Gap<T> g = over_place(x, rho, b, p, at_b);
-    if (!(value(g.distance) < reach) && !gaps.empty()) continue;
-    gaps.push_back(g);
-    counts.push_back(p.count);
-  }
-  if (!(value(gaps.front().distance) < reach)) return gaps.front();
-  return one_gap(gaps, counts, reach);
+  SurfaceSearch& search = SurfaceSearch::of_this_thread();
+  search.triangles.clear();
+  const double near = (reach + round) * (reach + round);
+  b.tree->visit([&](const auto& box) { return box.squared_distance(y) <= near; },
+                [&](int t) { search.triangles.push_back(t); });
+  find_places_that_count(b, search, reach, SeenPoint{b, y, round});
+  if (search.places.empty()) return nearest();
+  if (search.places.size() == 1) return over_place(x, rho, b, search.places.front(), at_b);
+  OneGap<T> sum(reach);
+  for (const SurfacePlace& p : search.places) sum.add(over_place(x, rho, b, p, at_b), p.count);
+  return sum.gap();
 }
 
 template Gap<double> point_over_surface(const V3<double>&, double, double, const Shape&,

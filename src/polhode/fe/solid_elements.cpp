@@ -7,6 +7,7 @@
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/fe/elements/extrapolation.hpp>
 #include <polhode/fe/elements/reference_data.hpp>
 #include <polhode/fe/solid_elements.hpp>
 
@@ -35,7 +36,8 @@ class SolidGroup final : public SolidElements {
         density_(d.density),
         X_(d.X.begin(), d.X.end()),
         kernels_(element_kernels(d.isa)),
-        reference_(name_, kind_, d.connectivity, X_, d.fibres, kernels_.width) {
+        reference_(name_, kind_, d.connectivity, X_, d.fibres, kernels_.width),
+        to_nodes_(extrapolation(kind_)) {
     if (!kind_.warning.empty()) warnings_.push_back(format("{}: {}.", name_, kind_.warning));
     const MaterialKernels& laws = material_kernels(d.isa);
     data_.elements = reference_.elements;
@@ -44,6 +46,7 @@ class SolidGroup final : public SolidElements {
     data_.X = reference_.X.data();
     data_.points = reference_.points.data();
     data_.volumes = reference_.volumes.data();
+    data_.to_nodes = to_nodes_.data();
     data_.law = material_->law();
     data_.law_kernel = laws.laws[material_->law_index()];
     if (material_->has_fibres()) {
@@ -159,12 +162,23 @@ class SolidGroup final : public SolidElements {
 
   bool sample(const NodeStep& instant, const double* history,
               std::span<ElementSample> samples) const override {
-    each_sample(instant, history, [&](int e, const double* v) {
-      samples[e] = {.cauchy = symmetric(v),
-                    .principal_stretches = stretches(v + 6),
-                    .strain_energy_density = v[12],
-                    .volume = v[13]};
-    });
+    const int n = sizes_.nodes;
+    std::vector<double> nodal(static_cast<std::size_t>(reference_.elements) * n * kNodalSize);
+    each_sample(
+        instant, history,
+        [&](int e, const double* v) {
+          ElementSample& to = samples[e];
+          to = {.cauchy = symmetric(v),
+                .principal_stretches = stretches(v + 6),
+                .strain_energy_density = v[12],
+                .volume = v[13]};
+          for (int a = 0; a < n; ++a) {
+            const double* at = nodal.data() + (static_cast<std::size_t>(e) * n + a) * kNodalSize;
+            to.cauchy_at_nodes.push_back(symmetric(at));
+            to.energy_at_nodes.push_back(at[6]);
+          }
+        },
+        nodal.data());
     return true;
   }
 
@@ -220,10 +234,11 @@ class SolidGroup final : public SolidElements {
   }
 
   template <class Use>
-  void each_sample(const NodeStep& instant, const double* history, const Use& use) const {
+  void each_sample(const NodeStep& instant, const double* history, const Use& use,
+                   double* nodal = nullptr) const {
     const ElementStep s = motion(instant, history, nullptr, Mat3::Identity());
     std::vector<double> values(static_cast<std::size_t>(reference_.elements) * kSampleSize);
-    kernels_.kinds[kind_.kernel].sample(data_, s, values.data());
+    kernels_.kinds[kind_.kernel].sample(data_, s, values.data(), nodal);
     for (int e = 0; e < reference_.elements; ++e)
       use(e, values.data() + static_cast<std::size_t>(e) * kSampleSize);
   }
@@ -236,6 +251,7 @@ class SolidGroup final : public SolidElements {
   std::vector<Vec3> X_;
   const ElementKernels& kernels_;
   ReferenceData reference_;
+  Extrapolation to_nodes_;
   ElementData data_;
   std::vector<std::string> warnings_;
 };

@@ -61,7 +61,7 @@ struct Cells {
 }  // namespace
 
 void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
-  std::vector<float> points, displacements, velocities, stretches;
+  std::vector<float> points, displacements, velocities, stretches, errors;
   Values at_nodes, in_cells;
   Cells cells;
   for (std::size_t s = 0; s < reports.size(); ++s) {
@@ -77,6 +77,7 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
       in_cells.add(e.cauchy, von_mises(e.cauchy), e.strain_energy_density);
       add_vectors(stretches, {e.principal_stretches});
     }
+    for (const double error : nodal.stress_error) errors.push_back(static_cast<float>(error));
   }
   VtkFile file("UnstructuredGrid");
   file.names("solid_names", solids_);
@@ -94,6 +95,7 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
   file.text("</PointData>\n<CellData Scalars=\"von_mises\">\n");
   in_cells.write(file);
   file.array("principal_stretches", 3, stretches);
+  file.array("stress_error", 1, errors);
   file.array("solid", 1, cells.owners);
   file.text("</CellData>\n</Piece>\n");
   series_.append(t, file.bytes());

@@ -31,7 +31,8 @@ constexpr Quantity kNodeQuantities[] = {{"displacement", 3, "m"},
 constexpr Quantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
                                            {"von_mises", 1, "Pa"},
                                            {"principal_stretches", 3, "-"},
-                                           {"strain_energy_density", 1, "J/m^3"}};
+                                           {"strain_energy_density", 1, "J/m^3"},
+                                           {"stress_error", 1, "Pa"}};
 
 constexpr Quantity kBeamNodeQuantities[] = {
     {"position", 3, "m"}, {"orientation", 4, "-"}, {"velocity", 3, "m/s"}};

@@ -264,6 +264,7 @@ void ResultsFile::add_solids(const ResultsFrame& frame) {
     for (const ElementSample& e : report.elements) numbers_.push_back(von_mises(e.cauchy));
     for (const ElementSample& e : report.elements) vector(e.principal_stretches);
     for (const ElementSample& e : report.elements) numbers_.push_back(e.strain_energy_density);
+    numbers_.insert(numbers_.end(), nodal.stress_error.begin(), nodal.stress_error.end());
     for (std::size_t k = 0; k < solids_[s].interfaces.size(); ++k) {
       vector(frame.interfaces[next].force);
       vector(frame.interfaces[next++].moment);

@@ -93,15 +93,27 @@ bool Stop::turns() const {
   return touched() && sign_ * step_.rate_n < 0.0 && sign_ * step_.rate_n1 >= 0.0;
 }
 
+bool Stop::pressed() const {
+  if (phase_ != ContactPhase::rest || !closed_ || !(limits_.inertia > 0.0)) return false;
+  if (limits_.restitution == 1.0 || !(step_.dt > 0.0)) return false;
+  const double before = law_.force_and_slope(gap_n_).value;
+  const double a = std::max(std::abs(acceleration_), before / limits_.inertia);
+  const double depth =
+      std::sqrt(limits_.inertia * a * limits_.law.tolerance / limits_.law.stiffness);
+  const double slow = kSlowSteps * std::max(a * step_.dt, std::sqrt(a * depth));
+  const double force = law_.quotient_and_slope(gap_n_, gap_n1_).value;
+  return (force - before) * step_.dt > limits_.inertia * slow;
+}
+
 bool Stop::jumps() const {
-  return limits_.restitution < 1.0 && turns() &&
-         (phase_ == ContactPhase::compression || phase_ == ContactPhase::landing);
+  return pressed() || (limits_.restitution < 1.0 && turns() &&
+                       (phase_ == ContactPhase::compression || phase_ == ContactPhase::landing));
 }
 
 /// @eq{joint-stop-exit}
 double Stop::exit_rate() const {
   const double w = sign_ * step_.rate_n1, e = restitution_;
-  if (phase_ == ContactPhase::landing) return 0.0;
+  if (phase_ == ContactPhase::landing || phase_ == ContactPhase::rest) return 0.0;
   const double h = std::max(0.0, gap_n1_ - law_.reach()), a = -sign_ * acceleration_;
   const double at_stop = std::max(w * w + 2.0 * a * h, 0.0);
   return std::min(w, std::sqrt(std::max(e * e * at_stop - 2.0 * a * h, 0.0)));
@@ -130,6 +142,8 @@ contact::NormalLaw Stop::law_after() const {
     const double e = restitution_;
     law.stiffness = std::max(e * e * law.stiffness, k);
     law.upper = law.reach_for(gap_n1_, e * e * energy);
+  } else if (pressed()) {
+    law.upper = law.reach_for(gap_n1_, std::min(energy, law.energy(gap_n_)));
   } else if (phase_ == ContactPhase::restitution && phase_after() == ContactPhase::rest) {
     law.stiffness = k;
     law.upper = law.reach_for(gap_n1_, energy);

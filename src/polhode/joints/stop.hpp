@@ -45,6 +45,8 @@ class Stop {
 
  private:
   [[nodiscard]] bool turns() const;
+  /// A lasting contact that had to carry the impulse of an impact elsewhere in the step.
+  [[nodiscard]] bool pressed() const;
   [[nodiscard]] contact::ContactPhase phase_after() const;
 
   const JointLimits& limits_;

@@ -86,8 +86,8 @@ class SurfacesBuilder {
     for (const LoadedFaces& block : faces) {
       const std::string where = name_of(pair);
       const double edge = median_edge(block, X);
-      const SurfaceLaw law =
-          law_of(pair.law, stuff_of({own}), edge, std::min(edge, smallest_detail(shape)));
+      const SurfaceLaw law = law_of(pair.law, stuff_of({own}), edge,
+                                    std::min(edge, smallest_detail(shape)), Band::below);
       SurfacePoints points;
       try {
         points = surface_points(where, block, X, left_out);
@@ -122,8 +122,8 @@ class SurfacesBuilder {
     const CableSide a{cable_of(pair.own), line_of(pair.own)},
         b{cable_of(pair.side), line_of(pair.side)};
     const double radius = std::min(a.line.radius, b.line.radius);
-    const SurfaceLaw law =
-        law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)), 2.0 * radius, radius);
+    const SurfaceLaw law = law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)),
+                                  2.0 * radius, radius, Band::below);
     const std::vector<Vec3> X = positions();
     const std::vector<int> carriers = this->carriers();
     std::vector<int> nodes = a.line.nodes;
@@ -146,7 +146,8 @@ class SurfacesBuilder {
     const ShapeSpec& shape = body.shapes[pair.shape];
     const CableLine& line = line_of(pair.own);
     const CableSizes sizes = cable_sizes(shape, line.radius);
-    const SurfaceLaw law = law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest);
+    const SurfaceLaw law =
+        law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest, Band::below);
     const std::string where = name_of(pair);
     const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
@@ -177,8 +178,9 @@ class SurfacesBuilder {
     const std::vector<LoadedFaces> faces = faces_of(solids_[static_cast<std::size_t>(s)]);
     const MeshSurface surface = triangulated(faces);
     if (surface.triangles.empty()) return;
-    const SurfaceLaw law = law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)),
-                                  2.0 * line.radius, kOnSolid / kTolerance * line.radius);
+    const SurfaceLaw law =
+        law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)), 2.0 * line.radius,
+               kOnSolid / kTolerance * line.radius, Band::below);
     const std::vector<int> carriers = this->carriers();
     std::vector<int> moving = nodes_of({s});
     moving.insert(moving.end(), line.nodes.begin(), line.nodes.end());
@@ -252,7 +254,8 @@ class SurfacesBuilder {
     }
     if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
     const double least = std::min(edge[0], edge[1]);
-    const SurfaceLaw law = law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least);
+    SurfaceLaw law =
+        law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least, Band::about_offset);
     const std::vector<int> carriers = this->carriers();
     const auto& name = [&](int side) -> const std::string& {
       return model_.solids[static_cast<std::size_t>(solids[side])].name;
@@ -262,16 +265,32 @@ class SurfacesBuilder {
                                   .edge = least,
                                   .way = way_of_step(nodes_of({solids[0], solids[1]})),
                                   .self = self};
-    for (int k = 0; k < (self ? 1 : 2); ++k) {
+    const auto contact = [&](int k) {
       const std::string where = format("{} on {}", name(k), name(1 - k));
       std::vector<MeshPoint> points =
           contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
       for (MeshPoint& p : points) p.area *= 0.5;
-      const int group = system_.add_elements(
-          std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start));
+      return std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start);
+    };
+    double apart = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < (self ? 1 : 2); ++k)
+      for (const double d : contact(k)->gaps_at_start()) apart = std::fmin(apart, d);
+    const SurfaceLaw of_edges = law;
+    begin_band_at(law.normal, apart - law.normal.tolerance);
+    for (int k = 0; k < (self ? 1 : 2); ++k) {
+      const int group = system_.add_elements(contact(k));
       map_.surfaces.push_back({side_of_solid(solids[k]), side_of_solid(solids[1 - k]), 0, group});
     }
-    add_edges(pair, surfaces, X, law, start);
+    add_edges(pair, surfaces, X, of_edges, start);
+  }
+
+  /// A band that ends where the surfaces start, so that nothing is stored there: what starts
+  /// together is not thrown apart. The pressure in its middle stays.
+  static void begin_band_at(contact::NormalLaw& law, double gap) {
+    if (law.potential != contact::NormalPotential::barrier || !(gap < law.reach())) return;
+    const double band = law.band();
+    law.upper = std::max(gap, -0.5 * law.tolerance);
+    law.stiffness *= band / law.band();
   }
 
   /// The sharp edges of both surfaces on each other.
@@ -363,19 +382,26 @@ class SurfacesBuilder {
     return {0.0, kCablePressure * cable.stiffness / area, cable.mass_per_length / area};
   }
 
+  /// Place of the band in which surfaces act: below them where distances have a sign or count from
+  /// a cable's centre line, else about an offset of one tolerance.
+  enum class Band { below, about_offset };
+
   /// @param edge      Of the mesh, or the diameter of a cable [m].
   /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
   [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const Stuff& stuff, double edge,
-                                  double smallest) const {
+                                  double smallest, Band place) const {
     SurfaceLaw law;
     if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
     law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
     const double dt = model_.analysis.type == "dynamics" ? model_.analysis.step.value_or(0.0) : 0.0;
+    const bool barrier = law.normal.potential == contact::NormalPotential::barrier;
+    if (barrier && place == Band::below) law.normal.upper = 0.0;
+    const double band = barrier ? law.normal.band() : 2.0 * law.normal.tolerance;
     double& k = law.normal.stiffness;
     if (spec.reference_pressure > 0.0) {
-      k = 1.5 * spec.reference_pressure / (2.0 * law.normal.tolerance);
+      k = 1.5 * spec.reference_pressure / band;
     } else {
-      k = 1.5 * std::max(stuff.E / edge, stuff.pressure / (2.0 * law.normal.tolerance));
+      k = 1.5 * std::max(stuff.E / edge, stuff.pressure / band);
       if (dt > 0.0) k = std::max(k, stuff.density * edge / (dt * dt));
     }
     law.end_share = 0.5 * (1.0 - spec.restitution);

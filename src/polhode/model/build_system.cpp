@@ -65,6 +65,7 @@ class Builder {
     start.q = body.orientation.normalized();
     start.v = body.velocity;
     BodyData data{.name = body.name, .mass = body.mass, .inertia = body.inertia};
+    data.point_mass = body.point_mass;
     if (body.point_mass)
       data.inertia = body.mass * reach * reach * Mat3::Identity();
     else

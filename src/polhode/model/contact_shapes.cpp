@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/tube.hpp>
 #include <polhode/model/contact_shapes.hpp>
 #include <polhode/model/shape_surface.hpp>
 
@@ -27,6 +28,9 @@ contact::Shape contact_shape(const std::string& where, contact::ShapePlace place
   if (type == "height_field")
     return contact::height_field(where, shape.columns, shape.spacing, shape.heights, place,
                                  rounding);
+  if (type == "tube")
+    return contact::tube(where, size[0], size[1], size[2],
+                         shape_surface(where, shape, kTubeSegments), place, rounding);
   return contact::mesh(where, shape_surface(where, shape, kTubeSegments), place, rounding);
 }
 

@@ -27,11 +27,16 @@ struct InterfaceReport {
 /// √(3/2 s:s) of the deviator s of a stress [Pa].
 [[nodiscard]] double von_mises(const Mat3& stress);
 
-/// Stresses and energies at nodes: averages over the elements around a node, by volume.
+/// Stresses and energies at nodes: what the elements around a node have there, averaged by volume.
+/// @eq{nodal-stress}
 struct NodalAverages {
   std::vector<Mat3> cauchy;                   ///< World [Pa].
   std::vector<double> von_mises;              ///< Of the averaged stress [Pa].
   std::vector<double> strain_energy_density;  ///< [J/m³]
+  /// By element: mean over its nodes of how far its own stress is from the averaged one, as a von
+  /// Mises stress [Pa]. (O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer. Methods Engrg. 24 (1987)
+  /// 337-357.) @eq{stress-error}
+  std::vector<double> stress_error;
 };
 [[nodiscard]] NodalAverages nodal_averages(const Mesh& mesh,
                                            const std::vector<ElementSample>& elements);

@@ -20,7 +20,9 @@ namespace polhode {
   return sum + rhs.tail(system.rows()).squaredNorm() / system.mean_mass();
 }
 
-/// Shortens an increment until the merit falls.
+/// Shortens an increment until the merit falls. Where a barrier begins the merit has a kink: what
+/// just reaches it may stand although a little more may not, and Newton sees the barrier only from
+/// there on. So a part far below one that may not stand is lengthened again.
 class MeritSearch {
  public:
   /// Increments below this need no search: Newton converges quadratically there.
@@ -31,22 +33,37 @@ class MeritSearch {
   [[nodiscard]] double part() const { return part_; }
   /// Whether the merit there is asked for: no increment is searched for ever.
   [[nodiscard]] bool wants(double increment) const {
-    return cuts_ < kMostCuts && !(increment < kNoSearchBelow);
+    return tries_ < kMostTries && !found_ && !(increment < kNoSearchBelow);
   }
-  /// Whether the increment may stand; if not, part() is a smaller one.
+  /// Whether the increment may stand as it is; if not, part() is another one.
   [[nodiscard]] bool accepts(double after) {
-    if (after <= (1.0 - 1e-4 * part_) * before_) return true;
-    const double best = before_ / (after - (1.0 - 2.0 * part_) * before_) * part_;  // of a parabola
-    part_ *= std::isfinite(after) ? std::clamp(best, 0.1, 0.5) : 0.25;
-    ++cuts_;
-    return false;
+    ++tries_;
+    const bool stands = after <= (1.0 - 1e-4 * part_) * before_;
+    (stands ? stands_ : too_much_) = part_;
+    if (stands_ == 0.0) {
+      const double best =
+          before_ / (after - (1.0 - 2.0 * part_) * before_) * part_;  // of a parabola
+      part_ *= std::isfinite(after) ? std::clamp(best, 0.1, 0.5) : 0.25;
+      return false;
+    }
+    if (too_much_ > kClose * stands_ && tries_ < kMostTries) {
+      part_ = std::sqrt(stands_ * too_much_);
+      return false;
+    }
+    found_ = true;
+    part_ = stands_;
+    return stands;
   }
 
  private:
-  static constexpr int kMostCuts = 10;
+  static constexpr int kMostTries = 10;
+  static constexpr double kClose = 3.0;  ///< No kink is looked for between parts closer than this.
 
   double before_, part_;
-  int cuts_ = 0;
+  double stands_ = 0.0,
+         too_much_ = 0.0;  ///< The largest part that may stand, the least that may not.
+  int tries_ = 0;
+  bool found_ = false;
 };
 
 }  // namespace polhode

@@ -51,6 +51,14 @@ class Matrices {
   [[nodiscard]] int n() const { return mass_.movable(); }
   [[nodiscard]] int rows() const { return mass_.size() - mass_.movable(); }
   [[nodiscard]] StaticNewton& statics() { return newton_; }
+  /// Unknowns that count: all but the turns of point masses.
+  [[nodiscard]] std::vector<int> counted() const {
+    std::vector<int> list;
+    for (int i = 0; i < n(); ++i)
+      if (i >= 6 * system_.body_count() || i % 6 < 3 || !system_.bodies()[i / 6].point_mass)
+        list.push_back(i);
+    return list;
+  }
 
   /// Factors s (K − σ M) with its constraints. @returns false if it is singular.
   [[nodiscard]] bool factor(double sigma) {
@@ -92,7 +100,8 @@ class Matrices {
       const Mat3 Lambda = system_.motion(state, b).Lambda();
       Mat6 M = Mat6::Zero();
       M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
-      M.bottomRightCorner<3, 3>() = Lambda * body.inertia * Lambda.transpose();
+      if (!body.point_mass)
+        M.bottomRightCorner<3, 3>() = Lambda * body.inertia * Lambda.transpose();
       values.diagonal.push_back(M);
     }
     const KktMap map = kkt_map(system_);
@@ -179,13 +188,14 @@ Pairs dense_modes(Matrices& m) {
     exact.conservativeResize(n, exact.cols() + 1);
     exact.rightCols<1>() = Gt.col(r).normalized();
   }
-  Mat N = Mat::Identity(n, n);
+  const std::vector<int> counted = m.counted();
+  Mat N = Mat::Identity(n, n)(Eigen::all, counted);
   if (exact.cols() > 0) {
-    Eigen::ColPivHouseholderQR<Mat> qr(exact.rows(), exact.cols());
+    Eigen::ColPivHouseholderQR<Mat> qr(N.cols(), exact.cols());
     qr.setThreshold(kRedundant);
-    qr.compute(exact);
+    qr.compute(exact(counted, Eigen::all));
     const Mat Q = qr.householderQ();
-    N = Q.rightCols(n - qr.rank());
+    N = N * Q.rightCols(N.cols() - qr.rank());
   }
   Pairs pairs;
   pairs.freedoms = static_cast<int>(N.cols());

@@ -141,6 +141,12 @@ void SaddleMatrix::combine(const SaddleMatrix& A, double factor, const SaddleMat
     values_[k] = A.values_[k] + factor * B.values_[k];
 }
 
+void SaddleMatrix::hold_point_masses(double stiffness) {
+  for (int b = 0; b < topology_.bodies; ++b)
+    for (int i = 3; i < 6 && system_->bodies()[b].point_mass; ++i)
+      values_[36 * std::size_t(b) + 7 * std::size_t(i)] += stiffness;
+}
+
 /// @eq{statics-hessian}
 void SaddleMatrix::make_hessian(const std::vector<Vec6>& moments) {
   for (int b = 0; b < topology_.bodies; ++b) {

@@ -51,6 +51,8 @@ class SaddleMatrix {
   /// @param forces  Residual of the nodes [N], whose arms turn; null: none.
   void set(const KktValues& bodies, const std::vector<double>& blocks, const double* forces,
            double s);
+  /// Adds to the stiffness against turns of point masses, which nothing else resists.
+  void hold_point_masses(double stiffness);
   /// Adds the moments' part −½ R̂ that makes K of conservative systems symmetric off equilibrium:
   /// @param moments  Residual by body, of which the last three are taken, times s.
   void make_hessian(const std::vector<Vec6>& moments);

@@ -15,6 +15,8 @@ constexpr double kFreeForce = 2e-14;
 /// Added to the diagonal, as part of the largest stiffness, while free motions are looked for.
 constexpr double kProbe = 1e-8;
 constexpr int kProbeIterations = 3;
+/// Components of a direction below this are not named.
+constexpr double kNoPart = 1e-6;
 
 /// Numbers between −1 and 1 without pattern, the same on every machine.
 class Scatter {
@@ -99,6 +101,25 @@ std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most) {
   return found;
 }
 
+std::vector<int> supports_of(const std::vector<Vec>& motions, const SaddleMatrix& matrix,
+                             double length) {
+  const auto count = static_cast<Eigen::Index>(motions.size());
+  Mat V(matrix.movable(), count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    V.col(k) = motions[static_cast<std::size_t>(k)].head(matrix.movable());
+  for (int b = 0; b < matrix.bodies(); ++b) V.middleRows(6 * b + 3, 3) *= length;
+  std::vector<int> unknowns;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    Eigen::Index row = 0, column = 0;
+    V.rightCols(count - k).cwiseAbs().maxCoeff(&row, &column);
+    V.col(k).swap(V.col(k + column));
+    if (V(row, k) == 0.0) break;
+    for (Eigen::Index j = k + 1; j < count; ++j) V.col(j) -= V(row, j) / V(row, k) * V.col(k);
+    unknowns.push_back(static_cast<int>(row));
+  }
+  return unknowns;
+}
+
 std::string describe_motion(const System& system, const SaddleMatrix& matrix, const Vec& x) {
   const double length = system.length_scale();
   double most = 0.0;
@@ -109,7 +130,9 @@ std::string describe_motion(const System& system, const SaddleMatrix& matrix, co
       const Vec3& d = turns ? theta : r;
       if (d.norm() <= 1.001 * most) continue;
       most = d.norm();
-      const Vec3 u = d.normalized();
+      Vec3 u = d.normalized();
+      for (double& c : u)
+        if (std::abs(c) < kNoPart) c = 0.0;
       Eigen::Index axis = 0;
       const std::string along = u.cwiseAbs().maxCoeff(&axis) > 0.999
                                     ? std::string(1, "xyz"[axis])

@@ -35,6 +35,11 @@ class SaddleSolver {
 /// component one, at most `most` of them. Rotations count times ℓ.
 [[nodiscard]] std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most);
 
+/// Unknowns whose supports hold free motions: one for each, where it moves most beside those
+/// before. Rotations count times ℓ.
+[[nodiscard]] std::vector<int> supports_of(const std::vector<Vec>& motions,
+                                           const SaddleMatrix& matrix, double length);
+
 /// What a free motion is, in words: "body 'crank' turns about z".
 [[nodiscard]] std::string describe_motion(const System& system, const SaddleMatrix& matrix,
                                           const Vec& x);

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <polhode/solve/settle_impacts.hpp>
+#include <polhode/solve/single_impact.hpp>
 
 namespace polhode {
 
@@ -60,7 +61,7 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
     impacts.clear();
     const PairView view = pair_view(*system_, state, trial, ref);
     system_->group(ref.group).impacts(ref.item, view.step(), impacts);
-    for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact});
+    for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact, {}});
   }
   of_joints_ = rows_.size();
 }
@@ -72,7 +73,7 @@ Work SettleImpacts::find(State& state, MovingContacts& contacts) {
 
 std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
   std::vector<int> root = tie_;
-  for (const auto& [bodies, impact] : rows_)
+  for (const auto& [bodies, impact, course] : rows_)
     if (bodies.a != kGround && bodies.b != kGround) join(root, bodies.a, bodies.b);
   std::map<int, Island> by_root;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
@@ -122,6 +123,15 @@ struct SettleImpacts::Row {
     double sum = 0.0;
     if (a >= 0) sum += on_a.dot(v[static_cast<std::size_t>(a)]);
     if (b >= 0) sum += on_b.dot(v[static_cast<std::size_t>(b)]);
+    return sum;
+  }
+  /// Its velocity by a unit impulse along another row of the same bodies.
+  [[nodiscard]] double speed_by(const Row& other) const {
+    double sum = 0.0;
+    for (const auto& [place, x] : other.answer) {
+      if (place == a) sum += on_a.dot(x);
+      if (place == b) sum += on_b.dot(x);
+    }
     return sum;
   }
   void push(double p, std::vector<Vec6>& v) {
@@ -195,9 +205,7 @@ std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const
       if (a != kGround) impulses[a].setZero();
       if (b != kGround) impulses[b].setZero();
     }
-    for (const auto& [place, x] : row.answer)
-      row.mobility +=
-          (place == row.a ? row.on_a.dot(x) : 0.0) + (place == row.b ? row.on_b.dot(x) : 0.0);
+    row.mobility = row.speed_by(row);
   };
   for (int k : island.rows) {
     const Impact& impact = rows_[k].impact;
@@ -224,21 +232,25 @@ Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
 
 }  // namespace
 
+/// Nearer to the impulses of friction that end a slip, as far as the cone allows: a step by the
+/// larger mobility of the two tangents. @eq{impact-friction}
+double SettleImpacts::rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const {
+  const Impact& impact = rows_[along.impact].impact;
+  const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
+      rubbed(impact.along.dot(impact.rubbed), impact.across.dot(impact.rubbed)),
+      before(along.impulse, across.impulse),
+      after = in_cone(rubbed + before - slip / std::max(along.mobility, across.mobility),
+                      impact.mu * normal, impact.mu_across * normal) -
+              rubbed;
+  along.push(after.x() - before.x(), v);
+  across.push(after.y() - before.y(), v);
+  return (after - before).lpNorm<Eigen::Infinity>();
+}
+
 /// Projected Gauss-Seidel over all impulses of an island: normals go to the speeds they want, as
 /// far as they take back no more than the step gave, friction ends the slip as far as its cone
-/// allows. Impulses that would give energy are scaled back to where they do not.
-/// @eq{turn-law} @eq{impact-friction}
-void SettleImpacts::settle(State& state, const Island& island) {
-  std::vector<Vec6> v;
-  for (int body : island.bodies) v.push_back(velocity(state, body));
-  const std::vector<Vec6> start = v;
-  std::vector<Row> rows = rows_of(state, island);
-  double most = 0.0;
-  for (Row& row : rows) {
-    row.before = row.speed(v);
-    most = std::max(most, row.mobility);
-  }
-  if (!(most > 0.0)) return;
+/// allows. @eq{impact-friction}
+void SettleImpacts::sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const {
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -255,21 +267,73 @@ void SettleImpacts::settle(State& state, const Island& island) {
       if (i + 1 == rows.size() || !rows[i + 1].rubs) continue;
       Row &along = rows[i + 1], &across = rows[i + 2];
       i += 2;
-      const double mobility = along.mobility + across.mobility;
-      if (!(mobility > kHeld * most)) continue;
-      // The tangents' own block decouples in few sweeps where its mean is used.
-      const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
-          rubbed(impact.along.dot(impact.rubbed), impact.across.dot(impact.rubbed)),
-          before(along.impulse, across.impulse),
-          after = in_cone(rubbed + before - slip / std::max(along.mobility, across.mobility),
-                          impact.mu * normal, impact.mu_across * normal) -
-                  rubbed;
-      along.push(after.x() - before.x(), v);
-      across.push(after.y() - before.y(), v);
-      change = std::max(change, (after - before).lpNorm<Eigen::Infinity>());
+      if (!(along.mobility + across.mobility > kHeld * most)) continue;
+      change = std::max(change, rub(along, across, normal, v));
     }
     if (!(change > kConverged * largest)) break;
   }
+}
+
+/// An impact that shares its bodies with no other one, along Routh's course from the energy that it
+/// stored at t_n to the one at t_{n+1}. Without restitution a step takes energy itself: friction
+/// alone then acts until the normal velocity turns. @eq{routh}
+void SettleImpacts::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+  const auto& [bodies, impact, course] = rows_[rows.front().impact];
+  if (!course->turns && course->restitution == 0.0) {
+    if (!(rows[1].mobility + rows[2].mobility > kHeld * rows[0].mobility)) return;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep)
+      if (!(rub(rows[1], rows[2], impact.given, v) > kConverged * impact.given)) return;
+    return;
+  }
+  SingleImpact single;
+  single.mu = impact.mu;
+  single.mu_across = impact.mu_across;
+  single.restitution = course->restitution;
+  Vec3 now;
+  for (int i = 0; i < 3; ++i) {
+    now[i] = rows[i].speed(v);
+    for (int j = 0; j < 3; ++j) single.mobility(i, j) = rows[i].speed_by(rows[j]);
+  }
+  const Mat3& K = single.mobility;
+  if (!(K(0, 0) > 0.0)) return;
+  single.velocity = now - impact.given * K.col(0);
+  if (single.restitution > 0.0) {
+    // A step without friction changes the normal velocity by what is stored and by the fall.
+    const double square =
+        now[0] * now[0] + course->fallen + 2.0 * K(0, 0) * (course->stored_n1 - course->stored_n);
+    single.velocity[0] = std::copysign(std::sqrt(std::max(0.0, square)), single.velocity[0]);
+    single.stored = course->stored_n;
+    if (course->turns)
+      single.kept = single.restitution * single.restitution * course->stored_n1;
+    else
+      single.until = course->stored_n1;
+  }
+  const SingleImpactEnd end = end_of(single);
+  const double square = end.velocity[0] * end.velocity[0] - course->fallen;
+  const double wanted = std::copysign(std::sqrt(std::max(0.0, square)), end.velocity[0]);
+  const Vec3 friction(0.0, end.impulse[1], end.impulse[2]);
+  const double normal = (wanted - now[0] - K.row(0).dot(friction)) / K(0, 0);
+  rows[0].push(std::max(normal, -impact.given), v);
+  rows[1].push(friction[1], v);
+  rows[2].push(friction[2], v);
+}
+
+/// Impulses that would give energy are scaled back to where they do not. @eq{turn-law}
+void SettleImpacts::settle(State& state, const Island& island) {
+  std::vector<Vec6> v;
+  for (int body : island.bodies) v.push_back(velocity(state, body));
+  const std::vector<Vec6> start = v;
+  std::vector<Row> rows = rows_of(state, island);
+  double most = 0.0;
+  for (Row& row : rows) {
+    row.before = row.speed(v);
+    most = std::max(most, row.mobility);
+  }
+  if (!(most > 0.0)) return;
+  if (island.rows.size() == 1 && rows.size() == 3 && rows_[island.rows.front()].course)
+    follow(rows, v);
+  else
+    sweep(rows, most, v);
   // ΔT = Σ p (J v before + J v after)/2: along the jump a parabola.
   double first = 0.0, second = 0.0;
   for (const Row& row : rows) {

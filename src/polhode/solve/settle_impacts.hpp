@@ -12,7 +12,7 @@ namespace polhode {
 /// Makes velocities jump at the end of a step in impacts, of contacts and of the stops of joints:
 /// by impulses along their normals and friction across, from bodies that are as heavy as the solids
 /// they hold make them, while G v = 0. They only take energy.
-/// @eq{turn-law} @eq{impact-friction} @eq{joint-stop-exit}
+/// @eq{turn-law} @eq{impact-friction} @eq{routh} @eq{joint-stop-exit}
 class SettleImpacts {
  public:
   explicit SettleImpacts(const System& system);
@@ -39,6 +39,9 @@ class SettleImpacts {
   /// Rows of an island: one for each normal, two more for each that rubs.
   [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
   void settle(State& state, const Island& island);
+  double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
+  void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
+  void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
   /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
   ///          tell [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);

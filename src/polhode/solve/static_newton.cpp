@@ -20,17 +20,10 @@ constexpr double kFloor = 16.0;
 constexpr double kRotationCap = 1.9;
 /// An increment above this, in sizes of the model, is no Newton iteration any more.
 constexpr double kDiverged = 1e6;
-/// Up to this asymmetry a matrix counts as symmetric: what is neglected slows nothing down.
-constexpr double kSymmetric = 1e-7;
-/// Added to stiffnesses where a motion meets none, as part of the largest.
-constexpr double kShift = 1e-6;
-/// A solution that grows to this, out of a right-hand side of size one, tells of a free motion.
-constexpr double kNearlySingular = 1e10;
 /// An iterate that turns elements inside out is gone back from this often, half the way each time.
 constexpr int kHalvings = 8;
 /// Increments below this that do not fall any more are rounding if the residual is.
 constexpr double kClose = 1e-5;
-constexpr int kMostFreeMotions = 6;
 /// Residual of a constraint that counts as satisfied [m or -].
 constexpr double kAssembled = 1e-13;
 
@@ -107,6 +100,7 @@ ElementReport StaticNewton::assemble() {
   const double s = scale();
   matrix_.place(trial_);
   matrix_.set(newton_.values(), nodes_.tangent(), nodes_.residual().data(), s);
+  matrix_.hold_point_masses(system_->length_scale() * system_->length_scale());
 
   const int bodies = 6 * system_->body_count(), n = matrix_.movable();
   rhs_.setZero();
@@ -204,66 +198,6 @@ void StaticNewton::aim(std::vector<double>& du) const {
   }
 }
 
-bool StaticNewton::factor_and_solve(StaticStep& step) {
-  // Prescribed components move as they must: K_fp Δu_p goes to the other side.
-  const Nodes& nodes = system_->nodes();
-  aim(given_);
-  if (!nodes.prescribed().empty()) {
-    forces_.assign(given_.size(), 0.0);
-    for (int i = 0; i < nodes.count(); ++i)
-      for (int k = nodes.row_start()[i]; k < nodes.row_start()[i + 1]; ++k) {
-        const double* d = given_.data() + 3 * nodes.column()[k];
-        if (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0) continue;
-        const double* K = nodes_.tangent().data() + 9 * static_cast<std::size_t>(k);
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) forces_[3 * i + r] += K[3 * r + c] * d[c];
-      }
-    matrix_.gather(forces_, -scale(), rhs_);
-  }
-  const bool symmetric = make_symmetric();
-  if (!solver_.factor(matrix_, symmetric) || nearly_singular()) {
-    name_free_motions(step);
-    std::vector<double> shift(matrix_.movable(), kShift);
-    const double l2 = system_->length_scale() * system_->length_scale();
-    for (int b = 0; b < system_->body_count(); ++b)
-      for (int k = 3; k < 6; ++k) shift[6 * b + k] *= l2;
-    if (!solver_.factor(matrix_, symmetric, shift)) return false;
-  }
-  x_ = rhs_;
-  solver_.solve(x_);
-  return x_.allFinite();
-}
-
-/// Off equilibrium the matrix of a system with a potential is symmetric with the unbalanced
-/// moments' part only. @eq{statics-hessian}
-bool StaticNewton::make_symmetric() {
-  if (matrix_.asymmetry() < kSymmetric) return true;
-  matrix_.make_hessian(moments_);
-  if (matrix_.asymmetry() < kSymmetric) return true;
-  for (Vec6& m : moments_) m = -m;
-  matrix_.make_hessian(moments_);
-  for (Vec6& m : moments_) m = -m;
-  return false;
-}
-
-/// After a factorisation: does a solution grow beyond all bounds?
-bool StaticNewton::nearly_singular() const {
-  Vec probe = Vec::Zero(matrix_.size());
-  for (int i = 0; i < matrix_.movable(); ++i) probe[i] = std::sin(1.0 + 3.7 * i);
-  if (probe.size() == 0) return false;
-  solver_.solve(probe);
-  return !(probe.lpNorm<Eigen::Infinity>() < kNearlySingular);
-}
-
-void StaticNewton::name_free_motions(StaticStep& step) {
-  for (const Vec& motion : free_motions(matrix_, system_->length_scale(), kMostFreeMotions)) {
-    const std::string text = describe_motion(*system_, matrix_, motion);
-    if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
-        step.free_motions.end())
-      step.free_motions.push_back(text);
-  }
-}
-
 /// Moves work_ by part of x_; stresses are extrapolated by the whole of it. @returns the largest
 /// scaled increment of the whole.
 double StaticNewton::apply(double part, StaticStep& step) {
@@ -336,6 +270,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   work_ = start ? *start : state;
   x_before_.clear();
   kinks_.clear();
+  resisted_ = shifted_ = false;
   start_scratch(work_);
   choose_scale();
   const auto fail = [&](std::string reason) {
@@ -369,7 +304,8 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     if (balance != Balance::off && arrived) {
       if (n == 0) break;
       const double e = step.increments[n - 1];
-      const double rate = std::min(n > 1 ? e / step.increments[n - 2] : e, 0.99);
+      // With a shift in the matrix a rate near one is the rate indeed.
+      const double rate = std::min(n > 1 ? e / step.increments[n - 2] : e, shifted_ ? 1.0 : 0.99);
       if (e <= options_.tolerance || e * rate <= options_.tolerance * (1.0 - rate)) break;
       if (balance == Balance::rounded && e < kClose) break;  // nothing gets any better
     }
@@ -393,20 +329,20 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   }
   if (const std::string refusal = refused(step); !refusal.empty()) return fail(refusal);
   step.converged = true;
-  count_unstable(step);
   commit(state, load_factor);
+  count_unstable(step);
   return step;
 }
 
-/// Free motions that are left at the equilibrium, and directions in which it is unstable.
-void StaticNewton::count_unstable(StaticStep& step) {
-  step.free_motions.clear();
-  if (matrix_.size() == 0) return;
-  const bool symmetric = make_symmetric();
-  if (!solver_.factor(matrix_, symmetric) || nearly_singular())
-    name_free_motions(step);
-  else if (symmetric)
-    step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
+/// Residual and tangent at work_ with the stresses that are there, whatever Newton's iterations
+/// went by.
+void StaticNewton::assemble_unmixed() {
+  const bool mixed = mixed_;
+  mixed_ = false;
+  nodes_.set_static(true, false);
+  assemble();
+  mixed_ = mixed;
+  nodes_.set_static(true, mixed_);
 }
 
 /// Configurations that interactions do not accept: mirror images, beams bent too far.
@@ -450,12 +386,7 @@ void StaticNewton::assemble_at(const State& state, double load_factor) {
   work_ = state;
   start_scratch(work_);
   choose_scale();
-  const bool mixed = mixed_;
-  mixed_ = false;
-  nodes_.set_static(true, false);
-  assemble();
-  mixed_ = mixed;
-  nodes_.set_static(true, mixed_);
+  assemble_unmixed();
   matrix_.make_hessian(moments_);
 }
 

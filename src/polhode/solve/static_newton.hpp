@@ -34,6 +34,12 @@ struct StaticStep {
   std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
 };
 
+/// The motion that meets the least stiffness at an equilibrium.
+struct SoftestMotion {
+  double stiffness = 0.0;  ///< xᵀKx/xᵀx; negative where the equilibrium is unstable [N/m].
+  std::string text;        ///< "'leg' moves freely, most at node 4"; empty: not found.
+};
+
 /// Newton's method for the equilibrium of bodies, joints, springs, beams and solids: one matrix of
 /// all unknowns, no inertia, no velocities. Rotations are composed iteration by iteration, so that
 /// a load step may turn bodies by any angle. Derivation: docs/theory/statics_and_modes.md.
@@ -55,6 +61,8 @@ class StaticNewton {
   /// Part of the unbalanced forces at the last assembly: largest, and the largest force [N].
   void measure(StaticStep& step) const;
   [[nodiscard]] bool has_mixed_points() const { return mixed_; }
+  /// At the equilibrium found last.
+  [[nodiscard]] SoftestMotion softest();
 
  private:
   enum class Balance { off, within, rounded };  ///< Within the tolerance, or at rounding.
@@ -65,9 +73,12 @@ class StaticNewton {
   [[nodiscard]] Balance balanced(StaticStep& step) const;
   [[nodiscard]] bool balanced_on_a_kink(StaticStep& step);
   [[nodiscard]] bool factor_and_solve(StaticStep& step);
+  [[nodiscard]] bool factor(bool symmetric, StaticStep& step);
+  void solve_refined();
   [[nodiscard]] bool make_symmetric();
   [[nodiscard]] bool nearly_singular() const;
-  void name_free_motions(StaticStep& step);
+  std::vector<Vec> name_free_motions(StaticStep& step);
+  void assemble_unmixed();
   void aim(std::vector<double>& du) const;
   void look_for_meetings();
   [[nodiscard]] double free_part(const State& at, const double* from, const double* to) const;
@@ -101,6 +112,8 @@ class StaticNewton {
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
   KinkMixture kinks_;             ///< Residuals of the iterates that hardly move any more.
   double force_ = 0.0;            ///< Largest force of the last assembly [N].
+  bool resisted_ = false;         ///< Ill-conditioned in this search, but without free motions.
+  bool shifted_ = false;          ///< The last factorisation is not that of the tangent itself.
   std::vector<int> turns_;        ///< Interactions whose history counts turns.
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
@@ -18,6 +19,9 @@ constexpr int kEasy = 6, kHard = 12;
 constexpr double kCut = 0.25, kLeastIncrement = 1e-4;
 /// Load factors closer than this are the same.
 constexpr double kSame = 1e-12;
+/// Loads at which stability changes are found to this part of themselves, in so many searches.
+constexpr double kLocated = 1e-6;
+constexpr int kLocations = 40;
 /// Interactions of this kind are loads whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
 
@@ -75,6 +79,41 @@ struct LoadStepper::Impl {
     report.steps.push_back(std::move(step));
   }
 
+  /// Where the stability changes between two equilibria: by bisection, and by the stiffness that
+  /// vanishes there, on a straight line between the loads.
+  LimitPoint locate(State below, double low, const State& above, double high, int after) {
+    LimitPoint point{high, after, {}};
+    const int first = unstable;
+    SoftestMotion soft = newton.softest();
+    point.motion = soft.text;
+    double at_high = -std::abs(soft.stiffness), at_low = std::numeric_limits<double>::quiet_NaN();
+    State trial = above;
+    for (int i = 0; i < kLocations && high - low > kLocated * high; ++i) {
+      double part = at_low / (at_low - at_high);
+      if (!(part > 0.02 && part < 0.98) || i % 3 == 2) part = 0.5;
+      const double factor = low + part * (high - low);
+      trial = below;
+      const StaticStep step = newton.solve(trial, factor);
+      report.iterations += step.iterations;
+      if (!step.converged || step.unstable < 0) break;
+      soft = newton.softest();
+      if (step.unstable == first) {
+        low = factor;
+        below = trial;
+        at_low = std::abs(soft.stiffness);
+      } else {
+        high = factor;
+        at_high = -std::abs(soft.stiffness);
+        point.unstable = after;
+      }
+      if (!soft.text.empty()) point.motion = soft.text;
+    }
+    point.load_factor = 0.5 * (low + high);
+    // The matrices of the equilibrium that was reached, for those who ask for them.
+    newton.assemble_at(above, above.t);
+    return point;
+  }
+
   bool advance(State& state, double limit) {
     const double from = state.t;
     for (;;) {
@@ -91,9 +130,18 @@ struct LoadStepper::Impl {
       if (!predict || !step.converged) step = newton.solve(state, factor);
       take(step);
       if (step.converged) {
-        if (equilibria > 0 && unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
-          report.limit_points.push_back(factor);
-        unstable = step.unstable;
+        if (equilibria == 0 && step.unstable > 0) {  // stable where nothing is loaded?
+          State unloaded = old;
+          const StaticStep none = newton.solve(unloaded, from);
+          report.iterations += none.iterations;
+          if (none.converged) {
+            unstable = none.unstable;
+            old = unloaded;
+          }
+        }
+        if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
+          report.limit_points.push_back(locate(old, from, state, factor, step.unstable));
+        if (step.unstable >= 0) unstable = step.unstable;
         before = std::move(old);
         factor_before = from;
         ++equilibria;
@@ -106,11 +154,20 @@ struct LoadStepper::Impl {
         return true;
       }
       increment = kCut * (factor - from);
-      if (increment < kLeastIncrement) return explain(step), false;
+      if (increment < kLeastIncrement) {
+        std::string soft;
+        if (equilibria > 0) {
+          newton.assemble_at(state, from);
+          soft = newton.softest().text;
+        }
+        explain(step, soft);
+        return false;
+      }
     }
   }
 
-  void explain(const StaticStep& step) {
+  /// @param soft  The motion that meets the least stiffness at the last equilibrium.
+  void explain(const StaticStep& step, const std::string& soft) {
     std::string& s = report.message;
     s = format("No equilibrium was found beyond load factor {:.6g}: {}", report.load_factor,
                step.reason);
@@ -124,8 +181,9 @@ struct LoadStepper::Impl {
         s += (i > 0 ? "; " : "") + step.free_motions[i];
       s += ": hold it by a joint or a spring.";
     } else if (equilibria > 0) {
-      s += " It may be a limit point, where the model buckles: look at the last equilibrium, or "
-           "follow the motion with type: dynamics.";
+      s += " It may be a limit point, where the model buckles";
+      if (!soft.empty()) s += format("; least stiffness is met where {}", soft);
+      s += ": look at the last equilibrium, or follow the motion with type: dynamics.";
     } else {
       s += " Try load_steps, or check that the model is held.";
     }

@@ -10,6 +10,13 @@
 
 namespace polhode {
 
+/// A load at which the stability of the equilibrium changes: a limit point or a branch.
+struct LimitPoint {
+  double load_factor = 0.0;
+  int unstable = -1;   ///< Directions in which equilibria beyond it are unstable.
+  std::string motion;  ///< That meets no stiffness there, in words.
+};
+
 /// How a static analysis went.
 struct StaticReport {
   bool converged = false;              ///< The full load is carried.
@@ -19,7 +26,7 @@ struct StaticReport {
   double residual = 0.0, force = 0.0;  ///< Largest unbalanced and largest force at the end [N].
   int unstable = -1;  ///< Directions in which the equilibrium is unstable; −1: not known.
   std::vector<std::string> free_motions;  ///< That nothing in the model resists.
-  std::vector<double> limit_points;       ///< Load factors before which stability changed.
+  std::vector<LimitPoint> limit_points;   ///< That were passed, by load factor.
   std::string message;                    ///< If not converged: what happened, where, what to try.
 };
 

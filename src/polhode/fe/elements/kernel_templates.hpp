@@ -178,12 +178,13 @@ void element_work(const ElementData& data, const ElementStep& step, double* stor
 }
 
 template <class P, int kKind>
-void sample_elements(const ElementData& data, const ElementStep& step, double* samples) {
+void sample_elements(const ElementData& data, const ElementStep& step, double* samples,
+                     double* nodal) {
   using B = Block<P, kKind>;
   constexpr bool kMean = B::kSizes.mean_dilatation;
   for (int n = 0; n < data.blocks; ++n) {
     const B block(data, step, n, false);
-    P sum[kSampleSize]{};
+    P sum[kSampleSize]{}, at_nodes[kNodalSize * B::kSizes.nodes]{};
     P p{}, slope{}, U{};
     if constexpr (kMean) {
       const P tau = mean_dilatation(block);
@@ -206,19 +207,30 @@ void sample_elements(const ElementData& data, const ElementStep& step, double* s
       }
       times_symmetric(F, S, A);
       constexpr int kRow[6] = {0, 1, 2, 0, 1, 2}, kColumn[6] = {0, 1, 2, 1, 2, 0};
+      P point[kNodalSize];
       for (int k = 0; k < 6; ++k) {
         const P* a = A + 3 * kRow[k];
         const P* f = F + 3 * kColumn[k];
-        sum[k] += w * (a[0] * f[0] + a[1] * f[1] + a[2] * f[2]) / J;
+        point[k] = (a[0] * f[0] + a[1] * f[1] + a[2] * f[2]) / J;
+        sum[k] += w * point[k];
         sum[6 + k] += w * ((k < 3 ? 1.0 : 0.0) + 2.0 * E[k]);
       }
-      sum[12] += w * (energy_density<P>(data, block.fibre, !kMean, E) + U);
+      point[6] = energy_density<P>(data, block.fibre, !kMean, E) + U;
+      sum[12] += w * point[6];
       sum[13] += w;
+      if (!nodal) continue;
+      for (int a = 0; a < B::kSizes.nodes; ++a) {
+        const double share = data.to_nodes[a * B::kSizes.points + q];
+        for (int k = 0; k < kNodalSize; ++k) at_nodes[kNodalSize * a + k] += share * point[k];
+      }
     }
     for (int l = 0; l < block.present; ++l) {
       double* to = samples + static_cast<long>(n * B::W + l) * kSampleSize;
       for (int k = 0; k < kSampleSize - 1; ++k) to[k] = sum[k][l] / sum[13][l];
       to[13] = sum[13][l];
+      constexpr int kAll = kNodalSize * B::kSizes.nodes;
+      for (int k = 0; nodal && k < kAll; ++k)
+        nodal[static_cast<long>(n * B::W + l) * kAll + k] = at_nodes[k][l];
     }
   }
 }

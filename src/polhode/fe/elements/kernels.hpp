@@ -12,11 +12,12 @@ namespace polhode {
 struct ElementData {
   int elements = 0;
   int blocks = 0;
-  const int* nodes = nullptr;       ///< n an element, with those that fill up.
-  const double* X = nullptr;        ///< Block: 3n packs, reference positions.
-  const double* points = nullptr;   ///< Block: by point, weight and 3 packs a row, see Rows.
-  const double* volumes = nullptr;  ///< Block: a pack.
-  const double* fibres = nullptr;   ///< Block: 3 packs; null without fibres.
+  const int* nodes = nullptr;        ///< n an element, with those that fill up.
+  const double* X = nullptr;         ///< Block: 3n packs, reference positions.
+  const double* points = nullptr;    ///< Block: by point, weight and 3 packs a row, see Rows.
+  const double* volumes = nullptr;   ///< Block: a pack.
+  const double* fibres = nullptr;    ///< Block: 3 packs; null without fibres.
+  const double* to_nodes = nullptr;  ///< n × points, from values at points to those at nodes.
   const void* law = nullptr;
   const void* fibre = nullptr;
   LawKernel law_kernel{};
@@ -48,6 +49,8 @@ struct ElementStep {
 
 /// Averages over an element: Cauchy stress and C (6 each), energy density, volume.
 inline constexpr int kSampleSize = 14;
+/// At each node of an element: Cauchy stress (6) and energy density.
+inline constexpr int kNodalSize = 7;
 
 /// What a kind of element computes.
 struct ElementKernel {
@@ -56,7 +59,8 @@ struct ElementKernel {
   double (*advance)(const ElementData&, const ElementStep&, const double* du);
   /// Energy at t_{n+1}, and power taken by viscosity.
   void (*work)(const ElementData&, const ElementStep&, double* stored, double* power);
-  void (*sample)(const ElementData&, const ElementStep&, double* samples);
+  /// @param nodal  n × kNodalSize an element, or null.
+  void (*sample)(const ElementData&, const ElementStep&, double* samples, double* nodal);
 };
 
 /// Sizes that kernels and the group agree on: rows of gradients at a point (nodes, then enhanced

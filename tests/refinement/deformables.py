@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Deformable solids and cables that touch from the start, or fall: nothing is thrown off, and what falls converges."""
+from case import FLOOR, Case, Known, Variant, fall, largest, model, rise
+
+G = 9.81
+STILL = "It stands still but for small vibrations."
+RUBBER = {"rubber": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1000, "viscosity": {"shear": 100}}}
+EDGE = 0.05
+
+
+def block(height, **more):
+    """A cube of 0.1 m, twice as wide as its elements."""
+    return {"mesh": {"block": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}, "position": [0, 0, height]}, "material": "rubber", **more}
+
+
+def solid_touches_at_start():
+    """Placed with gap 0. Its top sinks by at most twice ρ g L²/(2E), a bar's, whatever lies beside it."""
+    sinks = 1000 * G * 0.1**2 / 2e6
+    known = (Known("bottom rises [m]", rise("bottom", "z"), 0, 1e-6, below=True),
+             Known("top rises [m]", rise("top", "z"), 0, 1e-6, below=True),
+             Known("bottom sinks, of its band", lambda run: fall("bottom", "z")(run) / (1e-3 * EDGE), 0, 0.25, below=True),
+             Known("top sinks [m]", fall("top", "z"), 2 * sinks, 0.15 * 2 * sinks, below=True))
+    return Case("solid_touches_at_start", "A block of rubber on the floor: it is not thrown off, its top swings about ρ g L²/(2E) below its start.",
+                model("Rubber on the floor", FLOOR, contacts={}, materials=RUBBER, solids={"block": block(0.05)},
+                      probes={"bottom": {"solid": "block", "point": [0, 0, -0.05]}, "top": {"solid": "block", "point": [0, 0, 0.05]}}),
+                5e-3, 0.1, (Variant("", {}, known),), (1, 0.2, 0.02, 0.01), compare=False, because=STILL)
+
+
+def solids_touch_at_start():
+    """Two blocks as near to each other as a model may start."""
+    start = 0.7e-3 * EDGE
+    known = (Known("upper rises [m]", rise("upper", "z"), 0, 2e-6, below=True), Known("upper sinks [m]", fall("upper", "z"), 0, 4.5e-4, below=True))
+    return Case("solids_touch_at_start", "Two blocks of rubber on each other: the upper one is not thrown off.",
+                model("Rubber on rubber", FLOOR, contacts={}, materials=RUBBER, solids={"below": block(0.05), "above": block(0.15 + start)},
+                      probes={"upper": {"solid": "above", "point": [0, 0, 0.05]}}),
+                5e-3, 0.05, (Variant("", {}, known),), (1, 0.2, 0.04), compare=False, because=STILL)
+
+
+def cable_touches_at_start():
+    """A cable that lies on the floor, fastened to two light pegs."""
+    r = 5e-3
+    bodies = {**FLOOR}
+    for name, x in (("left", 0), ("right", 1)):
+        bodies[name] = {"mass": 1e-3, "inertia": [1e-8, 1e-8, 1e-8], "position": [x, 0, r], "shape": {"sphere": 2 * r}}
+    probes = {"rope": {"contact": ["rope", "floor"]}, "left": {"body": "left"}}
+    known = (Known("cable rises [m]", lambda run: max(run.probe("rope")["gap"]), 0, 1e-6, below=True), Known("cable sinks, of its radius", lambda run: -min(run.probe("rope")["gap"]) / r, 0, 1e-3, below=True),
+             Known("peg rises [m]", rise("left", "z"), 0, 1e-6, below=True))
+    return Case("cable_touches_at_start", "A rope on the floor between two pegs: neither is thrown off.",
+                model("Rope on the floor", bodies, contacts={}, probes=probes,
+                      cables={"rope": {"through": [["left"], ["right"]], "stiffness": 1e4, "mass_per_length": 0.1, "elements": 10, "contact": {"radius": r}}}),
+                5e-3, 0.1, (Variant("", {}, known),), (1, 0.2, 0.02, 0.002), compare=False, because=STILL)
+
+
+def solid_falls():
+    """A block of rubber falls flat from 20 mm and rebounds by its own elasticity."""
+    known = (Known("energy is kept but for what is said to be lost", lambda run: run.figures["energy_drift"] if "energy_drift" in run.figures else 0, 0, 1e-9),)
+    return Case("solid_falls", "A block of rubber falls flat and rebounds: converges with the step.",
+                model("Rubber falls", FLOOR, contacts={}, materials=RUBBER, solids={"block": block(0.07)},
+                      probes={"top": {"solid": "block", "point": [0, 0, 0.05]}, "middle": {"solid": "block", "point": [0, 0, 0]}}),
+                1e-3, 0.15, (Variant("", {}, known),), (1, 0.5, 0.2, 0.05), order=1, skip=("top.vz", "middle.vz"), because="Shorter steps take minutes.")
+
+
+CASES = [solid_touches_at_start(), solids_touch_at_start(), cable_touches_at_start(), solid_falls()]

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Flat is flat: bodies move over the triangles of a plane as over the plane, and swing in fine
+// troughs and bowls as in smooth ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "contact/scene.hpp"
+
+namespace polhode {
+namespace {
+
+using namespace contact;
+using namespace test;
+
+constexpr double kWidth = 0.6, kMargin = 0.35;
+
+/// Closed, with its upper side in z = 0; diagonals turn from cell to cell.
+TriangleSurface slab(double cell, double length) {
+  TriangleSurface s;
+  const int nx = static_cast<int>(std::ceil(length / cell)),
+            ny = static_cast<int>(std::ceil(kWidth / cell));
+  const auto id = [&](int level, int i, int j) { return (level * (ny + 1) + j) * (nx + 1) + i; };
+  for (const double z : {0.0, -0.5})
+    for (int j = 0; j <= ny; ++j)
+      for (int i = 0; i <= nx; ++i)
+        s.points.push_back({cell * (i - 0.5 * nx), cell * (j - 0.5 * ny), z});
+  const auto quad = [&](int a, int b, int c, int d, bool turned) {
+    if (turned) {
+      s.triangles.push_back({a, b, d});
+      s.triangles.push_back({b, c, d});
+    } else {
+      s.triangles.push_back({a, b, c});
+      s.triangles.push_back({a, c, d});
+    }
+  };
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const bool turned = (i + j) % 2 == 0;
+      quad(id(0, i, j), id(0, i + 1, j), id(0, i + 1, j + 1), id(0, i, j + 1), turned);
+      quad(id(1, i, j), id(1, i, j + 1), id(1, i + 1, j + 1), id(1, i + 1, j), turned);
+    }
+  for (int i = 0; i < nx; ++i) {
+    quad(id(1, i, 0), id(1, i + 1, 0), id(0, i + 1, 0), id(0, i, 0), false);
+    quad(id(1, i + 1, ny), id(1, i, ny), id(0, i, ny), id(0, i + 1, ny), false);
+  }
+  for (int j = 0; j < ny; ++j) {
+    quad(id(1, 0, j + 1), id(1, 0, j), id(0, 0, j), id(0, 0, j + 1), false);
+    quad(id(1, nx, j), id(1, nx, j + 1), id(0, nx, j + 1), id(0, nx, j), false);
+  }
+  return s;
+}
+
+std::vector<Shape> surfaces(double cell, double length) {
+  const int nx = static_cast<int>(length / cell) + 2, ny = static_cast<int>(kWidth / cell) + 2;
+  std::vector<Vec3> corners;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-0.5, 0.5})
+      for (const double z : {-0.5, 0.0}) corners.push_back({length * x, kWidth * y, z});
+  return {plane(),
+          height_field("field", nx, cell, std::vector<double>(static_cast<std::size_t>(nx * ny))),
+          mesh("mesh", slab(cell, length)), hull("hull", corners)};
+}
+
+enum class Moving { sliding_ball, sliding_box, sliding_capsule, falling_ball, falling_box };
+
+/// Moves one body over each of the surfaces. @returns the most by which position, velocity (over
+/// the speed, if above 1 m/s) and orientation at the end differ from those over the plane.
+double difference(double cell, double speed, double dt, double mu, Moving moving) {
+  const double time = std::min({0.2, 200.0 * dt, 0.8 / speed}), way = speed * time;
+  BodyMotion by_plane;
+  double most = 0.0;
+  int index = 0;
+  for (const Shape& surface : surfaces(cell, way + 2.0 * kMargin)) {
+    Scene s;
+    const bool falls = moving == Moving::falling_ball || moving == Moving::falling_box;
+    const Vec3 v = speed * Vec3(std::cos(0.03), std::sin(0.03), 0.0) - Vec3(0.0, 0.0, falls);
+    const BodyMotion start = at({0.0131 - 0.5 * way, 0.0072, falls ? 0.13 : 0.1}, v);
+    const Mat3 lies = (Mat3() << 0, 0, 1, 0, 1, 0, -1, 0, 0).finished();
+    const int body = moving == Moving::sliding_ball || moving == Moving::falling_ball
+                         ? s.add_ball("ball", 0.1, 1.0, start)
+                     : moving == Moving::sliding_capsule
+                         ? s.add("capsule", capsule("capsule", 0.2, 0.2, {Vec3::Zero(), lies}), 1.0,
+                                 {0.004, 0.01, 0.01}, start)
+                         : s.add_box("box", {0.3, 0.2, 0.2}, 1.0, start);
+    s.contacts->add_shape({kGround, "ground", surface});
+    // By default the depth in which bodies rest goes by the size of triangles.
+    s.law(mu, falls ? 0.5 : 0.0, 4e-6);
+    s.begin(dt);
+    if (!s.run(time)) return std::numeric_limits<double>::infinity();
+    const BodyMotion end = s.motion(body);
+    if (index++ == 0) by_plane = end;
+    most = std::max({most, (end.r - by_plane.r).norm(),
+                     (end.v - by_plane.v).norm() / std::max(1.0, speed),
+                     (end.q.coeffs() - by_plane.q.coeffs()).norm()});
+  }
+  return most;
+}
+
+/// @tests{contact-one-gap}
+TEST(FlatSurfaces, AreThePlaneAtAnyCellSizeSpeedAndStep) {
+  for (const double cell : {0.005, 0.02, 0.2})
+    for (const double speed : {0.1, 2.0, 20.0})
+      for (const double dt : {5e-3, 1e-3, 1e-4})
+        for (const double mu : {0.0, 0.3})
+          for (const Moving moving :
+               {Moving::sliding_ball, Moving::sliding_box, Moving::sliding_capsule,
+                Moving::falling_ball, Moving::falling_box})
+            EXPECT_LT(difference(cell, speed, dt, mu, moving), 1e-6)
+                << "cell " << cell << " speed " << speed << " step " << dt << " mu " << mu
+                << " moving " << static_cast<int>(moving);
+}
+
+struct Swing {
+  bool bowl;
+  double cell, dt;
+};
+
+class SwingOnTriangles : public testing::TestWithParam<Swing> {};
+
+/// Each edge of a valley takes the speed across the next face, δ v for the angle δ, and leaves the
+/// rest: of a swing with the amplitude A that is A δ of the amplitude, here 1e-3.
+/// @tests{contact-one-gap}
+TEST_P(SwingOnTriangles, KeepsItsAmplitudeOverTenSwings) {
+  const auto [bowl, cell, dt] = GetParam();
+  const double R = 1.0, rho = 0.05, A = 0.2, direction = bowl ? 0.4 : 0.0;
+  const double period = 2.0 * std::numbers::pi * std::sqrt((R - rho) / 9.81) * (1.0 + A * A / 16.0);
+  const auto count = [&](double length) { return 2 * static_cast<int>(0.5 * length / cell) + 1; };
+  const int nx = count(2.0 * (A + 0.1)), ny = bowl ? nx : count(0.1);
+  std::vector<double> z;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double x = cell * (i - 0.5 * (nx - 1)), y = bowl ? cell * (j - 0.5 * (ny - 1)) : 0.0;
+      z.push_back(R - std::sqrt(R * R - x * x - y * y));
+    }
+  Scene s;
+  const Vec3 along(std::cos(direction), std::sin(direction), 0.0);
+  const double reach = (R - rho) * std::sin(A);
+  const int ball = s.add_ball(
+      "ball", rho, 1.0, at(reach * along + Vec3(0.0, 0.0013, R - (R - rho) * std::cos(A) + 1e-6)));
+  s.contacts->add_shape({kGround, "ground", height_field("ground", nx, cell, z)});
+  s.law(0.0, 0.0);
+  s.begin(dt);
+  ASSERT_TRUE(s.run(std::floor(9.75 * period / dt) * dt)) << s.last.text();
+  double late = 0.0;
+  for (double t = 0.0; t < period; t += dt) {
+    ASSERT_TRUE(s.step()) << s.last.text();
+    late = std::max(late, s.motion(ball).r.head<2>().norm());
+  }
+  EXPECT_NEAR(late / reach, 1.0, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, SwingOnTriangles,
+                         testing::Values(Swing{false, 0.005, 5e-3}, Swing{false, 0.005, 1e-3},
+                                         Swing{false, 0.005, 1e-4}, Swing{true, 0.005, 5e-3},
+                                         Swing{true, 0.005, 1e-3}, Swing{true, 0.005, 1e-4}),
+                         [](const auto& given) {
+                           return std::string(given.param.bowl ? "bowl" : "trough") + "_at_" +
+                                  std::to_string(std::lround(1e6 * given.param.dt)) + "_us";
+                         });
+
+}  // namespace
+}  // namespace polhode

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loads at which slender beams buckle, by statics: located, named, and the same for any mesh.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <polhode/io/read_model.hpp>
+#include <polhode/model/simulation.hpp>
+
+namespace polhode {
+namespace {
+
+StaticReport statics_of(const std::string& text, const Overrides& overrides) {
+  Simulation s(read_model_text(text, "beam.yaml", overrides));
+  const RunSummary r = s.run();
+  EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+  return *r.statics;
+}
+
+// Argyris et al., Comput. Methods Appl. Mech. Engrg. 20 (1979): legs of 240 mm, 30 mm by 0.6 mm,
+// torsion constant b t³/3; Simo and Vu-Quoc (1986) give 1.088 N.
+constexpr const char* kFrame = R"(
+format: 1
+variables: {L: 0.24, n: 10}
+materials: {strip: {type: elastic, youngs_modulus: 71.24 GPa, poisson_ratio: 0.31, density: 2700}}
+sections:
+  strip: {type: rectangle, height: 0.03, width: 0.0006, material: strip, torsion_factor: 1.012763}
+beams:
+  leg: {points: [[0, 0, 0], [L, 0, 0], [L, -L, 0]], elements: 2*n, section: strip, up: [1, 1, 0], bonded: {ground: start}}
+loads: {pull: {type: force, body: leg.end, force: [1.2, 0, 0]}}
+analysis: {type: statics}
+output: {hdf5: false}
+)";
+
+// @tests{statics-supports}
+TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadWhateverTheMesh) {
+  for (const int n : {5, 10, 20, 40, 80, 200}) {
+    const StaticReport r = statics_of(kFrame, {{"variables.n", std::to_string(n)}});
+    EXPECT_EQ(r.unstable, 1) << n;
+    ASSERT_EQ(r.limit_points.size(), 1u) << n;
+    EXPECT_NEAR(1.2 * r.limit_points[0].load_factor, 1.08754, (n == 5 ? 2e-3 : 1e-3) * 1.08754)
+        << n;
+    EXPECT_EQ(r.limit_points[0].unstable, 1);
+    EXPECT_NE(r.limit_points[0].motion.find("moves along z"), std::string::npos)
+        << r.limit_points[0].motion;
+    EXPECT_TRUE(r.free_motions.empty());
+  }
+}
+
+constexpr const char* kColumn = R"(
+format: 1
+variables: {d: 0.01, part: 1.1, steps: 10, n: 20}
+materials: {steel: {type: elastic, youngs_modulus: 210 GPa, poisson_ratio: 0.3, density: 7800}}
+sections: {bar: {type: circle, diameter: d, material: steel}}
+beams:
+  bar: {points: [[0, 0, 0], [0, 0, 1]], elements: n, section: bar, up: x, bonded: {ground: start}}
+loads: {press: {type: force, body: bar.end, force: [0, 0, -part*pi^2/4 * 210e9*pi*d^4/64]}}
+analysis: {type: statics, load_steps: steps}
+output: {hdf5: false}
+)";
+
+/// π² E I/(4 L²): also on a load step, in a single step, and for slender wires.
+TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
+  struct Case {
+    const char *part, *steps, *d, *n;
+  };
+  for (const Case& c : {Case{"1.1", "10", "0.01", "20"}, Case{"1.0", "1", "0.01", "20"},
+                        Case{"1.1", "11", "0.01", "20"}, Case{"1.1", "1", "0.01", "20"},
+                        Case{"1.1", "10", "0.001", "50"}, Case{"1.1", "10", "0.0001", "50"},
+                        Case{"0.99", "10", "0.01", "20"}}) {
+    const StaticReport r = statics_of(kColumn, {{"variables.part", c.part},
+                                                {"variables.steps", c.steps},
+                                                {"variables.d", c.d},
+                                                {"variables.n", c.n}});
+    const double part = std::stod(c.part);
+    if (part < 1.0) {
+      EXPECT_EQ(r.unstable, 0);
+      EXPECT_TRUE(r.limit_points.empty());
+      continue;
+    }
+    EXPECT_EQ(r.unstable, 2) << c.part << ' ' << c.steps << ' ' << c.d;
+    ASSERT_EQ(r.limit_points.size(), 1u) << c.part << ' ' << c.steps << ' ' << c.d;
+    EXPECT_NEAR(r.limit_points[0].load_factor * part, 1.0, 1e-3) << c.d;
+  }
+}
+
+// K. Mattiasson, Int. J. Numer. Methods Engrg. 17 (1981) 145-153: P L²/(E I) = 1 and 10.
+constexpr const char* kElastica = R"(
+format: 1
+variables: {P: 1, stiff: 1e9}
+sections:
+  wire: {type: general, EA: stiff, GA_y: stiff, GA_z: stiff, GJ: 1, EI_y: 1, EI_z: 1, mass_per_length: 1, inertia_per_length: [1e-9, 1e-9, 1e-9]}
+beams:
+  wire: {points: [[0, 0, 0], [1, 0, 0]], elements: 40, section: wire, up: y, bonded: {ground: start}}
+loads: {pull: {type: force, body: wire.end, force: [0, P, 0]}}
+analysis: {type: statics}
+output: {hdf5: false}
+)";
+
+TEST(Stability, AnElasticaBendsAsKnownHoweverStiffAlongItself) {
+  for (const char* stiff : {"1e5", "1e7", "1e9"})
+    for (const auto& [P, u, w] : {std::tuple("1", 0.05643, 0.30172), {"10", 0.55500, 0.81061}}) {
+      Simulation s(read_model_text(kElastica, "beam.yaml",
+                                   {{"variables.P", P}, {"variables.stiff", stiff}}));
+      const RunSummary r = s.run();
+      ASSERT_EQ(r.end, RunEnd::finished) << stiff << ' ' << P << ' ' << r.message;
+      EXPECT_EQ(r.statics->unstable, 0);
+      const Vec3 tip = s.beam(0).position.back();
+      EXPECT_NEAR(1.0 - tip.x(), u, 5e-4) << stiff << ' ' << P;
+      EXPECT_NEAR(tip.y(), w, 5e-4) << stiff << ' ' << P;
+    }
+}
+
+}  // namespace
+}  // namespace polhode
