@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/model/solid_report.hpp>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace polhode {
@@ -30,6 +32,27 @@ TEST(NodalAverages, WeighElementsByTheirVolume) {
   EXPECT_DOUBLE_EQ(nodal.strain_energy_density[4], 0.0);
   EXPECT_DOUBLE_EQ(nodal.cauchy[2](0, 0), 2.0);
   EXPECT_NEAR(nodal.von_mises[2], 2.0, 1e-14);
+  // 6 of its own against 6, 2, 2, 2; 0 against 2, 2, 2, 0.
+  EXPECT_NEAR(nodal.stress_error[0], std::sqrt(3.0 * 16.0 / 4.0), 1e-14);
+  EXPECT_NEAR(nodal.stress_error[1], std::sqrt(3.0 * 4.0 / 4.0), 1e-14);
+}
+
+TEST(NodalAverages, TakeStressesThatElementsHaveAtTheirNodes) {
+  Mesh mesh;
+  mesh.nodes.assign(4, Vec3::Zero());
+  mesh.blocks = {{"tet4", {0, 1, 2, 3}}};
+  std::vector<ElementSample> elements(1);
+  elements[0].volume = 2.0;
+  for (int a = 0; a < 4; ++a) {
+    elements[0].cauchy_at_nodes.emplace_back(a * Mat3::Identity());
+    elements[0].energy_at_nodes.push_back(10.0 * a);
+  }
+  const NodalAverages nodal = nodal_averages(mesh, elements);
+  for (std::size_t a = 0; a < 4; ++a) {
+    EXPECT_DOUBLE_EQ(nodal.cauchy[a](1, 1), static_cast<double>(a));
+    EXPECT_DOUBLE_EQ(nodal.strain_energy_density[a], 10.0 * static_cast<double>(a));
+  }
+  EXPECT_DOUBLE_EQ(nodal.stress_error[0], 0.0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/io/read_model.hpp>
+#include <polhode/model/modal.hpp>
 #include <polhode/model/simulation.hpp>
 
 namespace polhode {
@@ -110,6 +111,27 @@ TEST(Stability, AnElasticaBendsAsKnownHoweverStiffAlongItself) {
       EXPECT_NEAR(1.0 - tip.x(), u, 5e-4) << stiff << ' ' << P;
       EXPECT_NEAR(tip.y(), w, 5e-4) << stiff << ' ' << P;
     }
+}
+
+// A taut string of point masses in two planes: k √(T/m)/(2 L), but for the length of its pieces.
+constexpr const char* kString = R"(
+format: 1
+cables:
+  string: {through: [[ground, [0, 0, 0]], [ground, [1, 0, 0]]], stiffness: 1e5, mass_per_length: 0.1, elements: 40, free_length: 0.999}
+analysis: {type: modes, count: 6, about: start}
+)";
+
+TEST(Stability, TheModesOfAStringBeginWithItsTone) {
+  const ModalAnalysis string(read_model_text(kString, "string.yaml"));
+  ASSERT_TRUE(string.converged()) << string.message();
+  const std::vector<Mode>& modes = string.report().modes;
+  ASSERT_EQ(modes.size(), 6u);
+  const double T = 1e5 * (1.0 / 0.999 - 1.0), mass = 0.1 * 0.999;
+  for (int k = 0; k < 6; ++k) {
+    const double tone = 0.5 * (1 + k / 2) * std::sqrt(T / mass);
+    EXPECT_NEAR(modes[static_cast<std::size_t>(k)].frequency, tone, 5e-3 * tone) << k;
+    EXPECT_FALSE(modes[static_cast<std::size_t>(k)].rigid);
+  }
 }
 
 }  // namespace

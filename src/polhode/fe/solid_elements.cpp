@@ -168,10 +168,12 @@ class SolidGroup final : public SolidElements {
         instant, history,
         [&](int e, const double* v) {
           ElementSample& to = samples[e];
-          to = {.cauchy = symmetric(v),
-                .principal_stretches = stretches(v + 6),
-                .strain_energy_density = v[12],
-                .volume = v[13]};
+          to.cauchy = symmetric(v);
+          to.principal_stretches = stretches(v + 6);
+          to.strain_energy_density = v[12];
+          to.volume = v[13];
+          to.cauchy_at_nodes.clear();
+          to.energy_at_nodes.clear();
           for (int a = 0; a < n; ++a) {
             const double* at = nodal.data() + (static_cast<std::size_t>(e) * n + a) * kNodalSize;
             to.cauchy_at_nodes.push_back(symmetric(at));

@@ -189,7 +189,9 @@ Pairs dense_modes(Matrices& m) {
     exact.rightCols<1>() = Gt.col(r).normalized();
   }
   const std::vector<int> counted = m.counted();
-  Mat N = Mat::Identity(n, n)(Eigen::all, counted);
+  Mat N = Mat::Zero(n, static_cast<Eigen::Index>(counted.size()));
+  for (std::size_t k = 0; k < counted.size(); ++k)
+    N(counted[k], static_cast<Eigen::Index>(k)) = 1.0;
   if (exact.cols() > 0) {
     Eigen::ColPivHouseholderQR<Mat> qr(N.cols(), exact.cols());
     qr.setThreshold(kRedundant);
