@@ -190,8 +190,8 @@ Pairs dense_modes(Matrices& m) {
   }
   const std::vector<int> counted = m.counted();
   Mat N = Mat::Zero(n, static_cast<Eigen::Index>(counted.size()));
-  for (std::size_t k = 0; k < counted.size(); ++k)
-    N(counted[k], static_cast<Eigen::Index>(k)) = 1.0;
+  for (std::size_t i = 0; i < counted.size(); ++i)
+    N(counted[i], static_cast<Eigen::Index>(i)) = 1.0;
   if (exact.cols() > 0) {
     Eigen::ColPivHouseholderQR<Mat> qr(N.cols(), exact.cols());
     qr.setThreshold(kRedundant);
