@@ -38,10 +38,12 @@ TEST(Tube, IsRoundToBalls) {
     const Vec3 y = place.origin + place.axes * x;
     const Gap<double> g = gap({GapKind::point_solid, 0, 0, 1.0, Fade::none}, ball, tube,
                               Placement<double>(y, upright, 0), at_tube);
-    // Its edges are rounded off by one thousandth of the sides of the polygon.
-    EXPECT_NEAR(g.distance, distance_from(x) - 0.01, 5e-5) << x.transpose();
-    if (std::abs(x.z()) < kHalf - 1e-3)
+    // Before its edges, which are rounded off, the sharp ones lie nearer by √2 - 1 of the rounding.
+    EXPECT_NEAR(g.distance, distance_from(x) - 0.01, (std::sqrt(2.0) - 1.0) * tube.rounding + 1e-14)
+        << x.transpose();
+    if (std::abs(x.z()) < kHalf - 1e-3) {
       EXPECT_NEAR(g.distance, distance_from(x) - 0.01, 1e-14) << x.transpose();
+    }
   }
 }
 
@@ -63,8 +65,8 @@ TEST(Tube, IsRoundToTheEndsOfRodsWithinIt) {
       const Shape part = part_of(rod, which);
       double farthest = 0.0;
       for (int i = 0; i < 400; ++i)
-        for (int j = 0; j < 40; ++j) {
-          const double u = 2.0 * std::numbers::pi * i / 400, v = std::numbers::pi * j / 39;
+        for (int j = 0; j <= 40; ++j) {
+          const double u = 2.0 * std::numbers::pi * i / 400, v = std::numbers::pi * j / 40;
           const Vec3 on(std::cos(u) * std::sin(v), std::sin(u) * std::sin(v), std::cos(v));
           const Vec3 x = r + L * (part.centre + part.axes * part.half.cwiseProduct(on));
           farthest = std::max(farthest, std::hypot(x.x(), x.y()));

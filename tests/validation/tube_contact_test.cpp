@@ -28,6 +28,13 @@ struct Inside {
   double dt;
 };
 
+std::string name_of(const Inside& c) {
+  const char* const body = c.body == Rolling::ball      ? "ball"
+                           : c.body == Rolling::capsule ? "capsule"
+                                                        : "cylinder";
+  return std::string(body) + "_at_" + std::to_string(std::lround(1e6 * c.dt)) + "_us";
+}
+
 class RollingInATube : public testing::TestWithParam<Inside> {};
 
 /// Swings about the bottom with ω² = g/((1 + k)(R − ρ)), k = I/(m ρ²), on its own radius: the way
@@ -77,11 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Inside{Rolling::capsule, 1e-3}, Inside{Rolling::capsule, 1e-4},
                     Inside{Rolling::cylinder, 5e-3}, Inside{Rolling::cylinder, 1e-3},
                     Inside{Rolling::cylinder, 1e-4}),
-    [](const auto& given) {
-      static const char* const names[] = {"ball", "capsule", "cylinder"};
-      return std::string(names[static_cast<int>(given.param.body)]) + "_at_" +
-             std::to_string(std::lround(1e6 * given.param.dt)) + "_us";
-    });
+    [](const auto& given) { return name_of(given.param); });
 
 class TubeOnAPlane : public testing::TestWithParam<double> {};
 

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// Triangles around a tube, which touches as a mesh.
+/// Sides of a tube to what its round faces do not meet.
 inline constexpr int kTubeSegments = 48;
 
 /// A shape of the model file as contact knows it.
