@@ -2,6 +2,7 @@
 #include <polhode/contact/bristle.hpp>
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/plain_point.hpp>
+#include <polhode/contact/point_weight.hpp>
 
 namespace polhode::contact {
 
@@ -76,13 +77,16 @@ V3<T> average(const V3<double>& at_n, const V3<T>& at_n1, double weight) {
   return (1.0 - weight) * at_n + weight * at_n1;
 }
 
-/// Part of the potential that acts: the weight of the feature pair, faded.
+}  // namespace
+
 double weight_at(const PointData& data, const Placement<double>& at_a,
                  const Placement<double>& at_b) {
   if (data.pair.fade == Fade::none) return data.pair.weight;
   const FadeDirections<double> f = fade_directions(data.pair, *data.a, *data.b, at_a, at_b);
   return data.pair.weight * fading(data.pair.fade, dot(f.a, f.b));
 }
+
+namespace {
 
 double with_value(double, double v) { return v; }
 Dual with_value(Dual x, double v) {

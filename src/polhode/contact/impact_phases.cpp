@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/point_weight.hpp>
 
 namespace polhode::contact {
 
@@ -211,16 +212,15 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
     return {};
   if (!(p.report.normal_force > 0.0)) return {};
-  if (h.phase == ContactPhase::rest && !pressed(p)) return {};
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
   const auto motion = [&](int body) {
     return body == kGround ? BodyMotion{} : system_->motion(state, body);
   };
   const BodyMotion a = motion(r.bodies.a), b = motion(r.bodies.b);
-  const Gap<double> g =
-      gap(p.data.pair, *p.data.a, *p.data.b, Placement<double>(a.r, a.Lambda(), 0),
-          Placement<double>(b.r, b.Lambda(), 6));
+  const Mat3 Lambda_a = a.Lambda(), Lambda_b = b.Lambda();  // placements refer to them
+  const Placement<double> at_a(a.r, Lambda_a, 0), at_b(b.r, Lambda_b, 6);
+  const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
   const Vec3 n = value(g.normal);
   // What parted in the step is off by the gap: the lighter body gets its impulse where it touched.
   const auto mass = [&](int body) { return body == kGround ? 0.0 : 1.0 / carried_mass_[body]; };
@@ -247,55 +247,58 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
   };
+  // What fades out, as features that come to lie along each other, stores a part.
+  const double plain = h.closed ? p.data.normal.energy(h.gap) : 0.0;
+  const double weight = weight_at(p.data, at_a, at_b);
+  const double stored_n = p.data.normal.energy(p.report.gap_n);
   ImpactCourse course;
   course.turns = turns;
   course.restitution = h.phase == ContactPhase::restitution ? 1.0 : h.restitution;
   course.fallen = fallen(p, n);
-  course.stored_n = p.data.normal.energy(p.report.gap_n);
-  if (h.closed) course.stored_n1 = p.data.normal.energy(h.gap);
+  course.stored_n = weight * stored_n;
+  course.stored_n1 = weight * plain;
+  const auto release = [&] {
+    const double released = weight * (plain - p.data.normal.energy(h.gap));
+    work.stored -= released;
+    work.dissipated += released;
+    p.impact_loss += released;
+  };
   const bool lasts = h.phase == ContactPhase::landing || h.phase == ContactPhase::rest;
+  const bool barrier = p.data.normal.potential == NormalPotential::barrier;
   switch (h.phase) {
     case ContactPhase::landing:
-      if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
+    case ContactPhase::rest: {
+      const bool carries = pressed(p);
+      const bool lands =
+          h.phase == ContactPhase::landing && p.restitution < 1.0 && p.speed_n < 0.0 && speed > 0.0;
+      if (!carries && !lands) return {};
       impact.wanted = 0.0;  // the midpoint rule would throw it back
       impact.rubbed = step_length_ * p.report.friction_force;
+      // It carries an impulse as it comes, and gives nothing of it back.
+      if (carries && barrier && stored_n < plain) {
+        store_again(p, p.data.normal.stiffness, stored_n);
+        release();
+      }
       set_phase(p, ContactPhase::rest);
       break;
+    }
     case ContactPhase::compression:
       if (!turns) break;
       impact.wanted = exit_speed(p, n, speed);
       if (h.closed && h.restitution < 1.0) {
-        const double e = h.restitution, before = p.data.normal.energy(h.gap);
-        const bool barrier = p.data.normal.potential == NormalPotential::barrier;
+        const double e = h.restitution;
         if (barrier || p.open_stiffness) {
           keep_part(p, e * e);
         } else if (e > 0.0) {
           set_band(p, e * e * h.stiffness, h.reach, h.floor);
         }
-        const double released = before - p.data.normal.energy(h.gap);
-        work.stored -= released;
-        work.dissipated += released;
-        p.impact_loss += released;
+        release();
       }
       h.restitution > 0.0 ? set_phase(p, ContactPhase::restitution) : rests();
       break;
     case ContactPhase::restitution:
       if (!(speed > 0.0)) rests();
       break;
-    case ContactPhase::rest: {
-      // It carries the impulse as it comes, and gives nothing of it back.
-      impact.wanted = 0.0;
-      impact.rubbed = step_length_ * p.report.friction_force;
-      const double now = h.closed ? p.data.normal.energy(h.gap) : 0.0;
-      const double kept = std::min(now, p.data.normal.energy(p.report.gap_n));
-      if (!(kept < now) || p.data.normal.potential != NormalPotential::barrier) break;
-      store_again(p, p.data.normal.stiffness, kept);
-      const double released = now - p.data.normal.energy(h.gap);
-      work.stored -= released;
-      work.dissipated += released;
-      p.impact_loss += released;
-      break;
-    }
   }
   const FrictionLaw& f = p.data.friction;
   if (!(f.mu > 0.0)) return r;

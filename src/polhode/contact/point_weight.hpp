@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/contact/contact_point.hpp>
+
+namespace polhode::contact {
+
+/// Part of the potential of a point that acts where its shapes stand: the weight of the feature
+/// pair, less where its distance has no unique direction.
+[[nodiscard]] double weight_at(const PointData& data, const Placement<double>& at_a,
+                               const Placement<double>& at_b);
+
+}  // namespace polhode::contact
