@@ -108,7 +108,7 @@ TEST(NodalStress, OfATubeUnderPressureIsThatOfLame) {
                         std::abs(r.dot(s.nodal.cauchy[i] * r) - part * (1.0 - q))});
     }
     for (const double error : s.nodal.stress_error) estimate = std::max(estimate, error);
-    EXPECT_LT(worst, n == 2 ? 0.12e6 : 0.04e6) << n;  // of a largest stress of 1.67 MPa
+    EXPECT_LT(worst, n == 2 ? 0.15e6 : 0.05e6) << n;  // of a largest stress of 1.67 MPa
     EXPECT_GT(estimate, 0.1 * worst) << n;
     EXPECT_LT(estimate, 10.0 * worst) << n;
     if (n > 2) {
