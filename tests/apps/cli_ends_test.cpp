@@ -75,7 +75,8 @@ analysis: {type: statics}
 )");
   const auto result = run({"run", "slack.yaml"});
   EXPECT_EQ(result.code, 4) << result.err;
-  EXPECT_THAT(result.out + result.err, AllOf(HasSubstr("worst at body 'rope."), HasSubstr("held")));
+  EXPECT_THAT(result.out + result.err,
+              AllOf(HasSubstr("worst at body 'rope."), HasSubstr("hold it by a joint")));
 }
 
 TEST_F(CommandLine, PrintsAndWritesNaturalFrequencies) {

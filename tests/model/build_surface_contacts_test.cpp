@@ -103,8 +103,9 @@ TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
   EXPECT_EQ(plain.contact->size(), 25);
   const contact::NormalLaw& law = plain.contact->law().normal;
   EXPECT_NEAR(law.tolerance, 1e-4, 1e-12) << "1e-3 of an edge";
-  EXPECT_NEAR(law.stiffness, 1.5 * 0.02 * 1e6 / 2e-4, 1.0) << "2 % of Young's modulus at gap 0";
-  EXPECT_NEAR(law.force(0.0), 0.02 * 1e6, 1e-6);
+  EXPECT_NEAR(law.stiffness, 1.5 * 0.02 * 1e6 / 1e-4, 1.0) << "2 % of Young's modulus";
+  EXPECT_EQ(law.force(0.0), 0.0) << "what touches is not thrown off";
+  EXPECT_NEAR(law.force(-0.5e-4), 0.02 * 1e6, 1e-6) << "in the middle of the band";
   EXPECT_EQ(plain.contact->law().end_share, 0.5) << "restitution 0";
 
   const Built stated("contacts: {" + kAlone +
@@ -112,7 +113,7 @@ TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
                          "restitution: 1, friction: 0.3}}",
                      "");
   EXPECT_EQ(stated.contact->law().normal.tolerance, 1e-3);
-  EXPECT_NEAR(stated.contact->law().normal.force(0.0), 4e3, 1e-9);
+  EXPECT_NEAR(stated.contact->law().normal.force(-0.5e-3), 4e3, 1e-9);
   EXPECT_EQ(stated.contact->law().end_share, 0.0);
   EXPECT_EQ(stated.contact->law().mu, 0.3);
   // The whole boundary: 5 x 5 x 6 nodes less the 3 x 3 x 4 inside.

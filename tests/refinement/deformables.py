@@ -33,7 +33,8 @@ def solids_touch_at_start():
     return Case("solids_touch_at_start", "Two blocks of rubber on each other: the upper one is not thrown off.",
                 model("Rubber on rubber", FLOOR, contacts={}, materials=RUBBER, solids={"below": block(0.05), "above": block(0.15 + start)},
                       probes={"upper": {"solid": "above", "point": [0, 0, 0.05]}}),
-                5e-3, 0.05, (Variant("", {}, known),), (1, 0.2, 0.04), compare=False, because=STILL)
+                5e-3, 0.05, (Variant("", {}, known),), (1, 0.2, 0.04), compare=False, because=STILL,
+                open="The band between solids reaches one tolerance beyond their offset: the upper one rises by 0.09 mm at 5 ms, 1 mm at 0.1 ms.")
 
 
 def cable_touches_at_start():
@@ -48,7 +49,8 @@ def cable_touches_at_start():
     return Case("cable_touches_at_start", "A rope on the floor between two pegs: neither is thrown off.",
                 model("Rope on the floor", bodies, contacts={}, probes=probes,
                       cables={"rope": {"through": [["left"], ["right"]], "stiffness": 1e4, "mass_per_length": 0.1, "elements": 10, "contact": {"radius": r}}}),
-                5e-3, 0.1, (Variant("", {}, known),), (1, 0.2, 0.02, 0.002), compare=False, because=STILL)
+                5e-3, 0.1, (Variant("", {}, known),), (1, 0.2, 0.02, 0.002), compare=False, because=STILL,
+                open="The band of a cable reaches one tolerance beyond its surface: it rises by 0.7 mm at 5 to 0.1 ms, 6 mm at 0.01 ms.")
 
 
 def solid_falls():

@@ -177,7 +177,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] static double contact_time(const Point& p, double stiffness, double speed);
   [[nodiscard]] double impact_stiffness(const Point& p, double speed) const;
   void begin_phase(Point& p, double speed, double dt) const;
-  [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
+  [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, bool among_others,
+                                                    Work& work);
   struct Followed;
   [[nodiscard]] Gap<double> gap_along(const Point& p, const FeaturePair& pair,
                                       std::span<const BodyStep> steps,

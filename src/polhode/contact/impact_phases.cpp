@@ -207,7 +207,9 @@ double ContactSet::fallen(const Point& p, const Vec3& n) const {
 
 /// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
 /// are exact.
-std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
+/// @param among_others  Other points have impacts in the step, which lasting contact may carry.
+std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, bool among_others,
+                                                Work& work) {
   PointHistory& h = p.data.history;
   if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
     return {};
@@ -268,7 +270,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   switch (h.phase) {
     case ContactPhase::landing:
     case ContactPhase::rest: {
-      const bool carries = pressed(p);
+      const bool carries = among_others && pressed(p);
       const bool lands =
           h.phase == ContactPhase::landing && p.restitution < 1.0 && p.speed_n < 0.0 && speed > 0.0;
       if (!carries && !lands) return {};
@@ -320,15 +322,24 @@ Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
   settling_.clear();
   Work work;
   bool remembered = false;
-  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+  const auto take = [&](int i, bool among_others) {
     Point& p = points_[i];
     const ContactPhase before = p.data.history.phase;
-    const std::optional<PairImpact> impact = impact_of(p, state, work);
-    remembered = remembered || before != p.data.history.phase;
-    if (!impact) continue;
+    const double reach = p.data.history.reach;
+    const std::optional<PairImpact> impact = impact_of(p, state, among_others, work);
+    remembered = remembered || before != p.data.history.phase || reach != p.data.history.reach;
+    if (!impact) return;
     settling_.push_back(i);
     list.push_back(*impact);
+  };
+  std::vector<int> lasting;
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const ContactPhase phase = points_[i].data.history.phase;
+    const bool lasts = phase == ContactPhase::rest || phase == ContactPhase::landing;
+    lasts ? lasting.push_back(i) : take(i, false);
   }
+  const bool among_others = !settling_.empty();
+  for (const int i : lasting) take(i, among_others);
   if (remembered) save(state);
   return work;
 }

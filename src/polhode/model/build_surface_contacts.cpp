@@ -123,7 +123,7 @@ class SurfacesBuilder {
         b{cable_of(pair.side), line_of(pair.side)};
     const double radius = std::min(a.line.radius, b.line.radius);
     const SurfaceLaw law = law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)),
-                                  2.0 * radius, radius, Band::below);
+                                  2.0 * radius, radius, Band::about);
     const std::vector<Vec3> X = positions();
     const std::vector<int> carriers = this->carriers();
     std::vector<int> nodes = a.line.nodes;
@@ -147,7 +147,7 @@ class SurfacesBuilder {
     const CableLine& line = line_of(pair.own);
     const CableSizes sizes = cable_sizes(shape, line.radius);
     const SurfaceLaw law =
-        law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest, Band::below);
+        law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
     const std::string where = name_of(pair);
     const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
@@ -180,7 +180,7 @@ class SurfacesBuilder {
     if (surface.triangles.empty()) return;
     const SurfaceLaw law =
         law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)), 2.0 * line.radius,
-               kOnSolid / kTolerance * line.radius, Band::below);
+               kOnSolid / kTolerance * line.radius, Band::about);
     const std::vector<int> carriers = this->carriers();
     std::vector<int> moving = nodes_of({s});
     moving.insert(moving.end(), line.nodes.begin(), line.nodes.end());
@@ -254,8 +254,7 @@ class SurfacesBuilder {
     }
     if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
     const double least = std::min(edge[0], edge[1]);
-    SurfaceLaw law =
-        law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least, Band::about_offset);
+    SurfaceLaw law = law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least, Band::about);
     const std::vector<int> carriers = this->carriers();
     const auto& name = [&](int side) -> const std::string& {
       return model_.solids[static_cast<std::size_t>(solids[side])].name;
@@ -272,25 +271,11 @@ class SurfacesBuilder {
       for (MeshPoint& p : points) p.area *= 0.5;
       return std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start);
     };
-    double apart = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < (self ? 1 : 2); ++k)
-      for (const double d : contact(k)->gaps_at_start()) apart = std::fmin(apart, d);
-    const SurfaceLaw of_edges = law;
-    begin_band_at(law.normal, apart - law.normal.tolerance);
     for (int k = 0; k < (self ? 1 : 2); ++k) {
       const int group = system_.add_elements(contact(k));
       map_.surfaces.push_back({side_of_solid(solids[k]), side_of_solid(solids[1 - k]), 0, group});
     }
-    add_edges(pair, surfaces, X, of_edges, start);
-  }
-
-  /// A band that ends where the surfaces start, so that nothing is stored there: what starts
-  /// together is not thrown apart. The pressure in its middle stays.
-  static void begin_band_at(contact::NormalLaw& law, double gap) {
-    if (law.potential != contact::NormalPotential::barrier || !(gap < law.reach())) return;
-    const double band = law.band();
-    law.upper = std::max(gap, -0.5 * law.tolerance);
-    law.stiffness *= band / law.band();
+    add_edges(pair, surfaces, X, law, start);
   }
 
   /// The sharp edges of both surfaces on each other.
@@ -382,9 +367,8 @@ class SurfacesBuilder {
     return {0.0, kCablePressure * cable.stiffness / area, cable.mass_per_length / area};
   }
 
-  /// Place of the band in which surfaces act: below them where distances have a sign or count from
-  /// a cable's centre line, else about an offset of one tolerance.
-  enum class Band { below, about_offset };
+  /// Place of the band in which surfaces act: below those of rigid shapes, which have an inside.
+  enum class Band { below, about };
 
   /// @param edge      Of the mesh, or the diameter of a cable [m].
   /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}

@@ -94,7 +94,6 @@ struct LoadStepper::Impl {
       const double factor = low + part * (high - low);
       trial = below;
       const StaticStep step = newton.solve(trial, factor);
-      report.iterations += step.iterations;
       if (!step.converged || step.unstable < 0) break;
       soft = newton.softest();
       if (step.unstable == first) {
@@ -109,8 +108,9 @@ struct LoadStepper::Impl {
       if (!soft.text.empty()) point.motion = soft.text;
     }
     point.load_factor = 0.5 * (low + high);
-    // The matrices of the equilibrium that was reached, for those who ask for them.
-    newton.assemble_at(above, above.t);
+    // Matrices and reactions of the equilibrium that was reached, for those who ask for them.
+    trial = above;
+    static_cast<void>(newton.solve(trial, above.t));
     return point;
   }
 
@@ -133,7 +133,6 @@ struct LoadStepper::Impl {
         if (equilibria == 0 && step.unstable > 0) {  // stable where nothing is loaded?
           State unloaded = old;
           const StaticStep none = newton.solve(unloaded, from);
-          report.iterations += none.iterations;
           if (none.converged) {
             unstable = none.unstable;
             old = unloaded;
