@@ -152,7 +152,6 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     PointReport report;          ///< Of the last accepted step.
     bool touched = false;        ///< It acted in that step.
     double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
-    double force_n = 0.0;        ///< Of lasting contact at t_n [N].
     double impact_loss = 0.0;    ///< In impulses, along the normal [J].
     double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
@@ -166,7 +165,6 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
   [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
-  [[nodiscard]] bool pressed(const Point& p) const;
   [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;
   void set_band(Point& p, double stiffness, double upper, double lower) const;
@@ -177,8 +175,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] static double contact_time(const Point& p, double stiffness, double speed);
   [[nodiscard]] double impact_stiffness(const Point& p, double speed) const;
   void begin_phase(Point& p, double speed, double dt) const;
-  [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, bool among_others,
-                                                    Work& work);
+  [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
   struct Followed;
   [[nodiscard]] Gap<double> gap_along(const Point& p, const FeaturePair& pair,
                                       std::span<const BodyStep> steps,

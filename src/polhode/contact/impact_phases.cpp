@@ -117,13 +117,6 @@ double ContactSet::slow_speed(const Point& p, double force, double dt) const {
   return kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
 }
 
-/// A lasting contact that had to carry the impulse of an impact elsewhere in the step.
-bool ContactSet::pressed(const Point& p) const {
-  if (p.restitution == 1.0) return false;
-  const double impulse = step_length_ * (p.report.normal_force - p.force_n);
-  return impulse > p.mass * slow_speed(p, p.force_n, step_length_);
-}
-
 /// At t_n. A point that is open gets the phase it closes in: an
 /// impact is faster than what gravity adds in two steps, or, of a closed point, than what its force
 /// does. A rebound that would be shorter than that does not happen. A damper takes the place of
@@ -131,7 +124,6 @@ bool ContactSet::pressed(const Point& p) const {
 void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
-  p.force_n = h.closed ? h.force : 0.0;
   const double gravity = system_->gravity().norm();
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
@@ -207,13 +199,11 @@ double ContactSet::fallen(const Point& p, const Vec3& n) const {
 
 /// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
 /// are exact.
-/// @param among_others  Other points have impacts in the step, which lasting contact may carry.
-std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, bool among_others,
-                                                Work& work) {
+std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
   PointHistory& h = p.data.history;
   if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
     return {};
-  if (!(p.report.normal_force > 0.0)) return {};
+  if (h.phase == ContactPhase::rest || !(p.report.normal_force > 0.0)) return {};
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
   const auto motion = [&](int body) {
@@ -265,25 +255,15 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, bo
     work.dissipated += released;
     p.impact_loss += released;
   };
-  const bool lasts = h.phase == ContactPhase::landing || h.phase == ContactPhase::rest;
+  const bool lasts = h.phase == ContactPhase::landing;
   const bool barrier = p.data.normal.potential == NormalPotential::barrier;
   switch (h.phase) {
     case ContactPhase::landing:
-    case ContactPhase::rest: {
-      const bool carries = among_others && pressed(p);
-      const bool lands =
-          h.phase == ContactPhase::landing && p.restitution < 1.0 && p.speed_n < 0.0 && speed > 0.0;
-      if (!carries && !lands) return {};
+      if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
       impact.wanted = 0.0;  // the midpoint rule would throw it back
       impact.rubbed = step_length_ * p.report.friction_force;
-      // It carries an impulse as it comes, and gives nothing of it back.
-      if (carries && barrier && stored_n < plain) {
-        store_again(p, p.data.normal.stiffness, stored_n);
-        release();
-      }
       set_phase(p, ContactPhase::rest);
       break;
-    }
     case ContactPhase::compression:
       if (!turns) break;
       impact.wanted = exit_speed(p, n, speed);
@@ -301,6 +281,8 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, bo
     case ContactPhase::restitution:
       if (!(speed > 0.0)) rests();
       break;
+    case ContactPhase::rest:
+      return {};
   }
   const FrictionLaw& f = p.data.friction;
   if (!(f.mu > 0.0)) return r;
@@ -322,24 +304,15 @@ Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
   settling_.clear();
   Work work;
   bool remembered = false;
-  const auto take = [&](int i, bool among_others) {
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
     Point& p = points_[i];
     const ContactPhase before = p.data.history.phase;
-    const double reach = p.data.history.reach;
-    const std::optional<PairImpact> impact = impact_of(p, state, among_others, work);
-    remembered = remembered || before != p.data.history.phase || reach != p.data.history.reach;
-    if (!impact) return;
+    const std::optional<PairImpact> impact = impact_of(p, state, work);
+    remembered = remembered || before != p.data.history.phase;
+    if (!impact) continue;
     settling_.push_back(i);
     list.push_back(*impact);
-  };
-  std::vector<int> lasting;
-  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    const ContactPhase phase = points_[i].data.history.phase;
-    const bool lasts = phase == ContactPhase::rest || phase == ContactPhase::landing;
-    lasts ? lasting.push_back(i) : take(i, false);
   }
-  const bool among_others = !settling_.empty();
-  for (const int i : lasting) take(i, among_others);
   if (remembered) save(state);
   return work;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
@@ -81,10 +82,14 @@ struct LoadStepper::Impl {
 
   /// Where the stability changes between two equilibria: by bisection, and by the stiffness that
   /// vanishes there, on a straight line between the loads.
-  LimitPoint locate(State below, double low, const State& above, double high, int after) {
+  std::optional<LimitPoint> locate(State below, double low, const State& above, double high,
+                                   int after) {
     LimitPoint point{high, after, {}};
     const int first = unstable;
-    SoftestMotion soft = newton.softest();
+    bool seen = false;                      // else the equilibrium above lies on another branch
+    StaticNewton finder(*system, options);  // what the other one holds is asked for later
+    finder.assemble_at(above, high);
+    SoftestMotion soft = finder.softest();
     point.motion = soft.text;
     double at_high = -std::abs(soft.stiffness), at_low = std::numeric_limits<double>::quiet_NaN();
     State trial = above;
@@ -93,9 +98,9 @@ struct LoadStepper::Impl {
       if (!(part > 0.02 && part < 0.98) || i % 3 == 2) part = 0.5;
       const double factor = low + part * (high - low);
       trial = below;
-      const StaticStep step = newton.solve(trial, factor);
+      const StaticStep step = finder.solve(trial, factor);
       if (!step.converged || step.unstable < 0) break;
-      soft = newton.softest();
+      soft = finder.softest();
       if (step.unstable == first) {
         low = factor;
         below = trial;
@@ -103,14 +108,12 @@ struct LoadStepper::Impl {
       } else {
         high = factor;
         at_high = -std::abs(soft.stiffness);
-        point.unstable = after;
+        seen = true;
       }
       if (!soft.text.empty()) point.motion = soft.text;
     }
     point.load_factor = 0.5 * (low + high);
-    // Matrices and reactions of the equilibrium that was reached, for those who ask for them.
-    trial = above;
-    static_cast<void>(newton.solve(trial, above.t));
+    if (!seen) return {};
     return point;
   }
 
@@ -132,14 +135,15 @@ struct LoadStepper::Impl {
       if (step.converged) {
         if (equilibria == 0 && step.unstable > 0) {  // stable where nothing is loaded?
           State unloaded = old;
-          const StaticStep none = newton.solve(unloaded, from);
+          const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
           if (none.converged) {
             unstable = none.unstable;
             old = unloaded;
           }
         }
         if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
-          report.limit_points.push_back(locate(old, from, state, factor, step.unstable));
+          if (const auto point = locate(old, from, state, factor, step.unstable))
+            report.limit_points.push_back(*point);
         if (step.unstable >= 0) unstable = step.unstable;
         before = std::move(old);
         factor_before = from;
