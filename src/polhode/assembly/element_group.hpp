@@ -47,8 +47,8 @@ struct ElementSample {
   Vec3 principal_stretches = Vec3::Ones();  ///< Largest first [-].
   double strain_energy_density = 0.0;       ///< Per reference volume [J/m³].
   double volume = 0.0;                      ///< Reference [m³].
-  /// Cauchy stress and energy density at its nodes, from those at the points of integration; empty
-  /// where an element has none.
+  /// Cauchy stress [Pa] and energy density [J/m³] at its nodes, extrapolated from the points of
+  /// integration; empty for elements without an extrapolation.
   std::vector<Mat3> cauchy_at_nodes;
   std::vector<double> energy_at_nodes;
 };

@@ -17,7 +17,7 @@ namespace {
 constexpr double kRestShare = 0.5;
 /// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// Likewise of springs, with which they stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
+/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
 /// w²).
 constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
 /// Time of a Hertz impact, as part of the greatest depth over the speed.
@@ -214,7 +214,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const Placement<double> at_a(a.r, Lambda_a, 0), at_b(b.r, Lambda_b, 6);
   const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
   const Vec3 n = value(g.normal);
-  // What parted in the step is off by the gap: the lighter body gets its impulse where it touched.
+  // Bodies that parted in the step are a gap apart: the lighter one gets its impulse where it touched.
   const auto mass = [&](int body) { return body == kGround ? 0.0 : 1.0 / carried_mass_[body]; };
   const double lean = (mass(r.bodies.a) - mass(r.bodies.b)) / (mass(r.bodies.a) + mass(r.bodies.b));
   const Vec3 c = value(g.point) + 0.5 * lean * g.distance * n;
@@ -239,7 +239,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
   };
-  // What fades out, as features that come to lie along each other, stores a part.
+  // Features that fade out, as they come to lie along each other, store a part.
   const double plain = h.closed ? p.data.normal.energy(h.gap) : 0.0;
   const double weight = weight_at(p.data, at_a, at_b);
   const double stored_n = p.data.normal.energy(p.report.gap_n);

@@ -116,7 +116,7 @@ class SeenPart {
   double farthest_;
 };
 
-/// What part_gap() needs of each triangle, edge and corner of a surface.
+/// Data of each triangle, edge and corner of a surface for part_gap().
 struct SeenSurface {
   const SeenPart& part;
   const Shape& b;
