@@ -214,7 +214,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const Placement<double> at_a(a.r, Lambda_a, 0), at_b(b.r, Lambda_b, 6);
   const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
   const Vec3 n = value(g.normal);
-  // Bodies that parted in the step are a gap apart: the lighter one gets its impulse where it touched.
+  // Bodies that parted are a gap apart: the lighter one gets its impulse where it touched.
   const auto mass = [&](int body) { return body == kGround ? 0.0 : 1.0 / carried_mass_[body]; };
   const double lean = (mass(r.bodies.a) - mass(r.bodies.b)) / (mass(r.bodies.a) + mass(r.bodies.b));
   const Vec3 c = value(g.point) + 0.5 * lean * g.distance * n;
