@@ -20,7 +20,7 @@ struct ImpulseOptions {
 struct ImpulsePoint {
   int a = kGround, b = kGround;
   Vec3 normal = Vec3::UnitZ();  ///< From b to a, middle of the step.
-  /// The same arms [m] where the displacement along the normal is the change of the gap.
+  /// Point [m] at which the displacement along the normal is the change of the gap.
   Vec3 place = Vec3::Zero();
   double gap = 0.0;                          ///< At t_n [m].
   double rate = 0.0;                         ///< Of the gap at t_n [m/s].
