@@ -47,6 +47,12 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
       {"angular_momentum_drift", s.angular_momentum_drift},
       {"constraint_residual_max", s.constraint_residual_max},
       {"velocity_constraint_residual_max", s.velocity_constraint_residual_max},
+      {"step_error", s.errors ? nlohmann::ordered_json{{"largest", s.errors->largest},
+                                                       {"time", s.errors->time},
+                                                       {"whose", s.errors->whose},
+                                                       {"sum", s.errors->sum},
+                                                       {"steps", s.errors->steps}}
+                              : nlohmann::ordered_json(nullptr)},
       {"wall_time_s", s.wall_time_s},
       {"cpu_time_s", s.cpu_time_s},
       {"phases", phases},
@@ -139,6 +145,15 @@ std::string summary_table(const RunSummary& s) {
       {"velocity constraint residual", small(s.velocity_constraint_residual_max),
        "largest of the run"},
   };
+  if (s.errors) {
+    const RunSummary::Errors& e = *s.errors;
+    rows.push_back({"error of a step", small(e.largest),
+                    format("at most, {}to t = {:.6g} s; estimated, of the size or radians",
+                           e.whose.empty() ? "" : e.whose + " ", e.time)});
+    rows.push_back(
+        {"  of all steps", small(e.sum),
+         e.steps == s.steps ? "their sum" : format("sum of the {} with an estimate", e.steps)});
+  }
   if (s.contacts) {
     const RunSummary::Contacts& c = *s.contacts;
     rows.push_back(

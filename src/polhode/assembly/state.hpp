@@ -22,6 +22,17 @@ struct ExactSum {
   [[nodiscard]] double value() const { return sum + rest; }
 };
 
+/// Errors of single steps as estimated on the way: lengths over ℓ, angles in radians.
+/// @eq{step-error}
+struct StepErrors {
+  double largest = 0.0, sum = 0.0;
+  double time = 0.0;         ///< End of the step with the largest [s].
+  int body = -1, node = -1;  ///< Whose it is; −1: not known.
+  std::int64_t steps = 0;    ///< Steps with an estimate.
+  std::int64_t hard = 0;     ///< Steps in which Newton's method only just converged.
+  double hard_time = 0.0;    ///< End of the first of these [s].
+};
+
 /// What happened so far: the balance that every run ends with. SI units.
 struct Ledger {
   double initial_energy = 0.0;                     ///< T + V at the start [J].
@@ -31,7 +42,10 @@ struct Ledger {
   std::array<ExactSum, 3> impulse, angular_impulse;         ///< Of loads and ground [N s, N m s].
   double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;  ///< Largest magnitudes reached.
   double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;  ///< Largest absolute drifts.
-  double constraint_max = 0.0;                              ///< Largest residual [m or -].
+  /// What rounding can do to energy [J], and the sums of its squares for the momenta.
+  double energy_noise = 0.0, p_noise = 0.0, l_noise = 0.0;
+  double constraint_max = 0.0;  ///< Largest residual [m or -].
+  StepErrors errors;
   std::int64_t steps = 0, rejected = 0, iterations = 0;
 };
 

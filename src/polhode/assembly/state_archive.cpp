@@ -149,7 +149,18 @@ void ledger(Archive& archive, AnyLedger& l) {
   archive(l.energy_drift);
   archive(l.p_drift);
   archive(l.l_drift);
+  archive(l.energy_noise);
+  archive(l.p_noise);
+  archive(l.l_noise);
   archive(l.constraint_max);
+  archive(l.errors.largest);
+  archive(l.errors.sum);
+  archive(l.errors.time);
+  archive(l.errors.body);
+  archive(l.errors.node);
+  archive(l.errors.steps);
+  archive(l.errors.hard);
+  archive(l.errors.hard_time);
   archive(l.steps);
   archive(l.rejected);
   archive(l.iterations);

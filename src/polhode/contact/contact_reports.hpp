@@ -19,6 +19,8 @@ struct ShapePairReport {
   ContactStatus status = ContactStatus::open;
   double dissipated = 0.0;   ///< In the step, impacts included [J].
   double impact_loss = 0.0;  ///< The part of it that impacts took [J].
+  int unresolved = 0;  ///< Points that closed in an impact of fewer than twenty steps although
+                       ///< their law has a stiffness or a damper of its own.
 };
 
 /// Two shapes that overlap.

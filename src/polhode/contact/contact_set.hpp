@@ -146,6 +146,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double bristle_stiffness = 0.0;  ///< k_T, if the law leaves it open [N/m].
     double rest_damping = 0.0;       ///< c of lasting contact that takes energy [s/m].
     bool open_stiffness = false;     ///< The law states no stiffness.
+    bool unresolved = false;         ///< Closes in an impact too short for its law and the step.
     double gap_n = 0.0;
     Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
     bool listed = false;         ///< Among the points that act by impulses in this step.

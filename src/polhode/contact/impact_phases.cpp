@@ -124,6 +124,7 @@ double ContactSet::slow_speed(const Point& p, double force, double dt) const {
 void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
+  p.unresolved = false;
   const double gravity = system_->gravity().norm();
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
@@ -152,6 +153,10 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
     set_phase(p, ContactPhase::landing);
   } else if (-speed > slow) {
     k = impact(slow);
+    const bool own = !p.open_stiffness && p.data.normal.potential != NormalPotential::barrier;
+    const double stiffness = p.open_stiffness ? k : p.rest_stiffness;
+    p.unresolved =
+        (own || p.damped) && contact_time(p, stiffness, speed) < kResolved * std::abs(dt);
   } else {
     set_phase(p, ContactPhase::landing);
   }

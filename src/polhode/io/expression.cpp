@@ -4,18 +4,24 @@
 #include <cmath>
 
 #include <polhode/io/expression_ops.hpp>
+#include <polhode/io/time_jet.hpp>
 
 namespace polhode {
 
-double Expression::operator()(double t) const {
+template <class Number>
+Number Expression::evaluate(const Number& t) const {
   using Op = ExpressionOp;
-  std::array<double, kStackSize + 1> stack;
+  using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp,
+      std::floor, std::log, std::log10, std::max, std::min, std::pow, std::sin, std::sinh,
+      std::sqrt, std::tan, std::tanh;
+  const Number zero = 0.0;
+  std::array<Number, kStackSize + 1> stack;
   std::size_t n = 0;  // Values on the stack.
-  const auto unary = [&](double value) { stack[n - 1] = value; };
-  const auto binary = [&](double value) { stack[--n - 1] = value; };
+  const auto unary = [&](const Number& value) { stack[n - 1] = value; };
+  const auto binary = [&](const Number& value) { stack[--n - 1] = value; };
   for (const Instruction& i : program_) {
-    const double x = n > 0 ? stack[n - 1] : 0.0;
-    const double y = n > 1 ? stack[n - 2] : 0.0;  // y op x
+    const Number x = n > 0 ? stack[n - 1] : zero;
+    const Number y = n > 1 ? stack[n - 2] : zero;  // y op x
     switch (i.op) {
       case Op::kPush:
         stack[n++] = i.value;
@@ -24,7 +30,7 @@ double Expression::operator()(double t) const {
         stack[n++] = t * i.value;
         break;
       case Op::kScale:
-        unary(x * i.value);
+        unary(x * Number(i.value));
         break;
       case Op::kAdd:
         binary(y + x);
@@ -39,7 +45,7 @@ double Expression::operator()(double t) const {
         binary(y / x);
         break;
       case Op::kPower:
-        binary(std::pow(y, x));
+        binary(pow(y, x));
         break;
       case Op::kNegate:
         unary(-x);
@@ -63,78 +69,85 @@ double Expression::operator()(double t) const {
         binary(y != x ? 1.0 : 0.0);
         break;
       case Op::kAnd:
-        binary(y != 0.0 && x != 0.0 ? 1.0 : 0.0);
+        binary(y != zero && x != zero ? 1.0 : 0.0);
         break;
       case Op::kOr:
-        binary(y != 0.0 || x != 0.0 ? 1.0 : 0.0);
+        binary(y != zero || x != zero ? 1.0 : 0.0);
         break;
       case Op::kNot:
-        unary(x == 0.0 ? 1.0 : 0.0);
+        unary(x == zero ? 1.0 : 0.0);
         break;
       case Op::kChoose:
         n -= 2;
-        stack[n - 1] = stack[n - 1] != 0.0 ? stack[n] : stack[n + 1];
+        stack[n - 1] = stack[n - 1] != zero ? stack[n] : stack[n + 1];
         break;
       case Op::kSin:
-        unary(std::sin(x));
+        unary(sin(x));
         break;
       case Op::kCos:
-        unary(std::cos(x));
+        unary(cos(x));
         break;
       case Op::kTan:
-        unary(std::tan(x));
+        unary(tan(x));
         break;
       case Op::kAsin:
-        unary(std::asin(x));
+        unary(asin(x));
         break;
       case Op::kAcos:
-        unary(std::acos(x));
+        unary(acos(x));
         break;
       case Op::kAtan:
-        unary(std::atan(x));
+        unary(atan(x));
         break;
       case Op::kAtan2:
-        binary(std::atan2(y, x));
+        binary(atan2(y, x));
         break;
       case Op::kSinh:
-        unary(std::sinh(x));
+        unary(sinh(x));
         break;
       case Op::kCosh:
-        unary(std::cosh(x));
+        unary(cosh(x));
         break;
       case Op::kTanh:
-        unary(std::tanh(x));
+        unary(tanh(x));
         break;
       case Op::kExp:
-        unary(std::exp(x));
+        unary(exp(x));
         break;
       case Op::kLog:
-        unary(std::log(x));
+        unary(log(x));
         break;
       case Op::kLog10:
-        unary(std::log10(x));
+        unary(log10(x));
         break;
       case Op::kSqrt:
-        unary(std::sqrt(x));
+        unary(sqrt(x));
         break;
       case Op::kAbs:
-        unary(std::abs(x));
+        unary(abs(x));
         break;
       case Op::kSign:
-        unary(x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0);
+        unary(x > zero ? 1.0 : x < zero ? -1.0 : 0.0);
         break;
       case Op::kFloor:
-        unary(std::floor(x));
+        unary(floor(x));
         break;
       case Op::kMin:
-        binary(std::min(y, x));
+        binary(min(y, x));
         break;
       case Op::kMax:
-        binary(std::max(y, x));
+        binary(max(y, x));
         break;
     }
   }
   return stack[0];
+}
+
+double Expression::operator()(double t) const { return evaluate(t); }
+
+TimeRates Expression::rates(double t, TimeSide side) const {
+  const TimeJet jet = evaluate(TimeJet{beside(t, side), 1.0, 0.0});
+  return {jet.value, jet.rate, jet.second};
 }
 
 std::optional<double> Expression::factor_to_si(const Dimension& wanted,

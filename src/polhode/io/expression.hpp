@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <polhode/base/time_function.hpp>
 #include <polhode/io/units.hpp>
 #include <polhode/model/model.hpp>
 
@@ -54,6 +55,9 @@ class Expression {
 
   /// The value at time t [s], in SI or the user's base units as certainty() says.
   [[nodiscard]] double operator()(double t) const;
+  /// The value and its derivatives by time on one side of t: exact ones, by automatic
+  /// differentiation. Conditions are those of that side.
+  [[nodiscard]] TimeRates rates(double t, TimeSide side) const;
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
   [[nodiscard]] Certainty certainty() const { return type_.certainty; }
   [[nodiscard]] const Dimension& dimension() const { return type_.dimension; }
@@ -71,6 +75,9 @@ class Expression {
     ExpressionOp op;
     double value = 0.0;
   };
+  template <class Number>
+  [[nodiscard]] Number evaluate(const Number& t) const;
+
   std::vector<Instruction> program_;
   Quantity type_;
   std::optional<Unit> unit_;

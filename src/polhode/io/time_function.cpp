@@ -93,24 +93,45 @@ TableFunction::TableFunction(std::vector<double> times, std::vector<double> valu
     curvatures_ = spline_curvatures(times_, values_, periodic_);
 }
 
-double TableFunction::operator()(double t) const {
+int TableFunction::interval(double& t) const {
   const double first = times_.front(), last = times_.back();
   if (periodic_) {
     t = first + std::fmod(t - first, last - first);
     if (t < first) t += last - first;
+    if (t >= last) t = first;
   }
-  if (!(t > first)) return values_.front();
-  if (t >= last)
-    return periodic_ && interpolation_ == Interpolation::kStep ? values_.front() : values_.back();
-  const auto after = std::upper_bound(times_.begin(), times_.end(), t);
-  const auto k = static_cast<std::size_t>(after - times_.begin()) - 1;
-  if (interpolation_ == Interpolation::kStep) return values_[k];
+  if (t < first) return -1;
+  if (t >= last) return static_cast<int>(times_.size()) - 1;
+  return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin()) - 1;
+}
+
+double TableFunction::operator()(double t) const {
+  const int interval = this->interval(t);
+  if (interval < 0) return values_.front();
+  const auto k = static_cast<std::size_t>(interval);
+  if (k + 1 == times_.size() || interpolation_ == Interpolation::kStep) return values_[k];
   const double h = times_[k + 1] - times_[k];
   const double b = (t - times_[k]) / h, a = 1.0 - b;
   const double straight = a * values_[k] + b * values_[k + 1];
   if (interpolation_ == Interpolation::kLinear) return straight;
   return straight +
          h * h / 6.0 * ((a * a * a - a) * curvatures_[k] + (b * b * b - b) * curvatures_[k + 1]);
+}
+
+TimeRates TableFunction::rates(double t, TimeSide side) const {
+  t = beside(t, side);
+  TimeRates r{(*this)(t), 0.0, 0.0};
+  const int interval = this->interval(t);
+  if (interval < 0 || interval + 1 >= static_cast<int>(times_.size())) return r;
+  if (interpolation_ == Interpolation::kStep) return r;
+  const auto k = static_cast<std::size_t>(interval);
+  const double h = times_[k + 1] - times_[k], b = (t - times_[k]) / h, a = 1.0 - b;
+  r.rate = (values_[k + 1] - values_[k]) / h;
+  if (interpolation_ == Interpolation::kLinear) return r;
+  r.rate +=
+      h / 6.0 * ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]);
+  r.second = a * curvatures_[k] + b * curvatures_[k + 1];
+  return r;
 }
 
 }  // namespace polhode

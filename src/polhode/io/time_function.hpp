@@ -16,6 +16,7 @@ class ConstantFunction final : public TimeFunction {
   explicit ConstantFunction(double value) : value_(value) {}
   [[nodiscard]] double operator()(double) const override { return value_; }
   [[nodiscard]] bool is_constant() const override { return true; }
+  [[nodiscard]] TimeRates rates(double, TimeSide) const override { return {value_, 0.0, 0.0}; }
 
  private:
   double value_;
@@ -27,6 +28,10 @@ class ExpressionFunction final : public TimeFunction {
   ExpressionFunction(std::shared_ptr<const Expression> expression, double factor)
       : expression_(std::move(expression)), factor_(factor) {}
   [[nodiscard]] double operator()(double t) const override { return factor_ * (*expression_)(t); }
+  [[nodiscard]] TimeRates rates(double t, TimeSide side) const override {
+    const TimeRates r = expression_->rates(t, side);
+    return {factor_ * r.value, factor_ * r.rate, factor_ * r.second};
+  }
 
  private:
   std::shared_ptr<const Expression> expression_;
@@ -48,8 +53,13 @@ class TableFunction final : public TimeFunction {
   TableFunction(std::vector<double> times, std::vector<double> values, Interpolation interpolation,
                 bool periodic);
   [[nodiscard]] double operator()(double t) const override;
+  [[nodiscard]] TimeRates rates(double t, TimeSide side) const override;
 
  private:
+  /// Number of the last point at or before t, −1 if there is none. For a periodic table t becomes
+  /// the time of its first period.
+  [[nodiscard]] int interval(double& t) const;
+
   std::vector<double> times_, values_;
   std::vector<double> curvatures_;  ///< Second derivatives at the points, of kCubic.
   Interpolation interpolation_;

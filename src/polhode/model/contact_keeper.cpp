@@ -11,10 +11,11 @@ namespace polhode {
 
 namespace {
 
-/// Totals: what impacts and friction took and the smallest gap before those of pairs, and for each
+/// Totals: what impacts and friction took, the smallest gap and impacts that steps do not resolve
+/// before those of pairs, and for each
 /// pair: impulse, energy lost, whether its sensor overlaps. With impulses, last: sweeps, and steps
 /// that did not converge.
-constexpr std::size_t kHead = 3, kPerPair = 3, kImpulses = 2, kLeastGap = 2;
+constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kLeastGap = 2, kUnresolved = 3;
 /// No gap was small yet: totals are compared, which NaN would not stand.
 constexpr double kNoGap = std::numeric_limits<double>::infinity();
 
@@ -36,7 +37,7 @@ void ContactKeeper::resume(const State& state) {
   totals_ = contact::ContactSet::totals_in(state);
   const std::size_t wanted = total_count();
   const ImpulseFigures search = impulse_figures();
-  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap};
+  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap, 0.0};
   if (totals_.size() != wanted) totals_.resize(kHead);  // other pairs are kept now
   totals_.resize(wanted, 0.0);
   if (!contacts_->impulses()) return;
@@ -68,6 +69,7 @@ void ContactKeeper::look(State& state, bool sum) {
     if (sum) {
       totals[0] += r.impact_loss;
       totals[1] += r.dissipated - r.impact_loss;
+      totals[kUnresolved] += r.unresolved;
     }
     const auto found = place.find(std::minmax(a, b));
     if (found == place.end()) continue;
@@ -111,6 +113,10 @@ ContactReport ContactKeeper::report(int pair) const {
   report.impulse = totals_[kHead + kPerPair * k];
   report.energy_lost = totals_[kHead + kPerPair * k + 1];
   return report;
+}
+
+double ContactKeeper::unresolved() const {
+  return totals_.size() > kUnresolved ? totals_[kUnresolved] : 0.0;
 }
 
 ImpulseFigures ContactKeeper::impulse_figures() const {

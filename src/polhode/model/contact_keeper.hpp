@@ -64,6 +64,9 @@ class ContactKeeper {
   [[nodiscard]] int touching() const { return touching_; }
   /// The smallest gap there was after any step since the start [m]; NaN if none was small.
   [[nodiscard]] double least_gap() const;
+  /// Impacts since the start that took fewer than twenty steps although their law has a stiffness
+  /// or a damper of its own.
+  [[nodiscard]] double unresolved() const;
   /// Since the start or restart.
   [[nodiscard]] const std::vector<SensorEvent>& events() const { return events_; }
   /// By body of the system, over the last step; empty without contact.

@@ -95,18 +95,18 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
 RunSummary Simulation::summary() const {
   const Impl& s = *impl_;
   const Ledger& l = s.state.ledger;
-  const auto relative = [](double drift, double scale) {
-    return scale > 0.0 ? drift / scale : drift;
-  };
   RunSummary r = s.figures;
   r.t = s.state.t;
   r.steps = l.steps;
   r.rejected_steps = l.rejected;
   r.newton_iterations = l.iterations;
-  r.energy_drift = relative(l.energy_drift, l.energy_scale);
-  r.linear_momentum_drift = relative(l.p_drift, l.p_scale);
-  r.angular_momentum_drift = relative(l.l_drift, l.l_scale);
+  const Drifts drifts = polhode::drifts(l);
+  r.energy_drift = drifts.energy;
+  r.linear_momentum_drift = drifts.linear_momentum;
+  r.angular_momentum_drift = drifts.angular_momentum;
   r.constraint_residual_max = l.constraint_max;
+  if (l.errors.steps > 0 && !s.statics)
+    r.errors = {l.errors.largest, l.errors.sum, l.errors.time, s.whose_error(), l.errors.steps};
   r.phases = {{"start", s.start_seconds}};
   for (const auto& phase : s.stepper->phases()) r.phases.push_back(phase);
   r.phases.emplace_back("output", s.output_seconds);
@@ -134,6 +134,12 @@ RunSummary Simulation::summary() const {
         .lost_by_friction = lost.friction,
         .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated,
         .sweeps = {}};
+    if (const double short_ones = s.contacts.unresolved(); short_ones > 0.0)
+      r.warnings.push_back(
+          format("contacts: {:.0f} impacts took fewer than twenty steps, for which their stiffness "
+                 "or damper asks: speeds after them are right, forces and times of contact are "
+                 "not. Take shorter steps",
+                 short_ones));
     if (s.model.contacts.nonsmooth()) {
       const ImpulseFigures search = s.contacts.impulse_figures();
       r.contacts->sweeps = {search.sweeps / static_cast<double>(std::max<std::int64_t>(l.steps, 1)),

@@ -50,6 +50,15 @@ struct RunSummary {
   std::int64_t steps = 0, rejected_steps = 0, newton_iterations = 0;
   double energy_drift = 0.0, linear_momentum_drift = 0.0, angular_momentum_drift = 0.0;
   double constraint_residual_max = 0.0, velocity_constraint_residual_max = 0.0;
+  /// Errors of the steps as estimated on the way, lengths over the mechanism's size, angles in
+  /// radians.
+  struct Errors {
+    double largest = 0.0, sum = 0.0;  ///< Of a step, and of all steps that have an estimate.
+    double time = 0.0;                ///< End of the step with the largest [s].
+    std::string whose;                ///< "body 'pole'"; empty if not known.
+    std::int64_t steps = 0;           ///< Steps with an estimate.
+  };
+  std::optional<Errors> errors;  ///< None if no step has an estimate.
   double wall_time_s = 0.0, cpu_time_s = 0.0;
   std::vector<std::pair<std::string, double>> phases;  ///< Name, seconds.
   std::string result_hash, solver, instruction_set, version;

@@ -32,6 +32,10 @@ inline double wall_clock() {
 
 /// Above this many bodies the start does not solve for multipliers that the method does not need.
 inline constexpr int kSmallSystem = 2000;
+/// An estimated error of one step from which on the motion is not resolved [-].
+inline constexpr double kUnresolved = 1e-2;
+/// Velocities normal to the constraints, over those of the rows' terms, that call for a warning.
+inline constexpr double kFarOff = 0.1;
 /// How far assembling the start may move a body that was said to be in place, and one that was not.
 inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
 
@@ -53,6 +57,8 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
+  /// Largest |G v| at output times over the magnitudes of its terms [-], and when [s].
+  double velocity_part = 0.0, velocity_part_time = 0.0;
   /// Smallest of surfaces of solids after any step [m].
   double surface_gap = std::numeric_limits<double>::quiet_NaN();
   std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
@@ -188,7 +194,43 @@ struct Simulation::Impl {
       const std::string text = solid.stretch_warning(least);
       if (!text.empty()) list.push_back(text);
     }
+    warn_of_errors(list);
     return list;
+  }
+
+  /// Body or solid with the largest error of a step.
+  [[nodiscard]] std::string whose_error() const {
+    const StepErrors& e = state.ledger.errors;
+    if (e.body >= 0) return format("body '{}'", system.bodies()[e.body].name);
+    for (std::size_t k = 0; k < map.solids.size(); ++k) {
+      const int node = e.node - map.solids[k].first_node;
+      if (e.node >= 0 && node >= 0 && node < map.solids[k].node_count())
+        return format("node {} of solid '{}'", node, model.solids[k].name);
+    }
+    return e.node >= 0 ? "a beam or cable" : "";
+  }
+
+  /// Steps that do not resolve the motion. The figures are those of the run so far.
+  void warn_of_errors(std::vector<std::string>& list) const {
+    if (statics) return;
+    const StepErrors& e = state.ledger.errors;
+    const std::string whose = whose_error();
+    if (e.largest > kUnresolved)
+      list.push_back(
+          format("the steps are too long for the motion: {} errs by about {:.2g} of the "
+                 "mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter steps, "
+                 "or give a tolerance",
+                 whose.empty() ? "a body" : whose, e.largest, e.time));
+    if (velocity_part > kFarOff)
+      list.push_back(
+          format("velocities are far from those that the joints allow, by {:.2g} of the speeds "
+                 "there, at t = {:.6g} s. Take shorter steps, or rho_inf below 1",
+                 velocity_part, velocity_part_time));
+    if (e.hard > 0)
+      list.push_back(
+          format("Newton's method only just converged in {} of {} steps, first in that "
+                 "to t = {:.6g} s. Take shorter steps",
+                 e.hard, state.ledger.steps, e.hard_time));
   }
 
   /// A joint that starts beyond its stops by more than their band.
@@ -261,6 +303,10 @@ struct Simulation::Impl {
     const VelocityReport v = instant_solver->project_velocities(projected);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
+    if (v.residual_before > velocity_part * v.scale) {
+      velocity_part = v.residual_before / v.scale;
+      velocity_part_time = state.t;
+    }
     instant = instant_solver->accelerations(projected, contacts.wrenches());
     instant_step = state.ledger.steps;
     return instant;

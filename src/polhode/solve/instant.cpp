@@ -38,6 +38,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
       },
       true);
   report.residual = report.residual_before;
+  report.scale = largest_scale;
   if (report.residual <= 32.0 * kInstantRoundOff * largest_scale) return report;
 
   s.put_masses_and_rows(state);

@@ -24,6 +24,7 @@ struct PositionReport {
 /// What the projection of velocities did.
 struct VelocityReport {
   double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
+  double scale = 0.0;            ///< Largest sum of magnitudes of the terms of a row of it.
   double residual = 0.0;         ///< Largest |G v| now.
   double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;
@@ -71,6 +72,13 @@ class InstantSolver {
   [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
   /// The least change that takes the velocities onto G v = 0.
   [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
+  /// Jumps of all velocities at this instant where those of prescribed components are given.
+  /// @param given   Three a node, zero where nothing is prescribed [m/s].
+  /// @param bodies  Out: by body (linear, angular), world.
+  /// @param nodes   Out: three a node, with those given [m/s].
+  /// @returns false if a matrix is singular.
+  [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
+                                    std::vector<Vec6>& bodies, std::vector<double>& nodes);
   /// Of the nodes of solids (3 each), for jumps of the bodies.
   [[nodiscard]] std::vector<double> node_jumps(std::span<const Vec6> bodies);
 

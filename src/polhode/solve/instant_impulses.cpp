@@ -8,7 +8,7 @@ bool InstantSolver::take_impulses(const State& state) {
   Impl& s = *impl_;
   s.take(state);
   s.put_masses_and_rows(state);
-  return s.add_nodes(state, true) && s.factor(state);
+  return s.add_node_masses(state) && s.factor(state);
 }
 
 std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
@@ -31,6 +31,19 @@ std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
   s.rows_times(given, s.rhs.tail(s.system.rows()));
   s.rhs = -s.rhs;
   return s.solution_by_body();
+}
+
+/// @eq{prescribed-kink}
+bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> given,
+                                   std::vector<Vec6>& bodies, std::vector<double>& nodes) {
+  Impl& s = *impl_;
+  s.take(state);
+  s.put_masses_and_rows(state);
+  s.rhs.setZero();
+  if (!s.add_node_masses(state, given) || !s.factor(state)) return false;
+  bodies = s.solution_by_body();
+  nodes = node_jumps(bodies);
+  return true;
 }
 
 std::vector<double> InstantSolver::node_jumps(std::span<const Vec6> bodies) {

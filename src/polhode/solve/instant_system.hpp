@@ -129,9 +129,14 @@ struct InstantSolver::Impl {
     }
   }
   /// Adds masses and forces of the solids to the bodies'; for impulses there are no forces.
-  [[nodiscard]] bool add_nodes(const State& state, bool impulses = false) {
-    if (!nodes) return true;
-    if (!(impulses ? nodes->take_masses(state) : nodes->take(state))) return false;
+  [[nodiscard]] bool add_nodes(const State& state) {
+    return !nodes || (nodes->take(state) && put_nodes());
+  }
+  /// The same for impulses, with jumps of prescribed components that are given.
+  [[nodiscard]] bool add_node_masses(const State& state, std::span<const double> given = {}) {
+    return !nodes || (nodes->take_masses(state, given) && put_nodes());
+  }
+  bool put_nodes() {
     const double per_mass = 1.0 / system.mean_mass();
     std::vector<Vec6> force(static_cast<std::size_t>(system.body_count()), Vec6::Zero());
     nodes->put(per_mass, force, values.diagonal, cliques());

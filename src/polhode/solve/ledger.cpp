@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/solve/ledger.hpp>
 #include <polhode/solve/tree_engine.hpp>
@@ -8,6 +9,11 @@
 namespace polhode {
 
 namespace {
+
+/// Rounding of a sum of numbers, as a part of them.
+constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+/// What rounding can do reads as a drift of at most this.
+constexpr double kReadsAs = 1e-10;
 
 std::vector<int> with_work(const System& system) {
   std::vector<int> list;
@@ -144,6 +150,8 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
     l.impulse[i].add(dt * impulse[i]);
     l.angular_impulse[i].add(dt * turning[i]);
   }
+  outside_force_ = impulse.norm();
+  outside_moment_ = turning.norm();
 }
 
 void LedgerKeeper::add(State& state, const Work& work) {
@@ -155,6 +163,18 @@ void LedgerKeeper::add(State& state, const Work& work) {
 void LedgerKeeper::add_jump(State& state, const BodySums& before) {
   const BodySums after = sums(state);
   state.ledger.dissipated.add(before.kinetic - after.kinetic);
+  add_impulses(state, before, after);
+}
+
+void LedgerKeeper::add_driven_jump(State& state, const BodySums& before) {
+  at_n_ = sums(state);
+  state.ledger.put_in.add(at_n_.kinetic - before.kinetic);
+  add_impulses(state, before, at_n_);
+  if (!sums_are_of_state_) potential_ = stored(state);
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::add_impulses(State& state, const BodySums& before, const BodySums& after) {
   for (int i = 0; i < 3; ++i) {
     state.ledger.impulse[i].add(after.p[i] - before.p[i]);
     state.ledger.angular_impulse[i].add(after.l[i] - before.l[i]);
@@ -167,10 +187,16 @@ void LedgerKeeper::after_commit(State& state, const Trial& trial) {
   // Gravity: m g at the centres of mass, averaged as all positions are.
   const Vec3 moment = (1.0 - alpha_f) * vec(at_n_.mr) + alpha_f * vec(at_n1_.mr);
   const Vec3 f = total_mass_ * system_->gravity(), m = moment.cross(system_->gravity());
+  Ledger& l = state.ledger;
   for (int i = 0; i < 3; ++i) {
-    state.ledger.impulse[i].add(dt * f[i]);
-    state.ledger.angular_impulse[i].add(dt * m[i]);
+    l.impulse[i].add(dt * f[i]);
+    l.angular_impulse[i].add(dt * m[i]);
   }
+  const double p = dt * (f.norm() + outside_force_), g = system_->gravity().norm();
+  const double lever =
+      dt * (g * moment.norm() + f.norm() * system_->length_scale() + outside_moment_);
+  l.p_noise += (kRounding * p) * (kRounding * p);
+  l.l_noise += (kRounding * lever) * (kRounding * lever);
   at_n_ = at_n1_;
   sums_are_of_state_ = true;
 }
@@ -190,6 +216,10 @@ void LedgerKeeper::close_step(State& state) {
   l.l_scale = std::max(l.l_scale, s.l_scale);
   l.energy_drift = std::max(l.energy_drift, std::abs(energy - l.initial_energy - l.put_in.value() +
                                                      l.dissipated.value()));
+  const double g = system_->gravity().norm();
+  l.energy_noise = std::max(l.energy_noise,
+                            kRounding * (s.kinetic + std::abs(potential_) + g * vec(s.mr).norm() +
+                                         total_mass_ * g * system_->length_scale()));
   double p = 0.0, angular = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double dp = s.p[i] - l.initial_p[i] - l.impulse[i].value();
@@ -199,6 +229,16 @@ void LedgerKeeper::close_step(State& state) {
   }
   l.p_drift = std::max(l.p_drift, std::sqrt(p));
   l.l_drift = std::max(l.l_drift, std::sqrt(angular));
+}
+
+Drifts drifts(const Ledger& l) {
+  const auto relative = [](double drift, double scale, double noise) {
+    const double floor = std::max(scale, noise / kReadsAs);
+    return floor > 0.0 ? drift / floor : drift;
+  };
+  return {relative(l.energy_drift, l.energy_scale, l.energy_noise),
+          relative(l.p_drift, l.p_scale, std::sqrt(l.p_noise)),
+          relative(l.l_drift, l.l_scale, std::sqrt(l.l_noise))};
 }
 
 Balance LedgerKeeper::balance(const State& state) const {

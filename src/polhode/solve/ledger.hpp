@@ -17,6 +17,13 @@ struct Balance {
   Vec3 linear_momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
 };
 
+/// Largest drifts over the largest magnitudes reached, and these at least so large that rounding
+/// alone does not read as a drift [-]. @eq{drift-floor}
+struct Drifts {
+  double energy = 0.0, linear_momentum = 0.0, angular_momentum = 0.0;
+};
+[[nodiscard]] Drifts drifts(const Ledger& ledger);
+
 /// Keeps the balance of energy and momenta: what loads and ground put in over each step, and how
 /// far what the bodies hold is from that.
 class LedgerKeeper {
@@ -33,6 +40,8 @@ class LedgerKeeper {
   void add(State& state, const Work& work);
   /// Velocities have jumped: what they lost, and what stands still took, since `before`.
   void add_jump(State& state, const BodySums& before);
+  /// The same where a prescribed motion made them jump: what they gained is its work.
+  void add_driven_jump(State& state, const BodySums& before);
   [[nodiscard]] BodySums sums(const State& state) const;
   /// The next call is about another state than the last one.
   void forget() { sums_are_of_state_ = false; }
@@ -42,6 +51,7 @@ class LedgerKeeper {
 
  private:
   [[nodiscard]] double stored(const State& state) const;
+  void add_impulses(State& state, const BodySums& before, const BodySums& after);
 
   const System* system_;
   const LaneKernels* kernels_;
@@ -59,7 +69,8 @@ class LedgerKeeper {
   };
   std::vector<CoupledMass> coupled_;  ///< Kinetic energy that interactions hold.
   std::vector<BodyStep> steps_;
-  BodySums at_n_, at_n1_;  ///< Of the state before and after the step.
+  BodySums at_n_, at_n1_;                              ///< Of the state before and after the step.
+  double outside_force_ = 0.0, outside_moment_ = 0.0;  ///< Over the last step [N, N m].
   bool sums_are_of_state_ = false;
   double potential_ = 0.0;  ///< Stored by the interactions at the state.
 };

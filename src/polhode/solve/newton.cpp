@@ -186,6 +186,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (c.work_defect <= allowed || system.rows() == 0 || stagnates) {
       engine.end_step(state, trial);
       report.converged = true;
+      report.hard = report.iterations > options.max_iterations;
       return report;
     }
   }
@@ -193,7 +194,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   if (close &&
       (kept || (polished && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     engine.end_step(state, trial);
-    report.converged = true;
+    report.converged = report.hard = true;
     return report;
   }
   fail(format("has not converged in {} iterations", options.max_iterations));

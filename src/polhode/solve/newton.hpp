@@ -29,6 +29,7 @@ struct NewtonReport {
   int iterations = 0;
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double rotation = 0.0;           ///< Largest |Θ| of the step [-].
+  bool hard = false;   ///< Converged, but slowly: it needed more iterations than it has.
   std::string reason;  ///< If not converged: "contracts too slowly", "turns too far" ...
   std::string worst;   ///< Largest increment: "body 'forearm'".
   ConstraintCheck constraints;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <polhode/solve/node_inertia.hpp>
 
 namespace polhode {
-
-namespace {
-
-/// Over this time a prescribed motion is differenced for its acceleration [s].
-constexpr double kDifference = 1e-4;
-
-}  // namespace
 
 NodeInertia::NodeInertia(const System& system) : system_(&system), condensation_(system) {
   const Nodes& nodes = system.nodes();
@@ -44,27 +39,34 @@ bool NodeInertia::take(const State& state) {
     const Vec3 omega = m.omega();
     Eigen::Map<Vec3>(gamma_.data() + 3 * i) = omega.cross(omega.cross(m.q * nodes[i].Z));
   }
-  for (const PrescribedComponent& p : nodes.prescribed()) {
-    const TimeFunction& d = *p.displacement;
-    const double t = state.t, h = kDifference;
-    gamma_[3 * p.node + p.component] = (d(t + h) - 2.0 * d(t) + d(t - h)) / (h * h);
-  }
+  for (const PrescribedComponent& p : nodes.prescribed())
+    gamma_[3 * p.node + p.component] = p.displacement->rates(state.t, TimeSide::kAfter).second;
   for (int i = 0; i < nodes.count(); ++i) {
-    Vec3 M_gamma = Vec3::Zero();
-    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
-      M_gamma += nodes.mass()[b] * Eigen::Map<const Vec3>(gamma_.data() + 3 * nodes.column()[b]);
     Eigen::Map<Vec3> R(residual_.data() + 3 * i);
-    R = M_gamma - R - nodes.node_mass(i) * system_->gravity();
+    R = M_gamma(i) - R - nodes.node_mass(i) * system_->gravity();
   }
   return condense();
 }
 
-bool NodeInertia::take_masses(const State& state) {
+Vec3 NodeInertia::M_gamma(int node) const {
+  const Nodes& nodes = system_->nodes();
+  Vec3 sum = Vec3::Zero();
+  for (int b = nodes.row_start()[node]; b < nodes.row_start()[node + 1]; ++b)
+    sum += nodes.mass()[b] * Eigen::Map<const Vec3>(gamma_.data() + 3 * nodes.column()[b]);
+  return sum;
+}
+
+bool NodeInertia::take_masses(const State& state, std::span<const double> given) {
   trial_.context.t_n = state.t;
   trial_.context.dt = 0.0;
   start_trial(*system_, state, trial_);
   residual_.assign(state.node_x.size(), 0.0);
   gamma_.assign(state.node_x.size(), 0.0);
+  if (!given.empty()) {
+    std::copy(given.begin(), given.end(), gamma_.begin());
+    for (int i = 0; i < system_->nodes().count(); ++i)
+      Eigen::Map<Vec3>(residual_.data() + 3 * i) = M_gamma(i);
+  }
   return condense();
 }
 

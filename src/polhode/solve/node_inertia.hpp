@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <polhode/solve/node_condensation.hpp>
@@ -20,7 +21,8 @@ class NodeInertia {
   [[nodiscard]] bool take(const State& state);
   /// The same where nothing acts and nothing turns: impulses instead of forces, and jumps of
   /// velocities instead of accelerations.
-  [[nodiscard]] bool take_masses(const State& state);
+  /// @param given  Jumps of prescribed components, three a node, zero elsewhere; may be empty.
+  [[nodiscard]] bool take_masses(const State& state, std::span<const double> given = {});
   /// Adds the condensed mass and, to `force` by body, what the nodes exert, all times `scale`.
   void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
            std::span<KktValues::Pair> pairs);
@@ -32,6 +34,7 @@ class NodeInertia {
 
  private:
   [[nodiscard]] bool condense();
+  [[nodiscard]] Vec3 M_gamma(int node) const;  ///< Of a node [N].
 
   const System* system_;
   NodeCondensation condensation_;

@@ -58,6 +58,35 @@ double NodeLedger::stored(const State& state) const {
   return potential;
 }
 
+/// What the mean velocity of prescribed components is beyond their mean over the step: their
+/// inertia has taken the work of the one, the increments have that of the other.
+/// @eq{prescribed-work}
+void NodeLedger::add_lag(Ledger& ledger, const State& state, const Trial& trial,
+                         Vec3& moment) const {
+  const Nodes& nodes = system_->nodes();
+  if (nodes.prescribed().empty()) return;
+  const double dt = trial.context.dt;
+  std::vector<double> a, v;
+  node_accelerations(*system_, state, trial, a);
+  end_velocities(*system_, trial, v);
+  for (int i : held_) {
+    if (nodes.bonded(i)) continue;
+    Vec3 lag = Vec3::Zero();  // [m/s]
+    for (int c = 0; c < 3; ++c)
+      if (nodes.unknown(i, c) < 0)
+        lag[c] = 0.5 * (at(state.node_v, i)[c] + at(v, i)[c]) - at(trial.node_u, i)[c] / dt;
+    if (lag.isZero(0.0)) continue;
+    Vec3 force = Vec3::Zero(), momentum = Vec3::Zero();
+    for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b) {
+      const int j = nodes.column()[b];
+      force += nodes.mass()[b] * at(a, j);
+      momentum += 0.5 * nodes.mass()[b] * (at(state.node_v, j) + at(v, j));
+    }
+    ledger.put_in.add(dt * lag.dot(force));
+    moment -= lag.cross(momentum);
+  }
+}
+
 double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3& force,
                          Vec3& moment) {
   const Nodes& nodes = system_->nodes();
@@ -85,6 +114,7 @@ double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3&
       ledger.put_in.add(f.dot(at(trial.node_u, i)));
       add(i, f);
     }
+    add_lag(ledger, state, trial, moment);
   }
   for (int g : external_) {
     forces_.assign(trial.node_x.size(), 0.0);

@@ -24,6 +24,8 @@ class NodeLedger {
   double close(Ledger& ledger, const State& state, Trial& trial, Vec3& force, Vec3& moment);
 
  private:
+  void add_lag(Ledger& ledger, const State& state, const Trial& trial, Vec3& moment) const;
+
   const System* system_;
   NodeSystem nodes_;
   std::vector<int> held_;      ///< Nodes that the ground or a prescribed motion moves.

@@ -19,6 +19,11 @@ Mat3 lane(const double (&x)[9][kLanes], int l) {
   return M;
 }
 
+/// Place of a prescribed component among those of all nodes.
+std::size_t place(const PrescribedComponent& p) {
+  return 3 * static_cast<std::size_t>(p.node) + static_cast<std::size_t>(p.component);
+}
+
 }  // namespace
 
 void predict_nodes(const System& system, const State& state, Trial& trial,
@@ -40,10 +45,15 @@ void predict_nodes(const System& system, const State& state, Trial& trial,
     trial.node_u[k] = c.dt * v;
     trial.node_x[k] = state.node_x[k] + trial.node_u[k];
   }
+  // The end of the step belongs to it: at a kink there the limit from within.
+  const TimeSide within = c.dt >= 0.0 ? TimeSide::kBefore : TimeSide::kAfter;
+  trial.prescribed_v.clear();
   for (const PrescribedComponent& p : nodes.prescribed()) {
-    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
-    trial.node_x[k] = nodes[p.node].position[p.component] + (*p.displacement)(c.t_n1());
+    const std::size_t k = place(p);
+    const TimeRates d = p.displacement->rates(c.t_n1(), within);
+    trial.node_x[k] = nodes[p.node].position[p.component] + d.value;
     trial.node_u[k] = trial.node_x[k] - state.node_x[k];
+    trial.prescribed_v.push_back(d.rate);
   }
   follow_bodies(system, state, trial);
   update_node_velocities(system, state, trial);
@@ -82,6 +92,14 @@ void update_node_velocities(const System&, const State& state, Trial& trial) {
     trial.node_v[k] += dt * ga.c_A * state.node_a[k];
 }
 
+/// @eq{prescribed-velocity}
+void end_velocities(const System& system, const Trial& trial, std::vector<double>& v) {
+  v = trial.node_v;
+  const auto& prescribed = system.nodes().prescribed();
+  for (std::size_t i = 0; i < prescribed.size(); ++i)
+    v[place(prescribed[i])] = trial.prescribed_v[i];
+}
+
 void shorten_motion(const System& system, const State& state, double part, Trial& trial) {
   for (int slot = 0; slot < system.tree().slots; ++slot) {
     const TrialBlock& t = trial.blocks[static_cast<std::size_t>(slot / kLanes)];
@@ -91,12 +109,10 @@ void shorten_motion(const System& system, const State& state, double part, Trial
   if (system.nodes().empty()) return;
   std::vector<double> given;
   for (const PrescribedComponent& p : system.nodes().prescribed())
-    given.push_back(trial.node_u[3 * static_cast<std::size_t>(p.node) + p.component]);
+    given.push_back(trial.node_u[place(p)]);
   for (double& u : trial.node_u) u *= part;
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    const PrescribedComponent& p = system.nodes().prescribed()[k];
-    trial.node_u[3 * static_cast<std::size_t>(p.node) + p.component] = given[k];
-  }
+  for (std::size_t k = 0; k < given.size(); ++k)
+    trial.node_u[place(system.nodes().prescribed()[k])] = given[k];
   for (std::size_t k = 0; k < trial.node_u.size(); ++k)
     trial.node_x[k] = state.node_x[k] + trial.node_u[k];
   follow_bodies(system, state, trial);
@@ -128,12 +144,13 @@ NodeStep node_instant(const State& state, const StepContext& context) {
           .rate = 0.0};
 }
 
-void node_accelerations(const State& state, const Trial& trial, std::vector<double>& a) {
+void node_accelerations(const System& system, const State& state, const Trial& trial,
+                        std::vector<double>& a) {
   const GeneralizedAlpha& ga = trial.context.ga;
   const double per_dt = ga.kappa / trial.context.dt;
-  a.resize(trial.node_v.size());
+  end_velocities(system, trial, a);
   for (std::size_t k = 0; k < a.size(); ++k)
-    a[k] = per_dt * (trial.node_v[k] - state.node_v[k]) + (1.0 - ga.kappa) * state.node_a[k];
+    a[k] = per_dt * (a[k] - state.node_v[k]) + (1.0 - ga.kappa) * state.node_a[k];
 }
 
 void commit_nodes(const System& system, State& state, const Trial& trial) {
@@ -146,12 +163,32 @@ void commit_nodes(const System& system, State& state, const Trial& trial) {
   const GeneralizedAlpha& ga = trial.context.ga;
   const double dt = trial.context.dt;
   double* past = state.node_past.data() + state.past_next * state.node_x.size();
+  std::vector<double> v, prescribed_a;
+  end_velocities(system, trial, v);
+  // Newmark's accelerations: those of the positions, and where these are prescribed of the
+  // velocities.
+  for (const PrescribedComponent& p : nodes.prescribed()) {
+    const std::size_t k = place(p);
+    const double mean = (v[k] - state.node_v[k]) / dt;
+    prescribed_a.push_back(mean + (1.0 - 1.0 / ga.gamma) * (state.node_a[k] - mean));
+  }
   for (std::size_t k = 0; k < state.node_x.size(); ++k) {
     past[k] = trial.node_u[k] / dt;
     state.node_a[k] = (trial.node_u[k] / dt - state.node_v[k]) / (ga.beta * dt) +
                       (1.0 - 0.5 / ga.beta) * state.node_a[k];
-    state.node_v[k] = trial.node_v[k];
+    state.node_v[k] = v[k];
     state.node_x[k] = trial.node_x[k];
+  }
+  for (std::size_t i = 0; i < prescribed_a.size(); ++i)
+    state.node_a[place(nodes.prescribed()[i])] = prescribed_a[i];
+}
+
+void start_prescribed(const System& system, State& state) {
+  const Nodes& nodes = system.nodes();
+  for (const PrescribedComponent& p : nodes.prescribed()) {
+    const TimeRates d = p.displacement->rates(state.t, TimeSide::kAfter);
+    state.node_x[place(p)] = nodes[p.node].position[p.component] + d.value;
+    state.node_v[place(p)] = d.rate;
   }
 }
 

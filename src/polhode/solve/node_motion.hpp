@@ -16,8 +16,11 @@ void predict_nodes(const System& system, const State& state, Trial& trial,
                    const PredictWeights& weights);
 /// Bonded nodes after their bodies have moved: x = r + Λ Z. Velocities of all nodes if `rates`.
 void follow_bodies(const System& system, const State& state, Trial& trial);
-/// Velocities at t_{n+1} from the increments, all nodes.
+/// Newmark velocities at t_{n+1} from the increments, all nodes: with those at t_n they make the
+/// mean over the step, by which elements damp.
 void update_node_velocities(const System& system, const State& state, Trial& trial);
+/// Velocities that the nodes have at t_{n+1}: Newmark's, and where a motion is prescribed its rate.
+void end_velocities(const System& system, const Trial& trial, std::vector<double>& v);
 /// Leaves a part of the trial's motion over the step, of bodies and of nodes. Prescribed components
 /// go where they must.
 void shorten_motion(const System& system, const State& state, double part, Trial& trial);
@@ -27,9 +30,12 @@ void shorten_motion(const System& system, const State& state, double part, Trial
 [[nodiscard]] NodeStep node_instant(const State& state, const StepContext& context);
 /// Rate of the nodes' momentum at t_{n+αm} per mass: accelerations, three a node.
 /// @eq{eq:ga-momenta-Newmark}
-void node_accelerations(const State& state, const Trial& trial, std::vector<double>& a);
+void node_accelerations(const System& system, const State& state, const Trial& trial,
+                        std::vector<double>& a);
 /// Moves the state's nodes and the elements' histories to t_{n+1}. Bodies have been committed.
 void commit_nodes(const System& system, State& state, const Trial& trial);
+/// Puts prescribed components where they begin, with the rates that they begin with.
+void start_prescribed(const System& system, State& state);
 /// Puts bonded nodes of a state where their bodies are, with the velocities of these.
 void bond_nodes(const System& system, State& state);
 

@@ -69,7 +69,7 @@ void NodeSystem::add_inertia(const State& state, const Trial& trial, bool tangen
   for (int i = 0; i < nodes.count(); ++i)
     for (int c = 0; c < 3; ++c) residual_[3 * i + c] -= nodes.node_mass(i) * g[c];
   if (static_) return;
-  node_accelerations(state, trial, acceleration_);
+  node_accelerations(*system_, state, trial, acceleration_);
   const double dt = trial.context.dt;
   const double k = trial.context.ga.alpha_m / (trial.context.ga.beta * dt * dt);
   for (int i = 0; i < nodes.count(); ++i)

@@ -192,6 +192,7 @@ StartReport start(const System& system, State& state, const GeneralizedAlpha& ga
   report.velocity_residual = velocities.residual_before;
   report.velocity_change = velocities.largest_change;
   initialize_histories(system, state);
+  start_prescribed(system, state);
   bond_nodes(system, state);
   if (options.multipliers || ga.rho_inf < 1.0)
     report.consistent = start_accelerations(system, solver, state, ga, dt);

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include <polhode/base/format.hpp>
+#include <polhode/solve/prescribed_kinks.hpp>
 #include <polhode/solve/single_step.hpp>
+#include <polhode/solve/step_error.hpp>
 #include <polhode/solve/stepper.hpp>
 #include <polhode/time/composition.hpp>
 
@@ -28,6 +30,7 @@ constexpr int kEasySteps = 3, kFewIterations = 4;
 struct Stepper::Impl {
   const System& system;
   SingleStep single;
+  PrescribedKinks kinks;
   StepControl control;
   std::vector<double> stages;          ///< Of the order.
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
@@ -35,7 +38,7 @@ struct Stepper::Impl {
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
        const StepControl& c, const LaneKernels& kernels)
-      : system(s), single(s, std::move(engine), ga, kernels, c.conserving), control(c) {
+      : system(s), single(s, std::move(engine), ga, kernels, c.conserving), kinks(s), control(c) {
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
     // Companions have their stages doubled too: an odd number of single steps would end with the
@@ -248,6 +251,18 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
           state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));
           state.easy_steps = 0;
         }
+      }
+      if (!composed) {
+        if (const auto estimate = error_of_last_step(system, state)) record_error(state, *estimate);
+      } else if (automatic()) {
+        record_error(state, {state.error_last, -1, -1});
+      }
+      if (report.newton.hard && state.ledger.errors.hard++ == 0)
+        state.ledger.errors.hard_time = state.t;
+      if (kinks.find(state)) {
+        const BodySums sums = single.ledger().sums(state);
+        kinks.settle(state);
+        single.ledger().add_driven_jump(state, sums);
       }
       ++state.ledger.steps;
       single.ledger().close_step(state);

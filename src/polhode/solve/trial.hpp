@@ -15,6 +15,7 @@ struct Trial {
   std::vector<double> lambda;      ///< By row, current iterate.
   // Nodes of deformable solids at t_{n+1}, three numbers each.
   std::vector<double> node_x, node_u, node_v;  ///< Position [m], x_{n+1} − x_n [m], velocity [m/s].
+  std::vector<double> prescribed_v;            ///< At t_{n+1}, of prescribed components [m/s].
   std::vector<double> element_scratch;         ///< Of groups of elements: internal unknowns, ...
   std::vector<double> lambda_centre;           ///< By row: proximal centre; zero until converged.
 
