@@ -2,9 +2,27 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 
 namespace polhode {
+
+/// A time at which a function is not smooth.
+struct TimeBreak {
+  double t = std::numeric_limits<double>::infinity();  ///< [s]; infinite: there is none.
+  int derivative = 0;  ///< The lowest one that jumps there: 0 the value itself, 1 the slope, ...
+
+  [[nodiscard]] bool exists() const { return t < std::numeric_limits<double>::infinity(); }
+};
+
+/// Two breaks closer than this part of their time are one [-].
+inline constexpr double kSameBreak = 0x1p-46;
+
+/// Bounds of a function over a span of time, in its unit.
+struct TimeBounds {
+  double size = 0.0;       ///< Of |f|.
+  double curvature = 0.0;  ///< Of |f''|, breaks left out [1/s²].
+};
 
 /// A number that may depend on time: constant, expression in t, or table. SI units.
 class TimeFunction {
@@ -12,6 +30,11 @@ class TimeFunction {
   virtual ~TimeFunction() = default;
   [[nodiscard]] virtual double operator()(double t) const = 0;
   [[nodiscard]] virtual bool is_constant() const { return false; }
+  /// The first break after t, up to `until`. What it returns hangs on neither t nor `until`, so
+  /// that a run that is continued meets the same ones.
+  [[nodiscard]] virtual TimeBreak next_break(double /*t*/, double /*until*/) const { return {}; }
+  /// Bounds over [from, to]; by default from samples, which see no change shorter than a 64th.
+  [[nodiscard]] virtual TimeBounds bounds(double from, double to) const;
 };
 using TimeFunctionPtr = std::shared_ptr<const TimeFunction>;
 

@@ -83,6 +83,15 @@ std::vector<double> spline_curvatures(const std::vector<double>& t, const std::v
 
 }  // namespace
 
+TimeBounds ConstantFunction::bounds(double, double) const { return {std::abs(value_), 0.0}; }
+
+TimeBounds ExpressionFunction::bounds(double from, double to) const {
+  const TimeBounds b = expression_->bounds(from, to);
+  // Roots and poles have infinite slopes: samples show how fast it goes on from there.
+  if (!std::isfinite(b.size) || !std::isfinite(b.curvature)) return TimeFunction::bounds(from, to);
+  return {std::abs(factor_) * b.size, std::abs(factor_) * b.curvature};
+}
+
 TableFunction::TableFunction(std::vector<double> times, std::vector<double> values,
                              Interpolation interpolation, bool periodic)
     : times_(std::move(times)),
@@ -93,12 +102,16 @@ TableFunction::TableFunction(std::vector<double> times, std::vector<double> valu
     curvatures_ = spline_curvatures(times_, values_, periodic_);
 }
 
+double TableFunction::in_table(double t) const {
+  if (!periodic_) return t;
+  const double first = times_.front(), period = times_.back() - first;
+  t = first + std::fmod(t - first, period);
+  return t < first ? t + period : t;
+}
+
 double TableFunction::operator()(double t) const {
   const double first = times_.front(), last = times_.back();
-  if (periodic_) {
-    t = first + std::fmod(t - first, last - first);
-    if (t < first) t += last - first;
-  }
+  t = in_table(t);
   if (!(t > first)) return values_.front();
   if (t >= last)
     return periodic_ && interpolation_ == Interpolation::kStep ? values_.front() : values_.back();
@@ -111,6 +124,52 @@ double TableFunction::operator()(double t) const {
   if (interpolation_ == Interpolation::kLinear) return straight;
   return straight +
          h * h / 6.0 * ((a * a * a - a) * curvatures_[k] + (b * b * b - b) * curvatures_[k + 1]);
+}
+
+TimeBreak TableFunction::next_break(double t, double until) const {
+  const double after = t + kSameBreak * std::abs(t);
+  const double first = times_.front(), period = times_.back() - first;
+  const double turns = periodic_ ? std::floor((after - first) / period) : 0.0;
+  auto point = std::upper_bound(times_.begin(), times_.end(), after - turns * period);
+  double at = 0.0;
+  if (point != times_.end()) {
+    at = *point + turns * period;
+  } else if (periodic_) {  // the period's end is its first point
+    point = times_.begin() + 1;
+    at = *point + (turns + 1.0) * period;
+  } else {
+    return {};
+  }
+  if (!(at > after) || at > until) return {};
+  if (interpolation_ == Interpolation::kStep) return {at, 0};
+  if (interpolation_ == Interpolation::kLinear) return {at, 1};
+  // The end value holds before and after a table: a spline has a slope there.
+  const bool at_end = point == times_.begin() || point + 1 == times_.end();
+  return {at, at_end && !periodic_ ? 1 : 3};
+}
+
+TimeBounds TableFunction::bounds(double from, double to) const {
+  TimeBounds b{std::max(std::abs((*this)(from)), std::abs((*this)(to))), 0.0};
+  const double period = times_.back() - times_.front();
+  const double start = in_table(from), end = start + (to - from);
+  const auto over = [&](double low, double high) {
+    auto k = std::upper_bound(times_.begin(), times_.end(), low) - times_.begin();
+    k = std::max<std::ptrdiff_t>(k - 1, 0);
+    for (auto i = static_cast<std::size_t>(k); i < times_.size(); ++i) {
+      if (times_[i] >= high) return;
+      if (times_[i] >= low) b.size = std::max(b.size, std::abs(values_[i]));
+      if (interpolation_ != Interpolation::kCubic || i + 1 == times_.size()) continue;
+      const double h = times_[i + 1] - times_[i];
+      const double M = std::max(std::abs(curvatures_[i]), std::abs(curvatures_[i + 1]));
+      b.curvature = std::max(b.curvature, M);
+      b.size = std::max(b.size,
+                        std::max(std::abs(values_[i]), std::abs(values_[i + 1])) + h * h / 8.0 * M);
+    }
+  };
+  over(start, end);
+  if (periodic_) over(start - period, end - period);
+  if (periodic_ && to - from >= period) over(times_.front(), times_.back() + period);
+  return b;
 }
 
 }  // namespace polhode

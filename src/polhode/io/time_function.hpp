@@ -16,6 +16,7 @@ class ConstantFunction final : public TimeFunction {
   explicit ConstantFunction(double value) : value_(value) {}
   [[nodiscard]] double operator()(double) const override { return value_; }
   [[nodiscard]] bool is_constant() const override { return true; }
+  [[nodiscard]] TimeBounds bounds(double, double) const override;
 
  private:
   double value_;
@@ -27,6 +28,10 @@ class ExpressionFunction final : public TimeFunction {
   ExpressionFunction(std::shared_ptr<const Expression> expression, double factor)
       : expression_(std::move(expression)), factor_(factor) {}
   [[nodiscard]] double operator()(double t) const override { return factor_ * (*expression_)(t); }
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override {
+    return expression_->next_break(t, until);
+  }
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
 
  private:
   std::shared_ptr<const Expression> expression_;
@@ -48,8 +53,15 @@ class TableFunction final : public TimeFunction {
   TableFunction(std::vector<double> times, std::vector<double> values, Interpolation interpolation,
                 bool periodic);
   [[nodiscard]] double operator()(double t) const override;
+  /// The points: the value jumps at those of kStep, the slope at those of kLinear, the third
+  /// derivative at those of kCubic.
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override;
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
 
  private:
+  /// The time in the table that t stands for: of a periodic one, within its first period.
+  [[nodiscard]] double in_table(double t) const;
+
   std::vector<double> times_, values_;
   std::vector<double> curvatures_;  ///< Second derivatives at the points, of kCubic.
   Interpolation interpolation_;
