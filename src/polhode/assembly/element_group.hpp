@@ -72,6 +72,8 @@ class ElementGroup {
   [[nodiscard]] virtual bool dissipates() const { return false; }
   /// Acts from outside: its forces need not cancel, and the ledger counts their impulse.
   [[nodiscard]] virtual bool external() const { return false; }
+  /// The functions of time that its forces follow; null where there is none.
+  [[nodiscard]] virtual std::vector<TimeFunctionPtr> time_functions() const { return {}; }
   [[nodiscard]] virtual std::size_t history_size() const { return 0; }  ///< Of the whole group.
   [[nodiscard]] virtual std::size_t scratch_size() const { return 0; }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <polhode/assembly/motion_basis.hpp>
+#include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
 #include <polhode/time/body_step.hpp>
 
@@ -110,6 +111,8 @@ struct InteractionItem {
   [[nodiscard]] double coupled_mass() const { return 0.0; }
   /// How far it reaches from its bodies [m]: for scales of length.
   [[nodiscard]] double reach() const { return 0.0; }
+  /// The functions of time that its force follows; components that are not there may be null.
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {}; }
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
@@ -160,6 +163,7 @@ class InteractionGroup {
   virtual void reverse(int i) = 0;  ///< Before the system is finished.
   [[nodiscard]] virtual double coupled_mass(int i) const = 0;
   [[nodiscard]] virtual double reach(int i) const = 0;
+  [[nodiscard]] virtual std::vector<TimeFunctionPtr> time_functions(int i) const = 0;
 
   /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
   virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
@@ -201,6 +205,9 @@ class Group final : public InteractionGroup {
   void reverse(int i) override { items[static_cast<std::size_t>(i)].reverse(); }
   double coupled_mass(int i) const override { return at(i).coupled_mass(); }
   double reach(int i) const override { return at(i).reach(); }
+  std::vector<TimeFunctionPtr> time_functions(int i) const override {
+    return at(i).time_functions();
+  }
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {
     for (std::size_t k = 0; k < list.size(); ++k) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <polhode/base/time_function.hpp>
 
@@ -9,12 +8,10 @@ namespace polhode {
 
 namespace {
 
-/// Rounding of times, in units of the last place: sums such as 7 · 0.1 s are off by a few.
-constexpr double kTimeRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// Values that differ by less than this part of them are the same.
 constexpr double kSame = 1e-10;
 
-double shift(double t) { return kTimeRounding * std::max(std::abs(t), 1e-6); }
+double shift(double t) { return 2.0 * kSameBreak * std::max(std::abs(t), 1e-6); }
 
 }  // namespace
 
@@ -35,6 +32,22 @@ TimeRates TimeFunction::rates(double t, TimeSide side) const {
   const double f0 = (*this)(at), f1 = (*this)(at + h), f2 = (*this)(at + 2.0 * h);
   if (is_constant()) return {f0, 0.0, 0.0};
   return {f0, (4.0 * f1 - 3.0 * f0 - f2) / (2.0 * h), (f0 - 2.0 * f1 + f2) / (h * h)};
+}
+
+TimeBounds TimeFunction::bounds(double from, double to) const {
+  constexpr int kParts = 64;
+  const double h = (to - from) / kParts;
+  TimeBounds bounds;
+  double before = 0.0, last = 0.0;
+  for (int k = 0; k <= kParts; ++k) {
+    const double now = (*this)(from + h * k);
+    bounds.size = std::max(bounds.size, std::abs(now));
+    if (k > 1 && h > 0.0)
+      bounds.curvature = std::max(bounds.curvature, std::abs(now - 2.0 * last + before) / (h * h));
+    before = last;
+    last = now;
+  }
+  return bounds;
 }
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 
 namespace polhode {
@@ -14,6 +15,22 @@ struct TimeRates {
   double value = 0.0;
   double rate = 0.0;    ///< [1/s]
   double second = 0.0;  ///< [1/s²]
+
+/// A time at which a function is not smooth.
+struct TimeBreak {
+  double t = std::numeric_limits<double>::infinity();  ///< [s]; infinite: there is none.
+  int derivative = 0;  ///< The lowest one that jumps there: 0 the value itself, 1 the slope, ...
+
+  [[nodiscard]] bool exists() const { return t < std::numeric_limits<double>::infinity(); }
+};
+
+/// Two breaks closer than this part of their time are one [-].
+inline constexpr double kSameBreak = 0x1p-46;
+
+/// Bounds of a function over a span of time, in its unit.
+struct TimeBounds {
+  double size = 0.0;       ///< Of |f|.
+  double curvature = 0.0;  ///< Of |f''|, breaks left out [1/s²].
 };
 
 /// A number that may depend on time: constant, expression in t, or table. SI units.
@@ -25,6 +42,12 @@ class TimeFunction {
   /// Limits from one side of t. Here by differences over 0.2 ms on that side: for functions that
   /// do not know better, with an error of order (0.1 ms)².
   [[nodiscard]] virtual TimeRates rates(double t, TimeSide side) const;
+
+  /// The first break after t, up to `until`. What it returns hangs on neither t nor `until`, so
+  /// that a run that is continued meets the same ones.
+  [[nodiscard]] virtual TimeBreak next_break(double /*t*/, double /*until*/) const { return {}; }
+  /// Bounds over [from, to]; by default from samples, which see no change shorter than a 64th.
+  [[nodiscard]] virtual TimeBounds bounds(double from, double to) const;
 };
 using TimeFunctionPtr = std::shared_ptr<const TimeFunction>;
 

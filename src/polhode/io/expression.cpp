@@ -150,6 +150,35 @@ TimeRates Expression::rates(double t, TimeSide side) const {
   return {jet.value, jet.rate, jet.second};
 }
 
+void Expression::fold_constants() {
+  struct Value {
+    std::size_t start;
+    bool constant;
+  };
+  std::vector<Value> values;
+  Expression folded;
+  std::vector<Instruction>& program = folded.program_;
+  for (const Instruction& i : program_) {
+    const auto taken = static_cast<std::ptrdiff_t>(operands(i.op));
+    Value result{program.size(), i.op != ExpressionOp::kTime};
+    for (auto v = values.end() - taken; v != values.end(); ++v) {
+      result.start = std::min(result.start, v->start);
+      result.constant = result.constant && v->constant;
+    }
+    values.erase(values.end() - taken, values.end());
+    program.push_back(i);
+    if (result.constant && taken > 0) {
+      Expression part;
+      const auto from = program.begin() + static_cast<std::ptrdiff_t>(result.start);
+      part.program_.assign(from, program.end());
+      program.erase(from, program.end());
+      program.push_back({ExpressionOp::kPush, part(0.0)});
+    }
+    values.push_back(result);
+  }
+  program_ = std::move(program);
+}
+
 std::optional<double> Expression::factor_to_si(const Dimension& wanted,
                                                const UnitSystem& units) const {
   if (type_.certainty == Certainty::kKnown) {

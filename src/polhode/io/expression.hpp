@@ -59,6 +59,13 @@ class Expression {
   /// differentiation. Conditions are those of that side.
   [[nodiscard]] TimeRates rates(double t, TimeSide side) const;
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
+  /// Where a condition, abs, sign, floor, min, max or atan2 goes over from one branch to another,
+  /// as TimeFunction::next_break: found by interval arithmetic, so that none is missed, however
+  /// short. Points at which two parts touch without one taking over are none.
+  [[nodiscard]] TimeBreak next_break(double t, double until) const;
+  /// As TimeFunction::bounds, by interval arithmetic on value, slope and second derivative; not
+  /// finite where an operation in [from, to] is not.
+  [[nodiscard]] TimeBounds bounds(double from, double to) const;
   [[nodiscard]] Certainty certainty() const { return type_.certainty; }
   [[nodiscard]] const Dimension& dimension() const { return type_.dimension; }
   /// The unit that was written with a number or behind an expression, if any.
@@ -77,6 +84,9 @@ class Expression {
   };
   template <class Number>
   [[nodiscard]] Number evaluate(const Number& t) const;
+
+  /// Replaces parts without t by their values.
+  void fold_constants();
 
   std::vector<Instruction> program_;
   Quantity type_;

@@ -92,6 +92,37 @@ inline constexpr std::array kExpressionFunctions = {
     ExpressionFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
 };
 
+/// How many values an operation takes from the stack.
+[[nodiscard]] constexpr int operands(ExpressionOp op) {
+  using Op = ExpressionOp;
+  switch (op) {
+    case Op::kPush:
+    case Op::kTime:
+      return 0;
+    case Op::kChoose:
+      return 3;
+    case Op::kAdd:
+    case Op::kSubtract:
+    case Op::kMultiply:
+    case Op::kDivide:
+    case Op::kPower:
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kAtan2:
+    case Op::kMin:
+    case Op::kMax:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
 /// Values at once on the stack; the parser refuses what needs more.
 inline constexpr int kStackSize = 128;
 

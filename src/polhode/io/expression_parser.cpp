@@ -97,6 +97,7 @@ class ExpressionParser {
       result_.program_.assign(1, {Op::kPush, value});
       result_.type_.value = value;
     }
+    result_.fold_constants();
   }
 
   [[nodiscard]] bool starts_unit() const {

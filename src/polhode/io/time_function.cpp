@@ -83,6 +83,15 @@ std::vector<double> spline_curvatures(const std::vector<double>& t, const std::v
 
 }  // namespace
 
+TimeBounds ConstantFunction::bounds(double, double) const { return {std::abs(value_), 0.0}; }
+
+TimeBounds ExpressionFunction::bounds(double from, double to) const {
+  const TimeBounds b = expression_->bounds(from, to);
+  // Roots and poles have infinite slopes: samples show how fast it goes on from there.
+  if (!std::isfinite(b.size) || !std::isfinite(b.curvature)) return TimeFunction::bounds(from, to);
+  return {std::abs(factor_) * b.size, std::abs(factor_) * b.curvature};
+}
+
 TableFunction::TableFunction(std::vector<double> times, std::vector<double> values,
                              Interpolation interpolation, bool periodic)
     : times_(std::move(times)),
@@ -93,19 +102,22 @@ TableFunction::TableFunction(std::vector<double> times, std::vector<double> valu
     curvatures_ = spline_curvatures(times_, values_, periodic_);
 }
 
-int TableFunction::interval(double& t) const {
+double TableFunction::in_table(double t) const {
+  if (!periodic_) return t;
   const double first = times_.front(), last = times_.back();
-  if (periodic_) {
-    t = first + std::fmod(t - first, last - first);
-    if (t < first) t += last - first;
-    if (t >= last) t = first;
-  }
-  if (t < first) return -1;
-  if (t >= last) return static_cast<int>(times_.size()) - 1;
+  t = first + std::fmod(t - first, last - first);
+  if (t < first) t += last - first;
+  return t < last ? t : first;
+}
+
+int TableFunction::interval(double t) const {
+  if (t < times_.front()) return -1;
+  if (t >= times_.back()) return static_cast<int>(times_.size()) - 1;
   return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin()) - 1;
 }
 
 double TableFunction::operator()(double t) const {
+  t = in_table(t);
   const int interval = this->interval(t);
   if (interval < 0) return values_.front();
   const auto k = static_cast<std::size_t>(interval);
@@ -119,19 +131,66 @@ double TableFunction::operator()(double t) const {
 }
 
 TimeRates TableFunction::rates(double t, TimeSide side) const {
-  t = beside(t, side);
-  TimeRates r{(*this)(t), 0.0, 0.0};
-  const int interval = this->interval(t);
+  const double near = beside(t, side), way = t - near, in = in_table(near);
+  TimeRates r{(*this)(near), 0.0, 0.0};
+  const int interval = this->interval(in);
   if (interval < 0 || interval + 1 >= static_cast<int>(times_.size())) return r;
   if (interpolation_ == Interpolation::kStep) return r;
   const auto k = static_cast<std::size_t>(interval);
-  const double h = times_[k + 1] - times_[k], b = (t - times_[k]) / h, a = 1.0 - b;
+  const double h = times_[k + 1] - times_[k], b = (in - times_[k]) / h, a = 1.0 - b;
   r.rate = (values_[k + 1] - values_[k]) / h;
-  if (interpolation_ == Interpolation::kLinear) return r;
-  r.rate +=
-      h / 6.0 * ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]);
-  r.second = a * curvatures_[k] + b * curvatures_[k + 1];
-  return r;
+  if (interpolation_ == Interpolation::kCubic) {
+    r.rate +=
+        h / 6.0 * ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]);
+    r.second = a * curvatures_[k] + b * curvatures_[k + 1];
+  }
+  return r.moved(way);
+}
+
+TimeBreak TableFunction::next_break(double t, double until) const {
+  const double after = t + kSameBreak * std::abs(t);
+  const double first = times_.front(), period = times_.back() - first;
+  const double turns = periodic_ ? std::floor((after - first) / period) : 0.0;
+  auto point = std::upper_bound(times_.begin(), times_.end(), after - turns * period);
+  double at = 0.0;
+  if (point != times_.end()) {
+    at = *point + turns * period;
+  } else if (periodic_) {  // the period's end is its first point
+    point = times_.begin() + 1;
+    at = *point + (turns + 1.0) * period;
+  } else {
+    return {};
+  }
+  if (!(at > after) || at > until) return {};
+  if (interpolation_ == Interpolation::kStep) return {at, 0};
+  if (interpolation_ == Interpolation::kLinear) return {at, 1};
+  // The end value holds before and after a table: a spline has a slope there.
+  const bool at_end = point == times_.begin() || point + 1 == times_.end();
+  return {at, at_end && !periodic_ ? 1 : 3};
+}
+
+TimeBounds TableFunction::bounds(double from, double to) const {
+  TimeBounds b{std::max(std::abs((*this)(from)), std::abs((*this)(to))), 0.0};
+  const double period = times_.back() - times_.front();
+  const double start = in_table(from), end = start + (to - from);
+  const auto over = [&](double low, double high) {
+    auto k = std::upper_bound(times_.begin(), times_.end(), low) - times_.begin();
+    k = std::max<std::ptrdiff_t>(k - 1, 0);
+    for (auto i = static_cast<std::size_t>(k); i < times_.size(); ++i) {
+      if (times_[i] >= high) return;
+      if (times_[i] >= low) b.size = std::max(b.size, std::abs(values_[i]));
+      if (interpolation_ != Interpolation::kCubic || i + 1 == times_.size()) continue;
+      const double h = times_[i + 1] - times_[i];
+      const double M = std::max(std::abs(curvatures_[i]), std::abs(curvatures_[i + 1]));
+      b.curvature = std::max(b.curvature, M);
+      b.size = std::max(b.size,
+                        std::max(std::abs(values_[i]), std::abs(values_[i + 1])) + h * h / 8.0 * M);
+    }
+  };
+  over(start, end);
+  if (periodic_) over(start - period, end - period);
+  if (periodic_ && to - from >= period) over(times_.front(), times_.back() + period);
+  return b;
 }
 
 }  // namespace polhode

@@ -17,6 +17,7 @@ class ConstantFunction final : public TimeFunction {
   [[nodiscard]] double operator()(double) const override { return value_; }
   [[nodiscard]] bool is_constant() const override { return true; }
   [[nodiscard]] TimeRates rates(double, TimeSide) const override { return {value_, 0.0, 0.0}; }
+  [[nodiscard]] TimeBounds bounds(double, double) const override;
 
  private:
   double value_;
@@ -32,6 +33,10 @@ class ExpressionFunction final : public TimeFunction {
     const TimeRates r = expression_->rates(t, side);
     return {factor_ * r.value, factor_ * r.rate, factor_ * r.second};
   }
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override {
+    return expression_->next_break(t, until);
+  }
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
 
  private:
   std::shared_ptr<const Expression> expression_;
@@ -55,10 +60,16 @@ class TableFunction final : public TimeFunction {
   [[nodiscard]] double operator()(double t) const override;
   [[nodiscard]] TimeRates rates(double t, TimeSide side) const override;
 
+  /// The points: the value jumps at those of kStep, the slope at those of kLinear, the third
+  /// derivative at those of kCubic.
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override;
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
+
  private:
-  /// Number of the last point at or before t, −1 if there is none. For a periodic table t becomes
-  /// the time of its first period.
-  [[nodiscard]] int interval(double& t) const;
+  /// Number of the last point at or before a time in the table, −1 if there is none.
+  [[nodiscard]] int interval(double t) const;
+  /// The time in the table that t stands for: of a periodic one, within its first period.
+  [[nodiscard]] double in_table(double t) const;
 
   std::vector<double> times_, values_;
   std::vector<double> curvatures_;  ///< Second derivatives at the points, of kCubic.

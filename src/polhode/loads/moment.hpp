@@ -14,6 +14,9 @@ class Moment : public InteractionItem {
   explicit Moment(const LoadDescription& load);
 
   [[nodiscard]] bool conservative() const { return false; }
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
+    return {moment_.begin(), moment_.end()};
+  }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;  ///< Moment [N m].

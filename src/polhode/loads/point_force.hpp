@@ -16,6 +16,9 @@ class PointForce : public InteractionItem {
   explicit PointForce(const LoadDescription& load);
 
   [[nodiscard]] bool conservative() const { return potential_; }
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
+    return {force_.begin(), force_.end()};
+  }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;  ///< Force [N].

@@ -38,6 +38,9 @@ class DeadLoad final : public ElementGroup {
   bool has_tangent() const override { return false; }
   bool conservative() const override { return constant_; }
   bool external() const override { return true; }
+  std::vector<TimeFunctionPtr> time_functions() const override {
+    return {value_.begin(), value_.end()};
+  }
 
   ElementReport evaluate(const NodeStep& step, const double* /*history*/, double* /*scratch*/,
                          const Mat3& /*turn*/, const ElementSink& sink) const override {

@@ -24,6 +24,7 @@ class FollowerPressure final : public ElementGroup {
   }
   bool conservative() const override { return false; }
   bool external() const override { return true; }
+  std::vector<TimeFunctionPtr> time_functions() const override { return {pressure_}; }
 
   ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                          const Mat3& turn, const ElementSink& sink) const override;
