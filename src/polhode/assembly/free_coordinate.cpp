@@ -106,6 +106,23 @@ double FreeAngle::rate_at_n1(const BodyStep& a, const BodyStep& b) const {
   return on_b ? -rate : rate;
 }
 
+double FreeAngle::acceleration_at_n1(const BodyStep& a, const BodyStep& b) const {
+  const BodyStep& base = on_b ? b : a;
+  const BodyStep& other = on_b ? a : b;
+  const Directions q = directions_at_n1(*this, a, b);
+  const Vec3 omega_base = base.Lambda_n1 * base.W_n1, omega_other = other.Lambda_n1 * other.W_n1;
+  const Vec3 e_dot = omega_base.cross(q.e), f_dot = omega_base.cross(q.f);
+  const Vec3 d_dot = omega_other.cross(q.d);
+  const double C = q.cosine(), S = q.sine(), size = C * C + S * S;
+  const double C_dot = e_dot.dot(q.d) + q.e.dot(d_dot), S_dot = f_dot.dot(q.d) + q.f.dot(d_dot);
+  const Vec3 n = C * q.f - S * q.e;
+  const Vec3 n_dot = C_dot * q.f + C * f_dot - S_dot * q.e - S * e_dot;
+  const Vec3 gradient = q.d.cross(n) / size;
+  const Vec3 change =
+      (d_dot.cross(n) + q.d.cross(n_dot)) / size - 2.0 * (C * C_dot + S * S_dot) / size * gradient;
+  return change.dot(omega_other - omega_base);
+}
+
 AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& b, double at_n,
                      bool conserving) {
   const BodyStep& base = angle.on_b ? b : a;
@@ -142,6 +159,43 @@ double FreeDisplacement::rate_at_n1(const BodyStep& a, const BodyStep& b) const 
   const Vec3 u_dot =
       b.v_n1 + omega_b.cross(b.vector(Z_b).at_n1) - a.v_n1 - omega_a.cross(a.vector(Z_a).at_n1);
   return d.dot(u_dot) + omega_a.cross(d).dot(u);
+}
+
+double FreeDisplacement::acceleration_at_n1(const BodyStep& a, const BodyStep& b) const {
+  const Vec3 omega_a = a.Lambda_n1 * a.W_n1, omega_b = b.Lambda_n1 * b.W_n1;
+  const Vec3 z_a = a.vector(Z_a).at_n1, z_b = b.vector(Z_b).at_n1;
+  const Vec3 d = a.Lambda_n1 * D, d_dot = omega_a.cross(d);
+  const Vec3 u = b.point(Z_b).at_n1 - a.point(Z_a).at_n1;
+  const Vec3 u_dot = b.v_n1 + omega_b.cross(z_b) - a.v_n1 - omega_a.cross(z_a);
+  const Vec3 centripetal = omega_b.cross(omega_b.cross(z_b)) - omega_a.cross(omega_a.cross(z_a));
+  return omega_a.cross(d_dot).dot(u) + 2.0 * d_dot.dot(u_dot) + d.dot(centripetal);
+}
+
+DisplacementStep displacement_step(const FreeDisplacement& displacement, const BodyStep& a,
+                                   const BodyStep& b) {
+  const Carried d = a.vector(displacement.D);
+  const Carried z_a = a.vector(displacement.Z_a), z_b = b.vector(displacement.Z_b);
+  const Vec3 u_n = (b.r_n - a.r_n) + (z_b.at_n - z_a.at_n);
+  const Vec3 u_n1 = (b.r_n1 - a.r_n1) + (z_b.at_n1 - z_a.at_n1);
+  const double af = a.alpha_f;
+  const Vec3 y_alpha = (1.0 - af) * u_n + af * u_n1 + z_a.at_alpha, y_n1 = u_n1 + z_a.at_n1;
+  DisplacementStep s;
+  s.at_n = d.at_n.dot(u_n);
+  s.at_n1 = d.at_n1.dot(u_n1);
+  s.mu_a << -d.at_alpha, -y_alpha.cross(d.at_alpha);
+  s.mu_b << d.at_alpha, z_b.at_alpha.cross(d.at_alpha);
+  s.at_n1_a << -d.at_n1, -y_n1.cross(d.at_n1);
+  s.at_n1_b << d.at_n1, z_b.at_n1.cross(d.at_n1);
+  for (Mat6* D : {&s.D_aa, &s.D_ab, &s.D_ba, &s.D_bb}) D->setZero();
+  s.D_bb.bottomRightCorner<3, 3>() = af * hat_hat(d.at_alpha, z_b.at_n1);
+  s.D_ba.topRightCorner<3, 3>() = -af * hat(d.at_n1);
+  s.D_ba.bottomRightCorner<3, 3>() = -af * hat_hat(z_b.at_alpha, d.at_n1);
+  s.D_aa.topRightCorner<3, 3>() = af * hat(d.at_n1);
+  s.D_aa.bottomLeftCorner<3, 3>() = -af * hat(d.at_alpha);
+  s.D_aa.bottomRightCorner<3, 3>() = af * hat_hat(y_alpha, d.at_n1);
+  s.D_ab.bottomLeftCorner<3, 3>() = af * hat(d.at_alpha);
+  s.D_ab.bottomRightCorner<3, 3>() = -af * hat_hat(d.at_alpha, z_b.at_n1);
+  return s;
 }
 
 }  // namespace polhode

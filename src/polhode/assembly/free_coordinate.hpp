@@ -21,6 +21,8 @@ struct FreeAngle {
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b, double near) const;
   /// dφ/dt at t_{n+1} [rad/s].
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;
+  /// What the rotations of the bodies' velocities add to d²φ/dt² beside ∂φ·(α_b − α_a) [rad/s²].
+  [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
 
 /// What a moment about the axis has to know of an angle over the step.
@@ -49,6 +51,21 @@ struct FreeDisplacement {
 
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b) const;       ///< [m]
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;  ///< [m/s]
+  /// What the bodies' velocities add to d²s/dt² beside ∂s·(accelerations) [m/s²].
+  [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
+
+/// What a force along a displacement has to know of it over the step: quadratic, so that its
+/// gradient at averaged positions does exactly the work F Δs at α_f = ½.
+struct DisplacementStep {
+  double at_n = 0.0, at_n1 = 0.0;  ///< [m]
+  Vec6 mu_a, mu_b;                 ///< Gradient at t_{n+αf}, by (r, θ) of a, of b.
+  Vec6 at_n1_a, at_n1_b;           ///< At t_{n+1}.
+  Mat6 D_aa, D_ab, D_ba, D_bb;     ///< D_ij: of mu_i by the increment of j.
+};
+
+/// The displacement over a step with its tangents. @eq{joint-plane}
+[[nodiscard]] DisplacementStep displacement_step(const FreeDisplacement& displacement,
+                                                 const BodyStep& a, const BodyStep& b);
 
 }  // namespace polhode

@@ -80,6 +80,14 @@ struct Impact {
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass [m].
 };
 
+/// What rows that follow functions of time c(t) ask for: g = q − c, G v = ċ. Zero for others.
+/// @eq{drive-row}
+struct PrescribedRows {
+  Vec6 increment = Vec6::Zero();  ///< c_{n+1} − c_n.
+  Vec6 rate = Vec6::Zero();       ///< ċ at t_{n+1} [1/s].
+  Vec6 second = Vec6::Zero();     ///< c̈ there [1/s²].
+};
+
 /// Which bodies an interaction acts on; kGround for none. Single-body loads use b alone.
 struct Participants {
   int a = kGround, b = kGround;
@@ -113,6 +121,11 @@ struct InteractionItem {
   [[nodiscard]] double reach() const { return 0.0; }
   /// The functions of time that its force follows; components that are not there may be null.
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {}; }
+  /// Which derivative of the motion these functions are: 0 a position, 1 a speed, 2 a force.
+  [[nodiscard]] int time_order() const { return 2; }
+  /// Some of its rows follow functions of time: prescribed() is asked.
+  [[nodiscard]] bool prescribes() const { return false; }
+  void prescribed(const PairStep&, TimeSide, PrescribedRows& /*rows*/) const {}
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
@@ -164,6 +177,11 @@ class InteractionGroup {
   [[nodiscard]] virtual double coupled_mass(int i) const = 0;
   [[nodiscard]] virtual double reach(int i) const = 0;
   [[nodiscard]] virtual std::vector<TimeFunctionPtr> time_functions(int i) const = 0;
+  [[nodiscard]] virtual int time_order(int i) const = 0;
+  [[nodiscard]] virtual bool prescribes(int i) const = 0;
+  /// Limits from one side of t_{n+1}.
+  [[nodiscard]] virtual PrescribedRows prescribed(int i, const PairStep& step,
+                                                  TimeSide side) const = 0;
 
   /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
   virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
@@ -207,6 +225,13 @@ class Group final : public InteractionGroup {
   double reach(int i) const override { return at(i).reach(); }
   std::vector<TimeFunctionPtr> time_functions(int i) const override {
     return at(i).time_functions();
+  }
+  int time_order(int i) const override { return at(i).time_order(); }
+  bool prescribes(int i) const override { return at(i).prescribes(); }
+  PrescribedRows prescribed(int i, const PairStep& step, TimeSide side) const override {
+    PrescribedRows rows;
+    at(i).prescribed(step, side, rows);
+    return rows;
   }
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {

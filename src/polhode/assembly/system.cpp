@@ -32,6 +32,7 @@ void System::finish() {
       const auto basis = groups_[g]->motion_basis(i);
       const int index = static_cast<int>(refs_.size());
       if (groups_[g]->has_barrier(i)) barriers_.push_back(index);
+      if (groups_[g]->prescribes(i)) drives_.push_back(index);
       stiff_ = stiff_ || (groups_[g]->rows(i) > 0 && groups_[g]->works(i));
       if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
       shapes.push_back(shape_code(basis));

@@ -78,6 +78,8 @@ class System {
   [[nodiscard]] bool stiff() const { return stiff_; }
   /// Interactions with a configuration that no step may reach.
   [[nodiscard]] const std::vector<int>& barriers() const { return barriers_; }
+  /// Interactions some of whose rows follow functions of time.
+  [[nodiscard]] const std::vector<int>& drives() const { return drives_; }
   [[nodiscard]] const SpanningTree& tree() const { return tree_; }
   [[nodiscard]] int slot(int body) const { return tree_.slot_of_body[body]; }
   [[nodiscard]] double mean_mass() const { return mean_mass_; }  ///< m_ref of the scaling [kg].
@@ -117,7 +119,7 @@ class System {
   std::vector<double> carried_mass_;
   double mean_mass_ = 1.0, length_ = 1.0;
   bool conservative_ = true, dissipates_ = false, stiff_ = false;
-  std::vector<int> barriers_;
+  std::vector<int> barriers_, drives_;
 };
 
 template <class Item>

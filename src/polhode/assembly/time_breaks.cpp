@@ -27,7 +27,8 @@ TimeBreaks::TimeBreaks(const System& system, double until) : until_(until) {
     followed_.push_back({f, added, f->bounds(0.0, until).size, {}});
   };
   for (const InteractionRef& ref : system.interactions())
-    for (const TimeFunctionPtr& f : system.group(ref.group).time_functions(ref.item)) follow(f, 2);
+    for (const TimeFunctionPtr& f : system.group(ref.group).time_functions(ref.item))
+      follow(f, system.group(ref.group).time_order(ref.item));
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     for (const TimeFunctionPtr& f : nodes.group(g).time_functions()) follow(f, 2);

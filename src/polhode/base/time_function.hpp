@@ -16,6 +16,12 @@ struct TimeRates {
   double rate = 0.0;    ///< [1/s]
   double second = 0.0;  ///< [1/s²]
 
+  /// The same function that much later (Taylor).
+  [[nodiscard]] TimeRates moved(double dt) const {
+    return {value + dt * rate, rate + dt * second, second};
+  }
+};
+
 /// A time at which a function is not smooth.
 struct TimeBreak {
   double t = std::numeric_limits<double>::infinity();  ///< [s]; infinite: there is none.
@@ -42,7 +48,6 @@ class TimeFunction {
   /// Limits from one side of t. Here by differences over 0.2 ms on that side: for functions that
   /// do not know better, with an error of order (0.1 ms)².
   [[nodiscard]] virtual TimeRates rates(double t, TimeSide side) const;
-
   /// The first break after t, up to `until`. What it returns hangs on neither t nor `until`, so
   /// that a run that is continued meets the same ones.
   [[nodiscard]] virtual TimeBreak next_break(double /*t*/, double /*until*/) const { return {}; }

@@ -146,8 +146,9 @@ Number Expression::evaluate(const Number& t) const {
 double Expression::operator()(double t) const { return evaluate(t); }
 
 TimeRates Expression::rates(double t, TimeSide side) const {
-  const TimeJet jet = evaluate(TimeJet{beside(t, side), 1.0, 0.0});
-  return {jet.value, jet.rate, jet.second};
+  const double near = beside(t, side);
+  const TimeJet jet = evaluate(TimeJet{near, 1.0, 0.0});
+  return TimeRates{jet.value, jet.rate, jet.second}.moved(t - near);
 }
 
 void Expression::fold_constants() {

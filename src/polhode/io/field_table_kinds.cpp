@@ -168,6 +168,7 @@ KindTable load_table(const LoadKind& kind) {
       break;
     case LoadPlace::joint:
       fields.push_back(kLoadJoint);
+      if (!kind.drives.empty()) fields.back().meaning = "The joint it drives.";
       break;
   }
   if (!kind.vector.empty()) {
@@ -179,6 +180,18 @@ KindTable load_table(const LoadKind& kind) {
     fields.push_back(kBodyFixed);
   }
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
+  if (kind.drives.empty()) return result;
+  fields.push_back({.name = "coordinate",
+                    .kind = kChoice,
+                    .meaning = "Which of the joint's free coordinates.",
+                    .standard = "the only one of its kind",
+                    .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
+                                          : std::vector<std::string>{"x", "y", "z"}});
+  for (const DriveParameter& d : kind.drives)
+    fields.push_back({.name = d.name,
+                      .kind = kTimeNumber,
+                      .dimension = read_unit(d.unit).unit.value().dimension,
+                      .meaning = sentence(d.meaning)});
   return result;
 }
 

@@ -104,8 +104,8 @@ class Fingerprint {
         s.on_surface, s.tolerance, s.nodes);
   }
   void one(const LoadSpec& l) {
-    add(l.name, l.type, l.a, l.b, l.joint, l.Z_a, l.Z_b, l.body_fixed, l.vector, l.value, l.solid,
-        l.selection, l.follower, l.keeps, l.parameters);
+    add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
+        l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters);
   }
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }

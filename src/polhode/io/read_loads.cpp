@@ -80,7 +80,10 @@ class LoadReader {
         read_spring();
         break;
       case LoadPlace::joint:
-        read_torsional_spring();
+        if (kind.drives.empty())
+          read_torsional_spring();
+        else
+          read_motor(kind);
         break;
     }
   }
@@ -125,11 +128,40 @@ class LoadReader {
 
   void read_torsional_spring() {
     require_effect();
+    const JointSpec* joint = read_joint();
+    if (joint && !turns_about_z(*joint))
+      section_.fault("joint",
+                     format("the {} joint {} has no angle about its axis alone", joint->type,
+                            quote(joint->name)),
+                     "Name a joint that turns about its axis, such as a revolute one.");
+  }
+
+  void read_motor(const LoadKind& kind) {
+    read_joint();
+    if (const auto coordinate = section_.choice("coordinate")) load_.coordinate = *coordinate;
+    std::string keys;
+    for (const DriveParameter& d : kind.drives) {
+      keys += (keys.empty() ? "" : ", ") + d.name;
+      if (!section_.has(d.name)) continue;
+      if (!load_.drive.empty()) {
+        section_.fault(d.name, format("is given beside '{}'", load_.drive),
+                       "Give one of them: a motor follows one function of time.");
+        return;
+      }
+      load_.drive = d.name;
+      load_.value = section_.time_number(d.name);
+    }
+    if (load_.drive.empty())
+      section_.fault("has nothing to follow", format("Give one of: {}.", keys));
+  }
+
+  /// The joint that is named, noted in the load; null if there is none.
+  const JointSpec* read_joint() {
     const SourceNode* value = section_.find("joint");
-    if (!value) return;
+    if (!value) return nullptr;
     const std::string path = section_.path("joint");
     const auto name = read_text(context_, *value, path);
-    if (!name) return;
+    if (!name) return nullptr;
     const auto found = context_.joints.find(*name);
     if (found == context_.joints.end()) {
       const std::vector<std::string> names = context_.joint_names();
@@ -137,17 +169,13 @@ class LoadReader {
           "joint", "unknown joint " + quote(*name),
           did_you_mean(*name, names) +
               (names.empty() ? "The model has no joints." : "Joints: " + name_list(names) + "."));
-      return;
+      return nullptr;
     }
     const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
     load_.joint = *name;
     load_.a = joint.a;
     load_.b = joint.b;
-    if (!turns_about_z(joint))
-      section_.fault(
-          "joint",
-          format("the {} joint {} has no angle about its axis alone", joint.type, quote(*name)),
-          "Name a joint that turns about its axis, such as a revolute one.");
+    return &joint;
   }
 
   void require_effect() {

@@ -244,6 +244,26 @@ std::optional<FreeAngle> Joint::axis_angle() const {
   return angle(0);
 }
 
+std::optional<FreeAngle> Joint::free_angle(const std::string& coordinate) const {
+  const std::vector<std::string> names = coordinate_names();
+  const auto first = names.end() - angles();  // angles come last
+  if (coordinate.empty()) return angles() == 1 ? std::optional<FreeAngle>(angle(0)) : std::nullopt;
+  for (auto name = first; name != names.end(); ++name)
+    if (*name == coordinate) return angle(static_cast<int>(name - first));
+  return std::nullopt;
+}
+
+std::optional<FreeDisplacement> Joint::free_displacement(const std::string& coordinate) const {
+  std::optional<FreeDisplacement> found;
+  for (int k = 0; k < 3; ++k) {
+    if (!translation_free(k) || (!coordinate.empty() && coordinate != kAxisName[k])) continue;
+    if (found) return std::nullopt;
+    found = FreeDisplacement{user_frames_.Z_a, user_frames_.Z_b,
+                             user_frames_.R_a.col((k - shift_ + 3) % 3)};
+  }
+  return found;
+}
+
 bool Joint::translation_free(int user_axis) const {
   if (parts_.coincident || parts_.distance) return false;
   for (int i = 0; i < parts_.planes; ++i)

@@ -84,6 +84,12 @@ class Joint : public InteractionItem {
   /// holds no two axes parallel or leaves no angle free.
   [[nodiscard]] std::optional<FreeAngle> axis_angle() const;
 
+  /// A free coordinate by its name among coordinate_names(), in the user's order; "" for the only
+  /// one of its kind. Nothing if there is none such, or it is one of three free rotations.
+  [[nodiscard]] std::optional<FreeAngle> free_angle(const std::string& coordinate) const;
+  [[nodiscard]] std::optional<FreeDisplacement> free_displacement(
+      const std::string& coordinate) const;
+
   // Reports. `step` is in the solver's order; what they read is at t_{n+1}.
   /// Names of the free coordinates: x, y, z for displacements along the axes of a, rx, ry, rz
   /// for rotations. Three free rotations are the components in a's axes of the rotation vector,

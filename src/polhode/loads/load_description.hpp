@@ -17,13 +17,16 @@ namespace polhode {
 /// A load with its bodies numbered: what a kind of load is built from.
 struct LoadDescription {
   std::string name;
-  Participants bodies;                          ///< Single-body loads act on b.
-  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();  ///< Points from the centres of mass [m].
-  bool body_fixed = false;                      ///< Components turn with the body.
-  TimeVector vector{};                          ///< Force [N] or moment [N m]; empty is zero.
-  std::map<std::string, double> values{};       ///< Parameters by name, SI.
-  std::optional<FreeAngle> angle{};             ///< Of the joint that the load acts in.
-  double start_length = 0.0;                    ///< Distance of the points at the start [m].
+  Participants bodies;                             ///< Single-body loads act on b.
+  Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();     ///< Points from the centres of mass [m].
+  bool body_fixed = false;                         ///< Components turn with the body.
+  TimeVector vector{};                             ///< Force [N] or moment [N m]; empty is zero.
+  std::map<std::string, double> values{};          ///< Parameters by name, SI.
+  std::optional<FreeAngle> angle{};                ///< Of the joint that the load acts in.
+  std::optional<FreeDisplacement> displacement{};  ///< Likewise.
+  TimeFunctionPtr function{};                      ///< Of a motor.
+  std::string drive{};                             ///< What that is: key of LoadKind::drives.
+  double start_length = 0.0;                       ///< Distance of the points at the start [m].
 
   [[nodiscard]] double value(const std::string& key, double otherwise) const {
     const auto found = values.find(key);

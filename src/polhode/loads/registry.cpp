@@ -2,6 +2,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/loads/moment.hpp>
+#include <polhode/loads/motor.hpp>
 #include <polhode/loads/point_force.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/loads/spring_damper.hpp>
@@ -27,6 +28,7 @@ const std::vector<LoadKind>& load_kinds() {
        LoadPlace::body,
        "force",
        {},
+       {},
        false,
        add_point_force,
        {{"force", "N", 3}},
@@ -35,6 +37,7 @@ const std::vector<LoadKind>& load_kinds() {
        "moment on a body, in world or body axes",
        LoadPlace::body,
        "moment",
+       {},
        {},
        true,
        add_moment,
@@ -52,6 +55,7 @@ const std::vector<LoadKind>& load_kinds() {
          0.0,
          kMost,
          "length without force; left out: the distance at the start"}},
+       {},
        false,
        add_spring_damper,
        {{"force", "N", 3}, {"length", "m"}, {"rate", "m/s"}, {"energy", "J"}},
@@ -63,10 +67,35 @@ const std::vector<LoadKind>& load_kinds() {
        {{"stiffness", "N*m/rad", 0.0, 0.0, kMost, "moment per angle, turns counted"},
         {"damping", "N*m*s/rad", 0.0, 0.0, kMost, "moment per rate of the angle"},
         {"free_angle", "rad", 0.0, -kMost, kMost, "angle of the joint without moment"}},
+       {},
        true,
        add_torsional_spring,
        {{"moment", "N m", 3}, {"angle", "rad"}, {"rate", "rad/s"}, {"energy", "J"}},
        report_of<TorsionalSpring>},
+      {"rotary_motor",
+       "motor that turns a joint about one of its free axes",
+       LoadPlace::joint,
+       "",
+       {},
+       {{"angle", "rad", "angle of the joint, turns counted"},
+        {"speed", "rad/s", "rate of the angle, which begins where the joint stands"},
+        {"moment", "N*m", "moment on the second body about the axis"}},
+       true,
+       add_rotary_motor,
+       {{"moment", "N m", 3}, {"angle", "rad"}, {"rate", "rad/s"}, {"power", "W"}, {"work", "J"}},
+       report_of<RotaryMotor>},
+      {"linear_motor",
+       "motor that pushes a joint along one of its free directions",
+       LoadPlace::joint,
+       "",
+       {},
+       {{"displacement", "m", "displacement of the joint"},
+        {"speed", "m/s", "rate of the displacement, which begins where the joint stands"},
+        {"force", "N", "force on the second body along the direction"}},
+       false,
+       add_linear_motor,
+       {{"force", "N", 3}, {"displacement", "m"}, {"rate", "m/s"}, {"power", "W"}, {"work", "J"}},
+       report_of<LinearMotor>},
   };
   return kinds;
 }

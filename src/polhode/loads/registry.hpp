@@ -23,6 +23,13 @@ struct LoadChannel {
   int size = 1;      ///< 1 or 3.
 };
 
+/// A function of time that a kind of load takes.
+struct DriveParameter {
+  std::string name;     ///< Key in the model file.
+  std::string unit;     ///< SI.
+  std::string meaning;  ///< One line.
+};
+
 /// A type of load as users name it.
 struct LoadKind {
   std::string name;     ///< "type" in the model file.
@@ -30,6 +37,7 @@ struct LoadKind {
   LoadPlace place = LoadPlace::body;
   std::string vector;  ///< Key of the vector it takes: force [N] or moment [N m]; "" for none.
   std::vector<Parameter> parameters;
+  std::vector<DriveParameter> drives;  ///< One of them is given.
   bool turns = false;  ///< Gives a moment even at the centre of mass; on a body, needs no point.
   void (*add)(System&, const LoadDescription&) = nullptr;
   std::vector<LoadChannel> channels;  ///< What it reports, see report.

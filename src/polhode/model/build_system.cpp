@@ -5,6 +5,7 @@
 
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/joints/registry.hpp>
@@ -147,6 +148,25 @@ class Builder {
       system_.group<Joint>().items.back().set_resistance(joint_resistance(model_, joint));
   }
 
+  /// A load along a coordinate that its joint does not leave free.
+  [[noreturn]] static void refuse_coordinate(const std::string& where, const LoadSpec& load,
+                                             const JointSpec& joint, const Joint& item,
+                                             bool turns) {
+    const std::vector<std::string> names = item.coordinate_names();
+    const std::string what = turns ? "angle" : "displacement";
+    if (!load.coordinate.empty())
+      throw InputError(where + ".coordinate",
+                       format("'{}' is not free as {} {} in '{}' ({})", load.coordinate,
+                              turns ? "an" : "a", what, joint.name, joint.type),
+                       names.empty() ? "Name another joint" : "Free are: " + name_list(names));
+    throw InputError(where + ".joint",
+                     format("'{}' is {}, which has not one free {}", joint.name, joint.type, what),
+                     turns ? "Use a joint with one free rotation, such as revolute or cylindrical, "
+                             "or give the coordinate"
+                           : "Use a joint with one free translation, such as prismatic or "
+                             "cylindrical, or give the coordinate");
+  }
+
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
     if (load.solid >= 0) {
@@ -156,17 +176,23 @@ class Builder {
     const LoadKind& kind = load_kind(load.type);
     int a = load.a, b = load.b;
     std::optional<FreeAngle> angle;
+    std::optional<FreeDisplacement> displacement;
     if (kind.place == LoadPlace::joint) {
       const int index = model_.joint_index(load.joint);
       const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
       a = joint.a;
       b = joint.b;
-      angle = system_.group<Joint>().items[static_cast<std::size_t>(index)].axis_angle();
-      if (!angle)
-        throw InputError(
-            where + ".joint",
-            format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
-            "Use a joint with one free rotation, such as revolute or cylindrical");
+      const Joint& item = system_.group<Joint>().items[static_cast<std::size_t>(index)];
+      if (kind.drives.empty())
+        angle = item.axis_angle();
+      else if (kind.turns)
+        angle = item.free_angle(load.coordinate);
+      else
+        displacement = item.free_displacement(load.coordinate);
+      if (!angle && !displacement) refuse_coordinate(where, load, joint, item, kind.turns);
+      if (load.drive == "speed" && model_.analysis.type != "dynamics")
+        throw InputError(where + ".speed", "is a rate, but in statics and modes nothing moves",
+                         kind.turns ? "Give the angle" : "Give the displacement");
     }
     check_movable(where, kind.place == LoadPlace::body ? b : a, b);
     for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
@@ -179,7 +205,10 @@ class Builder {
         .body_fixed = load.body_fixed,
         .vector = load.vector.value_or(TimeVector{}),
         .values = load.parameters,
-        .angle = angle};
+        .angle = angle,
+        .displacement = displacement,
+        .function = load.value,
+        .drive = load.drive};
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
     kind.add(system_, d);
   }

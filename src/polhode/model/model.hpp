@@ -94,13 +94,15 @@ struct LoadSpec {
   std::string name, type;  ///< force, moment, spring_damper, torsional_spring, gravity ...
   Place place;
   int a = kGround, b = kGround;  ///< Bodies; single-body loads act on b.
-  std::string joint;             ///< Of a torsional spring.
+  std::string joint;             ///< Of a torsional spring or motor.
+  std::string coordinate;        ///< Of a motor: "x" ... "rz"; "": the joint's only one.
+  std::string drive;             ///< Of a motor: what `value` is, a key of LoadKind::drives.
   Vec3 Z_a = Vec3::Zero(),
        Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
   bool body_fixed = false;  ///< Components turn with the body (follower).
   std::optional<TimeVector>
       vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
-  TimeFunctionPtr value;  ///< Pressure [Pa].
+  TimeFunctionPtr value;  ///< Pressure [Pa], or what a motor follows.
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
   std::vector<Selection> selection;  ///< Its nodes or faces; empty: all.
   bool follower = false;  ///< A pressure that turns with the surface and grows with its area.

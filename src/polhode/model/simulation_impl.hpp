@@ -32,6 +32,8 @@ inline double wall_clock() {
 
 /// Above this many bodies the start does not solve for multipliers that the method does not need.
 inline constexpr int kSmallSystem = 2000;
+/// Breaks of a prescribed motion that are looked at before a run.
+inline constexpr int kMostBreaks = 10000;
 /// An estimated error of one step from which on the motion is not resolved [-].
 inline constexpr double kUnresolved = 1e-2;
 /// Velocities normal to the constraints, over those of the rows' terms, that call for a warning.
@@ -136,6 +138,7 @@ struct Simulation::Impl {
     if (model.contacts.resolve_overlaps) move_apart();
     start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
     refuse_bad_start();
+    refuse_jumps();
     refuse_overlaps();
     if (map.contacts && a.step) state.dt_next = *a.step;  // stiffness follows it
     if (statics) statics->begin(state);
@@ -144,6 +147,33 @@ struct Simulation::Impl {
     watch_surfaces();
     state.ledger.constraint_max = 0.0;
     start_seconds = wall_clock() - t0;
+  }
+
+  /// Prescribed displacements that jump: no force does that.
+  void refuse_jumps() const {
+    if (statics) return;
+    for (const SolidSpec& solid : model.solids)
+      for (const PrescribedSpec& p : solid.prescribed)
+        for (std::size_t c = 0; c < 3; ++c)
+          if (p.displacement[c]) refuse_jumps(solid, p, c);
+  }
+  void refuse_jumps(const SolidSpec& solid, const PrescribedSpec& p, std::size_t component) const {
+    const TimeFunction& d = *p.displacement[component];
+    TimeBreak at;
+    for (int k = 0; k < kMostBreaks; ++k) {
+      at = d.next_break(k == 0 ? state.t : at.t, end());
+      if (!at.exists()) return;
+      if (at.derivative > 0) continue;
+      const TimeRates before = d.rates(at.t, TimeSide::kBefore),
+                      after = d.rates(at.t, TimeSide::kAfter);
+      const double jump =
+          jump_at(at.t, before.value, after.value, std::abs(before.rate) + std::abs(after.rate));
+      if (jump == 0.0) continue;
+      throw InputError(
+          format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[component]),
+          format("jumps by {:.6g} m at t = {:.6g} s, which no force can do", jump, at.t),
+          "Give a ramp, such as a table with interpolation: linear");
+    }
   }
 
   void refuse_bad_start() const {

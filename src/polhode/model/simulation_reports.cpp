@@ -60,10 +60,10 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
 }
 
 std::vector<double> Simulation::load(int load) const {
-  impl_->at_instant();
+  const InstantSolution& now = impl_->at_instant();
   const System& system = impl_->system;
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
-  const PairView view = system.instant(impl_->projected, ref, nullptr);
+  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
 }
 

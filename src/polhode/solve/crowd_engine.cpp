@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include <Eigen/LU>
+
 #include <polhode/base/error.hpp>
 #include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
@@ -55,8 +57,10 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
   rhs_.resize(n);
   sizes_.resize(n);
   far_.resize(n);
-  for (const BodyData& body : system.bodies())
+  for (const BodyData& body : system.bodies()) {
     per_mass_.push_back({1.0 / body.mass, 3.0 / body.inertia.trace()});
+    inverse_inertia_.emplace_back(body.inertia.inverse());
+  }
   x_.resize(n);
   start_.resize(n);
 }
@@ -278,6 +282,22 @@ double CrowdEngine::stored(const State& state) const {
 
 Work CrowdEngine::commit(State& state, const Trial& trial) {
   return contacts_->commit(state, steps_, trial.context);
+}
+
+/// @eq{crowd-momentum}
+void CrowdEngine::take_up_residual(State& state, const Trial& trial) const {
+  const double time = trial.context.dt / trial.context.ga.kappa;
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const Vec3 dv = time * per_mass_[b].moved * rhs_[b].head<3>();
+    const Vec3 dW =
+        time * inverse_inertia_[b] * (steps_[b].Lambda_n1.transpose() * rhs_[b].tail<3>());
+    const int slot = system_->slot(b), lane = slot % kLanes;
+    BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
+    for (int i = 0; i < 3; ++i) {
+      block.v[i][lane] += dv[i];
+      block.W[i][lane] += dW[i];
+    }
+  }
 }
 
 }  // namespace polhode

@@ -35,6 +35,7 @@ class CrowdEngine final : public NewtonEngine {
   void end_step(const State& state, Trial& trial) override;
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
+  void take_up_residual(State& state, const Trial& trial) const override;
   [[nodiscard]] MovingContacts* contacts() const override { return contacts_; }
 
   /// Iterations of conjugate gradients so far.
@@ -69,8 +70,9 @@ class CrowdEngine final : public NewtonEngine {
     double moved, turned;  ///< One over the mass, and one over the mean moment of inertia.
   };
   std::vector<PerMass> per_mass_;
-  std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].
-  std::vector<double> sizes_;  ///< By body, of its residual [N² / kg].
+  std::vector<Mat3> inverse_inertia_;  ///< By body, body axes [1/(kg m²)].
+  std::vector<double> far_;            ///< By body, its largest coordinate at t_n [m].
+  std::vector<double> sizes_;          ///< By body, of its residual [N² / kg].
   std::span<const ActingPoint> acting_;
   std::vector<int> moving_;  ///< Bodies that the iteration moves, ascending.
   std::vector<char> moves_;  ///< The same by body; the ground last.

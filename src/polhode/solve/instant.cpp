@@ -23,9 +23,11 @@ VelocityReport InstantSolver::project_velocities(State& state) {
       [&](int i, const PairStep&, const PairTerms& terms) {
         const InteractionRef& ref = system.interactions()[i];
         const Vec6 v_a = velocity(ref.a), v_b = velocity(ref.b);
+        const bool driven = system.group(ref.group).prescribes(ref.item);
+        const Vec6 rate = driven ? s.rates(state, ref, TimeSide::kAfter) : Vec6::Zero();
         for (int k = 0; k < ref.rows; ++k) {
           if (terms.compliance[k] != 0.0) continue;
-          double sum = 0.0, scale = 0.0;
+          double sum = -rate[k], scale = std::abs(rate[k]);
           for (int c = 0; c < 6; ++c) {
             const double a = ref.a == kGround ? 0.0 : terms.G_a(k, c) * v_a[c];
             const double b = ref.b == kGround ? 0.0 : terms.G_b(k, c) * v_b[c];
@@ -46,6 +48,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   for (int b = 0; b < bodies; ++b) given.segment<6>(6 * b) = velocity(b);
   s.rhs.setZero();
   s.rows_times(given, s.rhs.tail(system.rows()));
+  s.subtract_rates(state, TimeSide::kAfter, s.rhs.tail(system.rows()));
   s.rhs = -s.rhs;
   const Impl::Outcome outcome = s.solve(state);
   report.solves = outcome.solves;

@@ -72,13 +72,15 @@ class InstantSolver {
   [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
   /// The least change that takes the velocities onto G v = 0.
   [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
-  /// Jumps of all velocities at this instant where those of prescribed components are given.
-  /// @param given   Three a node, zero where nothing is prescribed [m/s].
+  /// Jumps of all velocities at this instant where those of drives are given.
+  /// @param given   Of prescribed components, three a node, zero elsewhere [m/s]; may be empty.
+  /// @param rows    Of G v, by row; may be empty.
   /// @param bodies  Out: by body (linear, angular), world.
   /// @param nodes   Out: three a node, with those given [m/s].
   /// @returns false if a matrix is singular.
   [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
-                                    std::vector<Vec6>& bodies, std::vector<double>& nodes);
+                                    std::span<const double> rows, std::vector<Vec6>& bodies,
+                                    std::vector<double>& nodes);
   /// Of the nodes of solids (3 each), for jumps of the bodies.
   [[nodiscard]] std::vector<double> node_jumps(std::span<const Vec6> bodies);
 

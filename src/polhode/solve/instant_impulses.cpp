@@ -29,17 +29,21 @@ std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
   }
   s.rhs.setZero();
   s.rows_times(given, s.rhs.tail(s.system.rows()));
+  s.subtract_rates(state, TimeSide::kBefore, s.rhs.tail(s.system.rows()));
   s.rhs = -s.rhs;
   return s.solution_by_body();
 }
 
 /// @eq{prescribed-kink}
 bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> given,
-                                   std::vector<Vec6>& bodies, std::vector<double>& nodes) {
+                                   std::span<const double> rows, std::vector<Vec6>& bodies,
+                                   std::vector<double>& nodes) {
   Impl& s = *impl_;
   s.take(state);
   s.put_masses_and_rows(state);
   s.rhs.setZero();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    s.rhs[6 * s.system.body_count() + static_cast<Eigen::Index>(k)] = rows[k];
   if (!s.add_node_masses(state, given) || !s.factor(state)) return false;
   bodies = s.solution_by_body();
   nodes = node_jumps(bodies);

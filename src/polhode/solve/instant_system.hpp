@@ -160,6 +160,18 @@ struct InstantSolver::Impl {
     v.B_b = v.G_b.transpose();
   }
 
+  /// Takes the rates that rows follow from numbers by row.
+  void subtract_rates(const State& state, TimeSide side, Eigen::Ref<Vec> rows) const {
+    for (const int i : system.drives()) {
+      const InteractionRef& ref = system.interactions()[i];
+      rows.segment(ref.first_row, ref.rows) -= rates(state, ref, side).head(ref.rows);
+    }
+  }
+  [[nodiscard]] Vec6 rates(const State& state, const InteractionRef& ref, TimeSide side) const {
+    const PairView view = system.instant(state, ref, no_lambda.data());
+    return system.group(ref.group).prescribed(ref.item, view.step(), side).rate;
+  }
+
   /// G x by row into `out`, and the largest sum of magnitudes of its terms.
   double rows_times(const Vec& field, Eigen::Ref<Vec> out) const {
     double scale = 0.0;

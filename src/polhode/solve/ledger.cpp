@@ -131,6 +131,7 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
     l.dissipated.add(w.dissipated);
     l.put_in.add(w.put_in);
   }
+  add_drives(state, trial);
   Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
   potential_ += nodes_.close(l, state, trial, impulse, turning);
   engine_->add_ground_wrench(impulse.data(), turning.data());
@@ -152,6 +153,18 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
   }
   outside_force_ = impulse.norm();
   outside_moment_ = turning.norm();
+}
+
+/// @eq{drive-work}
+void LedgerKeeper::add_drives(State& state, const Trial& trial) const {
+  for (const int i : system_->drives()) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const PairView view = pair_view(*system_, state, trial, ref);
+    const PrescribedRows rows =
+        system_->group(ref.group).prescribed(ref.item, view.step(), TimeSide::kBefore);
+    for (int k = 0; k < ref.rows; ++k)
+      state.ledger.put_in.add(trial.lambda[ref.first_row + k] * rows.increment[k]);
+  }
 }
 
 void LedgerKeeper::add(State& state, const Work& work) {

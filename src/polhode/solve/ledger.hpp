@@ -51,6 +51,8 @@ class LedgerKeeper {
 
  private:
   [[nodiscard]] double stored(const State& state) const;
+  /// Work that rows which follow functions of time put in over the step.
+  void add_drives(State& state, const Trial& trial) const;
   void add_impulses(State& state, const BodySums& before, const BodySums& after);
 
   const System* system_;

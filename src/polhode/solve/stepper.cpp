@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <polhode/base/format.hpp>
-#include <polhode/solve/prescribed_kinks.hpp>
+#include <polhode/solve/drive_kinks.hpp>
 #include <polhode/solve/single_step.hpp>
 #include <polhode/solve/step_error.hpp>
 #include <polhode/solve/stepper.hpp>
@@ -30,7 +30,7 @@ constexpr int kEasySteps = 3, kFewIterations = 4;
 struct Stepper::Impl {
   const System& system;
   SingleStep single;
-  PrescribedKinks kinks;
+  DriveKinks kinks;
   StepControl control;
   std::vector<double> stages;          ///< Of the order.
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// A motor in a joint: one of its free coordinates q has a prescribed value or rate, or a
+/// prescribed force acts along it. Forces on b act along +q, those on a against it.
+///
+/// A prescribed value c(t) is the row q − c = 0 with the discrete gradient of q, so that at ρ∞ = 1
+/// a step takes exactly λ (c_{n+1} − c_n) from the drive. A prescribed rate is integrated over each
+/// step by Gauss's rule. @eq{drive-row} @eq{drive-work}
+class Motor : public InteractionItem {
+ public:
+  /// What its function of time is.
+  enum class Drive { position, speed, effort };
+
+  /// @param load  Its angle or displacement, function and drive.
+  explicit Motor(const LoadDescription& load);
+
+  [[nodiscard]] int rows() const { return drive_ == Drive::effort ? 0 : 1; }
+  [[nodiscard]] int history_size() const { return kHistory; }
+  [[nodiscard]] bool conservative() const { return false; }
+  [[nodiscard]] Coupling coupling() const {
+    return std::holds_alternative<FreeAngle>(coordinate_) ? Coupling::couple : Coupling::all;
+  }
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {function_}; }
+  [[nodiscard]] int time_order() const { return static_cast<int>(drive_); }
+  [[nodiscard]] bool prescribes() const { return rows() > 0; }
+  void prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const;
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  void acceleration_terms(const PairStep& step, Vec6& gamma) const;
+  [[nodiscard]] Work work(const PairStep& step) const;
+  /// At an instant: force [N] or moment [N m] on b, coordinate, turns counted, its rate, power [W]
+  /// and work done since the start [J].
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
+  void initialize(const PairStep& step, double* history) const;
+  void commit(const PairStep& step, double* history) const;
+
+ private:
+  /// Coordinate and prescribed value at t_n, work since the start, and 1 once these are known.
+  enum History : int { kCoordinate, kTarget, kWork, kStarted, kHistory };
+
+  [[nodiscard]] double coordinate_at_n1(const PairStep& step) const;
+  [[nodiscard]] double rate_at_n1(const PairStep& step) const;
+  /// c(t_{n+1}).
+  [[nodiscard]] double target(const PairStep& step) const;
+  /// Prescribed force over the step [N or N m].
+  [[nodiscard]] double effort(const PairStep& step) const;
+  /// Work over the step [J].
+  [[nodiscard]] double work_of_step(const PairStep& step) const;
+
+  std::variant<FreeAngle, FreeDisplacement> coordinate_;
+  TimeFunctionPtr function_;
+  Drive drive_;
+};
+
+/// A motor that turns.
+struct RotaryMotor : Motor {
+  static constexpr const char* kKind = "rotary_motor";
+  using Motor::Motor;
+};
+/// A motor that pushes.
+struct LinearMotor : Motor {
+  static constexpr const char* kKind = "linear_motor";
+  using Motor::Motor;
+};
+
+/// Adds a motor to the system.
+void add_rotary_motor(System& system, const LoadDescription& load);
+void add_linear_motor(System& system, const LoadDescription& load);
+
+}  // namespace polhode
