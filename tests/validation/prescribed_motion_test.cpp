@@ -58,7 +58,7 @@ Seen run(const std::string& text) {
 constexpr const char* kSteps[] = {"20 ms", "2 ms", "0.2 ms"};
 
 // A ramp of 10 mm over 0.1 s, held from then on; the material damps waves away within a second.
-// @tests{prescribed-velocity, prescribed-kink, prescribed-work}
+// @tests{prescribed-velocity} @tests{prescribed-kink}
 TEST(PrescribedMotion, AViscousBarThatIsHeldAfterARampRests) {
   const std::string ramp = "{table: [[0, 0], [0.1, -0.01]], interpolation: linear}";
   for (const char* step : kSteps) {
@@ -74,7 +74,7 @@ TEST(PrescribedMotion, AViscousBarThatIsHeldAfterARampRests) {
 }
 
 // What moves with a sine, a table with kinks, a spline or a jerk: energy put in is energy found.
-// @tests{prescribed-work, prescribed-kink}
+// @tests{prescribed-work}
 TEST(PrescribedMotion, WorkPutInIsEnergyFoundWhateverTheDrive) {
   for (const char* end :
        {"\"1e-2*sin(30 rad/s*t)\"", "{table: [[0, 0], [0.13, 0.01], [0.37, -0.02], [0.5, 0]]}",

@@ -5,7 +5,7 @@
 #include <polhode/base/format.hpp>
 #include <polhode/solve/drive_kinks.hpp>
 #include <polhode/solve/single_step.hpp>
-#include <polhode/solve/step_error.hpp>
+#include <polhode/solve/local_error.hpp>
 #include <polhode/solve/stepper.hpp>
 #include <polhode/time/composition.hpp>
 

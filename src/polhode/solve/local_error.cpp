@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/solve/step_error.hpp>
+#include <polhode/solve/local_error.hpp>
 
 namespace polhode {
 
