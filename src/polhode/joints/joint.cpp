@@ -248,9 +248,9 @@ std::optional<FreeAngle> Joint::free_angle(const std::string& coordinate) const 
   const std::vector<std::string> names = coordinate_names();
   const auto first = names.end() - angles();  // angles come last
   if (coordinate.empty()) return angles() == 1 ? std::optional<FreeAngle>(angle(0)) : std::nullopt;
-  for (auto name = first; name != names.end(); ++name)
-    if (*name == coordinate) return angle(static_cast<int>(name - first));
-  return std::nullopt;
+  const auto found = std::find(first, names.end(), coordinate);
+  if (found == names.end()) return std::nullopt;
+  return angle(static_cast<int>(found - first));
 }
 
 std::optional<FreeDisplacement> Joint::free_displacement(const std::string& coordinate) const {

@@ -133,6 +133,7 @@ struct Simulation::Impl {
     const AnalysisSpec& a = model.analysis;
     StartOptions options;
     options.multipliers = small;
+    options.load_factor = statics ? 0.0 : 1.0;
     options.smooth_multipliers =
         a.smooth_multipliers && small && a.step && method.control.order == 2;
     if (model.contacts.resolve_overlaps) move_apart();
@@ -149,16 +150,21 @@ struct Simulation::Impl {
     start_seconds = wall_clock() - t0;
   }
 
-  /// Prescribed displacements that jump: no force does that.
+  /// Prescribed positions that jump: no force does that.
   void refuse_jumps() const {
     if (statics) return;
     for (const SolidSpec& solid : model.solids)
       for (const PrescribedSpec& p : solid.prescribed)
         for (std::size_t c = 0; c < 3; ++c)
-          if (p.displacement[c]) refuse_jumps(solid, p, c);
+          if (p.displacement[c])
+            refuse_jumps(format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[c]),
+                         *p.displacement[c], "m");
+    for (const LoadSpec& load : model.loads)
+      if (load.drive == "angle" || load.drive == "displacement")
+        refuse_jumps(format("loads.{}.{}", load.name, load.drive), *load.value,
+                     load.drive == "angle" ? "rad" : "m");
   }
-  void refuse_jumps(const SolidSpec& solid, const PrescribedSpec& p, std::size_t component) const {
-    const TimeFunction& d = *p.displacement[component];
+  void refuse_jumps(const std::string& where, const TimeFunction& d, const char* unit) const {
     TimeBreak at;
     for (int k = 0; k < kMostBreaks; ++k) {
       at = d.next_break(k == 0 ? state.t : at.t, end());
@@ -170,8 +176,8 @@ struct Simulation::Impl {
           jump_at(at.t, before.value, after.value, std::abs(before.rate) + std::abs(after.rate));
       if (jump == 0.0) continue;
       throw InputError(
-          format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[component]),
-          format("jumps by {:.6g} m at t = {:.6g} s, which no force can do", jump, at.t),
+          where,
+          format("jumps by {:.6g} {} at t = {:.6g} s, which no force can do", jump, unit, at.t),
           "Give a ramp, such as a table with interpolation: linear");
     }
   }

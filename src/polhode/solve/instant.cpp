@@ -6,6 +6,9 @@ namespace polhode {
 InstantSolver::InstantSolver(const System& system, std::string solver)
     : impl_(std::make_unique<Impl>(system, std::move(solver))) {}
 InstantSolver::~InstantSolver() = default;
+
+void InstantSolver::set_load_factor(double factor) { impl_->context.load_factor = factor; }
+
 VelocityReport InstantSolver::project_velocities(State& state) {
   Impl& s = *impl_;
   const System& system = s.system;

@@ -54,6 +54,8 @@ class InstantSolver {
   explicit InstantSolver(const System& system, std::string solver = "block_lu");
   ~InstantSolver();
 
+  /// Part of drives and loads that acts [-]; 1 unless it is set.
+  void set_load_factor(double factor);
   /// Moves bodies onto g = 0, by the least mass-weighted way (Gauss-Newton). Does nothing if g is
   /// at round-off. Velocities keep their components (v world, W body).
   /// @param tolerance  |g| that counts as assembled if rounding allows no less [m or -].

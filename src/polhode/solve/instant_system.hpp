@@ -169,7 +169,8 @@ struct InstantSolver::Impl {
   }
   [[nodiscard]] Vec6 rates(const State& state, const InteractionRef& ref, TimeSide side) const {
     const PairView view = system.instant(state, ref, no_lambda.data());
-    return system.group(ref.group).prescribed(ref.item, view.step(), side).rate;
+    return context.load_factor *
+           system.group(ref.group).prescribed(ref.item, view.step(), side).rate;
   }
 
   /// G x by row into `out`, and the largest sum of magnitudes of its terms.

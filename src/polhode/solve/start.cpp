@@ -174,6 +174,7 @@ void start_smooth_multipliers(const System& system, State& state, const Generali
 StartReport start(const System& system, State& state, const GeneralizedAlpha& ga, double dt,
                   const StartOptions& options) {
   InstantSolver solver(system);
+  solver.set_load_factor(options.load_factor);
   StartReport report;
   const PositionReport positions = solver.assemble_positions(state, options.position_tolerance);
   report.position_residual = positions.residual_before;
@@ -192,7 +193,7 @@ StartReport start(const System& system, State& state, const GeneralizedAlpha& ga
   report.velocity_residual = velocities.residual_before;
   report.velocity_change = velocities.largest_change;
   initialize_histories(system, state);
-  start_prescribed(system, state);
+  if (options.load_factor > 0.0) start_prescribed(system, state);
   bond_nodes(system, state);
   if (options.multipliers || ga.rho_inf < 1.0)
     report.consistent = start_accelerations(system, solver, state, ga, dt);

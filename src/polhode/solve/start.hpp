@@ -10,6 +10,7 @@
 namespace polhode {
 
 struct StartOptions {
+  double load_factor = 1.0;           ///< Of drives while positions are assembled: 0 in statics.
   double position_tolerance = 1e-10;  ///< |g| that counts as assembled [m or -].
   /// Solve for accelerations and multipliers even where the method does not need them (ρ∞ = 1).
   bool multipliers = true;

@@ -4,8 +4,8 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/solve/drive_kinks.hpp>
-#include <polhode/solve/single_step.hpp>
 #include <polhode/solve/local_error.hpp>
+#include <polhode/solve/single_step.hpp>
 #include <polhode/solve/stepper.hpp>
 #include <polhode/time/composition.hpp>
 
