@@ -19,7 +19,8 @@ constexpr double kLeastPart = 1e-7;
 
 }  // namespace
 
-TimeBreaks::TimeBreaks(const System& system, double until) : until_(until) {
+TimeBreaks::TimeBreaks(const System& system, double until, int most_derivative)
+    : until_(until), most_derivative_(most_derivative) {
   const auto follow = [&](const TimeFunctionPtr& f, int added) {
     if (!f || f->is_constant()) return;
     for (const Followed& other : followed_)
@@ -35,11 +36,17 @@ TimeBreaks::TimeBreaks(const System& system, double until) : until_(until) {
 }
 
 TimeBreak TimeBreaks::next(double t) {
+  if (t >= until_) {  // the run is taken on beyond its end
+    until_ = 2.0 * t;
+    for (Followed& f : followed_) f.from = -1.0;
+  }
   TimeBreak first;
   const auto passed = [t](const TimeBreak& b) { return b.t <= t * (1.0 + kSameBreak); };
   for (Followed& f : followed_) {
     if (f.from < 0.0 || t < f.from || passed(f.next)) {
       f.next = f.function->next_break(t, until_);
+      while (f.next.exists() && f.next.derivative + f.added > most_derivative_)
+        f.next = f.function->next_break(f.next.t, until_);
       f.next.derivative += f.added;
       f.from = t;
     }
