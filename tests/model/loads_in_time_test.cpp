@@ -114,14 +114,14 @@ TEST(LoadsInTime, RampsOfTablesGiveTheirImpulse) {
   });
 }
 
-/// F sin ωt moves by F/(m ω²) (ω t − sin ω t), at 50 Hz over 10 s.
+/// F sin ωt moves by F/(m ω²) (ω t − sin ω t), at 50 Hz.
 TEST(LoadsInTime, FastForcesAreSampled) {
-  const double omega = 100.0 * std::numbers::pi, T = 9.993;
-  const double right = 500.0 / (omega * omega) * (omega * T - std::sin(omega * T));
+  const double omega = 100.0 * std::numbers::pi, T = 1.993;
+  const double right = 10.0 / (omega * omega) * (omega * T - std::sin(omega * T));
   for (const int order : {2, 6, 8})
     for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
-      if (order == 2 && tolerance < 1e-8) continue;
-      Model m = pushed_ball("1000*sin(100*pi*t)", T);
+      if (order == 2 && tolerance < 1e-6) continue;  // a million steps
+      Model m = pushed_ball("20*sin(100*pi*t)", T);
       m.analysis.order = order;
       m.analysis.tolerance = tolerance;
       EXPECT_NEAR(end_of(m).x, right, 200.0 * tolerance) << order << ", " << tolerance;
@@ -147,7 +147,7 @@ TEST(LoadsInTime, FixedStepsReturnToTheirGrid) {
   Simulation s(m);
   std::vector<double> times;
   s.run({}, [&](Simulation& now) { times.push_back(now.time()); });
-  ASSERT_EQ(times.size(), 21u);
+  ASSERT_EQ(times.size(), 21u) << testing::PrintToString(times);
   for (int k = 0; k < 7; ++k) EXPECT_NEAR(times[static_cast<std::size_t>(k)], 0.1 * (k + 1), 1e-14);
   EXPECT_NEAR(times[7], 0.733, 1e-14);
   for (int k = 8; k < 21; ++k) EXPECT_NEAR(times[static_cast<std::size_t>(k)], 0.1 * k, 1e-14);

@@ -39,7 +39,8 @@ class TimeBreaks {
     TimeBreak next;  ///< After any time from `from` on until it has passed.
     double from = -1.0;
   };
-  [[nodiscard]] bool sampled(const Followed& f, double t, double h) const;
+  /// Over a step h with samples so far apart [s].
+  [[nodiscard]] bool sampled(const Followed& f, double t, double h, double apart) const;
 
   double until_;
   int most_derivative_;

@@ -106,15 +106,21 @@ struct Stepper::Impl {
     return breaks.sampled_length(state.t, dt, composed() ? kSamplesComposed : 1.0);
   }
 
-  /// The step to try from t: not beyond the limit; a fixed step that was cut returns to its grid.
-  [[nodiscard]] double next_length(const State& state, double limit) const {
+  /// The step to try from t: not beyond the limit and the break ahead; a fixed step that was cut
+  /// returns to its grid.
+  [[nodiscard]] double next_length(const State& state, double t_limit, double at_break) const {
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
-    if (!automatic()) {
+    if (automatic()) {
+      dt = part_of(std::min(t_limit, at_break) - state.t, sampled(state, dt));
+    } else {
       const double H = *control.step;
       const double steps_done = std::floor(state.t / H + kLeftOver);
       dt = part_of((steps_done + 1.0) * H - state.t, dt);
+      dt = part_of(t_limit - state.t, dt);
     }
-    return part_of(limit - state.t, sampled(state, dt));
+    const double way = at_break - state.t;
+    if (way > (1.0 + kStretch) * dt) return dt;
+    return std::abs(way - dt) <= kSameTime * dt && !looks_at_end() ? dt : way;
   }
 
   /// A length of at most dt, or a thousandth more, equal parts of which make up the way to a time
@@ -132,10 +138,11 @@ struct Stepper::Impl {
     if (breaks.empty()) return {};
     return breaks.next(automatic() ? state.t : state.t + kSameTime * *control.step);
   }
+  [[nodiscard]] bool looks_at_end() const { return ga.alpha_f > kLooksAtEnd; }
   /// Where the step before a break ends: a method that looks at the end of a step must not see
   /// what comes after it.
   [[nodiscard]] double landing(const TimeBreak& at) const {
-    return ga.alpha_f > kLooksAtEnd ? at.t * (1.0 - kJustBeside) : at.t;
+    return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
   }
 
   /// What lies behind says nothing of what comes: after a jump of accelerations or velocities.
@@ -278,7 +285,7 @@ struct Stepper::Impl {
   /// A step in which a stop acts: what it does may come anywhere within the step, and that hardly
   /// matters if the step is short enough.
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
-  void accept(State& state, double H, const Verdict& verdict, int iterations, double planned);
+  void accept(State& state, double H, const Verdict& verdict, int iterations, double kept);
   StepReport advance(State& state, double t_limit);
 };
 
@@ -292,6 +299,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State&
   // After an impact steps grow from the one that held it.
   v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMostFactor)
                     : std::clamp(wanted, kLeastImpactFactor, 0.9);
+  if (v.fine) v.error = 0.0;  // that was a bound for one impact, no error of each of its steps
   return v;
 }
 
@@ -338,14 +346,11 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   return v;
 }
 
-/// After an accepted step: what comes next, and how the next length is chosen.
+/// After an accepted step: what the next one is to be. @param kept  No less than this [s].
 void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int iterations,
-                           double planned) {
+                           double kept) {
   if (automatic()) {
-    // A step cut short by a limit does not make the next one short.
-    const double next = verdict.factor * H;
-    state.dt_next = std::min(most_step(),
-                             H < planned && verdict.factor >= 1.0 ? std::max(planned, next) : next);
+    state.dt_next = std::min(most_step(), std::max(kept, verdict.factor * H));
     reach.count(state.t, verdict.error, asked_error(H), verdict.noise);
     return;
   }
@@ -369,7 +374,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     state.easy_steps = 0;
   }
   const double planned = state.dt_next;
-  double wanted = next_length(state, limit);
+  double wanted = next_length(state, t_limit, landing(ahead));
   bool fresh = false;
   Refused refused;
   for (;;) {
@@ -391,7 +396,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       land(state, at_limit ? limit : t);
       report.t = state.t;
       report.dt = H;
-      accept(state, H, verdict, report.newton.iterations, planned);
+      // A step cut short by a limit does not make the next one short.
+      const double kept = refused.count == 0 && verdict.factor >= 1.0 && !impact ? planned : 0.0;
+      accept(state, H, verdict, report.newton.iterations, kept);
       if (stands_at(ahead, state.t)) pass_break(state, ahead);
       if (impact && automatic()) state.past_count = 0;
       ++state.ledger.steps;
