@@ -137,11 +137,11 @@ joints:
 analysis: {duration: 0.1 s}
 )";
   for (const int order : {2, 6}) {
-    Simulation s(with(text, order, 1e-15));
+    Simulation s(with(text, order, 1e-14));
     const RunSummary r = s.run();
     EXPECT_EQ(r.end, RunEnd::finished) << r.message;
     ASSERT_EQ(r.warnings.size(), 1u) << order;
-    EXPECT_NE(r.warnings[0].find("tolerance: 1e-15 was not reached"), std::string::npos);
+    EXPECT_NE(r.warnings[0].find("tolerance: 1e-14 was not reached"), std::string::npos);
     Simulation fine(with(text, order, 1e-7));
     EXPECT_TRUE(fine.run().warnings.empty()) << order;
   }
@@ -149,20 +149,20 @@ analysis: {duration: 0.1 s}
 
 /// A solid without bodies: the error at the end follows the tolerance, at orders 6 and 8 as well.
 TEST(AutomaticSteps, FollowSolidsWithoutBodies) {
-  for (const char* element : {"hex8_eas9", "hex20"}) {
+  for (const auto& [element, cells] : {std::pair("hex8_eas9", 2), std::pair("hex20", 1)}) {
     const std::string text = format(R"(
 format: 1
 materials:
   rubber: {{type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
 solids:
   bar:
-    mesh: {{block: {{size: [1, 0.2, 0.2], cells: [2, 1, 1]}}}}
+    mesh: {{block: {{size: [1, 0.2, 0.2], cells: [{}, 1, 1]}}}}
     element: {}
     material: rubber
     angular_velocity: [0, 3, 0]
-analysis: {{duration: 0.3 s}}
+analysis: {{duration: 0.1 s}}
 )",
-                                    element);
+                                    cells, element);
     const auto tip = [&](int order, double tolerance, double step) {
       Model m = with(text, order, tolerance);
       if (step > 0.0) m.analysis.step = step;
@@ -173,7 +173,7 @@ analysis: {{duration: 0.3 s}}
     };
     const Vec3 right = tip(8, 1e-3, 1e-3);
     for (const int order : {6, 8})
-      for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9})
+      for (const double tolerance : {1e-3, 1e-6, 1e-9})
         EXPECT_LE((tip(order, tolerance, 0.0) - right).norm(), 200.0 * tolerance)
             << element << ", order " << order << ", " << tolerance;
   }

@@ -25,13 +25,16 @@ constexpr double kStretch = 1e-3;
 constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
 /// What the companions' errors say of the error at order 6 and at order 8, measured.
 constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
-/// Round-off of an error estimate: nothing below can be asked of a step.
-constexpr double kLeastError = 1e-15;
+/// Round-off of an error estimate, for places at the origin and as part of how far others are:
+/// nothing below can be asked of a step.
+constexpr double kLeastError = 1e-15, kRoundOff = 2.2e-16;
+/// That of the higher orders, whose stages and companions add to it.
+constexpr double kRoundOffComposed = 30.0;
 /// A refused step's error falls with this power of its length at least, or it is noise; and noise
 /// is small.
 constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
 /// Noise that was found counts for the steps after it, less and less.
-constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.9;
+constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
 /// What an impact may be off by in time, times the velocities that jump, as part of the tolerance.
 constexpr double kImpactError = 0.1;
 /// A step that holds an impact is shortened to this part at once at most.
@@ -64,6 +67,7 @@ struct Stepper::Impl {
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
   State before, companion;             ///< Copies to return to and to compare with.
   StepReach reach;
+  double least_error = kLeastError;  ///< What rounding of positions leaves [-].
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
        const StepControl& c, const LaneKernels& kernels)
@@ -72,6 +76,12 @@ struct Stepper::Impl {
         ga(g),
         control(c),
         breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : kBreaksComposed) {
+    double far = 0.0;
+    for (int b = 0; b < s.body_count(); ++b)
+      far = std::max(far, s.motion(s.initial_state(), b).r.norm());
+    for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
+    least_error = std::max(kLeastError, kRoundOff * far / s.length_scale()) *
+                  (c.order > 2 ? kRoundOffComposed : 1.0);
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
     // Companions have their stages doubled too: an odd number of single steps would end with the
@@ -251,16 +261,20 @@ struct Stepper::Impl {
     single.ledger().forget();
   }
 
+  /// What no step can give less than, as was found: State::error_last keeps it at order 2, and
+  /// where it is above the tolerance at the others, which else keep their last estimate there.
+  [[nodiscard]] double noise(const State& state) const {
+    return !composed() || state.error_last > control.tolerance ? state.error_last : 0.0;
+  }
   /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
   /// it per step.
   [[nodiscard]] double asked_error(double dt) const {
     return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
                               : control.tolerance;
   }
-  /// The same, but no less than what noise leaves; State::error_last keeps it at order 2.
+  /// The same, but no less than what noise leaves.
   [[nodiscard]] double allowed_error(const State& state, double dt) const {
-    if (control.order != 2) return control.tolerance;
-    return std::max({kLeastError, asked_error(dt), kNoiseAllowed * state.error_last});
+    return std::max({least_error, asked_error(dt), kNoiseAllowed * noise(state)});
   }
 
   /// What an estimate says of a step that converged.
@@ -312,7 +326,8 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   std::optional<double> error;
   if (composed()) {
     error = composed_error(from, reached, H);
-    reached.error_last = std::min(error.value_or(0.0), control.tolerance);
+    reached.error_last =
+        std::max(std::min(error.value_or(0.0), control.tolerance), kNoiseFades * noise(from));
     if (error) error = std::max(*error, 0.1 * from.error_last);
     power = 1.0 / (control.order + 1.0);
     safety = kSafetyComposed;
@@ -339,8 +354,9 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   const double most_noise = composed() ? kMostNoiseComposed : kMostNoise;
   if (shortest || (v.error < most_noise && refused.leaves_noise(H, v.error))) {
     v.fine = v.noise = true;
-    v.factor = 1.0;
-    if (!composed()) reached.error_last = std::min(v.error, kMostNoise);
+    // The longer one was as good.
+    v.factor = shortest ? 1.0 : refused.H / H;
+    reached.error_last = std::clamp(refused.error, std::min(v.error, most_noise), most_noise);
   }
   if (composed() || refused.count > 0) refused = {H, v.error, refused.count};
   return v;
@@ -350,7 +366,8 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
 void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int iterations,
                            double kept) {
   if (automatic()) {
-    state.dt_next = std::min(most_step(), std::max(kept, verdict.factor * H));
+    const double shortest = std::min(least_step(), H);
+    state.dt_next = std::min(most_step(), std::max({kept, shortest, verdict.factor * H}));
     reach.count(state.t, verdict.error, asked_error(H), verdict.noise);
     return;
   }
