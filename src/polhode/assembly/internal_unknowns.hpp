@@ -14,6 +14,9 @@ class InternalUnknowns {
   [[nodiscard]] virtual std::size_t unknowns_size() const = 0;  ///< Of the whole group.
   virtual void get_unknowns(const double* scratch, double* unknowns) const = 0;
   virtual void set_unknowns(const double* unknowns, double* scratch) const = 0;
+  /// Largest difference of those that two states hold, from their histories of this group [m].
+  [[nodiscard]] virtual double difference(const double* history,
+                                          const double* other_history) const = 0;
 };
 
 }  // namespace polhode

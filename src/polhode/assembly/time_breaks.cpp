@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Bending of a function over a step, as part of its change over kWindow steps.
+/// Bending of a function between samples, as part of its change over kWindow times as long.
 constexpr double kBend = 1.0 / 3.0;
 constexpr double kWindow = 4.0;
 constexpr int kSamples = 16;
@@ -19,7 +19,8 @@ constexpr double kLeastPart = 1e-7;
 
 }  // namespace
 
-TimeBreaks::TimeBreaks(const System& system, double until) : until_(until) {
+TimeBreaks::TimeBreaks(const System& system, double until, int most_derivative)
+    : until_(until), most_derivative_(most_derivative) {
   const auto follow = [&](const TimeFunctionPtr& f, int added) {
     if (!f || f->is_constant()) return;
     for (const Followed& other : followed_)
@@ -36,11 +37,17 @@ TimeBreaks::TimeBreaks(const System& system, double until) : until_(until) {
 }
 
 TimeBreak TimeBreaks::next(double t) {
+  if (t >= until_) {  // the run is taken on beyond its end
+    until_ = 2.0 * t;
+    for (Followed& f : followed_) f.from = -1.0;
+  }
   TimeBreak first;
   const auto passed = [t](const TimeBreak& b) { return b.t <= t * (1.0 + kSameBreak); };
   for (Followed& f : followed_) {
     if (f.from < 0.0 || t < f.from || passed(f.next)) {
       f.next = f.function->next_break(t, until_);
+      while (f.next.exists() && f.next.derivative + f.added > most_derivative_)
+        f.next = f.function->next_break(f.next.t, until_);
       f.next.derivative += f.added;
       f.from = t;
     }
@@ -57,18 +64,18 @@ TimeBreak TimeBreaks::next(double t) {
 double TimeBreaks::sampled_length(double t, double h, double samples) const {
   const double least = kLeastPart * until_;
   for (const Followed& f : followed_)
-    while (h > least && !sampled(f, t, h / samples)) h = std::max(least, 0.7 * h);
+    while (h > least && !sampled(f, t, h, h / samples)) h = std::max(least, 0.7 * h);
   return h;
 }
 
-bool TimeBreaks::sampled(const Followed& f, double t, double h) const {
-  const double bend = 0.5 * h * h * f.function->bounds(t, t + h).curvature;
+bool TimeBreaks::sampled(const Followed& f, double t, double h, double apart) const {
+  const double bend = 0.5 * apart * apart * f.function->bounds(t, t + h).curvature;
   if (bend <= kNothing * f.size) return true;
   // The window ends at the next break, where the function may change by anything.
-  double from = t, to = t + kWindow * h;
+  double from = t, to = t + kWindow * apart;
   if (f.next.exists() && to > f.next.t) {
-    to = f.next.t - 1e-3 * h;
-    from = std::max(0.0, to - kWindow * h);
+    to = f.next.t - 1e-3 * apart;
+    from = std::max(0.0, to - kWindow * apart);
   }
   double low = (*f.function)(from), high = low;
   for (int k = 1; k <= kSamples; ++k) {

@@ -14,15 +14,18 @@ namespace polhode {
 /// A cache of what comes next, and nothing else: the answers hang on the functions alone.
 class TimeBreaks {
  public:
-  /// @param until  End of the run [s].
-  TimeBreaks(const System& system, double until);
+  /// @param until            End of the run [s].
+  /// @param most_derivative  Breaks of higher derivatives of the motion are left out.
+  TimeBreaks(const System& system, double until, int most_derivative = 5);
 
-  /// The first break after t, up to the end of the run; of those that fall together the strongest.
+  /// The first break after t, up to the end of the run or beyond if t is; of those that fall
+  /// together the strongest.
   [[nodiscard]] TimeBreak next(double t);
 
   /// A length of at most h from t, no break between, over which every function is sampled: the
   /// second derivative bends none of them by more than a third of what it changes by over four
   /// such lengths, unless by next to nothing. A sine is looked at seven times a period.
+  /// @eq{sampled-loads}
   /// @param samples  Independent ones that a step of this length takes.
   [[nodiscard]] double sampled_length(double t, double h, double samples) const;
 
@@ -36,9 +39,11 @@ class TimeBreaks {
     TimeBreak next;  ///< After any time from `from` on until it has passed.
     double from = -1.0;
   };
-  [[nodiscard]] bool sampled(const Followed& f, double t, double h) const;
+  /// Over a step h with samples so far apart [s].
+  [[nodiscard]] bool sampled(const Followed& f, double t, double h, double apart) const;
 
   double until_;
+  int most_derivative_;
   std::vector<Followed> followed_;
 };
 

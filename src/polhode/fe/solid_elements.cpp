@@ -137,6 +137,16 @@ class SolidGroup final : public SolidElements {
     for (int b = 0; b < reference_.blocks; ++b) std::copy_n(unknowns + b * n, n, scratch + b * all);
   }
 
+  double difference(const double* history, const double* other_history) const override {
+    double most = 0.0;
+    for (int e = 0; e < reference_.elements; ++e) {
+      const int first = e * sizes_.history();
+      for (int k = first; k < first + sizes_.modes(); ++k)
+        most = std::max(most, std::abs(history[k] - other_history[k]));
+    }
+    return most;
+  }
+
   void commit(const NodeStep& step, double* history, const double* scratch) const override {
     const int n = sizes_.modes(), W = kernels_.width;
     if (sizes_.history() == 0) return;

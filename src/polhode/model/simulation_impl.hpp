@@ -222,9 +222,9 @@ struct Simulation::Impl {
     }
   }
 
-  /// What watch_stretches() has seen.
+  /// What steps could not reach, and what watch_stretches() has seen.
   [[nodiscard]] std::vector<std::string> warnings() const {
-    std::vector<std::string> list;
+    std::vector<std::string> list = stepper->warnings();
     for (const auto& [g, least] : least_stretches) {
       const auto& solid = dynamic_cast<const SolidElements&>(system.nodes().group(g));
       const std::string text = solid.stretch_warning(least);

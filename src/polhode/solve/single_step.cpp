@@ -89,6 +89,18 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
   if (!predictor.remember) return;
   predicted_ = trial_.blocks;
   predicted_nodes_ = trial_.node_u;
+  if (weights.count < 2) return;
+  // Nodes start from another prediction than the one that their error is measured by.
+  const std::size_t n = predicted_nodes_.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    double v = 0.0;
+    for (int p = 0; p < kPast; ++p) v += weights.weight[p] * state.node_past[p * n + k];
+    predicted_nodes_[k] = c.dt * v;
+  }
+  for (const PrescribedComponent& p : system_->nodes().prescribed()) {
+    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+    predicted_nodes_[k] = trial_.node_u[k];
+  }
 }
 
 NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
@@ -112,7 +124,10 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     restore_stored_rates(state);
     return report;
   }
-  if (predictor.remember) estimate_error();
+  if (predictor.remember) {
+    estimate_error();
+    stopped_ = meets_barrier(state);
+  }
 
   ledger_.before_commit(state, trial_);
   impacts_.find(state, trial_);
@@ -138,7 +153,8 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
     ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps start best from the velocities at t_n then
   }
-  if (impacts_.any()) {
+  jumped_ = impacts_.any();
+  if (jumped_) {
     const BodySums before = ledger_.sums(state);
     impacts_.settle(state);
     ledger_.add_jump(state, before);
@@ -203,6 +219,17 @@ void SingleStep::estimate_error() {
   for (std::size_t k = 0; k < predicted_nodes_.size(); ++k)
     most = std::max(most, per_length * std::abs(trial_.node_u[k] - predicted_nodes_[k]));
   error_ = most / 12.0;
+}
+
+bool SingleStep::meets_barrier(const State& state) const {
+  return std::any_of(system_->barriers().begin(), system_->barriers().end(), [&](int i) {
+    const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(i)];
+    const InteractionGroup& group = system_->group(ref.group);
+    const PairView at_n1 = pair_view(*system_, state, trial_, ref);
+    const PairView at_n = system_->instant(state, ref, nullptr);
+    return group.clearance(ref.item, at_n1.step()) < 1.0 ||
+           group.clearance(ref.item, at_n.step()) < 1.0;
+  });
 }
 
 std::vector<std::pair<std::string, double>> SingleStep::phases() const {

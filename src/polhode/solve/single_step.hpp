@@ -29,6 +29,10 @@ class SingleStep {
   /// Largest difference of the last accepted trial from its prediction, with the phase error of
   /// the Cayley transform: an estimate of the step's error at order 2 [-].
   [[nodiscard]] double error_estimate() const { return error_; }
+  /// Velocities jumped at the end of the last accepted trial, in an impact of a joint's stop.
+  [[nodiscard]] bool jumped() const { return jumped_; }
+  /// A stop of a joint acted in the last accepted trial.
+  [[nodiscard]] bool stopped() const { return stopped_; }
 
   LedgerKeeper& ledger() { return ledger_; }
   [[nodiscard]] const LedgerKeeper& ledger() const { return ledger_; }
@@ -41,6 +45,7 @@ class SingleStep {
   [[nodiscard]] bool refused(const State& state, NewtonReport& report) const;
   void commit_histories(State& state, double rotation);
   void estimate_error();
+  [[nodiscard]] bool meets_barrier(const State& state) const;
 
   const System* system_;
   std::unique_ptr<NewtonEngine> engine_;
@@ -54,6 +59,7 @@ class SingleStep {
   std::vector<int> eager_, lazy_;  ///< Interactions with a history of either sort.
   std::vector<int> always_asked_;  ///< Whether they accept what was reached.
   double error_ = 0.0;
+  bool jumped_ = false, stopped_ = false;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.
 };
 

@@ -90,29 +90,32 @@ void set_velocity(BodyBlock& block, int lane, const Vec3& v, const Vec3& W) {
   }
 }
 
+void set_accelerations(const System& system, State& state, const Rates& rates) {
+  for (int b = 0; b < system.body_count(); ++b) {
+    BodyBlock& block = state.blocks[system.slot(b) / kLanes];
+    const int lane = system.slot(b) % kLanes;
+    for (int i = 0; i < 3; ++i) {
+      block.a[i][lane] = rates.a[b][i];
+      block.A[i][lane] = rates.A[b][i];
+      block.h_dot[i][lane] = rates.h_dot[b][i];
+    }
+  }
+}
+
 bool start_accelerations(const System& system, InstantSolver& solver, State& state,
                          const GeneralizedAlpha& ga, double dt) {
-  const Rates now = rates(system, solver, state);
+  Rates now = rates(system, solver, state);
   state.lambda = now.lambda;
   if (!state.node_a.empty() && now.node_a.size() == state.node_a.size()) state.node_a = now.node_a;
   Rates change;
   if (ga.delta != 0.0)
     change = jerks(system, solver, state, now, dt > 0.0 ? dt : short_time(system, state, now));
-  for (int b = 0; b < system.body_count(); ++b) {
-    Vec3 a = now.a[b], A = now.A[b], h_dot = now.h_dot[b];
-    if (ga.delta != 0.0) {
-      a += ga.delta * dt * change.a[b];
-      A += ga.delta * dt * change.A[b];
-      h_dot += ga.delta * dt * change.h_dot[b];
-    }
-    BodyBlock& block = state.blocks[system.slot(b) / kLanes];
-    const int lane = system.slot(b) % kLanes;
-    for (int i = 0; i < 3; ++i) {
-      block.a[i][lane] = a[i];
-      block.A[i][lane] = A[i];
-      block.h_dot[i][lane] = h_dot[i];
-    }
+  for (int b = 0; b < system.body_count() && ga.delta != 0.0; ++b) {
+    now.a[b] += ga.delta * dt * change.a[b];
+    now.A[b] += ga.delta * dt * change.A[b];
+    now.h_dot[b] += ga.delta * dt * change.h_dot[b];
   }
+  set_accelerations(system, state, now);
   begin_stored_rates(state, ga, dt);
   for (int b = 0; b < system.body_count() && ga.delta != 0.0; ++b)
     set_stored_rate(state, system.slot(b), change.a[b], change.A[b], change.h_dot[b]);
@@ -163,6 +166,20 @@ bool start_accelerations(const System& system, State& state, const GeneralizedAl
                          double dt) {
   InstantSolver solver(system);
   return start_accelerations(system, solver, state, ga, dt);
+}
+
+void restart_accelerations(const System& system, State& state, const GeneralizedAlpha& ga,
+                           double t) {
+  if (ga.delta == 0.0) return;
+  InstantSolver solver(system);
+  State after = state;
+  after.t = t;
+  (void)solver.project_velocities(after);
+  const Rates now = rates(system, solver, after);
+  if (!now.consistent) return;
+  set_accelerations(system, state, now);
+  if (now.node_a.size() == state.node_a.size()) state.node_a = now.node_a;
+  begin_stored_rates(state, ga, 0.0);
 }
 
 void start_smooth_multipliers(const System& system, State& state, const GeneralizedAlpha& ga,

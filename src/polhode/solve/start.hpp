@@ -45,6 +45,12 @@ void initialize_histories(const System& system, State& state);
 /// @returns false if the velocities fit no motion.
 bool start_accelerations(const System& system, State& state, const GeneralizedAlpha& ga, double dt);
 
+/// At ρ∞ < 1, after a time at which forces jump: a, A, ḣ become those that the forces just after it
+/// give; before, they told of other forces. Velocities stay. Without contacts between bodies.
+/// @param t  Just after the jump [s].
+void restart_accelerations(const System& system, State& state, const GeneralizedAlpha& ga,
+                           double t);
+
 /// Adds to the velocities the constraint-normal part of what the method's smooth solution differs
 /// by from the true one (of order Δt²). Without it, multipliers at ρ∞ = 1 carry an undamped
 /// alternating error of order Δt. Energy changes by O(Δt⁴).

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include <polhode/assembly/time_breaks.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/solve/drive_kinks.hpp>
 #include <polhode/solve/local_error.hpp>
 #include <polhode/solve/single_step.hpp>
+#include <polhode/solve/start.hpp>
+#include <polhode/solve/step_error.hpp>
+#include <polhode/solve/step_reach.hpp>
 #include <polhode/solve/stepper.hpp>
 #include <polhode/time/composition.hpp>
 
@@ -15,15 +20,44 @@ namespace {
 
 /// Two times closer than this part of a step are the same.
 constexpr double kSameTime = 1e-9;
+/// What is left of a fixed step, as part of it, that the next one takes along.
+constexpr double kLeftOver = 1e-6;
 /// How much longer a step may be if it ends at a wanted time then [-].
 constexpr double kStretch = 1e-3;
 constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
 /// What the companions' errors say of the error at order 6 and at order 8, measured.
 constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
-/// Round-off of an error estimate: nothing below can be asked of a step.
-constexpr double kLeastError = 1e-15;
+/// Round-off of an error estimate, for places at the origin and as part of how far others are:
+/// nothing below can be asked of a step.
+constexpr double kLeastError = 1e-15, kRoundOff = 2.2e-16;
+/// That of the higher orders, whose stages and companions add to it.
+constexpr double kRoundOffComposed = 30.0;
+/// A refused step's error falls with this power of its length at least, or it is noise; and noise
+/// is small.
+constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
+/// Noise that was found counts for the steps after it, less and less.
+constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
+/// What an impact may be off by in time, times the velocities that jump, as part of the tolerance.
+constexpr double kImpactError = 0.1;
+/// A step that holds an impact is shortened to this part at once at most.
+constexpr double kLeastImpactFactor = 0.02;
+/// Highest derivatives of the motion whose jumps end steps.
+constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
+/// Independent samples of loads that a composed step takes, to be on the safe side.
+constexpr double kSamplesComposed = 3.0;
+/// Steps of the search for a first length, and what it may be lengthened by at once.
+constexpr int kProbes = 40;
+constexpr double kWorthLonger = 3.0, kLonger = 10.0;
+/// Of so many fixed steps of higher order one is measured.
+constexpr int kSampled = 64;
 /// Steps in a row with few iterations after which a halved step grows again.
 constexpr int kEasySteps = 3, kFewIterations = 4;
+/// State::easy_steps of automatic steps: the length is to be found anew.
+constexpr int kFindAnew = -1;
+/// A method with this weight of the end of a step looks at loads there.
+constexpr double kLooksAtEnd = 0.999;
+/// Times just before and just after a break, as parts of it [-].
+constexpr double kJustBeside = 0x1p-47;
 
 }  // namespace
 
@@ -31,14 +65,29 @@ struct Stepper::Impl {
   const System& system;
   SingleStep single;
   DriveKinks kinks;
+  GeneralizedAlpha ga;
   StepControl control;
+  TimeBreaks breaks;
   std::vector<double> stages;          ///< Of the order.
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
   State before, companion;             ///< Copies to return to and to compare with.
+  StepReach reach;
+  double least_error = kLeastError;  ///< What rounding of positions leaves [-].
 
-  Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
+  Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
        const StepControl& c, const LaneKernels& kernels)
-      : system(s), single(s, std::move(engine), ga, kernels, c.conserving), kinks(s), control(c) {
+      : system(s),
+        single(s, std::move(engine), g, kernels, c.conserving),
+        kinks(s),
+        ga(g),
+        control(c),
+        breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : kBreaksComposed) {
+    double far = 0.0;
+    for (int b = 0; b < s.body_count(); ++b)
+      far = std::max(far, s.motion(s.initial_state(), b).r.norm());
+    for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
+    least_error = std::max(kLeastError, kRoundOff * far / s.length_scale()) *
+                  (c.order > 2 ? kRoundOffComposed : 1.0);
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
     // Companions have their stages doubled too: an odd number of single steps would end with the
@@ -48,6 +97,7 @@ struct Stepper::Impl {
   }
 
   [[nodiscard]] bool automatic() const { return !control.step; }
+  [[nodiscard]] bool composed() const { return stages.size() > 1; }
   [[nodiscard]] double least_step() const {
     if (control.min_step > 0.0) return control.min_step;
     return automatic() ? 1e-9 * control.horizon : 1e-6 * *control.step;
@@ -66,15 +116,27 @@ struct Stepper::Impl {
     return std::min({most_step(), control.horizon / 50.0, turn / std::max(omega, 1e-12)});
   }
 
-  /// The step to try from t: not beyond the limit; a halved fixed step returns to its grid.
-  [[nodiscard]] double next_length(const State& state, double t_limit) const {
+  /// At most so long that the loads are sampled on the way.
+  [[nodiscard]] double sampled(const State& state, double dt) const {
+    if (!automatic() || breaks.empty()) return dt;
+    return breaks.sampled_length(state.t, dt, composed() ? kSamplesComposed : 1.0);
+  }
+
+  /// The step to try from t: not beyond the limit and the break ahead; a fixed step that was cut
+  /// returns to its grid.
+  [[nodiscard]] double next_length(const State& state, double t_limit, double at_break) const {
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
-    if (!automatic()) {
+    if (automatic()) {
+      dt = part_of(std::min(t_limit, at_break) - state.t, sampled(state, dt));
+    } else {
       const double H = *control.step;
-      const double steps_done = std::floor(state.t / H + kSameTime);
+      const double steps_done = std::floor(state.t / H + kLeftOver);
       dt = part_of((steps_done + 1.0) * H - state.t, dt);
+      dt = part_of(t_limit - state.t, dt);
     }
-    return part_of(t_limit - state.t, dt);
+    const double way = at_break - state.t;
+    if (way > (1.0 + kStretch) * dt) return dt;
+    return std::abs(way - dt) <= kSameTime * dt && !looks_at_end() ? dt : way;
   }
 
   /// A length of at most dt, or a thousandth more, equal parts of which make up the way to a time
@@ -85,6 +147,35 @@ struct Stepper::Impl {
     const double parts = std::ceil(way / dt - kStretch);
     const double part = parts > 1.0 ? way / parts : way;
     return std::abs(part - dt) <= kSameTime * dt ? dt : part;  // to the last bit, wherever it ends
+  }
+
+  /// The break of a function of time that comes next; one that falls on the grid has passed there.
+  [[nodiscard]] TimeBreak next_break(const State& state) {
+    if (breaks.empty()) return {};
+    return breaks.next(automatic() ? state.t : state.t + kSameTime * *control.step);
+  }
+  [[nodiscard]] bool looks_at_end() const { return ga.alpha_f > kLooksAtEnd; }
+  /// Where the step before a break ends: a method that looks at the end of a step must not see
+  /// what comes after it.
+  [[nodiscard]] double landing(const TimeBreak& at) const {
+    return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
+  }
+
+  /// What lies behind says nothing of what comes: after a jump of accelerations or velocities.
+  void begin_anew(State& state) const {
+    state.past_count = 0;
+    state.error_last = 0.0;
+    if (automatic()) state.easy_steps = kFindAnew;
+  }
+  [[nodiscard]] bool stands_at(const TimeBreak& at, double t) const {
+    const double same = automatic() ? kSameBreak * at.t : kSameTime * *control.step;
+    return at.exists() && at.t - t <= same;
+  }
+  void pass_break(State& state, const TimeBreak& at) const {
+    if (at.derivative > 2) return;
+    begin_anew(state);
+    if (!system.contacts())
+      restart_accelerations(system, state, ga, std::max(at.t, state.t) * (1.0 + kJustBeside));
   }
 
   /// Runs stages from the state; on failure the state is not restored.
@@ -113,173 +204,270 @@ struct Stepper::Impl {
     if (std::abs(t - grid) < kSameTime * H) state.t = grid;
   }
 
-  /// Largest difference of positions, orientations, and velocities times the step H, between two
-  /// states [-]. A step that is too long may end at the right place with velocities that take the
-  /// rest of the run elsewhere.
-  [[nodiscard]] double difference(const State& x, const State& y, double H) const {
-    double most = 0.0;
-    const double per_length = 1.0 / system.length_scale();
-    for (int b = 0; b < system.body_count(); ++b) {
-      const BodyMotion m = system.motion(x, b), n = system.motion(y, b);
-      most = std::max({most, per_length * (m.r - n.r).norm(),
-                       2.0 * (m.q.conjugate() * n.q).vec().norm(),
-                       per_length * H * (m.v - n.v).norm(), H * (m.W - n.W).norm()});
-    }
-    return most;
+  /// The way of a companion that starts where the step did; nothing if it does not converge.
+  std::optional<double> difference_of(const std::vector<double>& list, const State& from,
+                                      const State& reached, double H, double of_velocities) {
+    companion = from;
+    single.ledger().forget();
+    const NewtonReport r = run_stages(companion, list, H, true);
+    single.ledger().forget();
+    companion_iterations += companion.ledger.iterations - from.ledger.iterations;
+    if (!r.converged) return std::nullopt;
+    return state_difference(system, companion, reached, of_velocities);
   }
 
   /// Estimate of the error of a composed step from cheap companions of orders 2 and 4: y4 − y and
   /// y2 − y shrink by known powers of H, so their ratio leads from one order to the next.
   std::optional<double> composed_error(const State& from, const State& reached, double H) {
-    companion = from;
-    single.ledger().forget();
-    NewtonReport r = run_stages(companion, check2, H, true);
-    single.ledger().forget();
-    count_trial(companion, from);
-    if (!r.converged) return std::nullopt;
-    const double e2 = difference(companion, reached, H);
-    companion = from;
-    r = run_stages(companion, check4, H, true);
-    single.ledger().forget();
-    count_trial(companion, from);
-    if (!r.converged) return std::nullopt;
-    const double e4 = difference(companion, reached, H);
-    if (e2 == 0.0) return 0.0;
-    const double ratio = e4 / e2;
-    return control.order == 6 ? kErrorOfSix * e4 * ratio : kErrorOfEight * e4 * ratio * ratio;
+    const auto e2 = difference_of(check2, from, reached, H, H);
+    const auto e4 = e2 ? difference_of(check4, from, reached, H, H) : std::nullopt;
+    if (!e4) return std::nullopt;
+    if (*e2 == 0.0) return 0.0;
+    const double ratio = *e4 / *e2;
+    return control.order == 6 ? kErrorOfSix * *e4 * ratio : kErrorOfEight * *e4 * ratio * ratio;
+  }
+
+  /// Estimate of the error of a plain step from its two halves, which hangs on nothing that lies
+  /// behind: they err by a quarter. @eq{step-halves}
+  std::optional<double> error_by_halves(const State& from, const State& reached, double H) {
+    const auto difference = difference_of({0.5, 0.5}, from, reached, H, 0.0);
+    if (!difference) return std::nullopt;
+    return 4.0 / 3.0 * *difference;
+  }
+
+  /// Adds an estimate of the accepted step's error to the ledger. Of fixed steps of higher order
+  /// some are taken again in two halves. @eq{step-error}
+  void record(State& state, double H, double verdict, const NewtonReport& newton) {
+    StepErrors& errors = state.ledger.errors;
+    if (newton.hard && errors.hard++ == 0) errors.hard_time = state.t;
+    if (!composed()) {
+      if (const auto error = error_of_last_step(system, state)) record_error(state, *error);
+    } else if (automatic()) {
+      record_error(state, {verdict, -1, -1});
+    } else if (state.ledger.steps % kSampled == 0) {
+      std::vector<double> halves;
+      for (int k = 0; k < 2; ++k)
+        for (const double stage : stages) halves.push_back(0.5 * stage);
+      companion_iterations = 0;
+      const auto difference = difference_of(halves, before, state, H, H);
+      state.ledger.iterations += companion_iterations;
+      const double part = 1.0 / (1.0 - std::pow(0.5, control.order));
+      if (difference) record_error(state, {part * *difference, -1, -1}, kSampled);
+    }
   }
 
   std::int64_t companion_iterations = 0;
-  void count_trial(const State& after, const State& from) {
-    companion_iterations += after.ledger.iterations - from.ledger.iterations;
-  }
 
-  /// Finds a first automatic step of order 2 whose estimate, known after three steps, is fine.
-  void probe(State& state) {
-    double dt = first_step(state);
+  /// Finds an automatic step of order 2 whose estimate, known after three steps, is fine: at the
+  /// start and where what lies behind says nothing. @param way  Up to the next break [s].
+  void find_length(State& state, double way) {
+    const double most = sampled(state, std::min(first_step(state), way / 3.0));
+    double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most) : most, good = 0.0;
     before = state;
-    for (int attempt = 0; attempt < 40 && dt > least_step(); ++attempt) {
+    for (int attempt = 0; attempt < kProbes && (dt > least_step() || attempt == 0); ++attempt) {
       companion = before;
       single.ledger().forget();
       bool fine = true;
       for (int i = 0; i < 3 && fine; ++i)
         fine = single.take(companion, dt, control.newton, {i == 0 ? -1 : 1, i == 2}).converged;
-      state.ledger.iterations = companion.ledger.iterations;
-      if (!fine) {
-        dt *= 0.5;
+      state.ledger.iterations += companion.ledger.iterations - before.ledger.iterations;
+      const double error = fine ? single.error_estimate() : 0.0, allowed = allowed_error(state, dt);
+      if (!fine || error > allowed) {
+        if (good > 0.0) break;
+        dt *= fine ? std::clamp(kSafety * std::sqrt(allowed / error), 0.1, 0.9) : 0.5;
         continue;
       }
-      const double error = single.error_estimate(), allowed = allowed_error(dt);
-      if (error <= allowed) break;
-      dt *= std::clamp(kSafety * std::sqrt(allowed / error), 0.1, 0.9);
+      good = dt;
+      const double longer =
+          error > 0.0 ? std::min(kLonger, kSafety * std::sqrt(allowed / error)) : kLonger;
+      if (longer < kWorthLonger || dt >= most) break;
+      dt = std::min(most, longer * dt);
     }
-    state.dt_next = dt;
+    state.dt_next = good > 0.0 ? good : std::max(dt, std::min(most, least_step()));
+    state.easy_steps = 0;
     single.ledger().forget();
   }
 
+  /// What no step can give less than, as was found: State::error_last keeps it at order 2, and
+  /// where it is above the tolerance at the others, which else keep their last estimate there.
+  [[nodiscard]] double noise(const State& state) const {
+    return !composed() || state.error_last > control.tolerance ? state.error_last : 0.0;
+  }
   /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
   /// it per step.
-  [[nodiscard]] double allowed_error(double dt) const {
-    return control.order == 2
-               ? std::max(kLeastError, control.tolerance * std::abs(dt) / control.horizon)
-               : control.tolerance;
+  [[nodiscard]] double asked_error(double dt) const {
+    return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
+                              : control.tolerance;
+  }
+  /// The same, but no less than what noise leaves.
+  [[nodiscard]] double allowed_error(const State& state, double dt) const {
+    return std::max({least_error, asked_error(dt), kNoiseAllowed * noise(state)});
   }
 
+  /// What an estimate says of a step that converged.
+  struct Verdict {
+    bool fine = true;
+    double factor = 1.0;  ///< Of the length, for the next one or another trial.
+    double error = 0.0;
+    bool noise = false;  ///< It is accepted as no shorter step does better.
+  };
+  /// The last trial that was measured and refused: another one is compared with it.
+  struct Refused {
+    double H = 0.0, error = 0.0;
+    int count = 0;
+
+    /// Shorter, the step hardly errs by less: that is no error of the step.
+    [[nodiscard]] bool leaves_noise(double length, double now) const {
+      return H > 0.0 && now > error * std::pow(length / H, kFalls);
+    }
+  };
+
+  Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
+  /// A step in which a stop acts: what it does may come anywhere within the step, and that hardly
+  /// matters if the step is short enough.
+  [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
+  void accept(State& state, double H, const Verdict& verdict, int iterations, double kept);
   StepReport advance(State& state, double t_limit);
 };
 
+Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State& reached,
+                                                 double H) const {
+  Verdict v;
+  v.error = jump_difference(system, from, reached, H);
+  const double allowed = kImpactError * control.tolerance;
+  v.fine = v.error <= allowed || H <= least_step();
+  const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMostFactor;
+  // After an impact steps grow from the one that held it.
+  v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMostFactor)
+                    : std::clamp(wanted, kLeastImpactFactor, 0.9);
+  if (v.fine) v.error = 0.0;  // that was a bound for one impact, no error of each of its steps
+  return v;
+}
+
+Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, double H, bool fresh,
+                                            Refused& refused) {
+  Verdict v;
+  companion_iterations = 0;
+  double power = 0.5, safety = kSafety;
+  const double allowed = allowed_error(from, H);
+  std::optional<double> error;
+  if (composed()) {
+    error = composed_error(from, reached, H);
+    reached.error_last =
+        std::max(std::min(error.value_or(0.0), control.tolerance), kNoiseFades * noise(from));
+    if (error) error = std::max(*error, 0.1 * from.error_last);
+    power = 1.0 / (control.order + 1.0);
+    safety = kSafetyComposed;
+  } else if (from.past_count < 2 && !fresh) {
+    return v;  // find_length() has tried these steps, or they are as short as the impact's
+  } else {
+    if (!fresh) error = single.error_estimate();
+    // The past may be noise, or say nothing: then the step is measured by itself.
+    if (!system.contacts() && (fresh || (*error > allowed && refused.count > 0))) {
+      const auto halves = error_by_halves(from, reached, H);
+      error = halves && error ? std::min(*error, *halves) : halves;
+    }
+    reached.error_last = kNoiseFades * from.error_last;
+  }
+  reached.ledger.iterations += companion_iterations;
+  const bool shortest = H <= least_step();
+  if (!error) return {.fine = shortest, .factor = shortest ? 1.0 : 0.5, .noise = shortest};
+  v.error = *error;
+  v.factor = v.error > 0.0 ? std::clamp(safety * std::pow(allowed / v.error, power), kLeastFactor,
+                                        kMostFactor)
+                           : kMostFactor;
+  v.fine = v.error <= allowed;
+  if (v.fine) return v;
+  const double most_noise = composed() ? kMostNoiseComposed : kMostNoise;
+  if (shortest || (v.error < most_noise && refused.leaves_noise(H, v.error))) {
+    v.fine = v.noise = true;
+    // The longer one was as good.
+    v.factor = shortest ? 1.0 : refused.H / H;
+    reached.error_last = std::clamp(refused.error, std::min(v.error, most_noise), most_noise);
+  }
+  if (composed() || refused.count > 0) refused = {H, v.error, refused.count};
+  return v;
+}
+
+/// After an accepted step: what the next one is to be. @param kept  No less than this [s].
+void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int iterations,
+                           double kept) {
+  if (automatic()) {
+    const double shortest = std::min(least_step(), H);
+    state.dt_next = std::min(most_step(), std::max({kept, shortest, verdict.factor * H}));
+    reach.count(state.t, verdict.error, asked_error(H), verdict.noise);
+    return;
+  }
+  const int per_stage = iterations / static_cast<int>(stages.size());
+  state.easy_steps = per_stage <= kFewIterations ? state.easy_steps + 1 : 0;
+  if (H < *control.step && state.easy_steps >= kEasySteps) {
+    state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));
+    state.easy_steps = 0;
+  }
+}
+
 StepReport Stepper::Impl::advance(State& state, double t_limit) {
   StepReport report;
-  if (automatic() && state.dt_next <= 0.0) {
+  const TimeBreak ahead = next_break(state);
+  const double limit = std::min(t_limit, landing(ahead));
+  if (automatic() && (state.dt_next <= 0.0 || state.easy_steps == kFindAnew)) {
     if (control.order == 2)
-      probe(state);
-    else
+      find_length(state, landing(ahead) - state.t);
+    else if (state.dt_next <= 0.0)
       state.dt_next = first_step(state);
+    state.easy_steps = 0;
   }
-  const bool composed = stages.size() > 1;
   const double planned = state.dt_next;
-  double wanted = next_length(state, t_limit);
+  double wanted = next_length(state, t_limit, landing(ahead));
   bool fresh = false;
+  Refused refused;
   for (;;) {
     const double H = wanted;
-    if (composed || automatic()) before = state;
-    const bool starting = state.past_count < 2;
+    if (composed() || automatic()) before = state;
     report.newton = run_stages(state, stages, H, fresh);
-    bool fine = report.newton.converged;
-    double factor = 0.5;
-    if (fine && automatic()) {
-      double error = 0.0;
-      bool known = true;
-      if (composed) {
-        companion_iterations = 0;
-        const auto estimate = composed_error(before, state, H);
-        known = estimate.has_value();
-        error = known ? std::max(*estimate, 0.1 * before.error_last) : 0.0;
-        state.error_last = known ? *estimate : 0.0;
-        state.ledger.iterations += companion_iterations;
-      } else if (!starting && !fresh) {
-        error = single.error_estimate();
-      }
-      if (known) {
-        const double allowed = allowed_error(H);
-        const double power = composed ? 1.0 / (control.order + 1.0) : 0.5;
-        const double safety = composed ? kSafetyComposed : kSafety;
-        factor = error > 0.0 ? std::clamp(safety * std::pow(allowed / error, power), kLeastFactor,
-                                          kMostFactor)
-                             : kMostFactor;
-        fine = error <= allowed;
-        if (starting && !composed) factor = 1.0;
-      } else {
-        fine = false;
-      }
+    // Contacts have steps of their own in which velocities jump.
+    const bool stopped = !composed() && !system.contacts() && single.stopped();
+    const bool impact = stopped && single.jumped();
+    Verdict verdict{.fine = report.newton.converged, .factor = 0.5};
+    if (verdict.fine && automatic()) {
+      const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
+      verdict = impact || by_stop.fine ? by_stop : judge(before, state, H, fresh, refused);
     }
-    if (fine) {
+    if (verdict.fine) {
       report.accepted = true;
-      report.t = composed ? before.t + H : state.t;
-      land(state, std::abs(report.t - t_limit) < kSameTime * std::abs(H) ? t_limit : report.t);
+      const double t = composed() ? before.t + H : state.t;
+      const bool at_limit = std::abs(t - limit) < kSameTime * std::abs(H);
+      land(state, at_limit ? limit : t);
       report.t = state.t;
       report.dt = H;
-      if (automatic()) {
-        // A step cut short by the limit does not make the next one short.
-        const double next = factor * H;
-        state.dt_next =
-            std::min(most_step(), H < planned && factor >= 1.0 ? std::max(planned, next) : next);
-      } else {
-        const int per_stage = report.newton.iterations / static_cast<int>(stages.size());
-        state.easy_steps = per_stage <= kFewIterations ? state.easy_steps + 1 : 0;
-        if (H < *control.step && state.easy_steps >= kEasySteps) {
-          state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));
-          state.easy_steps = 0;
-        }
-      }
-      if (!composed) {
-        if (const auto estimate = error_of_last_step(system, state)) record_error(state, *estimate);
-      } else if (automatic()) {
-        record_error(state, {state.error_last, -1, -1});
-      }
-      if (report.newton.hard && state.ledger.errors.hard++ == 0)
-        state.ledger.errors.hard_time = state.t;
+      // A step cut short by a limit does not make the next one short.
+      const double kept = refused.count == 0 && verdict.factor >= 1.0 && !impact ? planned : 0.0;
+      accept(state, H, verdict, report.newton.iterations, kept);
+      record(state, H, verdict.error, report.newton);
       if (kinks.find(state)) {
         const BodySums sums = single.ledger().sums(state);
         kinks.settle(state);
         single.ledger().add_driven_jump(state, sums);
       }
+      if (stands_at(ahead, state.t)) pass_break(state, ahead);
+      if (impact && automatic()) state.past_count = 0;
       ++state.ledger.steps;
       single.ledger().close_step(state);
       return report;
     }
     // Refused: back to t_n with a shorter step; the past says little about the next trial.
     const std::int64_t iterations = state.ledger.iterations;
-    if (composed || automatic()) {
+    if (composed() || automatic()) {
       state = before;
       single.ledger().forget();
     }
     state.ledger.iterations = iterations;
     ++state.ledger.rejected;
     ++report.rejected;
-    wanted *= report.newton.converged ? std::min(factor, 0.9) : 0.5;
+    wanted *= report.newton.converged ? std::min(verdict.factor, 0.9) : 0.5;
     state.easy_steps = 0;
     fresh = !report.newton.converged;
+    ++refused.count;
     if (H > least_step()) {
       wanted = std::max(wanted, least_step());
     } else {
@@ -307,6 +495,10 @@ StepReport Stepper::advance(State& state, double t_limit) { return impl_->advanc
 const NewtonEngine& Stepper::engine() const { return impl_->single.engine(); }
 
 Balance Stepper::balance(const State& state) const { return impl_->single.ledger().balance(state); }
+
+std::vector<std::string> Stepper::warnings() const {
+  return impl_->reach.warnings(impl_->control.tolerance, impl_->control.order);
+}
 
 std::vector<std::pair<std::string, double>> Stepper::phases() const {
   return impl_->single.phases();

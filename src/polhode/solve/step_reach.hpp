@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace polhode {
+
+/// How far the estimated errors of automatic steps stayed within what was asked for.
+class StepReach {
+ public:
+  /// An accepted step. @param noise  It was accepted as no shorter one errs by less.
+  void count(double t, double error, double asked, bool noise);
+  /// Nothing, or one sentence with what to do.
+  [[nodiscard]] std::vector<std::string> warnings(double tolerance, int order) const;
+
+ private:
+  std::int64_t steps_ = 0, beyond_ = 0;
+  double sum_ = 0.0, worst_ = 0.0, first_ = 0.0;
+};
+
+}  // namespace polhode
