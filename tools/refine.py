@@ -11,8 +11,10 @@
 Needs nothing but Python; POLHODE=path/to/polhode says which program runs. The exit code is 1 if a case fails.
 """
 import argparse
+import bisect
 import concurrent.futures
 import csv
+import dataclasses
 import fractions
 import json
 import math
@@ -42,8 +44,9 @@ FORCES = ("fx", "fy", "fz", "mx", "my", "mz", "normal", "ftx", "fty", "ftz", "te
 class Run:
     """One run: how it ended, its figures, the tables of its probes."""
 
-    def __init__(self, model, settings, step, span, probes=None):
+    def __init__(self, model, settings, step, span, probes=None, load_steps=None):
         self.step, self.span, self._tables = step, span, {}
+        self.units = {}
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             if isinstance(model, dict):
@@ -51,9 +54,12 @@ class Run:
                 path.write_text(json.dumps(model))
             else:
                 path = ROOT / model
-            sets = {**settings, "analysis.step": f"{step!r} s", "analysis.duration": f"{span!r} s", "output.hdf5": "false",
-                    "output.every": f"{step!r} s"}
-            sets.update({f"output.probes.{name}.every": f"{step!r} s" for name in probes or ()})
+            sets = {**settings, "output.hdf5": "false"}
+            if load_steps:
+                sets["analysis.load_steps"] = str(load_steps)
+            else:
+                sets.update({"analysis.step": f"{step!r} s", "analysis.duration": f"{span!r} s", "output.every": f"{step!r} s"})
+                sets.update({f"output.probes.{name}.every": f"{step!r} s" for name in probes or ()})
             words = [word for key, value in sets.items() for word in ("--set", f"{key}={value}")]
             begin = time.perf_counter()
             done = subprocess.run([program(), "run", str(path), "-o", str(folder / "out"), "--json", "--quiet", *words],
@@ -69,6 +75,7 @@ class Run:
                 with open(file, newline="") as lines:
                     rows = list(csv.reader(lines))
                 columns = zip(*([float(cell) for cell in row] for row in rows[1:]))
+                self.units[file.stem] = {head.split(" [")[0]: head.split(" [")[1][:-1] for head in rows[0]}
                 self._tables[file.stem] = {head.split(" [")[0]: list(column) for head, column in zip(rows[0], columns)}
 
     def names(self):
@@ -103,6 +110,21 @@ def impulse(times, forces):
     return sums
 
 
+def smooth_channels(run, skip, until, apart):
+    """The same of a motion without jumps: columns of one unit together, at multiples of a time that all runs have rows at."""
+    found = {}
+    for name in run.names():
+        table = run.probe(name)
+        wanted = [i * apart for i in range(1, round(min(until, run.span) / apart) + 1)] if apart else table["t"][-1:]
+        rows = [min(bisect.bisect_left(table["t"], t - 1e-6 * apart), len(table["t"]) - 1) for t in wanted]
+        units = {}
+        for column, unit in run.units[name].items():
+            if column != "t" and not {name, f"{name}.{column}", f"{name}.[{unit}]", f"[{unit}]"} & set(skip):
+                units.setdefault(unit, []).append([table[column][row] for row in rows])
+        found.update({(name, f"[{unit}]"): columns for unit, columns in units.items()})
+    return found
+
+
 def channels(run, skip, until):
     """What of a run is compared: (probe, kind) to columns sampled at common times. Places by their largest difference,
     speeds by the mean over time, for they jump; forces by their impulse."""
@@ -124,78 +146,99 @@ def channels(run, skip, until):
     return found
 
 
+def extent(kind, columns):
+    """What differences are parts of."""
+    if kind == "speeds" or kind.startswith("["):
+        return max(max(map(abs, column)) for column in columns)
+    return max(max(column) - min(column) for column in columns)
+
+
 def difference(kind, coarse, fine):
     """Of two lists of columns, over the range of the finer ones."""
-    scale = max((max(map(abs, column)) if kind == "speeds" else max(column) - min(column)) for column in fine)
+    scale = extent(kind, fine)
     gaps = [[abs(a - b) for a, b in zip(c, f)] for c, f in zip(coarse, fine)]
     size = max(sum(g) / len(g) for g in gaps) if kind == "speeds" else max(max(g) for g in gaps)
     return (0.0 if size == 0 else math.inf) if scale == 0 else size / scale
 
 
-def compare(case, runs):
-    """A row for each channel: differences to the finest run, observed order, whether the case's order is kept."""
+def compare(case, runs, parts, order, floor, skip, what=""):
+    """A row for each channel: differences to the finest run, observed order, whether the order asked for is kept."""
     shortest = min([case.until] + [run.span for run in runs])
-    tables = [channels(run, case.skip, shortest) for run in runs]
+    apart = 0.0 if case.statics else case.step
+    tables = [smooth_channels(run, skip, shortest, apart) if case.smooth or case.statics else channels(run, skip, shortest) for run in runs]
     finest = tables[-1]
-    sizes = {kind: 0.0 for _, kind in finest}
+    sizes = {}
     for (_, kind), columns in finest.items():
-        for column in columns:
-            sizes[kind] = max(sizes[kind], max(column) - min(column) if kind != "speeds" else max(map(abs, column)))
+        sizes[kind] = max(sizes.get(kind, 0.0), extent(kind, columns))
     rows = []
     for key, fine in finest.items():
         kind = key[1]
-        own = max(max(c) - min(c) if kind != "speeds" else max(map(abs, c)) for c in fine)
-        if own < case.floor * sizes[kind] or own == 0:
+        own = extent(kind, fine)
+        if own < floor * sizes[kind] or own == 0:
             continue  # What stands still has no range to compare with; the others and the known values see it move.
         gaps = [difference(kind, table[key], fine) for table in tables[:-1]]
-        ratio = runs[-2].step / runs[0].step
+        ratio = parts[-2] / parts[0]
         observed = math.log(gaps[-1] / gaps[0]) / math.log(ratio) if len(gaps) > 1 and min(gaps[0], gaps[-1]) > 0 else math.nan
-        parts = [run.step / runs[0].step for run in runs[:-1]]
-        size = ALLOWANCE * max(gap / part**case.order for gap, part in list(zip(gaps, parts))[:2 if len(gaps) > 2 else 1])
-        good = all(gap <= max(case.floor, size) for gap in gaps) and gaps[-1] <= max(case.floor, size * ratio**case.order)
-        rows.append((f"{key[0]} {key[1]}", gaps, observed, good))
+        size = ALLOWANCE * max(gap / part**order for gap, part in list(zip(gaps, parts))[:2 if len(gaps) > 2 else 1])
+        good = all(gap <= max(floor, size) for gap in gaps) and gaps[-1] <= max(floor, size * ratio**order)
+        if case.statics and not what:
+            good = all(gap <= floor for gap in gaps)
+        rows.append((f"{what}{key[0]} {key[1]}", gaps, observed, good))
     return rows
 
 
 def run_variant(case, variant, steps, workers):
-    """All runs of one variant, coarse to fine."""
+    """All runs of one variant, coarse to fine; then those of its meshes."""
     settings = {key: value for key, value in variant.settings.items()}
     names = list(case.model["output"]["probes"]) if isinstance(case.model, dict) else None
     if names is None:
         names = Run(case.model, settings, case.step, case.step).names()
-    jobs = [(case.step * part, case.spans.get(part, case.span)) for part in steps]
+    jobs = [(settings, case.step * part, case.spans.get(part, case.span), round(1 / part)) for part in steps]
+    jobs += [({**settings, **mesh}, case.step, case.span, 1) for mesh in case.meshes]
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(lambda job: Run(case.model, settings, *job, probes=names), jobs))
+        runs = list(pool.map(lambda job: Run(case.model, *job[:3], probes=names, load_steps=job[3] if case.statics else None), jobs))
+    return runs[:len(steps)], runs[:1] + runs[len(steps):]
+
+
+def measured(item, runs, sizes):
+    """A known number, what runs make of it, and whether they are near enough for their step or mesh."""
+    values = []
+    for run in runs:
+        try:
+            values.append(math.nan if run.trouble else item.read(run))
+        except (KeyError, IndexError, ValueError, ZeroDivisionError):
+            values.append(math.nan)
+    allowed = [item.allowed(size) for size in sizes]
+    good = [(v - item.value if item.below else abs(v - item.value)) <= bound for v, bound in zip(values, allowed)]
+    return {"what": item.what, "value": item.value, "ours": values, "good": good, "allowed": allowed}
 
 
 def judge(case, steps, workers=1):
     """Runs a case; what failed, and everything as plain data."""
+    whole = case
     found = {"case": case.name, "steps": [case.step * part for part in steps], "variants": []}
     failures = 0
     for variant in case.variants() if callable(case.variants) else case.variants:
-        runs = run_variant(case, variant, steps, workers)
-        troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs if run.trouble]  # Each is a failure.
-        known = []
-        for item in variant.known:
-            values = []
-            for run in runs:
-                try:
-                    values.append(math.nan if run.trouble else item.read(run))
-                except (KeyError, IndexError, ValueError, ZeroDivisionError):
-                    values.append(math.nan)
-            good = [(v - item.value if item.below else abs(v - item.value)) <= item.allowed(run.step) for v, run in zip(values, runs)]
-            known.append({"what": item.what, "value": item.value, "ours": values, "good": good,
-                          "allowed": [item.allowed(run.step) for run in runs]})
+        case = dataclasses.replace(whole, step=whole.step * variant.longer)
+        runs, meshes = run_variant(case, variant, steps, workers)
+        sizes = [0.5**i for i in range(len(meshes))]
+        troubles = [f"step {run.step:g} s: {run.trouble}" for run in runs + meshes[1:] if run.trouble]  # Each is a failure.
+        known = [measured(item, runs, [run.step for run in runs]) for item in variant.known]
+        known += [measured(item, meshes, sizes) for item in case.mesh_known]
         drifts = [math.nan if run.trouble else run.figures.get("energy_drift", math.nan) for run in runs]
-        if not troubles:
+        if not troubles and not case.statics:
             known.append({"what": "energy that the ledger misses, of its size", "value": 0.0, "ours": drifts, "good": [drift <= case.drift for drift in drifts],
                           "allowed": [case.drift] * len(drifts)})
-        rows = compare(case, runs) if case.compare and len(runs) > 1 and not troubles else []
+        rows, asked = [], case.order if variant.order is None else variant.order
+        if case.compare and len(runs) > 1 and not troubles:
+            rows = compare(case, runs, steps, asked, case.floor, case.skip)
+        if len(meshes) > 1 and not troubles:
+            rows += compare(case, meshes, sizes, case.mesh_order, case.mesh_floor, case.skip + case.mesh_skip, "mesh: ")
         if not rows and not variant.known and len(runs) > 1 and not troubles:
             troubles.append("nothing to compare: give the model probes of what moves (output.probes)")
         failures += len(troubles) + sum(not all(k["good"]) for k in known) + sum(not row[3] for row in rows)
         found["variants"].append({"label": variant.label, "troubles": troubles, "known": known,
-                                  "seconds": sum(run.seconds for run in runs),
+                                  "seconds": sum(run.seconds for run in runs + meshes[1:]), "asked": asked, "longer": variant.longer,
                                   "probes": [dict(zip(("what", "differences", "order", "good"), row)) for row in rows]})
     found["failures"] = failures
     return found
@@ -212,7 +255,7 @@ def show(case, found, quiet=False):
     print("  " + "step [s]".ljust(44) + "  ".join(f"{step:10.3g}" for step in found["steps"]))
     for variant in found["variants"]:
         if variant["label"]:
-            print(f"  -- {variant['label']}")
+            print(f"  -- {variant['label']}" + (f", steps {variant['longer']:g} times as long" if variant["longer"] != 1 else ""))
         for trouble in variant["troubles"]:
             print(f"  {trouble}  FAILED")
         for k in variant["known"]:
@@ -225,7 +268,7 @@ def show(case, found, quiet=False):
             if quiet and row["good"]:
                 continue
             cells = "  ".join(f"{gap:10.2e}" for gap in row["differences"])
-            print(f"  {row['what'][:42].ljust(44)}{cells}  {'order':>10} {row['order']:.1f}" + ("" if row["good"] else f"  FAILED, asked {case.order:g}"))
+            print(f"  {row['what'][:42].ljust(44)}{cells}  {'order':>10} {row['order']:.1f}" + ("" if row["good"] else f"  FAILED, asked {variant['asked']:g}"))
     sys.stdout.flush()
 
 

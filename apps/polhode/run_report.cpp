@@ -79,6 +79,14 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
                                       {"unstable_directions", p.unstable},
                                       {"motion", p.motion}});
   }
+  if (!s.solids.empty()) {
+    json["solids"] = nlohmann::ordered_json::array();
+    for (const RunSummary::SolidStress& solid : s.solids)
+      json["solids"].push_back({{"solid", solid.solid},
+                                {"stress_error", solid.error},
+                                {"stress_error_max", solid.error_max},
+                                {"stress_error_max_at", solid.t_max}});
+  }
   if (s.contacts) {
     const RunSummary::Contacts& c = *s.contacts;
     json["contacts"] = {
@@ -98,6 +106,15 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
   return json.dump(2);
 }
 
+/// Rows about the stress in solids: how well their meshes show it.
+void add_stress_rows(std::vector<std::vector<std::string>>& rows, const RunSummary& s) {
+  for (const RunSummary::SolidStress& solid : s.solids)
+    rows.push_back({format("stress error, {}", solid.solid),
+                    format("{:.2g} %", 100.0 * solid.error),
+                    format("of the energy norm, by the jumps between elements; at most {:.2g} %",
+                           100.0 * solid.error_max)});
+}
+
 std::string statics_table(const RunSummary& s) {
   const StaticReport& r = *s.statics;
   std::vector<std::vector<std::string>> rows{
@@ -111,9 +128,10 @@ std::string statics_table(const RunSummary& s) {
                  : r.unstable == 0
                      ? "yes"
                      : format("no, in {}", counted(static_cast<std::size_t>(r.unstable),
-                                                   "direction", "directions"))},
-      {"time", seconds(s.wall_time_s)},
-      {"solver", s.solver}};
+                                                   "direction", "directions"))}};
+  add_stress_rows(rows, s);
+  rows.push_back({"time", seconds(s.wall_time_s)});
+  rows.push_back({"solver", s.solver});
   std::string text = table(rows);
   for (const std::string& motion : r.free_motions)
     text += format("  Nothing resists that {}.\n", motion);
@@ -154,6 +172,7 @@ std::string summary_table(const RunSummary& s) {
         {"  of all steps", small(e.sum),
          e.steps == s.steps ? "their sum" : format("sum of the {} with an estimate", e.steps)});
   }
+  add_stress_rows(rows, s);
   if (s.contacts) {
     const RunSummary::Contacts& c = *s.contacts;
     rows.push_back(

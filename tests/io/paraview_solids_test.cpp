@@ -49,6 +49,7 @@ SolidReport report_of(const Mesh& mesh) {
     sample.volume = 1.0;
     report.elements.push_back(sample);
   }
+  report.nodal = NodalRecovery(mesh, {1.0, 1.0}).fields(report.elements);
   return report;
 }
 

@@ -154,6 +154,11 @@ TEST(ResultsFile, HoldsDeformableSolids) {
       report.elements[static_cast<std::size_t>(e)].cauchy(2, 2) = 10.0 * k + e;
       report.elements[static_cast<std::size_t>(e)].strain_energy_density = e;
     }
+    // As means over the elements around.
+    report.nodal.cauchy.assign(5, Mat3::Zero());
+    report.nodal.von_mises = {0, 0, 0, 10.0 * k, 10.0 * k + 1.0};
+    report.nodal.strain_energy_density = {0.5, 0.5, 0.5, 0.0, 1.0};
+    report.nodal.stress_error = {0.25, 0.75};
     f.solids = {report};
     f.interfaces.resize(2);
     f.interfaces[0].force = {1.0 * k, 2.0, 3.0};

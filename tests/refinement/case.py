@@ -5,6 +5,7 @@ A model is the path of a model file or a dictionary of the same form; `tools/ref
 """
 import dataclasses
 import math
+import pathlib
 import typing
 
 FRACTIONS = (1, 0.5, 0.2, 0.05, 0.01)  # Of the base step: what every case is run at unless it says why not.
@@ -31,6 +32,8 @@ class Variant:
     label: str
     settings: dict
     known: tuple = ()
+    order: float | None = None  # With which differences fall, if not that of the case.
+    longer: float = 1  # Its steps are longer than those of the case by this: high orders are seen where errors are above rounding.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,11 +51,29 @@ class Case:
     order: float = 1  # With which differences fall: 1 with impacts, whose time a step cannot resolve.
     floor: float = 1e-4  # Differences below this part of a probe's range count as equal: 1e-3 of a shape is the gap's tolerance.
     compare: bool = True  # False where closed forms ask everything, and phases of impacts would be compared in vain.
-    skip: tuple = ()  # Probes, or "probe.kind", that are not compared.
+    skip: tuple = ()  # Probes, or "probe.kind", that are not compared; if smooth "probe.column", "probe.[unit]" or "[unit]".
     drift: float = 1e-9  # Bound of the energy that the ledger misses, at every step: dissipation is booked, and nothing is gained.
     until: float = math.inf  # [s], up to which it is compared.
     because: str = ""  # Why not longer, why other fractions or no comparison.
+    smooth: bool = False  # Nothing jumps: every column is compared, forces and accelerations too, at instants that all runs have.
+    statics: bool = False  # Parts of a step are parts of the load. No order: the equilibrium does not depend on them.
+    meshes: tuple = ()  # Settings of finer meshes, each with half the element size of the one before; the first one halves that of the model.
+    mesh_order: float = 2  # With which differences between meshes fall.
+    mesh_floor: float = 1e-3
+    mesh_skip: tuple = ()  # Probes, or "probe.kind", that are not compared between meshes: numbers of elements mean other places there.
+    mesh_known: tuple = ()  # Known numbers that meshes approach: the tolerance is a function of the element size, 1 for that of the model.
     open: str = ""  # Why it is not among the tests yet: what the engine does instead. `tools/refine.py NAME` runs it all the same.
+
+
+def falling(size, step, order, floor=0.0):
+    """A tolerance that is `size` at a step and falls with an order."""
+    return lambda h: floor + size * (h / step) ** order
+
+
+def table(name):
+    """Rows of a reference solution of tests/validation/data, by their times."""
+    lines = (pathlib.Path(__file__).resolve().parent.parent / "validation" / "data" / f"{name}.csv").read_text().splitlines()
+    return {row[0]: row[1:] for row in ([float(cell) for cell in line.split(",")] for line in lines if not line.startswith("#"))}
 
 
 def constant(value):

@@ -3,6 +3,7 @@
 import central_impacts
 import deformables
 import eccentric_impacts
+import examples_in_motion
 import examples_with_contact
 import flat
 import motions
@@ -10,9 +11,12 @@ import rest
 import scenes
 import several_contacts
 import stops
+import stresses
 import surfaces
+import validation_models
 
-MODULES = (central_impacts, deformables, eccentric_impacts, examples_with_contact, flat, motions, rest, scenes, several_contacts, stops, surfaces)
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, examples_with_contact, flat, motions, rest, scenes, several_contacts, stops,
+           stresses, surfaces, validation_models)
 ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]
 OPEN = [case for case in ALL if case.open]

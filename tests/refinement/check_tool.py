@@ -30,7 +30,8 @@ class Made:
 
 def verdicts(error, **more):
     steps = (1, 0.5, 0.2, 0.05, 0.01)
-    rows = refine.compare(Case("made", "", {}, 1, 1, **more), [Made(h, error(h)) for h in steps])
+    case = Case("made", "", {}, 1, 1, **more)
+    rows = refine.compare(case, [Made(h, error(h)) for h in steps], steps, case.order, case.floor, case.skip)
     return [row[3] for row in rows]
 
 

@@ -26,6 +26,10 @@ Vec3 stretches(const double* C) {
   return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
 }
 
+double poisson_ratio(LinearModuli moduli) {
+  return 0.5 * moduli.lame / (moduli.lame + moduli.shear);
+}
+
 class SolidGroup final : public SolidElements {
  public:
   explicit SolidGroup(SolidElementsDescription d)
@@ -39,6 +43,11 @@ class SolidGroup final : public SolidElements {
         reference_(name_, kind_, d.connectivity, X_, d.fibres, kernels_.width),
         to_nodes_(extrapolation(kind_)) {
     if (!kind_.warning.empty()) warnings_.push_back(format("{}: {}.", name_, kind_.warning));
+    if (const double ratio = poisson_ratio(material_->linear()); ratio > kind_.most_poisson)
+      warnings_.push_back(
+          format("{}: {} locks with a Poisson's ratio of {:.6g}: too stiff where the volume cannot "
+                 "change. Use tet10, or hex8_q1p0 with an uncoupled material.",
+                 name_, kind_.name, ratio));
     const MaterialKernels& laws = material_kernels(d.isa);
     data_.elements = reference_.elements;
     data_.blocks = reference_.blocks;

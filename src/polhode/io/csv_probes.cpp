@@ -130,7 +130,7 @@ std::vector<std::string> load_header(const Simulation& simulation, int load) {
   return header;
 }
 
-std::vector<std::string> solid_header(bool interface) {
+std::vector<std::string> solid_header(bool interface, bool stress) {
   std::vector<std::string> header{"t [s]"};
   if (interface) {
     extend(header, vector_header("f", "N"));
@@ -140,6 +140,10 @@ std::vector<std::string> solid_header(bool interface) {
   extend(header, vector_header("", "m"));
   extend(header, vector_header("u", "m"));
   extend(header, vector_header("v", "m/s"));
+  if (!stress) return header;
+  for (const char* component : {"xx", "yy", "zz", "xy", "yz", "xz"})
+    header.push_back(format("s{} [Pa]", component));
+  header.emplace_back("von_mises [Pa]");
   return header;
 }
 
@@ -161,6 +165,11 @@ std::vector<std::string> contact_header() {
   return header;
 }
 
+void add_stress(std::vector<double>& row, const Mat3& stress) {
+  row.insert(row.end(), {stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2),
+                         stress(0, 2), von_mises(stress)});
+}
+
 /// What a probe records, and the names of its columns.
 struct Target {
   int index = 0;
@@ -172,7 +181,7 @@ struct Target {
 Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
   const std::string where = format("output.probes.{}", spec.name);
   Target target{.index = simulation.model().solid_index(spec.target)};
-  target.header = solid_header(!spec.reaction_of.empty());
+  target.header = solid_header(!spec.reaction_of.empty(), spec.stress);
   const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
   if (!spec.reaction_of.empty()) {
     const std::vector<std::string> names = simulation.interfaces(target.index);
@@ -353,6 +362,7 @@ std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulat
     row.insert(row.end(), {cable.tension[k], cable.length[k]});
   } else if (probe.spec.kind == "solid") {
     for (const Vec3& x : simulation.solid_point(probe.index, probe.point)) extend(row, x);
+    if (probe.spec.stress) add_stress(row, simulation.solid_stress(probe.index, probe.point));
   } else {
     const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
     extend(row, joint.force);

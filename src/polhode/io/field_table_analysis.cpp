@@ -196,6 +196,10 @@ const FieldTable& probe_fields() {
            .kind = kInteger,
            .meaning = "A node of the solid instead of a point; the first is 0.",
            .range = kNotNegative},
+          {.name = "stress",
+           .kind = kBoolean,
+           .meaning = "Record stress at the point or node of the solid as well.",
+           .standard = "false"},
           {.name = "interface",
            .kind = kText,
            .meaning = "Of a solid: the bonded body, or the prescribed nodes, whose force and "

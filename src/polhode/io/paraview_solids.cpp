@@ -70,7 +70,7 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
     add_vectors(points, report.position);
     add_vectors(displacements, report.displacement);
     add_vectors(velocities, report.velocity);
-    const NodalAverages nodal = nodal_averages(*meshes_[s], report.elements);
+    const NodalFields& nodal = report.nodal;
     for (std::size_t i = 0; i < nodal.cauchy.size(); ++i)
       at_nodes.add(nodal.cauchy[i], nodal.von_mises[i], nodal.strain_energy_density[i]);
     for (const ElementSample& e : report.elements) {

@@ -151,6 +151,9 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
     section.fault("names no point of the solid", "Give one of: point, node, interface.");
   if (point) probe.point = *point;
   probe.node = node;
+  probe.stress = section.boolean("stress").value_or(false);
+  if (probe.stress && interface)
+    section.fault("stress", "does not go with 'interface'", "Give a point or a node of the solid.");
   if (!interface) return;
   std::vector<std::string> names;
   for (const BondSpec& bond : spec.bonded) names.push_back(context.model.body_name(bond.body));
@@ -215,7 +218,7 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
   if (section.has("point") && probe.kind != "body" && probe.kind != "solid")
     section.fault("point", format("does not go with '{}'", probe.kind),
                   "A point belongs to a body or a solid.");
-  for (const char* key : {"node", "interface"})
+  for (const char* key : {"node", "stress", "interface"})
     if (section.has(key) && probe.kind != "solid")
       section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a solid.");
   if (section.has("element") && probe.kind != "beam" && probe.kind != "cable")

@@ -253,7 +253,7 @@ void ResultsFile::add_solids(const ResultsFrame& frame) {
   std::size_t next = 0;
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const SolidReport& report = frame.solids[s];
-    const NodalAverages nodal = nodal_averages(*solids_[s].mesh, report.elements);
+    const NodalFields& nodal = report.nodal;
     for (const Vec3& x : report.displacement) vector(x);
     for (const Vec3& x : report.velocity) vector(x);
     for (const Mat3& T : nodal.cauchy) tensor(T);

@@ -124,6 +124,7 @@ struct ProbeSpec {
   int element = 0;              ///< Of a beam, or piece of a cable: the first is 0.
   std::string reaction_of;      ///< Of a solid probe: the bonded body or prescribed nodes whose
                                 ///< reaction is recorded.
+  bool stress = false;          ///< Of a point or node of a solid: stress too.
   std::optional<double> every;  ///< [s]; else output.every.
   std::string axes = "world";   ///< Of reactions: world or joint.
 };

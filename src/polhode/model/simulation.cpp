@@ -59,6 +59,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
     const double t0 = wall_clock();
     s.at_instant();  // the velocity residual is part of the figures
     s.watch_stretches();
+    watch_stress();
     if (observe) observe(*this);
     s.output_seconds += wall_clock() - t0;
   };
@@ -78,6 +79,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
       s.watch_stretches();
+      watch_stress();
       break;
     }
     if (on_step) on_step(*this);
@@ -117,6 +119,11 @@ RunSummary Simulation::summary() const {
   r.order = s.method.control.order;
   r.narration = s.narration;
   r.warnings = s.warnings();
+  for (std::size_t i = 0; i < s.solid_watches.size(); ++i) {
+    const Impl::SolidWatch& w = s.solid_watches[i];
+    r.solids.push_back(
+        {s.model.solids[i].name, w.part(w.error_energy), w.part(w.largest_error), w.t_largest});
+  }
   if (s.statics) {
     r.statics = s.statics->report();
     r.strain_energy = s.statics->strain_energy(s.state);

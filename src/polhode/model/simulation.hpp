@@ -81,6 +81,15 @@ struct RunSummary {
     std::optional<std::pair<double, std::int64_t>> sweeps;
   };
   std::optional<Contacts> contacts;
+  /// How well the mesh of a solid shows its stress, seen at output times since the start or
+  /// restart: √(error energy / largest energy so far) of NodalFields [-].
+  struct SolidStress {
+    std::string solid;
+    double error = 0.0;      ///< Now.
+    double error_max = 0.0;  ///< Largest.
+    double t_max = 0.0;      ///< When that was [s], or at which load factor.
+  };
+  std::vector<SolidStress> solids;
 };
 
 /// A compiled model with its state and method: what steps, runs and is looked at.
@@ -131,9 +140,12 @@ class Simulation {
 
   // Deformable solids, by index in the Model.
   [[nodiscard]] const std::vector<SolidMap>& solids() const;
-  [[nodiscard]] SolidReport solid(int solid) const;
+  /// Valid until the next step.
+  [[nodiscard]] const SolidReport& solid(int solid) const;
   /// Position, displacement since the start and velocity of a material point.
   [[nodiscard]] std::array<Vec3, 3> solid_point(int solid, const SolidPoint& point) const;
+  /// Cauchy stress of a material point, world axes [Pa]: between the stresses at nodes.
+  [[nodiscard]] Mat3 solid_stress(int solid, const SolidPoint& point) const;
   /// Names of what holds nodes of a solid: bonded bodies, then prescribed nodes.
   [[nodiscard]] std::vector<std::string> interfaces(int solid) const;
   /// What interfaces(solid)[k] exerts on the solid.
@@ -159,6 +171,7 @@ class Simulation {
 
  private:
   [[nodiscard]] Vec3 node_velocity(int node) const;
+  void watch_stress();
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -41,6 +42,11 @@ inline constexpr double kFarOff = 0.1;
 /// How far assembling the start may move a body that was said to be in place, and one that was not.
 inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
 
+/// Strains below this are made by rounding: a solid that has no others has no stress.
+inline constexpr double kRoundedStrain = 1e-10;
+/// Error of a solid's stress that deserves a word [-].
+inline constexpr double kUncertainStress = 0.1;
+
 struct Simulation::Impl {
   Model model;
   SystemMap map;
@@ -63,6 +69,27 @@ struct Simulation::Impl {
   double velocity_part = 0.0, velocity_part_time = 0.0;
   /// Smallest of surfaces of solids after any step [m].
   double surface_gap = std::numeric_limits<double>::quiet_NaN();
+  /// A solid's report at the instant, and the largest error of its stress.
+  struct SolidWatch {
+    NodalRecovery recovery;
+    double least_energy;  ///< What rounding can make [J].
+    SolidReport report = {};
+    std::int64_t step = -1;
+    double largest_energy = 0.0, error_energy = 0.0, largest_error = 0.0, t_largest = 0.0;
+
+    void see(const NodalFields& nodal, double t) {
+      largest_energy = std::max(largest_energy, nodal.energy);
+      error_energy = nodal.error_energy;
+      if (error_energy <= largest_error) return;
+      largest_error = error_energy;
+      t_largest = t;
+    }
+    /// √ of a part of the largest energy, which grows as the run goes on.
+    [[nodiscard]] double part(double energy) const {
+      return largest_energy > least_energy ? std::sqrt(energy / largest_energy) : 0.0;
+    }
+  };
+  std::deque<SolidWatch> solid_watches;         ///< Made when asked for; references to them stay.
   std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
 
   explicit Impl(Model m)
@@ -222,6 +249,21 @@ struct Simulation::Impl {
     }
   }
 
+  SolidWatch& solid_watch(int solid) {
+    while (solid_watches.size() <= static_cast<std::size_t>(solid)) {
+      const SolidMap& next = map.solids[solid_watches.size()];
+      const auto& elements =
+          dynamic_cast<const SolidElements&>(system.nodes().group(next.groups.front()));
+      double volume = 0.0;
+      for (const int g : next.groups)
+        volume += dynamic_cast<const SolidElements&>(system.nodes().group(g)).volume();
+      const LinearModuli moduli = elements.material().linear();
+      solid_watches.push_back({NodalRecovery(next.plan.mesh, moduli),
+                               moduli.shear * volume * kRoundedStrain * kRoundedStrain});
+    }
+    return solid_watches[static_cast<std::size_t>(solid)];
+  }
+
   /// What steps could not reach, and what watch_stretches() has seen.
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> list = stepper->warnings();
@@ -231,6 +273,17 @@ struct Simulation::Impl {
       if (!text.empty()) list.push_back(text);
     }
     warn_of_errors(list);
+    for (std::size_t i = 0; i < solid_watches.size(); ++i) {
+      const SolidWatch& watch = solid_watches[i];
+      const double error = watch.part(watch.largest_error);
+      if (error > kUncertainStress)
+        list.push_back(format(
+            "solids.{}: the stress is uncertain by {:.0f} % (mean over the solid at {} = {:.4g}): "
+            "so "
+            "much do neighbouring elements differ, and peaks may be further off. Use quadratic "
+            "elements, or a finer mesh.",
+            model.solids[i].name, 100.0 * error, statics ? "load factor" : "t", watch.t_largest));
+    }
     return list;
   }
 

@@ -112,11 +112,15 @@ std::array<Vec3, 3> Simulation::solid_point(int solid, const SolidPoint& point) 
   return sum;
 }
 
-SolidReport Simulation::solid(int solid) const {
+const SolidReport& Simulation::solid(int solid) const {
   const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
   const Nodes& nodes = impl_->system.nodes();
   const State& state = impl_->state;
-  SolidReport report;
+  Impl::SolidWatch& watch = impl_->solid_watch(solid);
+  SolidReport& report = watch.report;
+  if (watch.step == state.ledger.steps) return report;
+  watch.step = state.ledger.steps;
+  report = {};
   for (int k = 0; k < map.node_count(); ++k) {
     const Vec3 x = at_node(state.node_x, map.first_node + k);
     report.position.push_back(x);
@@ -132,7 +136,19 @@ SolidReport Simulation::solid(int solid) const {
     group.sample(instant, state.element_history.data() + nodes.first_history(g), samples);
     report.elements.insert(report.elements.end(), samples.begin(), samples.end());
   }
+  report.nodal = watch.recovery.fields(report.elements);
   return report;
+}
+
+Mat3 Simulation::solid_stress(int solid, const SolidPoint& point) const {
+  return point.value(this->solid(solid).nodal.cauchy);
+}
+
+void Simulation::watch_stress() {
+  for (int i = 0; i < static_cast<int>(impl_->map.solids.size()); ++i) {
+    const NodalFields& nodal = solid(i).nodal;
+    impl_->solid_watch(i).see(nodal, impl_->state.t);
+  }
 }
 
 std::vector<std::string> Simulation::interfaces(int solid) const {

@@ -14,8 +14,9 @@ struct SolidPoint {
   std::vector<double> weights;  ///< Their sum is 1.
 
   /// The value there of a field that is known at nodes.
-  [[nodiscard]] Vec3 value(const std::vector<Vec3>& field) const {
-    Vec3 sum = Vec3::Zero();
+  template <class T>
+  [[nodiscard]] T value(const std::vector<T>& field) const {
+    T sum = T::Zero();
     for (std::size_t k = 0; k < nodes.size(); ++k)
       sum += weights[k] * field[static_cast<std::size_t>(nodes[k])];
     return sum;

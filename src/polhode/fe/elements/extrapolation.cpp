@@ -41,7 +41,10 @@ Extrapolation extrapolation(const ElementKind& kind) {
     at_points.row(q) = monomials(corners, kind.stiffness[static_cast<std::size_t>(q)].xi);
   for (Eigen::Index a = 0; a < nodes; ++a)
     at_nodes.row(a) = monomials(corners, kind.cell().nodes[static_cast<std::size_t>(a)]);
-  return at_nodes * (at_points.transpose() * at_points).ldlt().solve(Mat(at_points.transpose()));
+  Mat weighed = at_points.transpose();
+  for (Eigen::Index q = 0; q < points; ++q)
+    weighed.col(q) *= kind.stiffness[static_cast<std::size_t>(q)].weight;
+  return at_nodes * (weighed * at_points).ldlt().solve(weighed);
 }
 
 }  // namespace polhode

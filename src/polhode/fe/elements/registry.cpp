@@ -15,15 +15,19 @@ std::vector<ElementKind> make_kinds() {
        "hex8_standard locks: too stiff in bending and when nearly incompressible. Use hex8_eas9 or "
        "hex8_q1p0"},
       {"hex8_eas9", "nine enhanced strains: good in bending", "hex8",
-       hexahedron_rule(2), hexahedron_rule(2), "", 0.7},
+       hexahedron_rule(2), hexahedron_rule(2), "", 0.7, 0.495},
       {"hex8_q1p0", "mean dilatation: for uncoupled, nearly incompressible materials", "hex8",
        hexahedron_rule(2), hexahedron_rule(2)},
-      {"hex20", "quadratic, serendipity", "hex20", hexahedron_rule(3), hexahedron_rule(3)},
-      {"hex27", "quadratic, all products", "hex27", hexahedron_rule(3), hexahedron_rule(3)},
+      {"hex20", "quadratic, serendipity", "hex20", hexahedron_rule(3), hexahedron_rule(3), "", 0.0,
+       0.495},
+      {"hex27", "quadratic, all products", "hex27", hexahedron_rule(3), hexahedron_rule(3), "", 0.0,
+       0.495},
       {"tet4", "linear, constant strain", "tet4", tetrahedron_rule(1), tetrahedron_rule(7),
        "tet4 locks: too stiff in bending and when nearly incompressible. Use tet10"},
       {"tet10", "quadratic", "tet10", tetrahedron_rule(2), tetrahedron_rule(7)},
-      {"wedge6", "linear prism, to fill between hexahedra", "wedge6", wedge_rule(), wedge_rule()},
+      {"wedge6", "linear prism, to fill between hexahedra", "wedge6", wedge_rule(), wedge_rule(),
+       "wedge6 locks: too stiff in bending and when nearly incompressible. Use it to fill between "
+       "hexahedra only, or use tet10"},
   };
   // clang-format on
   for (std::size_t i = 0; i < kinds.size(); ++i) kinds[i].kernel = static_cast<int>(i);

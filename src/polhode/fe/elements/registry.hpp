@@ -20,6 +20,7 @@ struct ElementKind {
   Quadrature mass;             ///< Rules of their own: others would make singular masses.
   std::string warning = {};    ///< What a user of it should know; "" if nothing.
   double least_stretch = 0.0;  ///< Below this principal stretch it is not to be trusted.
+  double most_poisson = 0.5;   ///< Above this Poisson's ratio it locks.
   int kernel = 0;              ///< Place in kElementSizes.
 
   [[nodiscard]] const CellShape& cell() const { return cell_shape(shape); }
