@@ -114,7 +114,8 @@ std::string table_name(const CertifiedQuantity& q) {
 std::vector<std::string> too_wide(const Certificate& c, double within) {
   std::vector<std::string> names;
   for (const CertifiedQuantity& q : c.quantities)
-    if (q.report.lost_from || q.report.largest_bar > within * q.scale) names.push_back(q.name());
+    if (q.report.lost_from || q.report.largest_bar > within * q.scale + q.negligible)
+      names.push_back(q.name());
   return names;
 }
 

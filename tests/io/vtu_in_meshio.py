@@ -21,8 +21,8 @@ MODEL = """format: 1
 materials:
   rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}
 solids:
-  left: {mesh: {block: {size: [1, 1, 1], cells: [2, 1, 1]}, elements: hex8}, material: rubber, velocity: [1, 0, 0]}
-  "right-2": {mesh: {block: {size: [1, 1, 1], cells: [1, 1, 1]}, elements: wedge6}, material: rubber, position: [5, 0, 0]}
+  left: {mesh: {block: {size: [1, 1, 1], cells: [2, 1, 1]}}, element: hex8, material: rubber, velocity: [1, 0, 0]}
+  right-2: {mesh: {block: {size: [1, 1, 1], cells: [1, 1, 1]}, position: [5, 0, 0]}, element: wedge6, material: rubber}
 analysis: {duration: 10 ms, step: 1 ms}
 output: {paraview: true}
 """

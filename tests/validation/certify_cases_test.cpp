@@ -4,13 +4,15 @@
 // docs/validation.md has the figures.
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <polhode/base/format.hpp>
 #include <polhode/io/read_model.hpp>
 #include <polhode/study/certify.hpp>
 #include <support/known_solutions/free_symmetric_top.hpp>
@@ -19,8 +21,7 @@
 namespace polhode::test {
 namespace {
 
-/// What a quantity is at a time; an empty vector where it is not known, NaN for a component that is
-/// not compared.
+/// What a quantity is at a time; an empty vector where it is not known.
 using Exact = std::function<Vec(double t)>;
 
 /// The rows of a reference as values at its times.
@@ -63,6 +64,8 @@ struct CertifiedCase {
     return *this;
   }
 };
+
+std::ostream& operator<<(std::ostream& out, const CertifiedCase& c) { return out << c.name; }
 
 CertifiedCase of_point(const std::string& name, Model model, int body, const Vec3& Z,
                        const std::string& data, const std::function<Vec(const Vec&)>& value) {
@@ -124,29 +127,6 @@ CertifiedCase symmetric() {
           {{"p x y z", [=](double t) { return Vec3(known.orientation(t) * Z); }}}};
 }
 
-/// Slides, then rolls: contact_analytic, SLIDE_TO_ROLL.
-CertifiedCase bowling() {
-  Model model = read_model_text(R"(format: 1
-gravity: [0, 0, -9.81]
-bodies:
-  lane: {fixed: true, shape: {plane: z}}
-  ball: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 0.1], velocity: [2, 0, 0]}
-contacts: {default: {friction: 0.3}}
-analysis: {duration: 0.6 s, step: 1 ms}
-output: {probes: {p: {body: ball}}}
-)",
-                                "bowling.yaml");
-  const double a = 0.3 * 9.81, end = 2.0 / 7.0 * 2.0 / a, none = std::nan("");
-  return {"SlideToRoll",
-          model,
-          {{"p x y z",
-            [=](double t) {
-              const double s = std::min(t, end);
-              return Vec3(2.0 * s - 0.5 * a * s * s + 10.0 / 7.0 * (t - s), none, none);
-            }},
-           {"p vx vy vz", [=](double t) { return Vec3(2.0 - a * std::min(t, end), none, none); }}}};
-}
-
 /// A mass on a spring with a damper, let go: any book on vibrations.
 CertifiedCase damped_oscillator() {
   Model model = read_model_text(R"(format: 1
@@ -185,7 +165,6 @@ std::vector<CertifiedCase> cases() {
       slider_crank().steps_of(4e-3, 5.0),
       tumbling().steps_of(10e-3, 50.0),
       symmetric().steps_of(20e-3, 10.0),
-      bowling(),
       damped_oscillator(),
   };
 }
@@ -195,14 +174,14 @@ std::vector<CertifiedCase> other_orders() {
                                   squeezer().steps_of(0.5e-3, 0.03, 6),
                                   top().steps_of(5e-3, 2.0, 4),
                                   loop_of_bricard().steps_of(50e-3, 10.0, 4),
-                                  slider_crank().steps_of(20e-3, 5.0, 6),
+                                  slider_crank().steps_of(10e-3, 5.0, 4),
                                   tumbling().steps_of(50e-3, 50.0, 4),
                                   pendulum().automatic(1e-5, 10.0, 0.1),
                                   four_bars(1).automatic(1e-5, 10.0, 0.1),
-                                  loop_of_bricard().automatic(1e-5, 10.0, 0.05),
-                                  slider_crank().automatic(1e-5, 5.0, 0.1),
+                                  squeezer().automatic(1e-4, 0.03, 0.5e-3),
+                                  slider_crank().automatic(1e-4, 5.0, 0.5),
                                   governor().automatic(1e-4, 10.0, 0.05),
-                                  top().automatic(1e-5, 0.5, 0.01)};
+                                  top().automatic(1e-4, 2.0, 0.1)};
   for (std::size_t k = 0; k < 6; ++k)
     list[k].name += "_order_" + std::to_string(*list[k].model.analysis.order);
   return list;
@@ -225,11 +204,8 @@ Finding compare(const Certificate& certificate, const std::string& name, const E
     for (std::size_t i = 0; i < q.series.t.size(); ++i) {
       const Vec known = exact(q.series.t[i]);
       if (known.size() == 0 || std::isinf(q.report.bar[i])) continue;
-      double square = 0.0;
-      for (Eigen::Index c = 0; c < known.size(); ++c)
-        if (!std::isnan(known[c]))
-          square += std::pow(q.series.values[2](static_cast<Eigen::Index>(i), c) - known[c], 2);
-      const double error = std::sqrt(square);
+      const double error =
+          (q.series.values[2].row(static_cast<Eigen::Index>(i)).transpose() - known).norm();
       f.error = std::max(f.error, error);
       f.bar = std::max(f.bar, q.report.bar[i]);
       f.inside += error <= q.report.bar[i] ? 1.0 : 0.0;
@@ -248,14 +224,13 @@ TEST_P(Certified, ErrorBarHoldsTheTrueErrorAndIsNotTenTimesAsWide) {
   EXPECT_TRUE(certificate.converges());
   for (const auto& [name, exact] : c.known) {
     const Finding f = compare(certificate, name, exact);
-    RecordProperty(name, testing::PrintToString(f.error) + " in " + testing::PrintToString(f.bar));
-    std::printf("%-24s %-12s error %.2e bar %.2e ratio %5.2f inside %.3f order %.2f (%d)\n",
-                c.name.c_str(), name.c_str(), f.error, f.bar, f.bar / f.error, f.inside, f.order,
-                f.samples);
-    EXPECT_GE(f.samples, 50);
-    EXPECT_LE(f.error, f.bar) << name;
-    EXPECT_LE(f.bar, 10.0 * f.error) << name;
-    EXPECT_GE(f.inside, 0.95) << name;
+    RecordProperty(name, format("error {:.2e}, bar {:.2e}, order {:.2f}", f.error, f.bar, f.order));
+    SCOPED_TRACE(format("{}: error {:.2e}, bar {:.2e}, inside {:.3f} of the time, order {:.2f}",
+                        name, f.error, f.bar, f.inside, f.order));
+    EXPECT_GE(f.samples, certificate.automatic ? 10 : 50);
+    EXPECT_LE(f.error, f.bar);
+    EXPECT_LE(f.bar, 10.0 * f.error);
+    EXPECT_GE(f.inside, 0.95);
   }
 }
 

@@ -18,6 +18,9 @@ namespace {
 constexpr std::size_t kMostSamples = 1000;
 /// Common times of automatic steps whose model asks for no output times.
 constexpr int kAutomaticSamples = 100;
+/// Automatic steps above this part of the distance of common times are those that fit into it, as
+/// much as those that the tolerance asks for; the next run's are then shorter by this factor.
+constexpr double kLanding = 0.125, kShorter = 1.5;
 /// Two times closer than this part of their distance are the same.
 constexpr double kSameTime = 1e-9;
 /// Tolerance of automatic steps if the model gives none, and the least a run may be given.
@@ -223,6 +226,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
   }
   const std::vector<double> times = common_times(distance, a.duration);
   const std::optional<double> max_step = a.max_step;
+  double most_step = distance;
 
   std::vector<Sampler> samplers;
   std::map<std::string, double> scales;
@@ -231,7 +235,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
     run.setting = first * std::pow(part, k);
     if (certificate.automatic) {
       a.tolerance = run.setting;
-      a.max_step = std::min(max_step.value_or(a.duration), distance * std::pow(0.5, k));
+      a.max_step = std::min(max_step.value_or(a.duration), most_step);
     } else {
       a.step = run.setting;
     }
@@ -251,6 +255,8 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
     if (hooks.end) hooks.end(k, simulation);
     run.mean_step =
         run.summary.t / static_cast<double>(std::max<std::int64_t>(run.summary.steps, 1));
+    if (run.mean_step > kLanding * distance || run.mean_step > 0.9 * a.max_step.value_or(1e300))
+      most_step = run.mean_step / kShorter;
     if (k == 0) {
       scales = model_scales(simulation, a.duration);
       const double order = run.summary.order;
@@ -287,7 +293,7 @@ Certificate certify(const Model& original, const CertifyHooks& hooks) {
                           static_cast<double>(certificate.runs[2].summary.steps);
   for (CertifiedQuantity& q : certificate.quantities) {
     rule.floor = rounding * scales[q.unit];
-    rule.negligible = kNegligible * scales[q.unit];
+    rule.negligible = q.negligible = kNegligible * scales[q.unit];
     rule.matters = kMatters * ranges[q.unit];
     q.report = estimate_error(q.series, rule);
   }

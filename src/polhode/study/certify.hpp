@@ -24,8 +24,9 @@ struct CertifiedQuantity {
   std::string probe;
   std::vector<std::string> columns;  ///< Names without units: x, y, z.
   std::string unit;
-  double scale = 0.0;    ///< Largest size of the quantity [unit].
-  RefinedSeries series;  ///< Up to the time that all runs reached.
+  double scale = 0.0;       ///< Largest size of the quantity [unit].
+  double negligible = 0.0;  ///< Part of what is large in this unit that counts as noise [unit].
+  RefinedSeries series;     ///< Up to the time that all runs reached.
   ConvergenceReport report;
 
   [[nodiscard]] std::string name() const;  ///< "tip x y z".
@@ -61,9 +62,9 @@ struct CertifyHooks {
 /// and a hundredth) and compares all probes at common times; a model without probes is given one
 /// of each moving body, up to kMostOwnProbes.
 ///
-/// Automatic steps end at the common times in all runs, and are at most the distance of those
-/// times, half and a quarter of it: else these landings, not the tolerance, would choose the steps
-/// and all runs agree on a wrong answer.
+/// Automatic steps end at the common times in all runs. Where these landings rather than the
+/// tolerance choose the steps, each run's are made shorter than those of the one before: else all
+/// would agree on one wrong answer.
 /// @param model  Of type dynamics.
 /// @throws InputError if the model is no motion over time, has nothing to compare, or a tolerance
 ///         that leaves no room below.

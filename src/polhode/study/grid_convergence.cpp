@@ -143,10 +143,12 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
   const auto order_or_limit = [&](const Part& part) {
     return part.fine == 0.0 ? kMostOrder : part.coarse == 0.0 ? kLeastOrder : order_of(part);
   };
-  report.noise = all.most <= rule.negligible && order_or_limit(all) < rule.least_order;
+  report.noise =
+      all.most == 0.0 || (all.most <= rule.negligible && order_or_limit(all) < rule.least_order);
   std::vector<char> lost(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     const Part part = part_about(coarse, fine, i, half), here = part_about(coarse, fine, i, near);
+    lost[i] = !refined;
     if (part.count == 0 || part.most == 0.0) continue;
     // Differences that are all zero between two of the runs have no order.
     const bool known = part.fine > 0.0 && part.coarse > 0.0;
@@ -154,7 +156,7 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
     const bool noise = report.noise || part.most <= rule.negligible;
     if (known && !report.noise && (!noise || order >= rule.least_order)) report.order_at[i] = order;
     if (report.noise || order < rule.least_order) {
-      lost[i] = !noise && part.fine >= rule.matters;
+      lost[i] = !refined || (!noise && part.fine >= rule.matters);
       report.bar[i] = rule.safety_far * here.most + rule.floor;
       continue;
     }
