@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,17 @@ struct ModelArguments;
 /// --set PATH=VALUE of the commands that read a model.
 void add_set_option(CLI::App& command, ModelArguments& arguments);
 
+/// --isa SET of the commands that run a model.
+void add_isa_option(CLI::App& command, std::string& isa);
+/// --wall-limit SECONDS. @param how  How the command stops, a part of a sentence.
+void add_wall_limit(CLI::App& command, std::optional<double>& limit, const char* how);
+struct CertifyRequest;
+/// --within PART of the commands that certify.
+void add_within_option(CLI::App& command, CertifyRequest& request);
+
 // One file of commands/ each.
 Action add_run(CLI::App& command);
+Action add_certify(CLI::App& command);
 Action add_modes(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);

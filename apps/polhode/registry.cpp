@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/field_table.hpp>
+
 #include "command.hpp"
 #include "console.hpp"
 
@@ -7,6 +12,8 @@ namespace polhode::cli {
 const std::vector<Command>& commands() {
   static const std::vector<Command> list{
       {"run", "Run a model and write its results", add_run},
+      {"certify", "Run a model three times, ever finer, and tell how far its results are right",
+       add_certify},
       {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
       {"check", "Look for faults in a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "Tell what a model holds, or which joints, loads and shapes exist", add_info},
@@ -24,6 +31,25 @@ void add_set_option(CLI::App& command, ModelArguments& arguments) {
       ->take_all()
       ->expected(1)
       ->type_name("NAME=VALUE");
+}
+
+void add_isa_option(CLI::App& command, std::string& isa) {
+  command
+      .add_option("--isa", isa,
+                  "Instruction set: results are equal bit for bit within one; left out: the "
+                  "model's analysis.isa, or the best of this machine")
+      ->type_name("SET")
+      ->check(CLI::IsMember(analysis_fields().at("isa").choices));
+}
+
+void add_wall_limit(CLI::App& command, std::optional<double>& limit, const char* how) {
+  const auto not_negative = [](const std::string& text) {
+    return std::strtod(text.c_str(), nullptr) >= 0.0 ? std::string()
+                                                     : "must not be below 0, but is " + text;
+  };
+  command.add_option("--wall-limit", limit, format("Stop after this wall time, {}", how))
+      ->type_name("SECONDS")
+      ->check(CLI::Validator(not_negative, ""));
 }
 
 }  // namespace polhode::cli

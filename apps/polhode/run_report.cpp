@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include <polhode/base/format.hpp>
+#include <polhode/io/file_error.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
@@ -24,6 +26,15 @@ std::string end_name(int exit_code) {
     default:
       return "interrupted";
   }
+}
+
+Provenance provenance_of(const ModelArguments& model, const RunSummary& summary) {
+  return {.version = POLHODE_VERSION,
+          .solver = summary.solver,
+          .instruction_set = summary.instruction_set,
+          .model_file = std::filesystem::path(model.file).filename().string(),
+          .model_text = read_file(model.file),
+          .overrides = model.overrides};
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {

@@ -3,7 +3,10 @@
 
 #include <string>
 
+#include <polhode/io/write_results.hpp>
 #include <polhode/model/simulation.hpp>
+
+#include "console.hpp"
 
 namespace polhode::cli {
 
@@ -18,6 +21,9 @@ namespace polhode::cli {
 /// The same of a static analysis.
 [[nodiscard]] std::string statics_table(const RunSummary& summary);
 [[nodiscard]] std::string summary_table(const RunSummary& summary);
+
+/// Where the results of a run of this model come from. @throws FileError
+[[nodiscard]] Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);
 
 /// "1 body", "3 bodies".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& one,

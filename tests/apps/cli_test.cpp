@@ -23,8 +23,8 @@ TEST_F(CommandLine, HelpsWithAMistypedCommand) {
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(
       result.err,
-      "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, modes, check, info, "
-      "schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
+      "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, modes, "
+      "check, info, schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
 }
 
 TEST_F(CommandLine, HelpsWithAMistypedOption) {

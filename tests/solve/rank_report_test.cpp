@@ -42,7 +42,7 @@ TEST(RankReport, CountsThreeRedundantRowsForEachFourBar) {
   }
 }
 
-TEST(RankReport, CountsTheSameInLargeSystemsBySparseFactorisation) {
+TEST(RankReport, CountsTheSameInLargeSystems) {
   const int n = 40;  // 605 rows
   const System system = four_bars(n, 1.0).system();
   const RankReport report = rank_report(system, system.initial_state());

@@ -31,7 +31,7 @@ format: 1
 variables: {h: 1 ms}
 bodies: {mass: {mass: 1, inertia: [1, 1, 1], position: [0.1, 0, 0]}}
 joints: {guide: {type: prismatic, bodies: [ground, mass], at: [0, 0, 0], axis: x}}
-loads: {spring: {type: spring_damper, between: [{body: ground, point: [-1, 0, 0]}, {body: mass}], stiffness: 400, free_length: 1}}
+loads: {spring: {type: spring_damper, bodies: [ground, mass], at: [[-1, 0, 0], [0.1, 0, 0]], stiffness: 400, free_length: 1}}
 analysis: {type: dynamics, duration: 1 s, step: h}
 output: {hdf5: false}
 )";

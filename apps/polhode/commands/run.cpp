@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <csignal>
-
-#include <atomic>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,10 +13,12 @@
 #include <polhode/io/recorder.hpp>
 #include <polhode/model/build_system.hpp>
 
+#include "certify_report.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "modes_report.hpp"
 #include "run_report.hpp"
+#include "stop_signal.hpp"
 
 namespace polhode::cli {
 
@@ -30,19 +30,9 @@ struct Options {
   ModelArguments model;
   std::string folder, restart, isa;
   std::optional<double> wall_limit;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, certify = false;
+  CertifyRequest certificate;
 };
-
-/// Set by Ctrl-C; the run ends after the step it is in. A second Ctrl-C ends the program at once.
-std::atomic<bool> stop_wanted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
-
-void catch_stop_signals() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { stop_wanted = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
-}
 
 std::string results_folder(const Options& options) {
   if (!options.folder.empty()) return options.folder;
@@ -53,15 +43,6 @@ Simulation make_simulation(const Options& options, Model model) {
   if (options.restart.empty()) return Simulation(std::move(model));
   State state = read_checkpoint(options.restart, model, build_system(model));
   return {std::move(model), std::move(state)};
-}
-
-Provenance provenance_of(const Options& options, const RunSummary& summary) {
-  return {.version = POLHODE_VERSION,
-          .solver = summary.solver,
-          .instruction_set = summary.instruction_set,
-          .model_file = std::filesystem::path(options.model.file).filename().string(),
-          .model_text = read_file(options.model.file),
-          .overrides = options.model.overrides};
 }
 
 void narrate_start(const Simulation& simulation, const std::string& folder) {
@@ -101,12 +82,14 @@ int exit_code(const RunSummary& summary, bool limit_reached) {
 int run(const Options& options) {
   const double start = wall_clock();
   Model model = load_model(options.model);
+  if (options.certify) check_certifiable(model);
   if (model.analysis.type == "modes")
     return run_modes(std::move(model), options.model, options.folder, options.json, options.quiet);
+  const std::optional<Model> original = options.certify ? std::optional(model) : std::nullopt;
   Simulation simulation = make_simulation(options, std::move(model));
   const std::string folder = results_folder(options);
   const std::string checkpoint = folder + "/" + kCheckpointName;
-  Recorder recorder(simulation, folder, provenance_of(options, simulation.summary()),
+  Recorder recorder(simulation, folder, provenance_of(options.model, simulation.summary()),
                     !options.restart.empty());
   if (!options.quiet) narrate_start(simulation, folder);
 
@@ -144,16 +127,27 @@ int run(const Options& options) {
   recorder.close();
   save();
 
-  const int code = exit_code(summary, limit_reached);
+  int code = exit_code(summary, limit_reached);
   if (code == kNotConverged) say(summary.message);
   for (const std::string& warning : summary.warnings) say("warning: " + warning);
   if (code == kInterrupted || code == kLimit)
     say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {} --restart {}", summary.t,
                code == kLimit ? " at the wall-time limit" : "", options.model.file, checkpoint));
-  if (options.json)
-    print(summary_json(summary, code, folder, recorder.frames()) + "\n");
-  else if (!options.quiet)
+  if (!options.json && !options.quiet)
     print(summary.statics ? statics_table(summary) : summary_table(summary));
+  std::string json = options.json ? summary_json(summary, code, folder, recorder.frames()) : "";
+  if (options.certify && code == kOk) {
+    CertifyRequest request = options.certificate;
+    request.folder = folder;
+    request.quiet = options.quiet;
+    if (options.wall_limit)
+      request.wall_limit = std::max(0.0, *options.wall_limit - (wall_clock() - start));
+    const CertifyOutcome outcome = certify_model(*original, request);
+    code = outcome.exit_code;
+    if (options.json) json = with_certificate(json, outcome);
+    if (!options.json && !options.quiet) print(certificate_table(outcome.certificate));
+  }
+  if (options.json) print(json + "\n");
   return code;
 }
 
@@ -167,19 +161,16 @@ Action add_run(CLI::App& command) {
                   "Folder for the results; left out: the model's name with .results")
       ->type_name("DIR");
   add_set_option(command, options->model);
-  command
-      .add_option("--isa", options->isa,
-                  "Instruction set: results are equal bit for bit within one; left out: the "
-                  "model's analysis.isa, or the best of this machine")
-      ->type_name("SET")
-      ->check(CLI::IsMember(analysis_fields().at("isa").choices));
+  add_isa_option(command, options->isa);
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
       ->type_name("FILE");
-  command
-      .add_option("--wall-limit", options->wall_limit,
-                  "Stop after this wall time, with a checkpoint and exit code 75")
-      ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+  add_wall_limit(command, options->wall_limit, "with a checkpoint and exit code 75");
+  CLI::Option* certify = command.add_flag(
+      "--certify", options->certify,
+      "Then run with finer steps and tell how far the results are right, see 'certify'");
+  add_within_option(command, options->certificate);
+  command.get_option("--within")->needs(certify);
+  certify->excludes(command.get_option("--restart"));
   command.add_flag("--json", options->json, "Print the figures of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Say nothing but errors");
   return [options] {

@@ -170,17 +170,9 @@ void add_stress(std::vector<double>& row, const Mat3& stress) {
                          stress(0, 2), von_mises(stress)});
 }
 
-/// What a probe records, and the names of its columns.
-struct Target {
-  int index = 0;
-  SolidPoint point{};
-  int interface = -1;
-  std::vector<std::string> header{};
-};
-
-Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
+ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
   const std::string where = format("output.probes.{}", spec.name);
-  Target target{.index = simulation.model().solid_index(spec.target)};
+  ProbeTarget target{.spec = spec, .index = simulation.model().solid_index(spec.target)};
   target.header = solid_header(!spec.reaction_of.empty(), spec.stress);
   const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
   if (!spec.reaction_of.empty()) {
@@ -203,7 +195,7 @@ Target find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
 }
 
 /// An element of a beam or a piece of a cable.
-Target find_line_target(const Model& model, const ProbeSpec& spec) {
+ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec) {
   const bool beam = spec.kind == "beam";
   const int index = beam ? model.beam_index(spec.target) : model.cable_index(spec.target);
   const auto k = static_cast<std::size_t>(index);
@@ -213,24 +205,27 @@ Target find_line_target(const Model& model, const ProbeSpec& spec) {
         format("output.probes.{}.element", spec.name),
         format("{} {} does not exist", beam ? "element" : "piece", spec.element),
         format("'{}' has {} {}; the first is 0", spec.target, count, beam ? "elements" : "pieces"));
-  if (beam) return {.index = index, .header = beam_header()};
-  return {.index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
+  if (beam) return {.spec = spec, .index = index, .header = beam_header()};
+  return {.spec = spec, .index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
 }
 
-Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
+}  // namespace
+
+ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
   const Model& model = simulation.model();
   const std::string where = format("output.probes.{}", spec.name);
   if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
   if (spec.kind == "solid") return find_solid_target(simulation, spec);
   if (spec.kind == "contact")
-    return {.index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
+    return {.spec = spec,
+            .index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
             .header = contact_header()};
   if (spec.kind == "load") {
     const int load = model.load_index(spec.target);
     if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
       throw InputError(where, format("records '{}', a load on a solid", spec.target),
                        "Record an interface or a point of the solid, or a load on bodies");
-    return {.index = load, .header = load_header(simulation, load)};
+    return {.spec = spec, .index = load, .header = load_header(simulation, load)};
   }
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
@@ -239,10 +234,10 @@ Target find_target(const Simulation& simulation, const ProbeSpec& spec) {
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which stands still", "Name a body");
-  return {.index = index, .header = body ? body_header() : joint_header(simulation, index)};
+  return {.spec = spec,
+          .index = index,
+          .header = body ? body_header() : joint_header(simulation, index)};
 }
-
-}  // namespace
 
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
                    std::optional<double> keep)
@@ -300,14 +295,13 @@ CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
   if (model.output.probes.empty()) return;
   make_folder(folder);
   for (const ProbeSpec& spec : model.output.probes) {
-    const Target target = find_target(simulation, spec);
+    ProbeTarget target = probe_target(simulation, spec);
     CsvTable table(format("{}/{}.csv", folder, spec.name), target.header, keep);
     const double every = spec.every.value_or(model.output.every.value_or(0.0));
     std::int64_t next = 0;
     if (every > 0.0 && table.last_time())
       next = static_cast<std::int64_t>(std::floor(*table.last_time() / every * (1 + 1e-12))) + 1;
-    probes_.push_back(
-        {spec, target.index, target.point, target.interface, every, next, std::move(table)});
+    probes_.push_back({std::move(target), every, next, std::move(table)});
   }
 }
 
@@ -320,13 +314,14 @@ void CsvProbes::record(const Simulation& simulation) {
       if (t * (1 + 1e-12) < static_cast<double>(probe.next) * probe.every) continue;
       probe.next = static_cast<std::int64_t>(std::floor(t / probe.every * (1 + 1e-12))) + 1;
     }
-    probe.table.append(row(probe, simulation));
+    probe.table.append(probe_row(probe.target, simulation));
   }
 }
 
+namespace {
+
 /// Forces are those on the first body the probe names.
-void CsvProbes::add_contact(std::vector<double>& row, const Simulation& simulation,
-                            const Probe& probe) {
+void add_contact(std::vector<double>& row, const Simulation& simulation, const ProbeTarget& probe) {
   const ContactReport c = simulation.contact(probe.index);
   const ContactMap::Pair& pair =
       simulation.contact_map().pairs[static_cast<std::size_t>(probe.index)];
@@ -337,7 +332,9 @@ void CsvProbes::add_contact(std::vector<double>& row, const Simulation& simulati
                          c.energy_lost});
 }
 
-std::vector<double> CsvProbes::row(const Probe& probe, const Simulation& simulation) {
+}  // namespace
+
+std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation) {
   std::vector<double> row{simulation.time()};
   if (probe.spec.kind == "body") {
     const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);

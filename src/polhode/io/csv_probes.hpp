@@ -34,6 +34,20 @@ class CsvTable {
   std::chrono::steady_clock::time_point last_write_{};
 };
 
+/// A probe found in its model: what it records, as numbers in columns.
+struct ProbeTarget {
+  ProbeSpec spec{};
+  int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
+  SolidPoint point{};  ///< Of a solid.
+  int interface = -1;  ///< Of a solid; -1: none.
+  std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
+};
+
+/// @throws InputError if the model has no such thing.
+[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec);
+/// The time and the values of a probe at the present state, in the order of its header.
+[[nodiscard]] std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation);
+
 /// The probes of a model (output.probes), each in its own file <name>.csv, each at its own rate:
 /// a row at the first step end at or after each multiple of the interval.
 class CsvProbes {
@@ -50,17 +64,11 @@ class CsvProbes {
 
  private:
   struct Probe {
-    ProbeSpec spec;
-    int index;          ///< Of the body, joint, load, solid, beam or cable, or of the pair.
-    SolidPoint point;   ///< Of a solid.
-    int interface;      ///< Of a solid; -1: none.
+    ProbeTarget target;
     double every;       ///< [s]; 0: every step.
     std::int64_t next;  ///< The next row is due at next·every.
     CsvTable table;
   };
-  static void add_contact(std::vector<double>& row, const Simulation& simulation,
-                          const Probe& probe);
-  [[nodiscard]] static std::vector<double> row(const Probe& probe, const Simulation& simulation);
 
   std::vector<Probe> probes_;
 };

@@ -49,9 +49,11 @@ class ModelText {
                     a < 0 ? "ground" : format("b{}", a), b, list(at),
                     axis.empty() ? "" : ", axis: " + axis);
   }
-  std::string end(const std::string& analysis, const std::string& output) {
+  /// @param probes  Of what is worth following, as in a model file.
+  std::string end(const std::string& analysis, const std::string& every,
+                  const std::string& probes) {
     text_ += "\nanalysis: {type: dynamics, " + analysis + "}\n";
-    text_ += "output: {every: " + output + "}\n";
+    text_ += format("output: {{every: {}, probes: {{{}}}}}\n", every, probes);
     return std::move(text_);
   }
 
@@ -79,7 +81,8 @@ std::string n_four_bar(const Values& values) {
     // The bar is named first: a positive angle turns the upright.
     m.joint("revolute", bars[i], uprights[i + 1], Vec3(i + 1, 1, 0), "z");
   }
-  return m.end("duration: 10 s, step: 10 ms", "500 ms");
+  return m.end("duration: 10 s, step: 10 ms", "500 ms",
+               "corner: {body: b0, point: [0, 0.5, 0]}, crank: {joint: j0}");
 }
 
 constexpr double kRod = 0.1;  ///< Length of the rods of chains and trees [m].
@@ -104,7 +107,9 @@ std::string chain(const Values& values) {
   for (int i = 0; i < N; ++i)
     m.joint(joint.c_str(), i - 1, i, Vec3(kRod * i, 0, 0),
             joint == "revolute" ? hinge_axis(i) : "");
-  return m.end("duration: 1 s, step: 5 ms", "50 ms");
+  return m.end(
+      "duration: 1 s, step: 5 ms", "50 ms",
+      format("tip: {{body: b{}, point: [{}, 0, 0]}}, hook: {{joint: j0}}", N - 1, kRod / 2));
 }
 
 /// Rod i hangs on the end of rod (i − 1)/2; every rod lies along x at the start, its end a little
@@ -124,7 +129,9 @@ std::string binary_tree(const Values& values) {
   m.begin_joints();
   for (int i = 0; i < N; ++i)
     m.joint("revolute", i == 0 ? kGround : (i - 1) / 2, i, begins[i], hinge_axis(i));
-  return m.end("duration: 1 s, step: 5 ms", "50 ms");
+  return m.end("duration: 1 s, step: 5 ms", "50 ms",
+               format("tip: {{body: b{}, point: {}}}, hook: {{joint: j0}}", N - 1,
+                      list(0.5 * (ends.back() - begins.back()))));
 }
 
 /// Balls of 1 kg and 0.1 m radius over a bin that is four layers of them high, slightly out of
@@ -150,7 +157,8 @@ std::string spheres_in_a_bin(const Values& values) {
   return text +
          "\ncontacts:\n  default: {friction: 0.5}\n\n"
          "analysis: {type: dynamics, duration: 3 s, step: 2 ms}\n"
-         "output: {every: 50 ms, probes: {b0: {body: b0, every: 50 ms}}}\n";
+         "output: {every: 50 ms, probes: {first: {body: b0}, last: {body: b" +
+         format("{}", n - 1) + "}}}\n";
 }
 
 }  // namespace

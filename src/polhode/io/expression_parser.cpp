@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include <polhode/base/format.hpp>
@@ -118,10 +119,30 @@ class ExpressionParser {
       stop(at_, written.size(),
            format("the unit '{}' follows an expression that is {} already", written,
                   whole.type.dimension.name()),
-           "Leave the unit out.");
+           instead_of_unit(*reading.unit, written));
     result_.unit_ = reading.unit;
     scale(result_.program_.size(), reading.unit->factor);
     whole.type = known(reading.unit->dimension);
+  }
+
+  /// What to write where an expression has a dimension before the unit behind it: a unit counts for
+  /// the whole, so that of `tilt - 90 deg` is not that of 90 alone.
+  [[nodiscard]] std::string instead_of_unit(const Unit& unit, std::string_view written) const {
+    const std::size_t end = text_.find_last_not_of(' ', at_ - 1);
+    const std::size_t before =
+        number_begin_ > 0 ? text_.find_last_not_of(' ', number_begin_ - 1) : std::string_view::npos;
+    const bool added = number_end_ == end + 1 && before != std::string_view::npos &&
+                       (text_[before] == '+' || text_[before] == '-');
+    if (!added) return "Leave the unit out.";
+    const std::string_view number = text_.substr(number_begin_, number_end_ - number_begin_);
+    const std::string_view rest = text_.substr(0, number_begin_);
+    const double factor = unit.factor / units_.factor(unit.dimension);
+    const bool degrees = written == "deg" && units_.angle == 1.0;
+    return format(
+        "A unit counts for the whole expression. Write '{}{}', or make '{} {}' a variable.", rest,
+        degrees ? format("{}*pi/180", number)
+                : format("{:.9g}", std::strtod(std::string(number).c_str(), nullptr) * factor),
+        number, written);
   }
 
   Part choice() {
@@ -243,6 +264,8 @@ class ExpressionParser {
            "Stay within 1e-300 and 1e300.");
     if (error != std::errc()) unexpected("a value is missing");
     at_ = static_cast<std::size_t>(end - text_.data());
+    number_begin_ = offset;
+    number_end_ = at_;
     const std::size_t start = result_.program_.size();
     push({Op::kPush, value});
     return {{}, start, offset};
@@ -455,6 +478,7 @@ class ExpressionParser {
   const UnitSystem& units_;
   bool allow_time_;
   std::size_t at_ = 0;
+  std::size_t number_begin_ = 0, number_end_ = 0;  ///< Of the number read last.
   int depth_ = 0, height_ = 0;
   Expression result_;
 };

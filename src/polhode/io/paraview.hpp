@@ -51,8 +51,8 @@ class ParaviewWriter {
 /// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points stand where the nodes
 /// are at the time. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
 /// "von_mises" [Pa], "strain_energy_density" [J/m³]. Cell data: these three by element,
-/// "principal_stretches" [-], largest first, and "solid" (index); the names of the solids are
-/// field data "solid_names". Stresses have six components: xx, yy, zz, xy, yz, xz.
+/// "principal_stretches" [-], largest first, and "solid" (index); field data "solid <name>"
+/// holds the index of each. Stresses have six components: xx, yy, zz, xy, yz, xz.
 class SolidsWriter {
  public:
   /// @param meshes  Of the solids; nodes and cells in the order of the reports.

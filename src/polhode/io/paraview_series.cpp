@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include <polhode/base/format.hpp>
+#include <polhode/base/xml_text.hpp>
+#include <polhode/io/earlier_results.hpp>
 #include <polhode/io/file_error.hpp>
 
 namespace polhode {
@@ -42,6 +44,7 @@ ParaviewSeries::ParaviewSeries(std::string folder, std::string name, std::string
     : folder_(std::move(folder)), name_(std::move(name)), extension_(std::move(extension)) {
   make_folder(folder_ + "/" + name_);
   if (keep) times_ = listed_times(format("{}/{}.pvd", folder_, name_), *keep);
+  remove_numbered_files(folder_ + "/" + name_, extension_, times_.size());
   write_list();
 }
 
@@ -91,6 +94,16 @@ void VtkFile::names(const char* name, const std::vector<std::string>& values) {
     xml_ += "0 ";
   }
   xml_ += "</Array></FieldData>\n";
+}
+
+void VtkFile::indices(const char* kind, const std::vector<std::string>& names) {
+  xml_ += "<FieldData>\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    xml_ += format(
+        R"(<DataArray type="Int32" Name="{} {}" NumberOfTuples="1" format="ascii">{}</DataArray>)"
+        "\n",
+        kind, xml_text(names[i]), i);
+  xml_ += "</FieldData>\n";
 }
 
 std::string VtkFile::bytes() const {

@@ -51,6 +51,9 @@ class VtkFile {
   }
   /// Names as field data: character codes, each text ended by 0.
   void names(const char* name, const std::vector<std::string>& values);
+  /// Names as field data that readers without texts take too, such as meshio: a number called
+  /// "solid bush" for each, its index.
+  void indices(const char* kind, const std::vector<std::string>& names);
   /// The whole file.
   [[nodiscard]] std::string bytes() const;
 

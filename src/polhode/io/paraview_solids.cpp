@@ -80,7 +80,7 @@ void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
     for (const double error : nodal.stress_error) errors.push_back(static_cast<float>(error));
   }
   VtkFile file("UnstructuredGrid");
-  file.names("solid_names", solids_);
+  file.indices("solid", solids_);
   file.text(format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
                    points.size() / 3, cells.ends.size()));
   file.array("points", 3, points);

@@ -10,6 +10,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/io/csv_probes.hpp>
+#include <polhode/io/earlier_results.hpp>
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/paraview.hpp>
 #include <polhode/io/results_format.hpp>
@@ -91,6 +92,7 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
   const std::optional<double> keep =
       restarted ? std::optional<double>(simulation.time()) : std::nullopt;
   make_folder(folder);
+  if (!restarted) clear_earlier_results(folder);
   if (output.hdf5) {
     const std::string path = folder + "/" + results::kFileName;
     const ResultsLayout layout = results_layout(simulation);

@@ -16,7 +16,8 @@ class Recorder {
  public:
   /// @param simulation  Outlives the recorder.
   /// @param restarted  The simulation continues from its present time: files of the earlier run
-  ///                   in the folder are kept up to that time and continued.
+  ///                   in the folder are kept up to that time and continued. Else they are
+  ///                   removed, see clear_earlier_results().
   /// @throws FileError, InputError
   Recorder(const Simulation& simulation, const std::string& folder, const Provenance& provenance,
            bool restarted = false);

@@ -11,7 +11,7 @@ namespace polhode {
 namespace {
 
 /// Rounding of a sum of numbers, as a part of them.
-constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 /// What rounding can do reads as a drift of at most this.
 constexpr double kReadsAs = 1e-10;
 

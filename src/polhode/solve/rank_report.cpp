@@ -1,28 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/OrderingMethods>
 #include <Eigen/QR>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseQR>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 
 #include <polhode/base/format.hpp>
+#include <polhode/solve/loop_rank.hpp>
 #include <polhode/solve/newton_system.hpp>
 #include <polhode/solve/rank_report.hpp>
 
 namespace polhode {
 
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
-
-/// Up to this many rows the dense factorisation is quicker than its sparse relative is short.
-constexpr std::size_t kDenseRows = 400;
-/// A row takes part in a redundancy if its multiplier in it is at least this part of the largest.
-constexpr double kPart = 1e-6;
 
 /// The exact rows of an interaction, each scaled to length one.
 struct Rows {
@@ -123,78 +113,32 @@ std::vector<std::vector<int>> clusters(const System& system, const std::vector<R
   return list;
 }
 
-/// Gᵀ of a cluster over its own bodies, and the interaction of each column.
-struct Columns {
-  Sparse G_transposed;
+/// The rows of a cluster over its own bodies, and the interaction of each.
+struct ClusterRows {
+  std::vector<BodyRows> blocks;
   std::vector<int> interaction;
+  int bodies = 0;
 };
 
-Columns columns_of(const std::vector<Rows>& rows, const std::vector<int>& cluster) {
-  Columns columns;
+ClusterRows rows_of(const std::vector<Rows>& rows, const std::vector<int>& cluster) {
+  ClusterRows list;
   std::map<int, int> place;
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto row_of = [&](int body) {
-    return 6 * place.try_emplace(body, static_cast<int>(place.size())).first->second;
-  };
   for (const int k : cluster) {
     const Rows& r = rows[static_cast<std::size_t>(k)];
-    for (Eigen::Index i = 0; i < r.G.rows(); ++i) {
-      const auto column = static_cast<int>(columns.interaction.size());
-      columns.interaction.push_back(r.interaction);
-      for (int c = 0; c < 12; ++c)
-        if (r.G(i, c) != 0.0)
-          entries.emplace_back(row_of(c < 6 ? r.a : r.b) + c % 6, column, r.G(i, c));
+    BodyRows block{{}, Mat(r.G.rows(), 0)};
+    for (const auto& [body, part] :
+         {std::pair<int, Mat>(r.a, r.G.leftCols<6>()), {r.b, r.G.rightCols<6>()}}) {
+      if (body == kGround) continue;
+      block.bodies.push_back(place.try_emplace(body, static_cast<int>(place.size())).first->second);
+      block.G.conservativeResize(Eigen::NoChange, block.G.cols() + 6);
+      block.G.rightCols(6) = part;
     }
+    list.interaction.insert(list.interaction.end(), static_cast<std::size_t>(r.G.rows()),
+                            r.interaction);
+    list.blocks.push_back(std::move(block));
   }
-  columns.G_transposed.resize(6 * static_cast<Eigen::Index>(place.size()),
-                              static_cast<Eigen::Index>(columns.interaction.size()));
-  columns.G_transposed.setFromTriplets(entries.begin(), entries.end());
-  return columns;
-}
-
-/// Marks the rows that take part in the redundancies: y with yᵀG = 0 are, with Gᵀ P = Q [R S; 0 0],
-/// P (−R⁻¹S; I), and a row takes part if any of them has it.
-template <class Solve, class Column, class Permuted>
-void mark(int rank, int columns, Solve&& solve, Column&& column, Permuted&& permuted,
-          std::vector<char>& part) {
-  for (int j = rank; j < columns; ++j) {
-    Vec y = column(j);
-    solve(y);
-    const double largest = std::max(1.0, y.lpNorm<Eigen::Infinity>());
-    for (int i = 0; i < rank; ++i)
-      if (std::abs(y[i]) > kPart * largest) part[permuted(i)] = 1;
-    part[permuted(j)] = 1;
-  }
-}
-
-int dense_rank(const Columns& c, double tolerance, std::vector<char>& part) {
-  const Mat A(c.G_transposed);
-  Eigen::ColPivHouseholderQR<Mat> qr(A.rows(), A.cols());
-  qr.setThreshold(tolerance);
-  qr.compute(A);
-  const int rank = static_cast<int>(qr.rank());
-  const Mat R = qr.matrixQR().topRows(rank);
-  mark(
-      rank, static_cast<int>(A.cols()),
-      [&](Vec& y) { R.leftCols(rank).triangularView<Eigen::Upper>().solveInPlace(y); },
-      [&](int j) -> Vec { return R.col(j); },
-      [&](int i) { return qr.colsPermutation().indices()[i]; }, part);
-  return rank;
-}
-
-int sparse_rank(const Columns& c, double tolerance, std::vector<char>& part) {
-  Eigen::SparseQR<Sparse, Eigen::COLAMDOrdering<int>> qr;
-  qr.setPivotThreshold(tolerance);
-  qr.compute(c.G_transposed);
-  const int rank = static_cast<int>(qr.rank());
-  const Sparse R = Eigen::SparseMatrix<double, Eigen::RowMajor>(qr.matrixR());  // sorts the rows
-  const Sparse R11 = R.topLeftCorner(rank, rank);
-  mark(
-      rank, static_cast<int>(c.G_transposed.cols()),
-      [&](Vec& y) { R11.triangularView<Eigen::Upper>().solveInPlace(y); },
-      [&](int j) { return Vec(Vec(R.col(j)).head(rank)); },
-      [&](int i) { return qr.colsPermutation().indices()[i]; }, part);
-  return rank;
+  list.bodies = static_cast<int>(place.size());
+  return list;
 }
 
 }  // namespace
@@ -214,12 +158,11 @@ RankReport rank_report(const System& system, const State& state, double toleranc
   report.rank = take_out_branches(system, tolerance, rows);
   std::set<int> involved;
   for (const std::vector<int>& cluster : clusters(system, rows)) {
-    const Columns columns = columns_of(rows, cluster);
-    std::vector<char> part(columns.interaction.size(), 0);
-    report.rank += part.size() <= kDenseRows ? dense_rank(columns, tolerance, part)
-                                             : sparse_rank(columns, tolerance, part);
-    for (std::size_t j = 0; j < part.size(); ++j)
-      if (part[j]) involved.insert(columns.interaction[j]);
+    const ClusterRows own = rows_of(rows, cluster);
+    const LoopRank found = loop_rank(own.blocks, own.bodies, tolerance);
+    report.rank += found.rank;
+    for (std::size_t j = 0; j < found.dependent.size(); ++j)
+      if (found.dependent[j]) involved.insert(own.interaction[j]);
   }
   report.redundant = report.rows - report.rank;
   report.mobility = 6 * system.body_count() - report.rank;

@@ -20,8 +20,8 @@ struct RankReport {
   [[nodiscard]] std::string text() const;
 };
 
-/// Rank of G: joint by joint along branches, by column-pivoted QR of Gᵀ in what loops tie together.
-/// Lengths are measured in ℓ, so that forces and moments compare.
+/// Rank of G: joint by joint along branches, by elimination of bodies in what loops tie together,
+/// see loop_rank(). Lengths are measured in ℓ, so that forces and moments compare.
 /// @param tolerance  Rows whose part normal to the others is smaller than this are redundant [-].
 [[nodiscard]] RankReport rank_report(const System& system, const State& state,
                                      double tolerance = 1e-9);
