@@ -88,7 +88,12 @@ std::string modes_table(const ModesReport& r) {
                        {part(m.effective_mass[0]), part(m.effective_mass[1]),
                         part(m.effective_mass[2]), format("{:.0e}", m.residual), remark(m)});
   }
-  return table(rows);
+  std::string text = table(rows);
+  if (r.freedoms == static_cast<int>(r.modes.size()))
+    text +=
+        format("  The model has {}: these are all its modes.\n",
+               r.freedoms == 1 ? std::string("one freedom") : format("{} freedoms", r.freedoms));
+  return text;
 }
 
 }  // namespace

@@ -242,11 +242,6 @@ Vec ModalMatrices::times(const SaddleMatrix& A, double factor, const Vec& x) con
   return factor * y.head(n());
 }
 
-Vec ModalMatrices::forces(const Vec& all) const {
-  Vec y;
-  newton_.tangent().times(all, y);
-  return y.head(n()) / s();
-}
 Vec ModalMatrices::mass_times(const Vec& x) const { return times(mass_, 1.0, x); }
 Vec ModalMatrices::damping_times(const Vec& x) const {
   return times(damping_, 1.0 / (s() * rate_), x);

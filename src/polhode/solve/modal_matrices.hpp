@@ -52,8 +52,6 @@ class ModalMatrices {
   /// The inverse of what was factored last times f, on motions that the constraints allow, and
   /// scaled multipliers behind.
   [[nodiscard]] Vec inverse(const Vec& f) const;
-  /// K x − Gᵀμ of unknowns and scaled multipliers behind them [N].
-  [[nodiscard]] Vec forces(const Vec& all) const;
   [[nodiscard]] Vec mass_times(const Vec& x) const;
   [[nodiscard]] Vec damping_times(const Vec& x) const;
   [[nodiscard]] Vec stiffness_times(const Vec& x) const;
@@ -90,8 +88,7 @@ class ModalMatrices {
 /// conjugate ones that with Im λ ≥ 0. Free motions first, then by |λ|.
 /// @param wanted    How many, at least, if there are so many.
 /// @param freedoms  Set to their number where matrices are dense; else left.
-[[nodiscard]] std::vector<EigenPair> damped_modes(ModalMatrices& m, double length, int wanted,
-                                                  int& freedoms);
+[[nodiscard]] std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms);
 
 /// Columns: a basis of the motions that the exact constraints allow, orthonormal, without turns of
 /// point masses.

@@ -19,9 +19,6 @@ namespace {
 /// A stiffness is symmetric up to this part of its entries.
 constexpr double kSymmetric = 1e-7;
 constexpr double kResidual = 1e-6;  ///< Above it a mode is said to be inaccurate.
-/// |λ| below this part of the highest one found is rounding, if stiffness and damping resist it no
-/// more than the second number of what their forces are the sum of.
-constexpr double kZero = 1e-6, kFree = 1e-9;
 /// Growth or decay below this part of |λ| is rounding.
 constexpr double kSteady = 1e-9;
 /// A model that is another one after turning by more than this.
@@ -32,26 +29,24 @@ double hermitian(const ModalMatrices& m, const CVec& x) {
   return re.dot(m.mass_times(re)) + im.dot(m.mass_times(im));
 }
 
-/// |λ²Mφ + λCφ + Kφ − Gᵀμ| as part of |λ|² |Mφ|, after factor_quadratic(σ). The multipliers are
-/// those of an inverse iteration: (K + σC + σ²M) φ − Gᵀμ = ((σ − λ) C + (σ² − λ²) M) φ.
+/// How far a mode is from what an inverse iteration makes of it, after factor_quadratic(σ):
+/// φ − (K + σC + σ²M)⁻¹ [(σ − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
 double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smallest) {
-  const Complex lambda = mode.eigenvalue, i(0.0, 1.0);
-  const bool real = mode.shape_imag.size() == 0;
-  const Vec zero = Vec::Zero(m.n()), &re = mode.shape, &im = real ? zero : mode.shape_imag;
-  const auto both = [&](auto&& times) {
-    return CVec(times(re).template cast<Complex>() + i * times(im).template cast<Complex>());
-  };
-  const CVec M = both([&](const Vec& x) { return m.mass_times(x); });
-  const CVec C = both([&](const Vec& x) { return m.damping_times(x); });
-  const CVec f = (sigma - lambda) * C + (sigma * sigma - lambda * lambda) * M;
-  const auto forces = [&](const Vec& part, const Vec& x) {
-    Vec all = m.inverse(part);
-    all.head(m.n()) = x;
-    return CVec(m.forces(all).cast<Complex>());
-  };
-  const CVec left =
-      lambda * lambda * M + lambda * C + forces(f.real(), re) + i * forces(f.imag(), im);
-  return left.norm() / (std::max(std::norm(lambda), smallest) * M.norm());
+  const Complex lambda = mode.eigenvalue;
+  const Vec zero = Vec::Zero(m.n()), &re = mode.shape;
+  const Vec& im = mode.shape_imag.size() == 0 ? zero : mode.shape_imag;
+  const Complex c = sigma - lambda, d = sigma * sigma - lambda * lambda;
+  const Vec C_re = m.damping_times(re), C_im = m.damping_times(im);
+  const Vec M_re = m.mass_times(re), M_im = m.mass_times(im);
+  const Vec left =
+      re -
+      m.inverse(c.real() * C_re - c.imag() * C_im + d.real() * M_re - d.imag() * M_im).head(m.n());
+  const Vec right =
+      im -
+      m.inverse(c.real() * C_im + c.imag() * C_re + d.real() * M_im + d.imag() * M_re).head(m.n());
+  const double size = std::sqrt(left.dot(m.mass_times(left)) + right.dot(m.mass_times(right)));
+  const double square = std::norm(lambda);
+  return size * (square + sigma * sigma) / std::max(square, smallest);
 }
 
 /// What an eigenvalue means.
@@ -113,29 +108,18 @@ std::vector<Mode> symmetric_modes(ModalMatrices& m, const ModeOptions& options,
 
 /// Modes of the quadratic problem. Of an undamped motion that grows and its twin that decays, the
 /// former is given.
-std::vector<Mode> quadratic_modes(ModalMatrices& m, double length, const ModeOptions& options,
+std::vector<Mode> quadratic_modes(ModalMatrices& m, const ModeOptions& options,
                                   ModesReport& report) {
   constexpr int kSpare = 4;
-  std::vector<EigenPair> pairs = damped_modes(m, length, options.count + kSpare, report.freedoms);
-  double highest = 0.0;
-  for (const EigenPair& pair : pairs) highest = std::max(highest, std::abs(pair.lambda));
+  std::vector<EigenPair> pairs = damped_modes(m, options.count + kSpare, report.freedoms);
   std::vector<Mode> modes;
   for (const EigenPair& pair : pairs) {
-    Complex lambda = pair.lambda;
-    if (std::abs(lambda) <= kZero * highest) {
-      const Vec x = pair.shape.real();
-      if (m.stiffness_times(x).norm() <= kFree * m.stiffness_times(x.cwiseAbs()).norm() ||
-          std::abs(x.dot(m.stiffness_times(x))) <= kFree * m.energy_scale(x))
-        lambda = 0.0;
-    }
-    Mode mode = make_mode(m, lambda, pair.shape);
+    Mode mode = make_mode(m, pair.lambda, pair.shape);
     if (!m.damped() && mode.kind == ModeKind::overdamped) continue;
     modes.push_back(std::move(mode));
   }
   std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
-    const bool first = a.kind == ModeKind::divergence, second = b.kind == ModeKind::divergence;
-    if (first != second) return first;
-    return first ? a.omega_squared < b.omega_squared : a.omega_squared < b.omega_squared;
+    return a.omega_squared < b.omega_squared;  // negative of divergence
   });
   return modes;
 }
@@ -208,9 +192,7 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
       report.warnings.push_back(format("{} '{}' does not let its bodies turn as they are given",
                                        system.group(ref.group).kind(), system.name(ref)));
   }
-  ModeOptions still = options;
-  still.spin.clear();
-  ModalMatrices later(system, turned, still);
+  ModalMatrices later(system, turned, options);
   const auto apart = [&](const SaddleMatrix& A, const SaddleMatrix& B) {
     double most = 0.0, size = 0.0;
     for (std::size_t e = 0; e < A.values().size(); ++e) {
@@ -285,11 +267,11 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   report.asymmetry = m.asymmetry();
   report.symmetric = !m.damped() && report.asymmetry <= kSymmetric;
   if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
-  std::vector<Mode> modes = report.symmetric
-                                ? symmetric_modes(m, options, report)
-                                : quadratic_modes(m, system.length_scale(), options, report);
+  std::vector<Mode> modes =
+      report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);
   name_free(system, equilibrium, m, modes);
-  if (static_cast<int>(modes.size()) < options.count)
+  const bool asked = options.count != ModeOptions{}.count;  // else nobody wanted so many
+  if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))
     report.warnings.push_back(
         report.freedoms == 0 ? std::string("every freedom of the model is held: there are no modes")
                              : format("{} modes were asked for, but the model has {} only",

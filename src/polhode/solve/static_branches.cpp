@@ -37,12 +37,12 @@ double state_distance(const System& system, const State& a, const State& b) {
 }
 
 std::optional<LimitPoint> locate_stability_change(const System& system,
-                                                  const StaticOptions& options,
-                                                  LoadInterval at, int first, int after) {
+                                                  const StaticOptions& options, LoadInterval at,
+                                                  int first, int after) {
   LimitPoint point;
   point.load_factor = at.high;
   point.unstable = after;
-  bool seen = false;                    // else the equilibrium above lies on another branch
+  bool seen = false;                     // else the equilibrium above lies on another branch
   StaticNewton finder(system, options);  // what the other one holds is asked for later
   finder.assemble_at(at.above, at.high);
   SoftestMotion soft = finder.softest();

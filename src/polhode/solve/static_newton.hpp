@@ -28,10 +28,10 @@ struct StaticStep {
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double residual = 0.0;           ///< Largest unbalanced force [N], moments over ℓ.
   double force = 0.0;              ///< Largest force it is compared with [N].
-  int unstable = -1;   ///< Directions in which the equilibrium is unstable; −1: not known.
+  int unstable = -1;     ///< Directions in which the equilibrium is unstable; −1: not known.
   bool relaxed = false;  ///< Found by relaxation.
   std::string reason;    ///< If not converged: "diverges" ...
-  std::string worst;   ///< Largest increment or residual: "body 'forearm'".
+  std::string worst;     ///< Largest increment or residual: "body 'forearm'".
   std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
 };
 

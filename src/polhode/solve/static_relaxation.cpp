@@ -9,13 +9,12 @@ namespace polhode {
 
 namespace {
 
-constexpr int kMostSteps = 4000;
-/// The largest force moves its place by this part of the model's size in the first step.
-constexpr double kFirstMove = 0.02;
-/// No step moves anything by more than this part of it, or turns it by more [-].
-constexpr double kMostMove = 0.1;
-/// Resistance of the next step where the last one came nearer to balance, and where it did not.
-constexpr double kEase = 0.8, kBrake = 1.6;
+constexpr int kMostSteps = 2000;
+/// Every step is to move something by this part of the model's size; none moves anything by more
+/// than the second part of it, or turns it by more [-].
+constexpr double kMove = 0.02, kMostMove = 0.1;
+/// What the resistance may change by from one step to the next.
+constexpr double kEase = 0.5, kBrake = 1.5;
 /// Newton's method is tried when steps are below this part of the size, and every so many steps.
 constexpr double kSmall = 1e-3;
 constexpr int kTries = 50;
@@ -52,18 +51,17 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
   };
   const int bodies = 6 * system_->body_count();
   const double length = system_->length_scale();
-  double resistance = 0.0, before = 0.0;
+  double resistance = 0.0;
   for (int k = 0; k < kMostSteps; ++k) {
     if (!(assemble().least_volume > 0.0)) break;
     aim(given_);
     ++step.iterations;
-    double unbalanced = 0.0;
-    for (int i = 0; i < matrix_.movable(); ++i)
-      unbalanced = std::max(unbalanced,
-                            std::abs(rhs_[i]) / (i < bodies && i % 6 >= 3 ? length : 1.0));
-    if (k == 0) resistance = unbalanced / (kFirstMove * length);
-    if (k > 0) resistance *= unbalanced < before ? kEase : kBrake;
-    before = unbalanced;
+    if (k == 0) {  // the largest force moves its place by that
+      for (int i = 0; i < matrix_.movable(); ++i)
+        resistance =
+            std::max(resistance, std::abs(rhs_[i]) / (i < bodies && i % 6 >= 3 ? length : 1.0));
+      resistance /= kMove * length;
+    }
     if (!(resistance > 0.0)) break;
     if (!solver_.factor(matrix_, make_symmetric(), all_diagonal(resistance))) {
       resistance *= kBrake;
@@ -75,8 +73,10 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
     double move = 0.0;
     for (int i = 0; i < matrix_.movable(); ++i)
       move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));
-    const double part = std::min(move > kMostMove ? kMostMove / move : 1.0, free_part_of_increment());
+    const double part =
+        std::min(move > kMostMove ? kMostMove / move : 1.0, free_part_of_increment());
     step.increments.push_back(apply(part, step));
+    resistance *= std::clamp(move / kMove, kEase, kBrake);
     if ((move < kSmall && k % 5 == 4) || k % kTries == kTries - 1) {
       const State here = work_;
       State near = here;

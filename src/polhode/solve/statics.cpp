@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <optional>
 
 #include <polhode/base/format.hpp>
@@ -83,6 +83,13 @@ struct LoadStepper::Impl {
     report.steps.push_back(std::move(step));
   }
 
+  /// A load step that may have left its branch.
+  [[nodiscard]] bool suspicious(const State& old, const State& state, const StaticStep& step,
+                                double expected) const {
+    const double way = state_distance(*system, old, state);
+    return !step.relaxed && way > kNear && (step.iterations > kEasy || way > kFar * expected);
+  }
+
   /// Reports what changed between the last equilibrium and this one: stability, or the branch.
   void look_between(const State& old, double from, const State& state, const StaticStep& step,
                     double expected) {
@@ -90,18 +97,16 @@ struct LoadStepper::Impl {
     std::optional<LimitPoint> point;
     if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
       point = locate_stability_change(*system, options, interval, unstable, step.unstable);
-    const double way = state_distance(*system, old, state);
-    const bool hard = step.iterations > kEasy || way > kFar * expected;
-    if (!point && way > kNear && hard && !step.relaxed) {
+    if (!point && suspicious(old, state, step, expected)) {
       point = locate_jump(*system, options, interval);
       if (point) point->unstable = step.unstable;
     }
     if (point) report.limit_points.push_back(*point);
   }
 
-  /// Cables that carry nothing, and do not resist either.
+  /// Cables of which pieces carry nothing and do not resist either.
   [[nodiscard]] std::vector<std::string> slack_cables(const State& state) const {
-    std::vector<std::string> names;
+    std::map<std::string, std::pair<int, int>> pieces;  // slack ones, all
     StepContext still;
     still.t_n = state.t;
     still.conserving = false;
@@ -114,9 +119,18 @@ struct LoadStepper::Impl {
       terms.set_zero();
       const int item = ref.item;
       group.evaluate({&item, 1}, {&step, 1}, {&terms, 1});
-      if (terms.D_aa.isZero(0.0) && terms.D_bb.isZero(0.0)) names.push_back(system->name(ref));
+      auto& [slack, all] = pieces[system->name(ref)];
+      ++all;
+      if (terms.D_aa.isZero(0.0) && terms.D_bb.isZero(0.0)) ++slack;
     }
-    return names;
+    std::vector<std::string> list;
+    for (const auto& [name, count] : pieces)
+      if (count.first > 0)
+        list.push_back(count.first == count.second
+                           ? format("cable '{}' is slack", name)
+                           : format("{} of {} pieces of cable '{}' are slack", count.first,
+                                    count.second, name));
+    return list;
   }
 
   bool advance(State& state, double limit) {
@@ -146,15 +160,17 @@ struct LoadStepper::Impl {
       }
       take(step);
       if (step.converged) {
-        if (equilibria == 0 && step.unstable > 0) {  // stable where nothing is loaded?
+        bool known = equilibria > 0;
+        if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
           State unloaded = old;
           const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
-          if (none.converged) {
+          known = none.converged;
+          if (known) {  // what is stable where nothing is loaded?
             unstable = none.unstable;
             old = unloaded;
           }
         }
-        if (equilibria > 0 || unstable >= 0) look_between(old, from, state, step, expected);
+        if (known) look_between(old, from, state, step, expected);
         report.slack = slack_cables(state);
         if (step.unstable >= 0) unstable = step.unstable;
         before = std::move(old);
@@ -196,7 +212,8 @@ struct LoadStepper::Impl {
         s += (i > 0 ? "; " : "") + step.free_motions[i];
       s += ": hold it by a joint or a spring.";
     } else if (relaxed) {
-      s += " Cables are slack: shorten their free_length, load them, or follow the motion with type: "
+      s += " Cables are slack: shorten their free_length, load them, or follow the motion with "
+           "type: "
            "dynamics and damping.";
     } else if (equilibria > 0) {
       s += " It may be a limit point, where the model buckles";

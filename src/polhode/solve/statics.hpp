@@ -31,7 +31,7 @@ struct StaticReport {
   std::vector<LimitPoint> limit_points;   ///< That were passed, by load factor.
   std::vector<std::string> slack;         ///< Cables that carry nothing at the end.
   int relaxations = 0;  ///< Equilibria that relaxation has found where Newton's method has not.
-  std::string message;                    ///< If not converged: what happened, where, what to try.
+  std::string message;  ///< If not converged: what happened, where, what to try.
 };
 
 /// Finds equilibria under growing loads: gravity, loads and prescribed displacements times a load

@@ -29,6 +29,8 @@ constexpr double kLanczos = 1e-12;
 /// ω² below the first part of the range may be rounding; it is if the energy of the motion is below
 /// the second part of what it is the sum of.
 constexpr double kMayBeFree = 1e-7, kFreeEnergy = 1e-13;
+/// Or if ω² is below this part of the range: of motions that meet no stiffness of any kind.
+constexpr double kNothing = 1e-20;
 
 /// What Spectra wants of (K − σM)⁻¹ and of M. Modes that are known are kept out.
 struct InverseOperator {
@@ -177,8 +179,9 @@ UndampedModes undamped_modes(ModalMatrices& m, int count) {
     bool free = false;
     if (std::abs(square) <= kMayBeFree * pairs.range) {  // by energy: more digits than 1/ν − σ has
       const double energy = x.dot(m.stiffness_times(x));
-      free = std::abs(energy) <= kFreeEnergy * m.energy_scale(x);
       square = energy / x.dot(m.mass_times(x));
+      free = std::abs(energy) <= kFreeEnergy * m.energy_scale(x) ||
+             std::abs(square) <= kNothing * pairs.range;
     }
     result.free.push_back(free);
   }
