@@ -88,7 +88,11 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
     for (const LimitPoint& p : s.statics->limit_points)
       json["limit_points"].push_back({{"load_factor", p.load_factor},
                                       {"unstable_directions", p.unstable},
-                                      {"motion", p.motion}});
+                                      {"motion", p.motion},
+                                      {"jump", p.jump},
+                                      {"distance", p.distance}});
+    json["slack"] = s.statics->slack;
+    json["relaxed"] = s.statics->relaxations > 0;
   }
   if (!s.solids.empty()) {
     json["solids"] = nlohmann::ordered_json::array();
@@ -146,9 +150,18 @@ std::string statics_table(const RunSummary& s) {
   std::string text = table(rows);
   for (const std::string& motion : r.free_motions)
     text += format("  Nothing resists that {}.\n", motion);
+  for (const std::string& cable : r.slack)
+    text += format("  {}: it carries nothing. Shorten its free_length if it should.\n", cable);
+  if (r.relaxations > 0) text += "  Newton's method did not find what is slack; relaxation did.\n";
   for (const LimitPoint& p : r.limit_points)
-    text += format("  Limit point or branch at load factor {:.6g}: {} there.\n", p.load_factor,
-                   p.motion.empty() ? "stability changes" : p.motion);
+    text += p.jump
+                ? format(
+                      "  Limit point at load factor {:.6g}, where {}: equilibria beyond it lie on "
+                      "another branch, {:.2g} times the size of the model away. Follow what "
+                      "happens in between with type: dynamics.\n",
+                      p.load_factor, p.motion.empty() ? "it ends" : p.motion, p.distance)
+                : format("  Limit point or branch at load factor {:.6g}: {} there.\n",
+                         p.load_factor, p.motion.empty() ? "stability changes" : p.motion);
   return text;
 }
 

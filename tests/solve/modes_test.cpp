@@ -133,7 +133,7 @@ TEST(Modes, ShapesOfNodesFollowTheBodiesTheyAreBondedTo) {
   const System system = hanging_lattice(3);
   const ModesReport report = find_modes(system, system.initial_state(), {.count = 12});
   const Mode& mode = report.modes.back();
-  const std::vector<double> d = node_shape(system, system.initial_state(), mode);
+  const std::vector<double> d = node_shape(system, system.initial_state(), mode.shape);
   for (int i = 0; i < system.nodes().count(); ++i) {
     const NodeData& node = system.nodes()[i];
     if (node.body < 0) continue;

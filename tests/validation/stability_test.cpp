@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads at which slender beams buckle, by statics: located, named, and the same for any mesh.
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +51,29 @@ TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadWhateverTheMesh) {
   }
 }
 
+/// The lowest squared frequency falls with the load and is zero where the frame buckles, on a line
+/// through two loads on either side. Its equilibrium is in the plane, its mode out of it.
+TEST(Stability, OfTheRightAngleFrameIsLostWhereItsLowestFrequencyIsZero) {
+  for (const int n : {5, 10, 40, 200}) {  // above 33 elements a leg by Lanczos iterations
+    const auto lowest = [&](double load) {
+      const ModalAnalysis frame(read_model_text(
+          kFrame, "frame.yaml",
+          {"variables.n=" + std::to_string(n), "analysis.type=modes", "analysis.count=2",
+           "loads.pull.force=[" + std::to_string(load) + ", 0, 0]"}));
+      EXPECT_TRUE(frame.converged()) << frame.message();
+      EXPECT_TRUE(frame.report().symmetric);
+      EXPECT_TRUE(frame.report().complete);
+      return frame.report().modes.at(0);
+    };
+    const Mode below = lowest(1.08), above = lowest(1.095);
+    EXPECT_EQ(below.kind, ModeKind::oscillation);
+    EXPECT_EQ(above.kind, ModeKind::divergence);
+    const double critical =
+        1.08 + 0.015 * below.omega_squared / (below.omega_squared - above.omega_squared);
+    EXPECT_NEAR(critical, 1.08754, (n == 5 ? 2e-3 : 1e-3) * 1.08754) << n;
+  }
+}
+
 constexpr const char* kColumn = R"(
 format: 1
 variables: {d: 0.01, part: 1.1, steps: 10, n: 20}
@@ -82,6 +107,27 @@ TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
     EXPECT_EQ(r.unstable, 2) << c.part << ' ' << c.steps << ' ' << c.d;
     ASSERT_EQ(r.limit_points.size(), 1u) << c.part << ' ' << c.steps << ' ' << c.d;
     EXPECT_NEAR(r.limit_points[0].load_factor * part, 1.0, 1e-3) << c.d;
+  }
+}
+
+/// A wire under tension or none: transverse tones of a cantilever, (1.875104/L)² √(E I/(ρ A)), for
+/// any slenderness, conditions of the stiffness to 1e14 and more.
+TEST(Stability, WiresHaveTheirTonesHoweverSlender) {
+  for (const auto& [d, n] :
+       {std::pair("0.01", 20), {"1e-3", 40}, {"1e-4", 40}, {"1e-5", 40}, {"1e-5", 200}}) {
+    const ModalAnalysis wire(read_model_text(
+        kColumn, "wire.yaml",
+        {std::string("variables.d=") + d, "variables.part=0", "analysis.load_steps=1",
+         "variables.n=" + std::to_string(n), "analysis.type=modes", "analysis.count=4"}));
+    ASSERT_TRUE(wire.converged()) << wire.message();
+    const double c = std::stod(d) / 4.0 * std::sqrt(210e9 / 7800.0);
+    for (int k = 0; k < 4; ++k) {
+      const double known = std::pow(k < 2 ? 1.875104 : 4.694091, 2) * c / (2.0 * std::numbers::pi);
+      const Mode& mode = wire.report().modes.at(static_cast<std::size_t>(k));
+      EXPECT_NEAR(mode.frequency, known, (k < 2 ? 1e-3 : 5e-3) * known)
+          << d << ' ' << n << ' ' << k;
+      EXPECT_EQ(mode.kind, ModeKind::oscillation) << d << ' ' << n;
+    }
   }
 }
 

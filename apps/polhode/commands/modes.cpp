@@ -37,32 +37,63 @@ std::string modes_json(const ModalAnalysis& analysis, int code, const std::strin
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Mode& m : r.modes)
     list.push_back({{"frequency", m.frequency},
+                    {"damping_ratio", m.damping},
+                    {"kind", kind_name(m.kind)},
+                    {"eigenvalue", {m.eigenvalue.real(), m.eigenvalue.imag()}},
                     {"omega_squared", m.omega_squared},
                     {"rigid", m.rigid},
+                    {"motion", m.motion},
                     {"participation", vector_json(m.participation)},
                     {"effective_mass", vector_json(m.effective_mass)},
                     {"residual", m.residual}});
-  const nlohmann::ordered_json json = {{"exit_code", code},      {"message", analysis.message()},
-                                       {"modes", list},          {"total_mass", r.total_mass},
-                                       {"complete", r.complete}, {"unbalanced", r.unbalanced},
-                                       {"warnings", r.warnings}, {"results", folder}};
+  const nlohmann::ordered_json complete =
+      r.counted ? nlohmann::ordered_json(r.complete) : nlohmann::ordered_json(nullptr);
+  const nlohmann::ordered_json freedoms =
+      r.freedoms >= 0 ? nlohmann::ordered_json(r.freedoms) : nlohmann::ordered_json(nullptr);
+  const nlohmann::ordered_json json = {{"exit_code", code},
+                                       {"message", analysis.message()},
+                                       {"modes", list},
+                                       {"total_mass", r.total_mass},
+                                       {"freedoms", freedoms},
+                                       {"symmetric", r.symmetric},
+                                       {"complete", complete},
+                                       {"unbalanced", r.unbalanced},
+                                       {"wall_time_s", analysis.wall_time()},
+                                       {"cpu_time_s", analysis.cpu_time()},
+                                       {"warnings", r.warnings},
+                                       {"results", folder}};
   return json.dump(2);
+}
+
+std::string remark(const Mode& m) {
+  if (m.kind == ModeKind::free) return m.motion.empty() ? "free" : "free: " + m.motion;
+  if (m.kind == ModeKind::divergence) return "divergence: grows as exp(2 pi f t)";
+  if (m.kind == ModeKind::overdamped) return "overdamped: decays as exp(-2 pi f t)";
+  if (m.kind == ModeKind::flutter)
+    return format("flutter: grows by exp({:.3g} t)", m.eigenvalue.real());
+  return {};
 }
 
 std::string modes_table(const ModesReport& r) {
   std::vector<std::vector<std::string>> rows{
-      {"mode", "Hz", "mass x", "mass y", "mass z", "residual", ""}};
+      {"mode", "Hz", "damping", "mass x", "mass y", "mass z", "residual", ""}};
+  if (r.symmetric) rows[0].erase(rows[0].begin() + 2);
   const auto part = [](double x) { return format("{:.4f}", x); };
   for (std::size_t i = 0; i < r.modes.size(); ++i) {
     const Mode& m = r.modes[i];
-    rows.push_back({format("{}", i + 1), format("{:.6g}", m.frequency), part(m.effective_mass[0]),
-                    part(m.effective_mass[1]), part(m.effective_mass[2]),
-                    format("{:.0e}", m.residual),
-                    m.rigid                 ? "without stiffness"
-                    : m.omega_squared < 0.0 ? "unstable: grows as exp(2 pi f t)"
-                                            : ""});
+    const bool swings = m.kind == ModeKind::oscillation || m.kind == ModeKind::flutter;
+    rows.push_back({format("{}", i + 1), format("{:.6g}", m.frequency)});
+    if (!r.symmetric) rows.back().push_back(swings ? format("{:.3g}", m.damping) : "");
+    rows.back().insert(rows.back().end(),
+                       {part(m.effective_mass[0]), part(m.effective_mass[1]),
+                        part(m.effective_mass[2]), format("{:.0e}", m.residual), remark(m)});
   }
-  return table(rows);
+  std::string text = table(rows);
+  if (r.freedoms == static_cast<int>(r.modes.size()))
+    text +=
+        format("  The model has {}: these are all its modes.\n",
+               r.freedoms == 1 ? std::string("one freedom") : format("{} freedoms", r.freedoms));
+  return text;
 }
 
 }  // namespace

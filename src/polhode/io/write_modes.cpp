@@ -17,15 +17,20 @@ constexpr double kShown = 0.1;
 std::vector<Channel> channels(std::size_t bodies, std::size_t nodes) {
   std::vector<Channel> list{{"/number", {}, "-"},
                             {"/frequency", {}, "Hz"},
+                            {"/damping_ratio", {}, "-"},
+                            {"/kind", {}, "-"},
+                            {"/eigenvalue", {2}, "rad/s"},
                             {"/omega_squared", {}, "rad^2/s^2"},
                             {"/participation", {3}, "kg^0.5"},
                             {"/effective_mass", {3}, "-"},
                             {"/residual", {}, "-"}};
-  if (bodies > 0) {
-    list.push_back({"/bodies/displacement", {bodies, 3}, "kg^-0.5"});
-    list.push_back({"/bodies/rotation", {bodies, 3}, "rad kg^-0.5 m^-1"});
+  for (const std::string part : {"", "_imaginary"}) {
+    if (bodies > 0) {
+      list.push_back({"/bodies/displacement" + part, {bodies, 3}, "kg^-0.5"});
+      list.push_back({"/bodies/rotation" + part, {bodies, 3}, "rad kg^-0.5 m^-1"});
+    }
+    if (nodes > 0) list.push_back({"/nodes/displacement" + part, {nodes, 3}, "kg^-0.5"});
   }
-  if (nodes > 0) list.push_back({"/nodes/displacement", {nodes, 3}, "kg^-0.5"});
   return list;
 }
 
@@ -35,25 +40,31 @@ void write_pictures(const ModalAnalysis& analysis, const std::string& folder) {
   const double size = simulation.system().length_scale();
   std::vector<BodyPicture> pictures = body_pictures(model, size);
   ParaviewWriter writer(folder + "/paraview", "modes", pictures);
-  for (std::size_t mode = 0; mode < analysis.report().modes.size(); ++mode) {
-    double most = 0.0;
-    for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-      const Vec6 x = analysis.body_shape(static_cast<int>(mode), body);
-      most = std::max({most, x.head<3>().norm(), size * x.tail<3>().norm()});
-    }
-    const double factor = most > 0.0 ? kShown * size / most : 0.0;
+  const auto append = [&](int mode, bool imaginary, double factor, double time) {
     std::vector<BodyMotion> motions;
     for (const BodyPicture& picture : pictures) {
       const int body = model.body_index(picture.name);
       BodyMotion m = simulation.body(body);
-      const Vec6 x = factor * analysis.body_shape(static_cast<int>(mode), body);
+      const Vec6 x = factor * analysis.body_shape(mode, body, imaginary);
       m.r += x.head<3>();
       m.q = (quaternion_from_rotation_vector(x.tail<3>()) * m.q).normalized();
       m.v = x.head<3>();
       m.W = m.q.conjugate() * Vec3(x.tail<3>());
       motions.push_back(m);
     }
-    writer.append(static_cast<double>(mode + 1), motions);
+    writer.append(time, motions);
+  };
+  for (int mode = 0; mode < static_cast<int>(analysis.report().modes.size()); ++mode) {
+    double most = 0.0;
+    for (const bool imaginary : {false, true})
+      for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
+        const Vec6 x = analysis.body_shape(mode, body, imaginary);
+        most = std::max({most, x.head<3>().norm(), size * x.tail<3>().norm()});
+      }
+    const double factor = most > 0.0 ? kShown * size / most : 0.0;
+    append(mode, false, factor, mode + 1.0);
+    if (analysis.report().modes[static_cast<std::size_t>(mode)].shape_imag.size() > 0)
+      append(mode, true, -factor, mode + 1.25);  // a quarter of a period later
   }
   writer.close();
 }
@@ -64,9 +75,8 @@ void write_modes(const ModalAnalysis& analysis, const std::string& folder,
                  const Provenance& provenance) {
   std::filesystem::create_directories(folder);
   const Model& model = analysis.model();
-  const System& system = analysis.simulation().system();
   const std::size_t bodies = model.bodies.size();
-  const auto nodes = static_cast<std::size_t>(system.nodes().count());
+  const auto nodes = static_cast<std::size_t>(analysis.simulation().system().nodes().count());
   Hdf5File file(folder + "/modes.h5", channels(bodies, nodes), {});
   file.attribute("/", "format", "polhode modes");
   file.attribute("/", "format_version", 1.0);
@@ -76,20 +86,33 @@ void write_modes(const ModalAnalysis& analysis, const std::string& folder,
   std::vector<std::string> names;
   for (const BodySpec& body : model.bodies) names.push_back(body.name);
   if (bodies > 0) file.names("/bodies/names", names);
+  std::vector<std::string> kinds;
+  for (int kind = 0; kind <= static_cast<int>(ModeKind::free); ++kind)
+    kinds.emplace_back(kind_name(static_cast<ModeKind>(kind)));
+  file.names("/kinds", kinds);
   const ModesReport& report = analysis.report();
   for (std::size_t i = 0; i < report.modes.size(); ++i) {
     const Mode& mode = report.modes[i];
-    std::vector<double> frame{static_cast<double>(i + 1), mode.frequency, mode.omega_squared};
+    std::vector<double> frame{static_cast<double>(i + 1),
+                              mode.frequency,
+                              mode.damping,
+                              static_cast<double>(mode.kind),
+                              mode.eigenvalue.real(),
+                              mode.eigenvalue.imag(),
+                              mode.omega_squared};
     frame.insert(frame.end(), mode.participation.begin(), mode.participation.end());
     frame.insert(frame.end(), mode.effective_mass.begin(), mode.effective_mass.end());
     frame.push_back(mode.residual);
-    for (const int part : {0, 3})
-      for (std::size_t body = 0; body < bodies; ++body) {
-        const Vec6 x = analysis.body_shape(static_cast<int>(i), static_cast<int>(body));
-        for (int k = 0; k < 3; ++k) frame.push_back(x[part + k]);
-      }
-    const std::vector<double> d = node_shape(system, analysis.simulation().state(), mode);
-    frame.insert(frame.end(), d.begin(), d.end());
+    const auto number = static_cast<int>(i);
+    for (const bool imaginary : {false, true}) {
+      for (const int part : {0, 3})
+        for (std::size_t body = 0; body < bodies; ++body) {
+          const Vec6 x = analysis.body_shape(number, static_cast<int>(body), imaginary);
+          for (int k = 0; k < 3; ++k) frame.push_back(x[part + k]);
+        }
+      const std::vector<double> d = analysis.node_shapes(number, imaginary);
+      frame.insert(frame.end(), d.begin(), d.end());
+    }
     file.append(frame);
   }
   file.close();

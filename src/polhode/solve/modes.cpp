@@ -1,352 +1,216 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <numeric>
-#include <stdexcept>
 
-#include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
+#include <polhode/solve/modal_matrices.hpp>
 #include <polhode/solve/modes.hpp>
-#include <polhode/solve/static_newton.hpp>
+#include <polhode/solve/plain_motions.hpp>
+#include <polhode/solve/undamped_modes.hpp>
 
 namespace polhode {
 
 namespace {
 
-/// Up to so many unknowns matrices are dense.
-constexpr int kDense = 400;
-/// Shift of the Lanczos iterations, below zero by this part of the range of ω² that is wanted, so
-/// that motions without stiffness do no harm.
-constexpr double kShift = 1e-2;
-constexpr int kSearches = 40;  ///< Factorisations that may be spent on finding that range.
-constexpr int kRuns = 12;      ///< Of Lanczos iterations, while modes are missing.
-constexpr int kSpare = 4;      ///< Modes computed beside those wanted, to have a gap to count in.
-/// Relative accuracy of eigenvalues asked of the Lanczos iterations, and accepted residuals.
-constexpr double kLanczos = 1e-12, kResidual = 1e-6;
-/// ω² below this part of the largest one of the matrices is rounding.
-constexpr double kRigid = 1e-12;
-/// Rows of G whose part normal to the others is smaller count as redundant.
-constexpr double kRedundant = 1e-9;
+/// A stiffness is symmetric up to this part of its entries.
+constexpr double kSymmetric = 1e-7;
+constexpr double kResidual = 1e-6;  ///< Above it a mode is said to be inaccurate.
+/// Growth or decay below this part of |λ| is rounding.
+constexpr double kSteady = 1e-9;
+/// A model that is another one after turning by more than this.
+constexpr double kTurned = 1e-6;
 
-/// The saddle matrices of stiffness and mass of a state.
-class Matrices {
- public:
-  Matrices(const System& system, const State& state, const ModeOptions& options)
-      : system_(system),
-        newton_(system, {.mixed_point = false}),
-        mass_(system, newton_.bodies().topology()),
-        shifted_(system, newton_.bodies().topology()) {
-    newton_.assemble_at(state, options.load_factor);
-    put_masses(state);
-  }
+double hermitian(const ModalMatrices& m, const CVec& x) {
+  const Vec re = x.real(), im = x.imag();
+  return re.dot(m.mass_times(re)) + im.dot(m.mass_times(im));
+}
 
-  [[nodiscard]] SaddleMatrix& K() { return newton_.matrix(); }  ///< Times s.
-  [[nodiscard]] const SaddleMatrix& M() const { return mass_; }
-  [[nodiscard]] double s() const { return newton_.scale(); }
-  [[nodiscard]] int n() const { return mass_.movable(); }
-  [[nodiscard]] int rows() const { return mass_.size() - mass_.movable(); }
-  [[nodiscard]] StaticNewton& statics() { return newton_; }
-  /// Unknowns that count: all but the turns of point masses.
-  [[nodiscard]] std::vector<int> counted() const {
-    std::vector<int> list;
-    for (int i = 0; i < n(); ++i)
-      if (i >= 6 * system_.body_count() || i % 6 < 3 || !system_.bodies()[i / 6].point_mass)
-        list.push_back(i);
-    return list;
-  }
+/// How far a mode is from what an inverse iteration makes of it, after factor_quadratic(σ):
+/// φ − (K + σC + σ²M)⁻¹ [(σ − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
+double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smallest) {
+  const Complex lambda = mode.eigenvalue;
+  const Vec zero = Vec::Zero(m.n()), &re = mode.shape;
+  const Vec& im = mode.shape_imag.size() == 0 ? zero : mode.shape_imag;
+  const Complex c = sigma - lambda, d = sigma * sigma - lambda * lambda;
+  const Vec C_re = m.damping_times(re), C_im = m.damping_times(im);
+  const Vec M_re = m.mass_times(re), M_im = m.mass_times(im);
+  const Vec left =
+      re -
+      m.inverse(c.real() * C_re - c.imag() * C_im + d.real() * M_re - d.imag() * M_im).head(m.n());
+  const Vec right =
+      im -
+      m.inverse(c.real() * C_im + c.imag() * C_re + d.real() * M_im + d.imag() * M_re).head(m.n());
+  const double size = std::sqrt(left.dot(m.mass_times(left)) + right.dot(m.mass_times(right)));
+  const double square = std::norm(lambda);
+  return size * (square + sigma * sigma) / std::max(square, smallest);
+}
 
-  /// Factors s (K − σ M) with its constraints. @returns false if it is singular.
-  [[nodiscard]] bool factor(double sigma) {
-    shifted_.combine(K(), -sigma * s(), mass_);
-    return solver_.factor(shifted_, true);
-  }
-  /// Eigenvalues below the shift of the last factorisation. (Sylvester; each constraint adds one
-  /// negative pivot.)
-  [[nodiscard]] int below() const { return solver_.negative_pivots() - rows(); }
-  /// (K − σM)⁻¹ f on motions that the constraints allow, and the scaled multipliers behind.
-  [[nodiscard]] Vec inverse(const Vec& f) const {
-    Vec x = Vec::Zero(mass_.size());
-    x.head(n()) = s() * f.head(n());
-    solver_.solve(x);
-    return x;
-  }
-  [[nodiscard]] Vec mass_times(const Vec& x) const {
-    Vec all = Vec::Zero(mass_.size()), y;
-    all.head(n()) = x.head(n());
-    mass_.times(all, y);
-    return y.head(n());
-  }
+/// What an eigenvalue means.
+ModeKind kind_of(Complex lambda) {
+  const double size = std::abs(lambda);
+  if (size == 0.0) return ModeKind::free;
+  if (lambda.imag() > 0.0)
+    return lambda.real() > 1e-7 * size ? ModeKind::flutter : ModeKind::oscillation;
+  return lambda.real() > 0.0 ? ModeKind::divergence : ModeKind::overdamped;
+}
 
- private:
-  void put_masses(const State& state) {
-    const Nodes& nodes = system_.nodes();
-    KktValues values;
-    KktValues::Pair none;
-    none.K_ab.setZero();
-    none.K_ba.setZero();
-    none.B_a.setZero();
-    none.B_b.setZero();
-    none.G_a.setZero();
-    none.G_b.setZero();
-    none.C.setZero();
-    values.pairs.assign(newton_.bodies().topology().pairs.size(), none);
-    for (int b = 0; b < system_.body_count(); ++b) {
-      const BodyData& body = system_.bodies()[b];
-      const Mat3 Lambda = system_.motion(state, b).Lambda();
-      Mat6 M = Mat6::Zero();
-      M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
-      if (!body.point_mass)
-        M.bottomRightCorner<3, 3>() = Lambda * body.inertia * Lambda.transpose();
-      values.diagonal.push_back(M);
-    }
-    const KktMap map = kkt_map(system_);
-    for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
-      const InteractionRef& ref = system_.interactions()[i];
-      const double m = system_.group(ref.group).coupled_mass(ref.item);
-      if (m == 0.0) continue;
-      for (int body : {ref.a, ref.b})
-        if (body != kGround) values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= m;
-      if (map.pair[i] < 0) continue;
-      values.pairs[map.pair[i]].K_ab.topLeftCorner<3, 3>().diagonal().array() += m;
-      values.pairs[map.pair[i]].K_ba.topLeftCorner<3, 3>().diagonal().array() += m;
-    }
-    std::vector<double> blocks(9 * nodes.mass().size(), 0.0);
-    for (std::size_t k = 0; k < nodes.mass().size(); ++k)
-      for (int c = 0; c < 3; ++c) blocks[9 * k + 4 * c] = nodes.mass()[k];
-    mass_.place_like(K());
-    shifted_.place_like(K());
-    mass_.set(values, blocks, nullptr, 1.0);
-  }
+/// Turned so that its largest component is real, and normalised.
+void put_shape(const ModalMatrices& m, CVec x, Mode& mode) {
+  Eigen::Index top = 0;
+  x.cwiseAbs().maxCoeff(&top);
+  if (std::abs(x[top]) > 0.0) x *= std::conj(x[top]) / std::abs(x[top]);
+  const double square = hermitian(m, x);
+  if (square > 0.0) x /= std::sqrt(square);
+  mode.shape = x.real();
+  const bool real =
+      x.imag().lpNorm<Eigen::Infinity>() <= kSteady * x.real().lpNorm<Eigen::Infinity>();
+  if (!real) mode.shape_imag = x.imag();
+}
 
-  const System& system_;
-  StaticNewton newton_;
-  SaddleMatrix mass_, shifted_;
-  SaddleSolver solver_;
-};
+Mode make_mode(const ModalMatrices& m, Complex lambda, const CVec& x) {
+  Mode mode;
+  const double size = std::abs(lambda);
+  if (std::abs(lambda.real()) <= kSteady * size) lambda.real(0.0);
+  mode.eigenvalue = lambda;
+  mode.kind = kind_of(lambda);
+  mode.rigid = mode.kind == ModeKind::free;
+  mode.frequency = size / (2.0 * std::numbers::pi);
+  mode.damping = size > 0.0 && lambda.real() != 0.0 ? -lambda.real() / size : 0.0;
+  mode.omega_squared = mode.kind == ModeKind::divergence ? -size * size : size * size;
+  put_shape(m, x, mode);
+  return mode;
+}
 
-/// What Spectra wants of (K − σM)⁻¹ and of M. Modes that are known are kept out.
-struct InverseOperator {
-  using Scalar = double;
-  Matrices* matrices;
-  const std::vector<Vec>* known;
-  const std::vector<Vec>* M_known;
-  [[nodiscard]] Eigen::Index rows() const { return matrices->n(); }
-  [[nodiscard]] Eigen::Index cols() const { return matrices->n(); }
-  void set_shift(double) const {}  // was factored with it
-  void perform_op(const double* in, double* out) const {
-    Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n())).head(matrices->n());
-    for (std::size_t i = 0; i < known->size(); ++i) x -= (*M_known)[i].dot(x) * (*known)[i];
-    Eigen::Map<Vec>(out, matrices->n()) = x;
+/// Modes of the symmetric problem: λ² is real.
+std::vector<Mode> symmetric_modes(ModalMatrices& m, const ModeOptions& options,
+                                  ModesReport& report) {
+  const UndampedModes found = undamped_modes(m, options.count);
+  report.freedoms = found.freedoms;
+  report.shift = found.shift;
+  report.below_shift = found.below_shift;
+  report.complete = found.complete;
+  report.counted = found.counted;
+  if (!found.warning.empty()) report.warnings.push_back(found.warning);
+  std::vector<Mode> modes;
+  for (std::size_t i = 0; i < found.omega_squared.size(); ++i) {
+    const double square = found.free[i] ? 0.0 : found.omega_squared[i];
+    const double root = std::sqrt(std::abs(square));
+    const Complex lambda = square >= 0.0 ? Complex(0.0, root) : Complex(root, 0.0);
+    modes.push_back(make_mode(m, lambda, found.shapes[i].cast<Complex>()));
+    modes.back().omega_squared = square;
   }
-};
-struct MassOperator {
-  using Scalar = double;
-  const Matrices* matrices;
-  [[nodiscard]] Eigen::Index rows() const { return matrices->n(); }
-  [[nodiscard]] Eigen::Index cols() const { return matrices->n(); }
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Vec>(out, matrices->n()) =
-        matrices->mass_times(Eigen::Map<const Vec>(in, matrices->n()));
-  }
-};
+  return modes;
+}
 
-struct Pairs {
-  std::vector<double> values;  ///< ω², ascending.
-  std::vector<Vec> shapes;
-  int freedoms = -1;
-  double largest = 0.0;  ///< Size of ω² that rounding is measured by.
-};
-
-/// All modes, by a basis of the motions that the constraints allow.
-Pairs dense_modes(Matrices& m) {
-  const int n = m.n(), rows = m.rows();
-  Mat K = Mat::Zero(n, n), M = Mat::Zero(n, n), Gt = Mat::Zero(n, rows);
-  Vec C = Vec::Zero(rows);
-  const SaddleMatrix& k = m.K();
-  for (std::size_t e = 0; e < k.values().size(); ++e) {
-    const int i = k.row()[e], j = k.column()[e];
-    if (i < n && j < n) {
-      K(i, j) += k.values()[e] / m.s();
-      M(i, j) += m.M().values()[e];
-    } else if (i >= n && j < n) {
-      Gt(j, i - n) -= k.values()[e];
-    } else if (i >= n) {
-      C[i - n] -= k.values()[e];
-    }
+/// Modes of the quadratic problem. Of an undamped motion that grows and its twin that decays, the
+/// former is given.
+std::vector<Mode> quadratic_modes(ModalMatrices& m, const ModeOptions& options,
+                                  ModesReport& report) {
+  constexpr int kSpare = 4;
+  std::vector<EigenPair> pairs = damped_modes(m, options.count + kSpare, report.freedoms);
+  std::vector<Mode> modes;
+  for (const EigenPair& pair : pairs) {
+    Mode mode = make_mode(m, pair.lambda, pair.shape);
+    if (!m.damped() && mode.kind == ModeKind::overdamped) continue;
+    modes.push_back(std::move(mode));
   }
-  Mat exact(n, 0);
-  for (int r = 0; r < rows; ++r) {
-    if (C[r] > kProximal) {  // a compliant row is a spring
-      K += Gt.col(r) * Gt.col(r).transpose() / (C[r] * m.s());
+  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+    return a.omega_squared < b.omega_squared;  // negative of divergence
+  });
+  return modes;
+}
+
+/// Free motions as shifts and turns, in the place of whatever the solver has found of their space.
+void name_free(const System& system, const State& state, ModalMatrices& m,
+               std::vector<Mode>& modes) {
+  std::vector<Vec> motions;
+  for (const Mode& mode : modes)
+    if (mode.rigid && mode.shape_imag.size() == 0) motions.push_back(mode.shape);
+  // Of a twofold eigenvalue the same motion may have been found twice.
+  std::vector<Vec> apart;
+  for (Vec x : motions) {
+    const Vec before = x;
+    for (const Vec& other : apart) x -= m.mass_times(other).dot(x) * other;
+    const double square = x.dot(m.mass_times(x));
+    if (square > 1e-12 * before.dot(m.mass_times(before))) apart.push_back(x / std::sqrt(square));
+  }
+  std::vector<PlainMotion> plain = plain_motions(system, state, m.K(), apart);
+  std::vector<Vec> found;
+  std::size_t next = 0;
+  std::vector<Mode> kept;
+  for (Mode& mode : modes) {
+    if (!mode.rigid) {
+      kept.push_back(std::move(mode));
       continue;
     }
-    exact.conservativeResize(n, exact.cols() + 1);
-    exact.rightCols<1>() = Gt.col(r).normalized();
+    if (next == plain.size()) continue;
+    Vec x = plain[next].x;
+    for (const Vec& other : found) x -= m.mass_times(other).dot(x) * other;
+    put_shape(m, x.cast<Complex>(), mode);
+    mode.motion = plain[next++].text;
+    found.push_back(mode.shape);
+    kept.push_back(std::move(mode));
   }
-  const std::vector<int> counted = m.counted();
-  Mat N = Mat::Zero(n, static_cast<Eigen::Index>(counted.size()));
-  for (std::size_t i = 0; i < counted.size(); ++i)
-    N(counted[i], static_cast<Eigen::Index>(i)) = 1.0;
-  if (exact.cols() > 0) {
-    Eigen::ColPivHouseholderQR<Mat> qr(N.cols(), exact.cols());
-    qr.setThreshold(kRedundant);
-    qr.compute(exact(counted, Eigen::all));
-    const Mat Q = qr.householderQ();
-    N = N * Q.rightCols(N.cols() - qr.rank());
-  }
-  Pairs pairs;
-  pairs.freedoms = static_cast<int>(N.cols());
-  if (N.cols() == 0) return pairs;
-  const Mat K_r = N.transpose() * (0.5 * (K + K.transpose())) * N;
-  const Mat M_r = N.transpose() * M * N;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Mat> eigen(K_r, M_r);
-  for (Eigen::Index i = 0; i < N.cols(); ++i) {
-    pairs.values.push_back(eigen.eigenvalues()[i]);
-    pairs.shapes.emplace_back(N * eigen.eigenvectors().col(i));
-  }
-  pairs.largest = std::max(std::abs(pairs.values.front()), std::abs(pairs.values.back()));
-  return pairs;
+  modes = std::move(kept);
 }
 
-/// A value of ω² below which there are at least `count` modes, and not many more.
-double range_of(Matrices& m, int count) {
-  std::vector<double> ratios;
-  std::vector<double> k(m.n(), 0.0), mass(m.n(), 0.0);
-  for (std::size_t e = 0; e < m.K().values().size(); ++e) {
-    const int i = m.K().row()[e];
-    if (i != m.K().column()[e] || i >= m.n()) continue;
-    k[i] += m.K().values()[e] / m.s();
-    mass[i] += m.M().values()[e];
+/// About a turning body a model has modes if it is the same at all times: turned a little way on,
+/// stiffness and mass must be what they were. @eq{modes-gyroscopic}
+void check_steady(const System& system, const State& state, const ModeOptions& options,
+                  ModalMatrices& m, ModesReport& report) {
+  double fastest = 0.0;
+  for (const Vec3& W : options.spin) fastest = std::max(fastest, W.norm());
+  if (!(fastest > 0.0)) return;
+  State turned = state;
+  for (int b = 0; b < system.body_count(); ++b) {
+    BodyMotion motion = system.motion(state, b);
+    const Vec3& W = options.spin[static_cast<std::size_t>(b)];
+    const Vec3 moment = W.cross(system.bodies()[b].inertia * W);
+    if (moment.norm() > kTurned * system.bodies()[b].inertia.norm() * W.squaredNorm())
+      report.warnings.push_back(
+          format("body '{}' does not turn about an axis of inertia: modes are those of the instant",
+                 system.bodies()[b].name));
+    motion.q = (motion.q *
+                Quat(Eigen::AngleAxisd(W.norm() / fastest,
+                                       W.isZero(0.0) ? Vec3(Vec3::UnitX()) : Vec3(W.normalized()))))
+                   .normalized();
+    turned.set_motion(system.slot(b), motion);
   }
-  for (int i = 0; i < m.n(); ++i)
-    if (k[i] > 0.0 && mass[i] > 0.0) ratios.push_back(k[i] / mass[i]);
-  std::sort(ratios.begin(), ratios.end());
-  double range = ratios.empty() ? 1.0 : 1e-4 * ratios[ratios.size() / 2];
-  double too_low = 0.0, too_high = 0.0;
-  for (int i = 0; i < kSearches; ++i) {
-    if (!m.factor(range)) {
-      range *= 1.01;
-      continue;
+  for (const InteractionRef& ref : system.interactions()) {
+    Vec x = Vec::Zero(m.K().size()), rates;
+    for (const int body : {ref.a, ref.b})
+      if (body != kGround)
+        x.segment<3>(6 * body + 3) =
+            system.motion(state, body).q * options.spin[static_cast<std::size_t>(body)];
+    if (ref.rows == 0 || x.isZero(0.0)) continue;
+    m.K().times(x, rates);
+    if (rates.segment(m.n() + ref.first_row, ref.rows).norm() > kTurned * x.norm())
+      report.warnings.push_back(format("{} '{}' does not let its bodies turn as they are given",
+                                       system.group(ref.group).kind(), system.name(ref)));
+  }
+  ModalMatrices later(system, turned, options);
+  const auto apart = [&](const SaddleMatrix& A, const SaddleMatrix& B) {
+    double most = 0.0, size = 0.0;
+    for (std::size_t e = 0; e < A.values().size(); ++e) {
+      if (A.row()[e] >= m.n() || A.column()[e] >= m.n()) continue;
+      most = std::max(most, std::abs(A.values()[e] - B.values()[e]));
+      size = std::max(size, std::abs(A.values()[e]));
     }
-    const int below = m.below();
-    if (below >= count && below <= 3 * count + 12) return range;
-    (below < count ? too_low : too_high) = range;
-    if (too_low > 0.0 && too_high > 0.0) {
-      if (too_high < 1.001 * too_low) return too_high;
-      range = std::sqrt(too_low * too_high);
-    } else {
-      range *= below < count ? 30.0 : 1.0 / 30.0;
-    }
-  }
-  return too_high > 0.0 ? too_high : range;
+    return size > 0.0 ? most / size : 0.0;
+  };
+  if (later.s() != m.s() || apart(later.M(), m.M()) > kTurned || apart(later.K(), m.K()) > kTurned)
+    report.warnings.push_back(
+        "the model is another one when its bodies have turned: modes are those of the instant; a "
+        "body that turns must be alike about its axis, in its mass and in what holds it");
 }
 
-/// The `count` eigenvalues nearest σ, without those known. The shift must have been factored.
-void lanczos(Matrices& m, double sigma, int count, Pairs& pairs) {
+/// Largest parts of translations along x, y, z, and what moves.
+void put_participation(const System& system, ModalMatrices& m, ModesReport& report) {
   const int n = m.n();
-  std::vector<Vec> M_known;
-  for (const Vec& shape : pairs.shapes) M_known.push_back(m.mass_times(shape));
-  const std::vector<Vec> known = pairs.shapes;
-  InverseOperator inverse{&m, &known, &M_known};
-  MassOperator mass{&m};
-  const int krylov = std::min(n, std::max(2 * count + 10, 30));
-  Spectra::SymGEigsShiftSolver<InverseOperator, MassOperator, Spectra::GEigsMode::ShiftInvert>
-      solver(inverse, mass, count, krylov, sigma);
-  Vec start(n), first(n);
-  for (int i = 0; i < n; ++i)
-    start[i] = 1.0 + std::sin(1.0 + (2.7 + 0.1 * static_cast<double>(known.size())) * i);
-  start = m.mass_times(start);
-  inverse.perform_op(start.data(), first.data());  // into what the constraints allow
-  solver.init(first.data());
-  solver.compute(Spectra::SortRule::LargestMagn, 1000, kLanczos);
-  if (solver.info() != Spectra::CompInfo::Successful)
-    throw std::runtime_error("modes: the Lanczos iterations have not converged");
-  const Vec values = solver.eigenvalues();
-  const Mat shapes = solver.eigenvectors();
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    pairs.values.push_back(values[i]);
-    pairs.shapes.emplace_back(shapes.col(i));
-  }
-  std::vector<std::size_t> order(pairs.values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t i, std::size_t j) { return pairs.values[i] < pairs.values[j]; });
-  const Pairs unsorted = pairs;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    pairs.values[i] = unsorted.values[order[i]];
-    pairs.shapes[i] = unsorted.shapes[order[i]];
-  }
-}
-
-/// Where to count: the middle of the widest gap between eigenvalues from `count` on.
-struct Gap {
-  int below = 0;  ///< Eigenvalues found below.
-  double shift = 0.0;
-};
-Gap widest_gap(const std::vector<double>& values, int count) {
-  const auto found = static_cast<int>(values.size());
-  if (count >= found) return {found, values.back() + std::max(1.0, std::abs(values.back()))};
-  int last = count;
-  for (int i = count; i < found; ++i)
-    if (values[i] - values[i - 1] > values[last] - values[last - 1]) last = i;
-  return {last, 0.5 * (values[last - 1] + values[last])};
-}
-
-/// Lanczos iterations find one vector of each eigenvalue, and others of the same by rounding only:
-/// they are repeated without what was found until the count by inertia says that nothing is
-/// missing.
-Pairs lanczos_modes(Matrices& m, int count, int wanted) {
-  Pairs pairs;
-  pairs.largest = range_of(m, wanted);
-  const double sigma = -kShift * pairs.largest;
-  int missing = wanted;
-  for (int run = 0; run < kRuns && missing > 0; ++run) {
-    if (!m.factor(sigma)) throw std::runtime_error("modes: the shifted matrix is singular");
-    lanczos(m, sigma, std::min(missing + (run > 0 ? kSpare : 0), wanted), pairs);
-    const Gap gap = widest_gap(pairs.values, count);
-    if (!m.factor(gap.shift)) break;
-    missing = m.below() - gap.below;
-  }
-  return pairs;
-}
-
-/// |Kφ − ω²Mφ − Gᵀμ| / (ω² |Mφ|), the multipliers from one inverse iteration.
-double residual_of(Matrices& m, double sigma, const Mode& mode, double smallest) {
-  const int n = m.n();
-  const Vec M_phi = m.mass_times(mode.shape);
-  Vec x = m.inverse((mode.omega_squared - sigma) * M_phi), K_phi;
-  x.head(n) = mode.shape;
-  m.K().times(x, K_phi);
-  const double size = m.s() * std::max(std::abs(mode.omega_squared), smallest) * M_phi.norm();
-  return (K_phi.head(n) - m.s() * mode.omega_squared * M_phi).norm() / size;
-}
-
-}  // namespace
-
-/// @eq{modes-saddle}
-ModesReport find_modes(const System& system, const State& equilibrium, const ModeOptions& options) {
-  Matrices m(system, equilibrium, options);
-  const int n = m.n();
-  if (n == 0)
-    throw InputError("modes", "nothing in the model moves", "Add a body that is not fixed");
-  ModesReport report;
-  StaticStep balance;
-  m.statics().measure(balance);
-  report.unbalanced = balance.force > 0.0 ? balance.residual / balance.force : 0.0;
-  report.asymmetry = m.K().asymmetry();
-
-  const int wanted = options.count + kSpare;
-  const bool dense = n <= kDense || 3 * wanted > n;
-  Pairs pairs = dense ? dense_modes(m) : lanczos_modes(m, options.count, wanted);
-  report.freedoms = pairs.freedoms;
-  const auto found = static_cast<int>(pairs.values.size());
-  const int count = std::min(options.count, found);
-
   Mat e = Mat::Zero(n, 3);
   for (int b = 0; b < system.body_count(); ++b) e.block<3, 3>(6 * b, 0).setIdentity();
   for (int i = 0; i < system.nodes().count(); ++i)
@@ -355,41 +219,75 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   Mat M_e(n, 3);
   for (int c = 0; c < 3; ++c) M_e.col(c) = m.mass_times(e.col(c));
   report.total_mass = e.col(0).dot(M_e.col(0));
-
-  for (int i = 0; i < count; ++i) {
-    Mode mode;
-    mode.omega_squared = pairs.values[i];
-    mode.frequency = std::sqrt(std::abs(mode.omega_squared)) / (2.0 * std::numbers::pi);
-    mode.rigid = std::abs(mode.omega_squared) <= (dense ? kRigid : 1e-6) * pairs.largest;
-    mode.shape = pairs.shapes[i] / std::sqrt(pairs.shapes[i].dot(m.mass_times(pairs.shapes[i])));
-    Eigen::Index top = 0;
-    mode.shape.cwiseAbs().maxCoeff(&top);
-    if (mode.shape[top] < 0.0) mode.shape = -mode.shape;
+  for (Mode& mode : report.modes) {
     mode.participation = M_e.transpose() * mode.shape;
+    if (mode.shape_imag.size() > 0) {
+      const Vec3 other = M_e.transpose() * mode.shape_imag;
+      for (int c = 0; c < 3; ++c)
+        mode.participation[c] = std::hypot(mode.participation[c], other[c]);
+    }
     for (int c = 0; c < 3; ++c) {
       const double all = e.col(c).dot(M_e.col(c));
       if (all > 0.0) mode.effective_mass[c] = mode.participation[c] * mode.participation[c] / all;
     }
-    report.modes.push_back(std::move(mode));
   }
+}
 
-  // Every mode below a shift between two of them must have been found.
-  Gap gap;
-  if (count > 0) gap = widest_gap(pairs.values, count);
-  report.shift = gap.shift;
-  if (count > 0 && m.factor(report.shift)) {
-    report.below_shift = m.below();
-    report.complete = report.below_shift == gap.below;
-    if (!report.complete)
-      report.warnings.push_back(
-          format("{} modes lie below {:.6g} Hz, but {} were found: ask for more of them",
-                 report.below_shift,
-                 std::sqrt(std::max(0.0, report.shift)) / (2.0 * std::numbers::pi), gap.below));
+}  // namespace
+
+const char* kind_name(ModeKind kind) {
+  switch (kind) {
+    case ModeKind::oscillation:
+      return "oscillation";
+    case ModeKind::flutter:
+      return "flutter";
+    case ModeKind::divergence:
+      return "divergence";
+    case ModeKind::overdamped:
+      return "overdamped";
+    case ModeKind::free:
+      return "free";
   }
-  const double sigma = -kShift * std::max(std::abs(report.shift), kRigid * pairs.largest);
-  if (count > 0 && m.factor(sigma))
+  return "";
+}
+
+/// @eq{modes-saddle} @eq{modes-damped}
+ModesReport find_modes(const System& system, const State& equilibrium, const ModeOptions& options) {
+  ModesReport report;
+  if (6 * system.body_count() + system.nodes().unknowns() == 0) {
+    report.freedoms = 0;
+    report.warnings.push_back("every freedom of the model is held: there are no modes");
+    return report;
+  }
+  ModalMatrices m(system, equilibrium, options);
+  StaticStep balance_of_forces;
+  m.statics().measure(balance_of_forces);
+  report.unbalanced =
+      balance_of_forces.force > 0.0 ? balance_of_forces.residual / balance_of_forces.force : 0.0;
+  report.asymmetry = m.asymmetry();
+  report.symmetric = !m.damped() && report.asymmetry <= kSymmetric;
+  if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
+  std::vector<Mode> modes =
+      report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);
+  name_free(system, equilibrium, m, modes);
+  const bool asked = options.count != ModeOptions{}.count;  // else nobody wanted so many
+  if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))
+    report.warnings.push_back(
+        report.freedoms == 0 ? std::string("every freedom of the model is held: there are no modes")
+                             : format("{} modes were asked for, but the model has {} only",
+                                      options.count, modes.size()));
+  if (static_cast<int>(modes.size()) > options.count)
+    modes.resize(static_cast<std::size_t>(options.count));
+  report.modes = std::move(modes);
+  put_participation(system, m, report);
+  if (report.modes.empty()) return report;
+
+  double highest = 0.0;
+  for (const Mode& mode : report.modes) highest = std::max(highest, std::abs(mode.eigenvalue));
+  const double sigma = highest > 0.0 ? 0.1 * highest : 1.0;
+  if (m.factor_quadratic(sigma))
     for (Mode& mode : report.modes) {
-      mode.residual = residual_of(m, sigma, mode, std::abs(sigma));
+      mode.residual = residual_of(m, sigma, mode, 1e-4 * sigma * sigma);
       if (mode.residual > kResidual)
         report.warnings.push_back(format("the mode of {:.6g} Hz is accurate to {:.1g} only",
                                          mode.frequency, mode.residual));
@@ -397,19 +295,19 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   return report;
 }
 
-std::vector<double> node_shape(const System& system, const State& equilibrium, const Mode& mode) {
+std::vector<double> node_shape(const System& system, const State& equilibrium, const Vec& shape) {
   const Nodes& nodes = system.nodes();
   std::vector<double> d(3 * static_cast<std::size_t>(nodes.count()), 0.0);
   const int first = 6 * system.body_count();
   for (int i = 0; i < nodes.count(); ++i) {
     Eigen::Map<Vec3> at(d.data() + 3 * i);
     if (nodes[i].body >= 0) {
-      const Vec6 x = mode.shape.segment<6>(6 * nodes[i].body);
+      const Vec6 x = shape.segment<6>(6 * nodes[i].body);
       const Vec3 z = system.motion(equilibrium, nodes[i].body).q * nodes[i].Z;
       at = x.head<3>() + x.tail<3>().cross(z);
     }
     for (int c = 0; c < 3; ++c)
-      if (nodes.unknown(i, c) >= 0) at[c] = mode.shape[first + nodes.unknown(i, c)];
+      if (nodes.unknown(i, c) >= 0) at[c] = shape[first + nodes.unknown(i, c)];
   }
   return d;
 }

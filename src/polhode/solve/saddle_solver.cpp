@@ -120,6 +120,14 @@ std::vector<int> supports_of(const std::vector<Vec>& motions, const SaddleMatrix
   return unknowns;
 }
 
+std::string axis_text(Vec3 u) {
+  for (double& c : u)
+    if (std::abs(c) < kNoPart) c = 0.0;
+  Eigen::Index axis = 0;
+  if (u.cwiseAbs().maxCoeff(&axis) > 0.999) return std::string(1, "xyz"[axis]);
+  return format("({:.3g}, {:.3g}, {:.3g})", u[0], u[1], u[2]);
+}
+
 std::string describe_motion(const System& system, const SaddleMatrix& matrix, const Vec& x) {
   const double length = system.length_scale();
   double most = 0.0;
@@ -130,15 +138,8 @@ std::string describe_motion(const System& system, const SaddleMatrix& matrix, co
       const Vec3& d = turns ? theta : r;
       if (d.norm() <= 1.001 * most) continue;
       most = d.norm();
-      Vec3 u = d.normalized();
-      for (double& c : u)
-        if (std::abs(c) < kNoPart) c = 0.0;
-      Eigen::Index axis = 0;
-      const std::string along = u.cwiseAbs().maxCoeff(&axis) > 0.999
-                                    ? std::string(1, "xyz"[axis])
-                                    : format("({:.3g}, {:.3g}, {:.3g})", u[0], u[1], u[2]);
       text = format("body '{}' {} {}", system.bodies()[b].name,
-                    turns ? "turns about" : "moves along", along);
+                    turns ? "turns about" : "moves along", axis_text(d.normalized()));
     }
   }
   const Nodes& nodes = system.nodes();

@@ -40,6 +40,9 @@ class SaddleSolver {
 [[nodiscard]] std::vector<int> supports_of(const std::vector<Vec>& motions,
                                            const SaddleMatrix& matrix, double length);
 
+/// "x", or "(0.6, 0, 0.8)": a unit vector in words.
+[[nodiscard]] std::string axis_text(Vec3 u);
+
 /// What a free motion is, in words: "body 'crank' turns about z".
 [[nodiscard]] std::string describe_motion(const System& system, const SaddleMatrix& matrix,
                                           const Vec& x);

@@ -390,6 +390,20 @@ void StaticNewton::assemble_at(const State& state, double load_factor) {
   matrix_.make_hessian(moments_);
 }
 
+/// As in a step of dynamics at whose end the rate is Dv/Dx, without inertia. @eq{modes-damped}
+void StaticNewton::assemble_with_rates(double rate) {
+  trial_.context.ga.c = rate * trial_.context.dt;
+  const bool mixed = mixed_;
+  mixed_ = false;
+  nodes_.set_static(false, false);
+  start_scratch(work_);
+  assemble();
+  matrix_.make_hessian(moments_);
+  mixed_ = mixed;
+  nodes_.set_static(true, mixed_);
+  trial_.context.ga.c = 0.0;
+}
+
 std::string StaticNewton::node_text(int node) const {
   const Nodes& nodes = system_->nodes();
   for (int g = 0; g < nodes.group_count(); ++g)

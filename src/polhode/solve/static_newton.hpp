@@ -28,9 +28,10 @@ struct StaticStep {
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double residual = 0.0;           ///< Largest unbalanced force [N], moments over ℓ.
   double force = 0.0;              ///< Largest force it is compared with [N].
-  int unstable = -1;   ///< Directions in which the equilibrium is unstable; −1: not known.
-  std::string reason;  ///< If not converged: "diverges" ...
-  std::string worst;   ///< Largest increment or residual: "body 'forearm'".
+  int unstable = -1;     ///< Directions in which the equilibrium is unstable; −1: not known.
+  bool relaxed = false;  ///< Found by relaxation.
+  std::string reason;    ///< If not converged: "diverges" ...
+  std::string worst;     ///< Largest increment or residual: "body 'forearm'".
   std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
 };
 
@@ -51,9 +52,17 @@ class StaticNewton {
   /// (a predicted state), else from the state itself. On failure the state is left as it was.
   StaticStep solve(State& state, double load_factor, const State* start = nullptr);
 
+  /// The same by relaxation: the state creeps downhill in small steps, whatever is slack or gives
+  /// way, until Newton's method finds the equilibrium near. Derivation: @eq{statics-relaxation}
+  StaticStep relax(State& state, double load_factor);
+
   /// The tangent and residual at a state as it stands, all loads times the load factor.
   void assemble_at(const State& state, double load_factor);
+  /// After assemble_at(): the same with K + rate·C in the place of K, C what forces gain with
+  /// velocities, at rest [N s/m], and rate in 1/s.
+  void assemble_with_rates(double rate);
   [[nodiscard]] SaddleMatrix& matrix() { return matrix_; }  ///< Scaled by scale().
+  [[nodiscard]] const SaddleMatrix& tangent() const { return matrix_; }
   [[nodiscard]] double scale() const { return trial_.compliance_scale; }
   [[nodiscard]] const NewtonSystem& bodies() const { return newton_; }
   /// What holds bonded and prescribed nodes at the last equilibrium, three each [N].
@@ -74,6 +83,7 @@ class StaticNewton {
   [[nodiscard]] bool balanced_on_a_kink(StaticStep& step);
   [[nodiscard]] bool factor_and_solve(StaticStep& step);
   [[nodiscard]] bool factor(bool symmetric, StaticStep& step);
+  [[nodiscard]] std::vector<double> all_diagonal(double stiffness) const;
   void solve_refined();
   [[nodiscard]] bool make_symmetric();
   [[nodiscard]] bool nearly_singular() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/solve/plain_motions.hpp>
 #include <polhode/solve/static_newton.hpp>
 
 namespace polhode {
@@ -43,6 +44,7 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
       }
     matrix_.gather(forces_, -scale(), rhs_);
   }
+  if (matrix_.size() == 0) return true;  // every component of every node is prescribed
   if (!factor(make_symmetric(), step)) return false;
   solve_refined();
   return x_.allFinite();
@@ -114,9 +116,9 @@ bool StaticNewton::nearly_singular() const {
 
 std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
   std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMostSupported);
-  for (const Vec& motion : free) {
+  for (const PlainMotion& motion : plain_motions(*system_, work_, matrix_, free)) {
     if (static_cast<int>(step.free_motions.size()) == kMostFreeMotions) break;
-    const std::string text = describe_motion(*system_, matrix_, motion);
+    const std::string& text = motion.text;
     if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
         step.free_motions.end())
       step.free_motions.push_back(text);
@@ -127,7 +129,10 @@ std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
 /// Free motions that are left at the equilibrium, and directions in which it is unstable.
 void StaticNewton::count_unstable(StaticStep& step) {
   step.free_motions.clear();
-  if (matrix_.size() == 0) return;
+  if (matrix_.movable() == 0) {
+    step.unstable = 0;
+    return;
+  }
   start_scratch(work_);
   assemble_unmixed();
   const bool symmetric = make_symmetric();

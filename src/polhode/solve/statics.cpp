@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <optional>
 
 #include <polhode/base/format.hpp>
 #include <polhode/so3/quaternion.hpp>
 #include <polhode/solve/node_motion.hpp>
 #include <polhode/solve/start.hpp>
+#include <polhode/solve/static_branches.hpp>
 #include <polhode/solve/statics.hpp>
 
 namespace polhode {
@@ -20,11 +21,12 @@ constexpr int kEasy = 6, kHard = 12;
 constexpr double kCut = 0.25, kLeastIncrement = 1e-4;
 /// Load factors closer than this are the same.
 constexpr double kSame = 1e-12;
-/// Loads at which stability changes are found to this part of themselves, in so many searches.
-constexpr double kLocated = 1e-6;
-constexpr int kLocations = 40;
+/// A load step may have left its branch if it led farther than this many times the way that was
+/// expected, or was hard to find; shorter ways than the second number are not looked at [-].
+constexpr double kFar = 3.0, kNear = 0.02;
 /// Interactions of this kind are loads whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
+constexpr const char* kCableKind = "cable";
 
 void stop_moving(const System& system, State& state) {
   for (int b = 0; b < system.body_count(); ++b) {
@@ -47,6 +49,7 @@ struct LoadStepper::Impl {
   double factor_before = 0.0;
   double increment = 1.0;
   int equilibria = 0, unstable = -1;
+  bool relaxed = false;
 
   Impl(const System& s, const StaticOptions& o) : system(&s), options(o), newton(s, o) {}
 
@@ -80,41 +83,54 @@ struct LoadStepper::Impl {
     report.steps.push_back(std::move(step));
   }
 
-  /// Where the stability changes between two equilibria: by bisection, and by the stiffness that
-  /// vanishes there, on a straight line between the loads.
-  std::optional<LimitPoint> locate(State below, double low, const State& above, double high,
-                                   int after) {
-    LimitPoint point{high, after, {}};
-    const int first = unstable;
-    bool seen = false;                      // else the equilibrium above lies on another branch
-    StaticNewton finder(*system, options);  // what the other one holds is asked for later
-    finder.assemble_at(above, high);
-    SoftestMotion soft = finder.softest();
-    point.motion = soft.text;
-    double at_high = -std::abs(soft.stiffness), at_low = std::numeric_limits<double>::quiet_NaN();
-    State trial = above;
-    for (int i = 0; i < kLocations && high - low > kLocated * high; ++i) {
-      double part = at_low / (at_low - at_high);
-      if (!(part > 0.02 && part < 0.98) || i % 3 == 2) part = 0.5;
-      const double factor = low + part * (high - low);
-      trial = below;
-      const StaticStep step = finder.solve(trial, factor);
-      if (!step.converged || step.unstable < 0) break;
-      soft = finder.softest();
-      if (step.unstable == first) {
-        low = factor;
-        below = trial;
-        at_low = std::abs(soft.stiffness);
-      } else {
-        high = factor;
-        at_high = -std::abs(soft.stiffness);
-        seen = true;
-      }
-      if (!soft.text.empty()) point.motion = soft.text;
+  /// A load step that may have left its branch.
+  [[nodiscard]] bool suspicious(const State& old, const State& state, const StaticStep& step,
+                                double expected) const {
+    const double way = state_distance(*system, old, state);
+    return !step.relaxed && way > kNear && (step.iterations > kEasy || way > kFar * expected);
+  }
+
+  /// Reports what changed between the last equilibrium and this one: stability, or the branch.
+  void look_between(const State& old, double from, const State& state, const StaticStep& step,
+                    double expected) {
+    const LoadInterval interval{old, state, from, step.load_factor};
+    std::optional<LimitPoint> point;
+    if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
+      point = locate_stability_change(*system, options, interval, unstable, step.unstable);
+    if (!point && suspicious(old, state, step, expected)) {
+      point = locate_jump(*system, options, interval);
+      if (point) point->unstable = step.unstable;
     }
-    point.load_factor = 0.5 * (low + high);
-    if (!seen) return {};
-    return point;
+    if (point) report.limit_points.push_back(*point);
+  }
+
+  /// Cables of which pieces carry nothing and do not resist either.
+  [[nodiscard]] std::vector<std::string> slack_cables(const State& state) const {
+    std::map<std::string, std::pair<int, int>> pieces;  // slack ones, all
+    StepContext still;
+    still.t_n = state.t;
+    still.conserving = false;
+    for (const InteractionRef& ref : system->interactions()) {
+      const InteractionGroup& group = system->group(ref.group);
+      if (ref.rows > 0 || group.kind() != kCableKind) continue;
+      const BodyStep a = system->instant(state, ref.a), b = system->instant(state, ref.b);
+      const PairStep step{a, b, still, nullptr, state.history.data() + ref.first_history};
+      PairTerms terms;
+      terms.set_zero();
+      const int item = ref.item;
+      group.evaluate({&item, 1}, {&step, 1}, {&terms, 1});
+      auto& [slack, all] = pieces[system->name(ref)];
+      ++all;
+      if (terms.D_aa.isZero(0.0) && terms.D_bb.isZero(0.0)) ++slack;
+    }
+    std::vector<std::string> list;
+    for (const auto& [name, count] : pieces)
+      if (count.first > 0)
+        list.push_back(count.first == count.second
+                           ? format("cable '{}' is slack", name)
+                           : format("{} of {} pieces of cable '{}' are slack", count.first,
+                                    count.second, name));
+    return list;
   }
 
   bool advance(State& state, double limit) {
@@ -125,25 +141,37 @@ struct LoadStepper::Impl {
       StaticStep step;
       const bool predict = equilibria > 1 && from - factor_before > kSame;
       State old = state;
+      double expected = 0.0;
       if (predict) {
         const State start = secant(state, factor);
+        expected = state_distance(*system, state, start);
         step = newton.solve(state, factor, &start);
         if (!step.converged) take(step);
       }
-      if (!predict || !step.converged) step = newton.solve(state, factor);
+      if (!predict || !step.converged) {
+        step = newton.solve(state, factor);
+        if (!step.converged && !relaxed && !slack_cables(state).empty()) {
+          take(step);
+          relaxed = true;  // once: what is slack afterwards stays so
+          step = newton.relax(state, factor);
+          if (step.converged) ++report.relaxations;
+        }
+        if (!step.increments.empty()) expected = std::max(expected, step.increments.front());
+      }
       take(step);
       if (step.converged) {
-        if (equilibria == 0 && step.unstable > 0) {  // stable where nothing is loaded?
+        bool known = equilibria > 0;
+        if (!known && (step.unstable > 0 || suspicious(old, state, step, expected))) {
           State unloaded = old;
           const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
-          if (none.converged) {
+          known = none.converged;
+          if (known) {  // what is stable where nothing is loaded?
             unstable = none.unstable;
             old = unloaded;
           }
         }
-        if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
-          if (const auto point = locate(old, from, state, factor, step.unstable))
-            report.limit_points.push_back(*point);
+        if (known) look_between(old, from, state, step, expected);
+        report.slack = slack_cables(state);
         if (step.unstable >= 0) unstable = step.unstable;
         before = std::move(old);
         factor_before = from;
@@ -183,6 +211,10 @@ struct LoadStepper::Impl {
       for (std::size_t i = 0; i < step.free_motions.size(); ++i)
         s += (i > 0 ? "; " : "") + step.free_motions[i];
       s += ": hold it by a joint or a spring.";
+    } else if (relaxed) {
+      s += " Cables are slack: shorten their free_length, load them, or follow the motion with "
+           "type: "
+           "dynamics and damping.";
     } else if (equilibria > 0) {
       s += " It may be a limit point, where the model buckles";
       if (!soft.empty()) s += format("; least stiffness is met where {}", soft);
@@ -209,6 +241,7 @@ void LoadStepper::begin(State& state) {
   s.increment = s.options.load_steps > 0 ? 1.0 / s.options.load_steps : 1.0;
   s.equilibria = 0;
   s.unstable = -1;
+  s.relaxed = false;
 }
 
 bool LoadStepper::advance(State& state, double limit) { return impl_->advance(state, limit); }

@@ -13,8 +13,10 @@ namespace polhode {
 /// A load at which the stability of the equilibrium changes: a limit point or a branch.
 struct LimitPoint {
   double load_factor = 0.0;
-  int unstable = -1;   ///< Directions in which equilibria beyond it are unstable.
-  std::string motion;  ///< That meets no stiffness there, in words.
+  int unstable = -1;    ///< Directions in which equilibria beyond it are unstable; −1: not known.
+  std::string motion;   ///< That meets no stiffness there, in words.
+  bool jump = false;    ///< The equilibrium ends there: those beyond lie on another branch.
+  double distance = 0;  ///< How far that is: lengths of the model, or rad [-].
 };
 
 /// How a static analysis went.
@@ -27,7 +29,9 @@ struct StaticReport {
   int unstable = -1;  ///< Directions in which the equilibrium is unstable; −1: not known.
   std::vector<std::string> free_motions;  ///< That nothing in the model resists.
   std::vector<LimitPoint> limit_points;   ///< That were passed, by load factor.
-  std::string message;                    ///< If not converged: what happened, where, what to try.
+  std::vector<std::string> slack;         ///< Cables that carry nothing at the end.
+  int relaxations = 0;  ///< Equilibria that relaxation has found where Newton's method has not.
+  std::string message;  ///< If not converged: what happened, where, what to try.
 };
 
 /// Finds equilibria under growing loads: gravity, loads and prescribed displacements times a load
