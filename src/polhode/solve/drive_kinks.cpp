@@ -6,6 +6,13 @@
 
 namespace polhode {
 
+void DriveKinks::pass(State& state, LedgerKeeper& ledger) {
+  if (!find(state)) return;
+  const BodySums sums = ledger.sums(state);
+  settle(state);
+  ledger.add_driven_jump(state, sums);
+}
+
 bool DriveKinks::find(const State& state) {
   given_.clear();
   rows_.clear();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/solve/instant.hpp>
+#include <polhode/solve/ledger.hpp>
 
 namespace polhode {
 
@@ -16,13 +17,17 @@ class DriveKinks {
  public:
   explicit DriveKinks(const System& system) : system_(&system) {}
 
+  /// At the end of a step: makes velocities jump where drives have kinks, and adds what that puts
+  /// in to the ledger.
+  void pass(State& state, LedgerKeeper& ledger);
+
+ private:
   /// Compares the velocities of drives with those that they go on with.
   /// @returns whether one jumps.
   [[nodiscard]] bool find(const State& state);
   /// Makes the velocities of the state jump as found.
   void settle(State& state);
 
- private:
   const System* system_;
   std::unique_ptr<InstantSolver> solver_;  ///< From the first kink on.
   std::vector<double> given_;              ///< Jumps of nodes, three each [m/s]; may be empty.

@@ -89,4 +89,13 @@ void record_error(State& state, const StepError& error, int steps) {
   e.node = error.node;
 }
 
+void record_last_step(const System& system, State& state) {
+  if (const auto error = error_of_last_step(system, state)) record_error(state, *error);
+}
+
+void record_hard(State& state) {
+  StepErrors& e = state.ledger.errors;
+  if (e.hard++ == 0) e.hard_time = state.t;
+}
+
 }  // namespace polhode

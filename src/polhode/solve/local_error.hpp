@@ -21,4 +21,9 @@ struct StepError {
 /// Adds an estimate, that stands for so many steps, to the sums of the state's ledger.
 void record_error(State& state, const StepError& error, int steps = 1);
 
+/// Adds the error of the last step at order 2, if it is known.
+void record_last_step(const System& system, State& state);
+/// Newton's method only just converged in the last step.
+void record_hard(State& state);
+
 }  // namespace polhode

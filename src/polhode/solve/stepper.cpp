@@ -237,23 +237,18 @@ struct Stepper::Impl {
 
   /// Adds an estimate of the accepted step's error to the ledger. Of fixed steps of higher order
   /// some are taken again in two halves. @eq{step-error}
-  void record(State& state, double H, double verdict, const NewtonReport& newton) {
-    StepErrors& errors = state.ledger.errors;
-    if (newton.hard && errors.hard++ == 0) errors.hard_time = state.t;
-    if (!composed()) {
-      if (const auto error = error_of_last_step(system, state)) record_error(state, *error);
-    } else if (automatic()) {
-      record_error(state, {verdict, -1, -1});
-    } else if (state.ledger.steps % kSampled == 0) {
-      std::vector<double> halves;
-      for (int k = 0; k < 2; ++k)
-        for (const double stage : stages) halves.push_back(0.5 * stage);
-      companion_iterations = 0;
-      const auto difference = difference_of(halves, before, state, H, H);
-      state.ledger.iterations += companion_iterations;
-      const double part = 1.0 / (1.0 - std::pow(0.5, control.order));
-      if (difference) record_error(state, {part * *difference, -1, -1}, kSampled);
-    }
+  void record(State& state, double H, double verdict) {
+    if (!composed()) return record_last_step(system, state);
+    if (automatic()) return record_error(state, {verdict, -1, -1});
+    if (state.ledger.steps % kSampled != 0) return;
+    std::vector<double> halves = stages;
+    halves.insert(halves.end(), stages.begin(), stages.end());
+    for (double& stage : halves) stage *= 0.5;
+    companion_iterations = 0;
+    const auto difference = difference_of(halves, before, state, H, H);
+    state.ledger.iterations += companion_iterations;
+    if (difference)
+      record_error(state, {*difference / (1.0 - std::pow(0.5, control.order)), -1, -1}, kSampled);
   }
 
   std::int64_t companion_iterations = 0;
@@ -443,12 +438,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       // A step cut short by a limit does not make the next one short.
       const double kept = refused.count == 0 && verdict.factor >= 1.0 && !impact ? planned : 0.0;
       accept(state, H, verdict, report.newton.iterations, kept);
-      record(state, H, verdict.error, report.newton);
-      if (kinks.find(state)) {
-        const BodySums sums = single.ledger().sums(state);
-        kinks.settle(state);
-        single.ledger().add_driven_jump(state, sums);
-      }
+      if (report.newton.hard) record_hard(state);
+      record(state, H, verdict.error);
+      kinks.pass(state, single.ledger());
       if (stands_at(ahead, state.t)) pass_break(state, ahead);
       if (impact && automatic()) state.past_count = 0;
       ++state.ledger.steps;
