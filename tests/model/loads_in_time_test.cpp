@@ -106,6 +106,41 @@ TEST(LoadsInTime, NumericalDampingTakesNothingFromAnImpulse) {
     }
 }
 
+/// Loads on solids count like those on bodies: a free block is as fast as its impulse tells.
+TEST(LoadsInTime, PulsesOnSolidsGiveTheirWholeImpulse) {
+  const char* pulse = "\"t > 0.0317 && t < 0.0324 ? 300 : 0\"";
+  const std::string kinds[] = {
+      format("{{type: body_force, solid: block, acceleration: [{}, 0, 0]}}", pulse),
+      format("{{type: traction, solid: block, surface: xmax, traction: [{}, 0, 0]}}", pulse),
+      format("{{type: pressure, solid: block, surface: xmin, follower: false, pressure: {}}}",
+             pulse)};
+  const double impulses[] = {0.3 * 0.2 * 0.1 * 1000.0 * 300.0 * 7e-4, 0.2 * 0.1 * 300.0 * 7e-4,
+                             0.2 * 0.1 * 300.0 * 7e-4};
+  for (int k = 0; k < 3; ++k)
+    for (const bool fixed : {false, true}) {
+      Model m = read_model_text(format(R"(
+format: 1
+materials:
+  rubber: {{type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  block: {{mesh: {{block: {{size: [0.3, 0.2, 0.1], cells: [1, 1, 1]}}}}, element: hex8_eas9, material: rubber}}
+loads:
+  push: {}
+analysis: {{duration: 0.05 s}}
+)",
+                                       kinds[k]),
+                                "block.yaml");
+      if (fixed)
+        m.analysis.step = 0.01;
+      else
+        m.analysis.tolerance = 1e-3;
+      Simulation s(m);
+      const RunSummary r = s.run();
+      EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+      EXPECT_NEAR(s.balance().linear_momentum.x(), impulses[k], 1e-10 * impulses[k]) << k;
+    }
+}
+
 /// Straight lines between points: the force is continuous, and midpoints integrate it exactly.
 TEST(LoadsInTime, RampsOfTablesGiveTheirImpulse) {
   const Model model = pushed_ball("{table: [[1, 0], [1.01, 50], [1.03, 0], [4, 1], [5, 0]]}", 6.0);

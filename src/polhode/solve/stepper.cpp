@@ -343,7 +343,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
                                             Refused& refused) {
   Verdict v;
   companion_iterations = 0;
-  double power = 0.5, safety = kSafety;
+  double power = 0.5, safety = kSafety, longest = kMostFactor;
   const double allowed = allowed_error(from, H);
   std::optional<double> error;
   if (composed()) {
@@ -354,13 +354,17 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
     power = 1.0 / (control.order + 1.0);
     safety = kSafetyComposed;
   } else if (from.past_count < 2 && !fresh) {
-    return v;  // find_length() has tried these steps, or they are as short as the impact's
+    // find_length() has tried these steps, or they are as short as the impact's. Where bodies touch
+    // there is no estimate at all.
+    if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMostFactor);
+    return v;
   } else {
     if (!fresh) error = single.error_estimate();
     // The past may be noise, or say nothing: then the step is measured by itself.
     if (!system.contacts() && (fresh || (*error > allowed && refused.count > 0))) {
       const auto halves = error_by_halves(from, reached, H);
       error = halves && error ? std::min(*error, *halves) : halves;
+      longest = 1.0;  // the past would refuse a longer one
     }
     reached.error_last = kNoiseFades * from.error_last;
   }
@@ -368,9 +372,9 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   const bool shortest = H <= least_step();
   if (!error) return {.fine = shortest, .factor = shortest ? 1.0 : 0.5, .noise = shortest};
   v.error = *error;
-  v.factor = v.error > 0.0 ? std::clamp(safety * std::pow(allowed / v.error, power), kLeastFactor,
-                                        kMostFactor)
-                           : kMostFactor;
+  v.factor = longest;
+  if (v.error > 0.0)
+    v.factor = std::clamp(safety * std::pow(allowed / v.error, power), kLeastFactor, longest);
   v.fine = v.error <= allowed;
   if (v.fine) return v;
   const double most_noise = composed() ? kMostNoiseComposed : kMostNoise;
@@ -395,7 +399,7 @@ void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int i
   }
   const int per_stage = iterations / static_cast<int>(stages.size());
   state.easy_steps = per_stage <= kFewIterations ? state.easy_steps + 1 : 0;
-  if (H < *control.step && state.easy_steps >= kEasySteps) {
+  if (state.dt_next > 0.0 && H < *control.step && state.easy_steps >= kEasySteps) {
     state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));
     state.easy_steps = 0;
   }
