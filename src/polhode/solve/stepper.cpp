@@ -37,19 +37,17 @@ constexpr double kRoundOffComposed = 30.0;
 constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
 /// Noise that was found counts for the steps after it, less and less.
 constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
-/// What an impact may be off by in time, times the velocities that jump, as part of the tolerance.
-constexpr double kImpactError = 0.1;
-/// A step that holds an impact is shortened to this part at once at most.
-constexpr double kLeastImpactFactor = 0.02;
+/// What an impact may be off by in time, times the velocities that jump, as part of the tolerance;
+/// and the part to which a step that holds one is shortened at once at most.
+constexpr double kImpactError = 0.1, kLeastImpactFactor = 0.02;
 /// Highest derivatives of the motion whose jumps end steps.
 constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
 /// Independent samples of loads that a composed step takes, to be on the safe side.
 constexpr double kSamplesComposed = 3.0;
-/// Steps of the search for a first length, and what it may be lengthened by at once.
-constexpr int kProbes = 40;
+/// Steps of the search for a first length, and what it may be lengthened by at once. Of so many
+/// fixed steps of higher order one is measured.
+constexpr int kProbes = 40, kSampled = 64;
 constexpr double kWorthLonger = 3.0, kLonger = 10.0;
-/// Of so many fixed steps of higher order one is measured.
-constexpr int kSampled = 64;
 /// Steps in a row with few iterations after which a halved step grows again.
 constexpr int kEasySteps = 3, kFewIterations = 4;
 /// State::easy_steps of automatic steps: the length is to be found anew.
