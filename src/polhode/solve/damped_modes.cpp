@@ -24,6 +24,7 @@ constexpr double kShift = 0.3;
 /// energy is below the last number, as part of what it is the sum of.
 constexpr double kNearZero = 1e-4, kFree = 1e-13;
 constexpr int kIterations = 4;
+constexpr double kSlows = 1e-3;  ///< Part of a free motion that damping may take in that time.
 /// Freedoms without mass have eigenvalues of the inverse that are zero to rounding.
 constexpr double kNoMass = 1e-15;
 /// |λ| below this part of the shift is rounding.
@@ -86,8 +87,9 @@ Mat free_of(ModalMatrices& m, double sigma) {
       moves = clean(x) && clean(x) && x.allFinite();
     }
     if (!moves || std::abs(x.dot(m.stiffness_times(x))) > kFree * m.energy_scale(x)) break;
-    // Kinetic energy is one: damping that counts would take more than this of it in a time 1/σ.
-    if (m.damping_times(x).norm() > kZero * sigma * m.mass_times(x).norm()) break;
+    // What damping, or a gyroscopic moment, would make of it in a time 1/(kNearZero σ).
+    const Vec y = m.inverse(m.damping_times(x)).head(m.n());
+    if (std::sqrt(y.dot(m.mass_times(y))) * kNearZero * sigma > kSlows) break;
     V.conservativeResize(m.n(), V.cols() + 1);
     V.rightCols<1>() = x;
   }

@@ -287,7 +287,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   const double sigma = highest > 0.0 ? 0.1 * highest : 1.0;
   if (m.factor_quadratic(sigma))
     for (Mode& mode : report.modes) {
-      mode.residual = residual_of(m, sigma, mode, 1e-4 * sigma * sigma);
+      mode.residual = residual_of(m, sigma, mode, (mode.rigid ? 1.0 : 1e-4) * sigma * sigma);
       if (mode.residual > kResidual)
         report.warnings.push_back(format("the mode of {:.6g} Hz is accurate to {:.1g} only",
                                          mode.frequency, mode.residual));
