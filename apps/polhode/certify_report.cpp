@@ -56,6 +56,7 @@ Json run_json(const Certificate& c, const CertifiedRun& run) {
 Json quantity_json(const CertifiedQuantity& q) {
   const ConvergenceReport& r = q.report;
   const Eigen::Index last = q.series.values[2].rows() - 1;
+  const std::optional<double> unresolved = q.unresolved_at();
   Json times = Json::array(), bars = Json::array(), orders = Json::array();
   const std::size_t n = q.series.t.size();
   for (std::size_t k = 1; k <= std::min(kToldTimes, n); ++k) {
@@ -73,6 +74,7 @@ Json quantity_json(const CertifiedQuantity& q) {
           {"rounding_only", r.noise},
           {"converges", !r.lost_from.has_value()},
           {"lost_from", r.lost_from ? Json(*r.lost_from) : Json(nullptr)},
+          {"unresolved_at", unresolved ? Json(*unresolved) : Json(nullptr)},
           {"error_bar", r.largest_bar},
           {"own_error", r.largest_own},
           {"at_end",
@@ -243,13 +245,14 @@ std::string certificate_table(const Certificate& c) {
     const ConvergenceReport& r = q.report;
     const bool some = !r.lost_from || *r.lost_from > q.series.t.front();
     rows.push_back({format("{} [{}]", q.name(), q.unit),
-                    r.noise   ? "rounding"
-                    : r.order ? format("{:.2f}{}", *r.order, r.as_expected ? "" : " !")
-                              : "-",
+                    q.order_text() + (r.order && !r.as_expected ? " !" : ""),
                     some ? format("{:.1e}", r.largest_bar) : "none",
                     some ? format("{:.1e}", r.largest_own) : "none",
                     r.lost_from ? "-" : values_text(r.extrapolated, r.extrapolated.rows() - 1),
-                    r.lost_from ? format("does not converge from {:.4g} s on", *r.lost_from) : ""});
+                    r.lost_from ? format("does not converge from {:.4g} s on", *r.lost_from)
+                    : q.unresolved_at()
+                        ? format("bar as large as itself at {:.4g} s", *q.unresolved_at())
+                        : ""});
   }
   std::string orders;
   for (const double order : c.orders)

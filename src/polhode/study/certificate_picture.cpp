@@ -126,11 +126,7 @@ std::string order_panel(const Row& row, const std::vector<double>& orders) {
 
 std::string verdict(const CertifiedQuantity& q) {
   const ConvergenceReport& r = q.report;
-  std::string text;
-  if (r.noise)
-    text = "no order: differences are rounding";
-  else if (r.order)
-    text = format("order {:.2f}", *r.order);
+  std::string text = "order " + q.order_text();
   if (!r.lost_from || *r.lost_from > q.series.t.front())
     text += format(", error bar {:.2g} {}, of the model's own step {:.2g} {}", r.largest_bar,
                    q.unit, r.largest_own, q.unit);

@@ -30,6 +30,7 @@ constexpr double kNegligible = 1e-9;
 /// Differences above this part of what moves in a model, and not smaller with the step, are another
 /// motion.
 constexpr double kMatters = 0.05;
+constexpr double kLeastShown = 0.5;
 /// Columns that count or mark and are no measure of anything.
 constexpr std::array<const char*, 3> kMarks = {"points", "status", "slips"};
 
@@ -195,6 +196,26 @@ std::string CertifiedQuantity::name() const {
   std::string text = probe;
   for (const std::string& column : columns) text += " " + column;
   return text;
+}
+
+std::string CertifiedQuantity::order_text() const {
+  constexpr double kMostShown = 10.0;
+  if (report.noise) return "rounding";
+  if (!report.order) return "none";
+  if (*report.order < kLeastShown) return format("below {}", kLeastShown);
+  if (*report.order > kMostShown) return format("above {}", kMostShown);
+  return format("{:.2f}", *report.order);
+}
+
+std::optional<double> CertifiedQuantity::unresolved_at() const {
+  std::optional<double> at;
+  double most = std::max(scale, negligible);
+  for (std::size_t i = 0; i < series.t.size(); ++i)
+    if (std::isfinite(report.bar[i]) && report.bar[i] > most) {
+      most = report.bar[i];
+      at = series.t[i];
+    }
+  return at;
 }
 
 bool Certificate::finished() const {

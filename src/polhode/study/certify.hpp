@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct CertifiedQuantity {
   ConvergenceReport report;
 
   [[nodiscard]] std::string name() const;  ///< "tip x y z".
+  /// "2.01", "below 0.5" where differences do not fall, "rounding" where there is no more to see.
+  [[nodiscard]] std::string order_text() const;
+  /// The time at which the bar is as large as the quantity itself and larger than anywhere: about
+  /// an impact, whose instant the steps do not resolve. Nothing where it never is.
+  [[nodiscard]] std::optional<double> unresolved_at() const;
 };
 
 /// What three runs say of the error of a model's results.

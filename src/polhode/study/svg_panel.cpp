@@ -13,6 +13,7 @@ namespace {
 
 /// How far outside its field a curve may go before it is cut [pixel].
 constexpr double kMargin = 50.0;
+constexpr double kClose = 0.5;
 
 }  // namespace
 
@@ -92,13 +93,19 @@ double SvgPanel::py(double y) const {
 void SvgPanel::curve(const std::vector<double>& x, const std::vector<double>& y, const char* colour,
                      bool dashed) {
   std::string path;
+  double at_x = 0.0, at_y = 0.0;
   bool open = false;
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
     if (!std::isfinite(y[i])) {
       open = false;
       continue;
     }
-    path += format("{}{:.1f} {:.1f} ", open ? "L" : "M", px(x[i]), py(y[i]));
+    // Points closer than half a pixel add nothing.
+    const bool last = i + 1 == x.size() || i + 1 == y.size() || !std::isfinite(y[i + 1]);
+    if (open && !last && std::hypot(px(x[i]) - at_x, py(y[i]) - at_y) < kClose) continue;
+    at_x = px(x[i]);
+    at_y = py(y[i]);
+    path += format("{}{:.1f} {:.1f} ", open ? "L" : "M", at_x, at_y);
     open = true;
   }
   if (path.empty()) return;
