@@ -14,7 +14,7 @@ struct ModeOptions {
   double load_factor = 1.0;  ///< Of the equilibrium.
   /// By body: steady angular velocity in body axes, about which vibrations are looked for [rad/s].
   /// Empty: nothing turns.
-  std::vector<Vec3> spin;
+  std::vector<Vec3> spin = {};
 };
 
 /// What a motion exp(λt) does.

@@ -30,8 +30,7 @@ constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
 /// Round-off of an error estimate, for places at the origin and as part of how far others are:
 /// nothing below can be asked of a step.
 constexpr double kLeastError = 1e-15, kRoundOff = 2.2e-16;
-/// That of the higher orders, whose stages and companions add to it.
-constexpr double kRoundOffComposed = 30.0;
+constexpr double kRoundOffComposed = 30.0;  ///< At higher orders stages and companions add to it.
 /// A refused step's error falls with this power of its length at least, or it is noise; and noise
 /// is small.
 constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
