@@ -80,6 +80,7 @@ analysis: {{duration: 3 s}}
                 mass, mass / 12.0);
 }
 
+/// @tests{step-halves}
 TEST(AutomaticSteps, FollowALightPoleOnACart) {
   const auto angle = [](double mass, int order, double tolerance) {
     Simulation s(with(cart_pole(mass), order, tolerance));

@@ -45,7 +45,9 @@ TEST(DampedModes, OfAnOscillatorHaveItsDampingRatio) {
     ASSERT_EQ(r.modes.size(), 1u) << zeta;
     EXPECT_EQ(r.modes[0].kind, ModeKind::oscillation);
     EXPECT_NEAR(r.modes[0].frequency, 10.0 / std::numbers::pi, 1e-9);
-    if (zeta > 1e-6) EXPECT_NEAR(r.modes[0].damping, zeta, 1e-9);
+    if (zeta > 1e-6) {
+      EXPECT_NEAR(r.modes[0].damping, zeta, 1e-9);
+    }
     EXPECT_NEAR(r.modes[0].eigenvalue.imag(), 20.0 * std::sqrt(1.0 - zeta * zeta), 1e-6);
     EXPECT_THAT(r.warnings.at(0), HasSubstr("2 modes were asked for, but the model has 1 only"));
   }

@@ -77,7 +77,9 @@ TEST(Flutter, BecksColumnSwingsAsItsEquationSaysAndIsStableAtHalfTheLoad) {
     EXPECT_EQ(r.modes[0].damping, 0.0);
     EXPECT_NEAR(r.modes[0].frequency, first, 1e-3 * first) << P;
     EXPECT_LT(r.modes[0].residual, 1e-6);
-    if (P == 10.0) EXPECT_NEAR(r.modes[0].frequency, 0.824, 1e-3);
+    if (P == 10.0) {
+      EXPECT_NEAR(r.modes[0].frequency, 0.824, 1e-3);
+    }
   }
 }
 
