@@ -31,7 +31,7 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "loads: the type 'torque' is not known. Use one of: force, moment, "
-                 "spring_damper, torsional_spring.");
+                 "spring_damper, torsional_spring, rotary_motor, linear_motor.");
   }
 }
 

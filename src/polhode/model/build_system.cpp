@@ -159,6 +159,11 @@ class Builder {
                        format("'{}' is not free as {} {} in '{}' ({})", load.coordinate,
                               turns ? "an" : "a", what, joint.name, joint.type),
                        names.empty() ? "Name another joint" : "Free are: " + name_list(names));
+    if (load.drive.empty())
+      throw InputError(
+          where + ".joint",
+          format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
+          "Use a joint with one free rotation, such as revolute or cylindrical");
     throw InputError(where + ".joint",
                      format("'{}' is {}, which has not one free {}", joint.name, joint.type, what),
                      turns ? "Use a joint with one free rotation, such as revolute or cylindrical, "

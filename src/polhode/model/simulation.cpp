@@ -108,7 +108,8 @@ RunSummary Simulation::summary() const {
   r.angular_momentum_drift = drifts.angular_momentum;
   r.constraint_residual_max = l.constraint_max;
   if (l.errors.steps > 0 && !s.statics)
-    r.errors = {l.errors.largest, l.errors.sum, l.errors.time, s.whose_error(), l.errors.steps};
+    r.errors = {l.errors.largest, l.errors.sum, l.errors.time, s.whose_error(),
+                std::min(l.errors.steps, l.steps)};
   r.phases = {{"start", s.start_seconds}};
   for (const auto& phase : s.stepper->phases()) r.phases.push_back(phase);
   r.phases.emplace_back("output", s.output_seconds);

@@ -4,8 +4,6 @@
 #include <limits>
 #include <numeric>
 
-#include <Eigen/LU>
-
 #include <polhode/base/error.hpp>
 #include <polhode/solve/crowd_engine.hpp>
 #include <polhode/solve/lanes/dispatch.hpp>
@@ -26,6 +24,8 @@ constexpr int kRings = 2;
 /// flips between sticking and sliding: half of it takes nearly all.
 constexpr double kDecrease = 0.25;
 constexpr double kRoundOff = 4.4e-16;
+/// In shorter steps less residual is left, in proportion [s].
+constexpr double kWholeStep = 1e-3;
 /// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
 constexpr double kPartOfSpeed = 1e-3;
 
@@ -57,10 +57,8 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
   rhs_.resize(n);
   sizes_.resize(n);
   far_.resize(n);
-  for (const BodyData& body : system.bodies()) {
+  for (const BodyData& body : system.bodies())
     per_mass_.push_back({1.0 / body.mass, 3.0 / body.inertia.trace()});
-    inverse_inertia_.emplace_back(body.inertia.inverse());
-  }
   x_.resize(n);
   start_.resize(n);
 }
@@ -202,7 +200,9 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
     if (!(size * per.moved <= worst)) worst = size * per.moved, worst_body_ = b;
   }
   residual_ = std::sqrt(worst) / weight_;
-  enough_ = std::max(tolerance_, kRoundOff * noise / weight_);  // no residual can be smaller
+  // Residuals push in every step: the shorter the steps, the more of them.
+  const double asked = tolerance_ * std::min(1.0, std::abs(context.dt) / kWholeStep);
+  enough_ = std::max(asked, kRoundOff * noise / weight_);  // no residual can be smaller
   evaluated_ = true;
 }
 
@@ -282,22 +282,6 @@ double CrowdEngine::stored(const State& state) const {
 
 Work CrowdEngine::commit(State& state, const Trial& trial) {
   return contacts_->commit(state, steps_, trial.context);
-}
-
-/// @eq{crowd-momentum}
-void CrowdEngine::take_up_residual(State& state, const Trial& trial) const {
-  const double time = trial.context.dt / trial.context.ga.kappa;
-  for (int b = 0; b < system_->body_count(); ++b) {
-    const Vec3 dv = time * per_mass_[b].moved * rhs_[b].head<3>();
-    const Vec3 dW =
-        time * inverse_inertia_[b] * (steps_[b].Lambda_n1.transpose() * rhs_[b].tail<3>());
-    const int slot = system_->slot(b), lane = slot % kLanes;
-    BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
-    for (int i = 0; i < 3; ++i) {
-      block.v[i][lane] += dv[i];
-      block.W[i][lane] += dW[i];
-    }
-  }
 }
 
 }  // namespace polhode

@@ -18,7 +18,8 @@ namespace polhode {
 /// they touch, are moved from then on.
 class CrowdEngine final : public NewtonEngine {
  public:
-  /// Residual that counts as solved, as part of a body's weight. With friction or restitution below
+  /// Residual that counts as solved, as part of a body's weight; in steps below 1 ms less in
+  /// proportion, for momentum's sake. With friction or restitution below
   /// one it only shifts when energy is lost; with neither it is what energy is lost or gained by.
   static constexpr double kResidual = 1e-6;
 
@@ -35,7 +36,6 @@ class CrowdEngine final : public NewtonEngine {
   void end_step(const State& state, Trial& trial) override;
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
-  void take_up_residual(State& state, const Trial& trial) const override;
   [[nodiscard]] MovingContacts* contacts() const override { return contacts_; }
 
   /// Iterations of conjugate gradients so far.
@@ -70,9 +70,8 @@ class CrowdEngine final : public NewtonEngine {
     double moved, turned;  ///< One over the mass, and one over the mean moment of inertia.
   };
   std::vector<PerMass> per_mass_;
-  std::vector<Mat3> inverse_inertia_;  ///< By body, body axes [1/(kg m²)].
-  std::vector<double> far_;            ///< By body, its largest coordinate at t_n [m].
-  std::vector<double> sizes_;          ///< By body, of its residual [N² / kg].
+  std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].
+  std::vector<double> sizes_;  ///< By body, of its residual [N² / kg].
   std::span<const ActingPoint> acting_;
   std::vector<int> moving_;  ///< Bodies that the iteration moves, ascending.
   std::vector<char> moves_;  ///< The same by body; the ground last.

@@ -144,7 +144,6 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   kernels_->commit(state.blocks.data(), mass_.data(), trial_.blocks.data(),
                    static_cast<int>(state.blocks.size()), &method, state.past_next);
   commit_nodes(*system_, state, trial_);
-  engine_->take_up_residual(state, trial_);
   renew_stored_rates(state, ga, dt);
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;

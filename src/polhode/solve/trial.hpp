@@ -93,9 +93,6 @@ class NewtonEngine {
   [[nodiscard]] virtual double stored(const State& /*state*/) const { return 0.0; }
   /// The step is accepted, the state still at t_n: histories and work of such forces.
   virtual Work commit(State& /*state*/, const Trial& /*trial*/) { return {}; }
-  /// The state has moved to t_{n+1}: gives its velocities the impulses of what residual is left, so
-  /// that momenta are exact whatever the tolerance.
-  virtual void take_up_residual(State& /*state*/, const Trial& /*trial*/) const {}
   /// Contacts that it solves, whose impacts are to be settled when the state has moved to t_{n+1}.
   [[nodiscard]] virtual MovingContacts* contacts() const { return nullptr; }
   /// Called after convergence: makes trial.lambda complete.
