@@ -198,6 +198,26 @@ def spatial_slider_crank():
     return figure
 
 
+def crank_rocker():
+    m = Motion("crank_rocker", "output.every=5 ms")
+    figure, scene, plot = sheet(flat=True, wide=0.95)
+    B, C = m.path("crank_arm", (0.05, 0, 0)), m.path("rocker_arm", (0.125, 0, 0))
+    scene.plot(B[:, 0], B[:, 2], color=PALE)
+    scene.plot(C[:, 0], C[:, 2], color=GOLD, lw=2)
+    for k, alpha in fades(frames(m, 0.55, 1.05, 9)):
+        scene.plot([0, B[k, 0]], [0, B[k, 2]], "-", color=RED, alpha=alpha, lw=2.5)
+        scene.plot([B[k, 0], C[k, 0]], [B[k, 2], C[k, 2]], "-o", color=INK, alpha=alpha, ms=3, lw=1.5)
+        scene.plot([C[k, 0], 0.4], [C[k, 2], 0], "-", color=BLUE, alpha=alpha, lw=2)
+    scene.plot([0, 0.4], [0, 0], "o", color=INK, ms=6)
+    label(scene, "one turn of the crank at full speed", "x [m]", "z [m]")
+    motor = m.probe("motor")
+    plot.plot(motor["t"], -np.array(motor["my"]), color=RED, label="moment of the motor [N m]")
+    plot.plot(motor["t"], np.array(motor["rate"]) / 10, color=BLUE, label="its speed [10 rad/s]")
+    plot.legend(frameon=False)
+    label(plot, "half a second to full speed")
+    return figure
+
+
 def n_four_bar():
     m = Motion("n_four_bar")
     figure, scene, plot = sheet(flat=True, wide=1.5)
@@ -452,7 +472,7 @@ def save(figure, path, dpi=110, trim="tight"):
     print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1000:.0f} KB")
 
 
-EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, n_four_bar, andrews_squeezer, bricard,
+EXAMPLES = (tumbling_body, heavy_top, double_pendulum, spatial_slider_crank, crank_rocker, n_four_bar, andrews_squeezer, bricard,
             flyball_governor, gyroscope, door_on_two_hinges, beam_roll_up, flexible_four_bar)
 
 CONTACT = ("bouncing_ball", "incline", "newtons_cradle", "tippe_top", "rattleback", "stack", "card_house", "rolling_coin",

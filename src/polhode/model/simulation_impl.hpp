@@ -65,8 +65,8 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
-  /// Largest |G v| at output times over the magnitudes of its terms [-], and when [s].
-  double velocity_part = 0.0, velocity_part_time = 0.0;
+  /// Largest |G v| at output times and when [s], and the largest magnitudes of its terms.
+  double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
   /// Smallest of surfaces of solids after any step [m].
   double surface_gap = std::numeric_limits<double>::quiet_NaN();
   /// A solid's report at the instant, and the largest error of its stress.
@@ -310,11 +310,11 @@ struct Simulation::Impl {
                  "mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter steps, "
                  "or give a tolerance",
                  whose.empty() ? "a body" : whose, e.largest, e.time));
-    if (velocity_part > kFarOff)
+    if (velocity_residual > kFarOff * velocity_scale)
       list.push_back(
-          format("velocities are far from those that the joints allow, by {:.2g} of the speeds "
-                 "there, at t = {:.6g} s. Take shorter steps, or rho_inf below 1",
-                 velocity_part, velocity_part_time));
+          format("velocities are far from those that the joints allow, by {:.2g} of the largest "
+                 "speeds, at t = {:.6g} s. Take shorter steps, or rho_inf below 1",
+                 velocity_residual / velocity_scale, velocity_time));
     if (e.hard > 0)
       list.push_back(
           format("Newton's method only just converged in {} of {} steps, first in that "
@@ -392,9 +392,10 @@ struct Simulation::Impl {
     const VelocityReport v = instant_solver->project_velocities(projected);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
-    if (v.residual_before > velocity_part * v.scale) {
-      velocity_part = v.residual_before / v.scale;
-      velocity_part_time = state.t;
+    velocity_scale = std::max(velocity_scale, v.scale);
+    if (v.residual_before > velocity_residual) {
+      velocity_residual = v.residual_before;
+      velocity_time = state.t;
     }
     instant = instant_solver->accelerations(projected, contacts.wrenches());
     instant_step = state.ledger.steps;
