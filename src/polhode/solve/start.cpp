@@ -69,12 +69,14 @@ double short_time(const System& system, const State& state, const Rates& now) {
   return fastest > 0.0 ? kLittle / fastest : kLittle;
 }
 
-/// Rates of the accelerations by a central difference over t ± Δt.
+/// Rates of the accelerations by a central difference over t ± Δt; over t and t + Δt where drives
+/// begin, which may have a kink there.
 Rates jerks(const System& system, InstantSolver& solver, const State& state, const Rates& now,
             double dt) {
   Rates plus = rates(system, solver, taylor(system, state, now, dt));
-  const Rates minus = rates(system, solver, taylor(system, state, now, -dt));
-  const double per_time = 0.5 / dt;
+  const bool begins = !system.drives().empty() || !system.nodes().prescribed().empty();
+  const Rates minus = begins ? now : rates(system, solver, taylor(system, state, now, -dt));
+  const double per_time = (begins ? 1.0 : 0.5) / dt;
   for (int b = 0; b < system.body_count(); ++b) {
     plus.a[b] = per_time * (plus.a[b] - minus.a[b]);
     plus.A[b] = per_time * (plus.A[b] - minus.A[b]);
