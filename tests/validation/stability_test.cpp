@@ -180,5 +180,34 @@ TEST(Stability, TheModesOfAStringBeginWithItsTone) {
   }
 }
 
+// Lee, Manuel and Rossow (1968): two hinged legs, loaded a fifth from the corner. The section is
+// wide, so that nothing leaves the plane. Limit load by tools/references/lee_frame.py.
+constexpr const char* kLee = R"(
+format: 1
+variables: {k: 4}
+materials: {m: {type: elastic, youngs_modulus: 7.2 GPa, poisson_ratio: 0.3, density: 2700}}
+sections:
+  s: {type: rectangle, height: 0.02, width: 0.3, material: m}
+beams:
+  frame: {points: [[0, 0, 0], [0, 0, 1.2], [1.2, 0, 1.2]], elements: 10*k, section: s, up: [-1, 0, 1]}
+joints:
+  foot: {type: revolute, bodies: [ground, frame.start], at: [0, 0, 0], axis: y}
+  end: {type: revolute, bodies: [ground, frame.end], at: [1.2, 0, 1.2], axis: y}
+loads: {p: {type: force, body: frame.24, force: [0, 0, -20000]}}
+analysis: {type: statics}
+output: {hdf5: false}
+)";
+
+TEST(Stability, OfLeesFrameIsLostAtItsLimitLoadWhateverTheMesh) {
+  for (const int k : {2, 4, 8}) {
+    const StaticReport r = statics_of(
+        kLee, {"variables.k=" + std::to_string(k), "loads.p.body=frame." + std::to_string(6 * k)});
+    ASSERT_EQ(r.limit_points.size(), 1u) << k;
+    EXPECT_NEAR(20000.0 * r.limit_points[0].load_factor, 18544.76,
+                (k == 2 ? 2e-4 : 1e-5) * 18544.76)
+        << k;
+  }
+}
+
 }  // namespace
 }  // namespace polhode
