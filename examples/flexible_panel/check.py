@@ -46,11 +46,13 @@ def main():
 
     # Clamped: between a beam, free to contract across, and a wide plate; and 1 % for the mesh.
     out = polhode("modes", HERE / "model.yaml", "-o", run.folder, "--json", "-n", "1", "--set",
-                  "bodies.hub.angular_velocity=[0, 0, 0]", "--set", "bodies.hub.hold=[x, y, z, rx, ry, rz]")
+                  "bodies.hub.angular_velocity=[0, 0, 0]", "--set", "bodies.hub.hold=[x, y, z, rx, ry, rz]",
+                  # With the model's own 0.6 s the lowest eigenvalues are those of creep, at -1/(0.6 s).
+                  "--set", "materials.laminate.viscosity.relaxation_time=1 us")
     beam = 1.8751040687**2 / (2 * math.pi * LENGTH**2) * math.sqrt(YOUNG * THICKNESS**2 / (12 * DENSITY))
     wide = 0.5 / math.sqrt(1 - POISSON**2) - 0.5
-    report.near("first frequency of the clamped panel, of a beam's", json.loads(out)["modes"][0]["frequency"] / beam,
-                1 + wide, wide + 0.01)
+    natural = math.sqrt(json.loads(out)["modes"][0]["omega_squared"]) / (2 * math.pi)  # without the damping
+    report.near("first natural frequency of the clamped panel, of a beam's", natural / beam, 1 + wide, wide + 0.01)
     report.end()
 
 
