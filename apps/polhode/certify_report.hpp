@@ -11,7 +11,7 @@
 
 namespace polhode::cli {
 
-/// What `certify` and `run --certify` are asked for beside the model.
+/// Options of `certify` and `run --certify` beside the model.
 struct CertifyRequest {
   std::string folder;                ///< Where certificate.svg, certificate.json and tables go.
   std::optional<double> within;      ///< Largest bar that will do, over the quantity's size [-].

@@ -22,7 +22,7 @@ namespace polhode::cli {
 [[nodiscard]] std::string statics_table(const RunSummary& summary);
 [[nodiscard]] std::string summary_table(const RunSummary& summary);
 
-/// Where the results of a run of this model come from. @throws FileError
+/// Provenance of the results of a run of this model. @throws FileError
 [[nodiscard]] Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);
 
 /// "1 body", "3 bodies".

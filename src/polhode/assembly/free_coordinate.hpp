@@ -21,7 +21,7 @@ struct FreeAngle {
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b, double near) const;
   /// dφ/dt at t_{n+1} [rad/s].
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;
-  /// What the rotations of the bodies' velocities add to d²φ/dt² beside ∂φ·(α_b − α_a) [rad/s²].
+  /// Part of d²φ/dt² that the bodies' velocities give, beside ∂φ·(α_b − α_a) [rad/s²].
   [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
 
@@ -51,11 +51,11 @@ struct FreeDisplacement {
 
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b) const;       ///< [m]
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;  ///< [m/s]
-  /// What the bodies' velocities add to d²s/dt² beside ∂s·(accelerations) [m/s²].
+  /// Part of d²s/dt² that the bodies' velocities give, beside ∂s·(accelerations) [m/s²].
   [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
 
-/// What a force along a displacement has to know of it over the step: quadratic, so that its
+/// A displacement over the step, as a force along it needs it: quadratic, so that its
 /// gradient at averaged positions does exactly the work F Δs at α_f = ½.
 struct DisplacementStep {
   double at_n = 0.0, at_n1 = 0.0;  ///< [m]

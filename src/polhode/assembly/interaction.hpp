@@ -80,7 +80,7 @@ struct Impact {
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass [m].
 };
 
-/// What rows that follow functions of time c(t) ask for: g = q − c, G v = ċ. Zero for others.
+/// Demands of rows that follow functions of time c(t): g = q − c, G v = ċ. Zero for others.
 /// @eq{drive-row}
 struct PrescribedRows {
   Vec6 increment = Vec6::Zero();  ///< c_{n+1} − c_n.

@@ -42,7 +42,7 @@ struct Ledger {
   std::array<ExactSum, 3> impulse, angular_impulse;         ///< Of loads and ground [N s, N m s].
   double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;  ///< Largest magnitudes reached.
   double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;  ///< Largest absolute drifts.
-  /// What rounding can do to energy [J], and the sums of its squares for the momenta.
+  /// Noise of rounding in energy [J], and the sums of its squares for the momenta.
   double energy_noise = 0.0, p_noise = 0.0, l_noise = 0.0;
   double constraint_max = 0.0;  ///< Largest residual [m or -].
   StepErrors errors;
@@ -78,9 +78,9 @@ struct State {
       past_time{};          ///< Middles of the remembered steps [s], by ring position.
   double dt_last = 0.0;     ///< Length of the last accepted step [s].
   double dt_next = 0.0;     ///< What the step control wants next [s].
-  double error_last = 0.0;  ///< Error estimate of the last step [-].
+  double error_last = 0.0;  ///< Error estimate of the last step, or what noise leaves [-].
   double turned = 0.0;      ///< Most a body can have turned since turns were counted [rad].
-  int easy_steps = 0;       ///< Steps in a row that needed few iterations.
+  int easy_steps = 0;  ///< Steps in a row that needed few iterations; -1: find the length anew.
   Ledger ledger;
 
   [[nodiscard]] BodyMotion motion(int slot) const;

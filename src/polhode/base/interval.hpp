@@ -58,7 +58,7 @@ struct Interval {
   return {x.contains(0.0) ? 0.0 : std::min(std::abs(x.lo), std::abs(x.hi)), x.size()};
 }
 
-/// Of a function that grows everywhere.
+/// Image under a function that grows everywhere.
 template <class Function>
 [[nodiscard]] Interval growing(const Function& f, const Interval& x) {
   return widened(f(x.lo), f(x.hi));

@@ -47,7 +47,7 @@ class CloudFit {
 /// The patches of elements of a mesh by which values are taken to its nodes.
 class StressPatches {
  public:
-  /// Whether the mesh has only cells that are recovered by patches: hex20, hex27, tet4, tet10.
+  /// True if the mesh has only cells that are recovered by patches: hex20, hex27, tet4, tet10.
   [[nodiscard]] static bool suit(const Mesh& mesh);
   /// @param mesh  Outlives this; suits.
   explicit StressPatches(const Mesh& mesh);

@@ -59,9 +59,9 @@ class Expression {
   /// differentiation. Conditions are those of that side.
   [[nodiscard]] TimeRates rates(double t, TimeSide side) const;
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
-  /// Where a condition, abs, sign, floor, min, max or atan2 goes over from one branch to another,
-  /// as TimeFunction::next_break: found by interval arithmetic, so that none is missed, however
-  /// short. Points at which two parts touch without one taking over are none.
+  /// The next time at which a condition, abs, sign, floor, min, max or atan2 goes over from one
+  /// branch to another, as TimeFunction::next_break: found by interval arithmetic, so that none is
+  /// missed, however short. Points at which two parts touch without one taking over are none.
   [[nodiscard]] TimeBreak next_break(double t, double until) const;
   /// As TimeFunction::bounds, by interval arithmetic on value, slope and second derivative; not
   /// finite where an operation in [from, to] is not.

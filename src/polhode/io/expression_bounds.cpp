@@ -92,7 +92,7 @@ Interval equal(const Jet& y, const Jet& x) {
   return {0.0, 1.0};
 }
 
-/// Of a value that counts as true unless it is zero.
+/// Truth of a value: it counts as true unless it is zero.
 Interval truth(const Jet& x) {
   if (!x.v.contains(0.0)) return 1.0;
   return x.v.is_number() ? Interval(0.0) : Interval(0.0, 1.0);

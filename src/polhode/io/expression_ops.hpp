@@ -92,7 +92,7 @@ inline constexpr std::array kExpressionFunctions = {
     ExpressionFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
 };
 
-/// How many values an operation takes from the stack.
+/// Number of values that an operation takes from the stack.
 [[nodiscard]] constexpr int operands(ExpressionOp op) {
   using Op = ExpressionOp;
   switch (op) {

@@ -125,8 +125,8 @@ class ExpressionParser {
     whole.type = known(reading.unit->dimension);
   }
 
-  /// What to write where an expression has a dimension before the unit behind it: a unit counts for
-  /// the whole, so that of `tilt - 90 deg` is not that of 90 alone.
+  /// The text to write where an expression has a dimension before the unit behind it: a unit counts
+  /// for the whole, so that of `tilt - 90 deg` is not that of 90 alone.
   [[nodiscard]] std::string instead_of_unit(const Unit& unit, std::string_view written) const {
     const std::size_t end = text_.find_last_not_of(' ', at_ - 1);
     const std::size_t before =

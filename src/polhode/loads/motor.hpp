@@ -15,7 +15,7 @@ namespace polhode {
 /// step by Gauss's rule. @eq{drive-row} @eq{drive-work}
 class Motor : public InteractionItem {
  public:
-  /// What its function of time is.
+  /// Meaning of its function of time.
   enum class Drive { position, speed, effort };
 
   /// @param load  Its angle or displacement, function and drive.

@@ -81,7 +81,7 @@ struct RunSummary {
     std::optional<std::pair<double, std::int64_t>> sweeps;
   };
   std::optional<Contacts> contacts;
-  /// How well the mesh of a solid shows its stress, seen at output times since the start or
+  /// Quality of a solid's stress on its mesh, seen at output times since the start or
   /// restart: √(error energy / largest energy so far) of NodalFields [-].
   struct SolidStress {
     std::string solid;

@@ -264,7 +264,7 @@ struct Simulation::Impl {
     return solid_watches[static_cast<std::size_t>(solid)];
   }
 
-  /// What steps could not reach, and what watch_stretches() has seen.
+  /// Findings of steps and of watch_stretches() that deserve a look.
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> list = stepper->warnings();
     for (const auto& [g, least] : least_stretches) {

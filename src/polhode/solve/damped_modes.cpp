@@ -34,8 +34,8 @@ constexpr double kReal = 1e-12;
 constexpr double kArnoldi = 1e-12;
 constexpr int kMostFree = 60;
 
-/// Where eigenvalues are looked for: a real number above zero, so that matrices stay real and free
-/// motions do no harm.
+/// Shift about which eigenvalues are looked for: a real number above zero, so that matrices stay
+/// real and free motions do no harm.
 double shift_of(ModalMatrices& m, int wanted) {
   const double range = range_of(m, wanted);
   return kShift * std::sqrt(range > 0.0 && std::isfinite(range) ? range : 1.0);

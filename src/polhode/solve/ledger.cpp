@@ -12,7 +12,7 @@ namespace {
 
 /// Rounding of a sum of numbers, as a part of them.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
-/// What rounding can do reads as a drift of at most this.
+/// Largest drift that rounding alone reads as.
 constexpr double kReadsAs = 1e-10;
 
 std::vector<int> with_work(const System& system) {

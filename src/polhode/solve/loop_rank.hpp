@@ -13,7 +13,7 @@ struct BodyRows {
   Mat G;                    ///< Rows by 6·bodies.
 };
 
-/// What elimination finds of rows that loops tie together.
+/// Findings of elimination about rows that loops tie together.
 struct LoopRank {
   int rank = 0;
   std::vector<char> dependent;  ///< By row, one block after the other: it is part of a redundancy.

@@ -38,7 +38,7 @@ class ModalMatrices {
   [[nodiscard]] std::vector<int> counted() const;
   /// Forces depend on velocities.
   [[nodiscard]] bool damped() const { return damped_; }
-  /// Of the stiffness, before its symmetric part is taken.
+  /// Asymmetry of the stiffness, before its symmetric part is taken.
   [[nodiscard]] double asymmetry() const { return asymmetry_; }
 
   /// Factors the symmetric part of s (K − σ M) with its constraints. @returns false if it is

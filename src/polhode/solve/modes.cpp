@@ -29,7 +29,7 @@ double hermitian(const ModalMatrices& m, const CVec& x) {
   return re.dot(m.mass_times(re)) + im.dot(m.mass_times(im));
 }
 
-/// How far a mode is from what an inverse iteration makes of it, after factor_quadratic(σ):
+/// Distance of a mode from what an inverse iteration makes of it, after factor_quadratic(σ):
 /// φ − (K + σC + σ²M)⁻¹ [(σ − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
 double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smallest) {
   const Complex lambda = mode.eigenvalue;
@@ -49,7 +49,7 @@ double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smal
   return size * (square + sigma * sigma) / std::max(square, smallest);
 }
 
-/// What an eigenvalue means.
+/// Meaning of an eigenvalue.
 ModeKind kind_of(Complex lambda) {
   const double size = std::abs(lambda);
   if (size == 0.0) return ModeKind::free;

@@ -17,7 +17,7 @@ struct ModeOptions {
   std::vector<Vec3> spin = {};
 };
 
-/// What a motion exp(λt) does.
+/// Behaviour of a motion exp(λt).
 enum class ModeKind {
   oscillation,  ///< Of constant or decaying amplitude.
   flutter,      ///< An oscillation that grows.
@@ -41,7 +41,7 @@ struct Mode {
   Vec shape_imag;  ///< A quarter of a period later, with the other sign; empty: zero.
   Vec3 participation = Vec3::Zero();  ///< φᵀM e for translation along x, y, z, its size [√kg].
   Vec3 effective_mass = Vec3::Zero();  ///< Its square, as part of the mass that moves [-].
-  /// How far an inverse iteration moves it, in the metric of M, times (σ² + |λ|²)/|λ|² [-].
+  /// Distance that an inverse iteration moves it, in the metric of M, times (σ² + |λ|²)/|λ|² [-].
   double residual = 0.0;
 };
 

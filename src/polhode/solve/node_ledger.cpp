@@ -58,7 +58,7 @@ double NodeLedger::stored(const State& state) const {
   return potential;
 }
 
-/// What the mean velocity of prescribed components is beyond their mean over the step: their
+/// Excess of the mean of prescribed velocities over the mean velocity of the step: their
 /// inertia has taken the work of the one, the increments have that of the other.
 /// @eq{prescribed-work}
 void NodeLedger::add_lag(Ledger& ledger, const State& state, const Trial& trial,

@@ -16,8 +16,8 @@ struct LoadInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Where the stability changes between two equilibria: by bisection, and by the stiffness that
-/// vanishes there, on a straight line between the loads.
+/// The load at which stability changes between two equilibria: by bisection, and by the stiffness
+/// that vanishes there, on a straight line between the loads.
 /// @param first, after  Directions in which the one below and the one above are unstable.
 /// @returns nothing if the equilibrium above lies on another branch.
 [[nodiscard]] std::optional<LimitPoint> locate_stability_change(const System& system,
@@ -25,8 +25,8 @@ struct LoadInterval {
                                                                 LoadInterval interval, int first,
                                                                 int after);
 
-/// Where equilibria that hang together with the one below end: by bisection, following those from
-/// below as far as there are any. @eq{statics-jump}
+/// The end of the equilibria that hang together with the one below: by bisection, following those
+/// from below as far as there are any. @eq{statics-jump}
 /// @returns nothing if the two hang together: the way between them gets shorter with the interval.
 [[nodiscard]] std::optional<LimitPoint> locate_jump(const System& system,
                                                     const StaticOptions& options,

@@ -13,7 +13,7 @@ constexpr int kMostSteps = 2000;
 /// Every step is to move something by this part of the model's size; none moves anything by more
 /// than the second part of it, or turns it by more [-].
 constexpr double kMove = 0.02, kMostMove = 0.1;
-/// What the resistance may change by from one step to the next.
+/// Change of the resistance allowed from one step to the next.
 constexpr double kEase = 0.5, kBrake = 1.5;
 /// Newton's method is tried when steps are below this part of the size, and every so many steps.
 constexpr double kSmall = 1e-3;

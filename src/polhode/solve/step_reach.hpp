@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// How far the estimated errors of automatic steps stayed within what was asked for.
+/// Distance of the estimated errors of automatic steps from what was asked for.
 class StepReach {
  public:
   /// An accepted step. @param noise  It was accepted as no shorter one errs by less.

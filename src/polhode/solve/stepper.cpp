@@ -20,7 +20,7 @@ namespace {
 
 /// Two times closer than this part of a step are the same.
 constexpr double kSameTime = 1e-9;
-/// What is left of a fixed step, as part of it, that the next one takes along.
+/// Rest of a fixed step, as part of it, that the next one takes along.
 constexpr double kLeftOver = 1e-6;
 /// How much longer a step may be if it ends at a wanted time then [-].
 constexpr double kStretch = 1e-3;
@@ -36,7 +36,7 @@ constexpr double kRoundOffComposed = 30.0;  ///< At higher orders stages and com
 constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
 /// Noise that was found counts for the steps after it, less and less.
 constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
-/// What an impact may be off by in time, times the velocities that jump, as part of the tolerance;
+/// Error of an impact allowed in time, times the velocities that jump, as part of the tolerance;
 /// and the part to which a step that holds one is shortened at once at most.
 constexpr double kImpactError = 0.1, kLeastImpactFactor = 0.02;
 /// Highest derivatives of the motion whose jumps end steps.
@@ -152,13 +152,13 @@ struct Stepper::Impl {
     return breaks.next(automatic() ? state.t : state.t + kSameTime * *control.step);
   }
   [[nodiscard]] bool looks_at_end() const { return ga.alpha_f > kLooksAtEnd; }
-  /// Where the step before a break ends: a method that looks at the end of a step must not see
+  /// End of the step before a break: a method that looks at the end of a step must not see
   /// what comes after it.
   [[nodiscard]] double landing(const TimeBreak& at) const {
     return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
   }
 
-  /// What lies behind says nothing of what comes: after a jump of accelerations or velocities.
+  /// A start without a past: after a jump of accelerations or velocities.
   void begin_anew(State& state) const {
     state.past_count = 0;
     state.error_last = 0.0;
@@ -280,7 +280,7 @@ struct Stepper::Impl {
     single.ledger().forget();
   }
 
-  /// What no step can give less than, as was found: State::error_last keeps it at order 2, and
+  /// The least error that a step can have, as was found: State::error_last keeps it at order 2, and
   /// where it is above the tolerance at the others, which else keep their last estimate there.
   [[nodiscard]] double noise(const State& state) const {
     return !composed() || state.error_last > control.tolerance ? state.error_last : 0.0;
@@ -296,7 +296,7 @@ struct Stepper::Impl {
     return std::max({least_error, asked_error(dt), kNoiseAllowed * noise(state)});
   }
 
-  /// What an estimate says of a step that converged.
+  /// Verdict of an estimate on a step that converged.
   struct Verdict {
     bool fine = true;
     double factor = 1.0;  ///< Of the length, for the next one or another trial.

@@ -49,7 +49,7 @@ class Stepper {
   StepReport advance(State& state, double t_limit);
   [[nodiscard]] const NewtonEngine& engine() const;
   [[nodiscard]] Balance balance(const State& state) const;
-  /// What automatic steps could not reach, in plain words.
+  /// Goals that automatic steps could not reach, in plain words.
   [[nodiscard]] std::vector<std::string> warnings() const;
   /// Seconds spent in phases since construction.
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;

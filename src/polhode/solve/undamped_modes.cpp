@@ -32,7 +32,7 @@ constexpr double kMayBeFree = 1e-7, kFreeEnergy = 1e-13;
 /// Or if ω² is below this part of the range: of motions that meet no stiffness of any kind.
 constexpr double kNothing = 1e-20;
 
-/// What Spectra wants of (K − σM)⁻¹ and of M. Modes that are known are kept out.
+/// The operations (K − σM)⁻¹ and M as Spectra wants them. Modes that are known are kept out.
 struct InverseOperator {
   using Scalar = double;
   ModalMatrices* matrices;
@@ -132,7 +132,7 @@ void lanczos(ModalMatrices& m, double sigma, int count, Pairs& pairs) {
   pairs.sort();
 }
 
-/// Where to count: the middle of the widest gap between eigenvalues from `count` on.
+/// The place to count: the middle of the widest gap between eigenvalues from `count` on.
 struct Gap {
   int below = 0;  ///< Eigenvalues found below.
   double shift = 0.0;

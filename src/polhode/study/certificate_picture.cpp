@@ -49,7 +49,7 @@ std::vector<double> logarithms(const std::vector<double>& values) {
   return logs;
 }
 
-/// Where a quantity stands and what its panels share.
+/// Place of a quantity, and what its panels share.
 struct Row {
   const CertifiedQuantity& q;
   double y, duration;

@@ -135,7 +135,7 @@ void add_probes(Model& model, std::vector<std::string>& notes) {
                       : "The model has no probes: its moving bodies are compared.");
 }
 
-/// Whether motions jump or slide, which lowers the order in time to one.
+/// True of motions that jump or slide, which lowers the order in time to one.
 bool has_impacts(const Simulation& simulation) {
   const std::vector<JointSpec>& joints = simulation.model().joints;
   return simulation.has_contacts() || std::any_of(joints.begin(), joints.end(), [](const auto& j) {
@@ -143,7 +143,7 @@ bool has_impacts(const Simulation& simulation) {
          });
 }
 
-/// What counts as large in each unit, by the model's size, weight and time.
+/// Large values in each unit, by the model's size, weight and time.
 std::map<std::string, double> model_scales(const Simulation& simulation, double duration) {
   double mass = 0.0;
   for (const BodySpec& body : simulation.model().bodies) mass += body.fixed ? 0.0 : body.mass;

@@ -38,7 +38,7 @@ struct CertifiedQuantity {
   [[nodiscard]] std::optional<double> unresolved_at() const;
 };
 
-/// What three runs say of the error of a model's results.
+/// Error of a model's results as three runs show it.
 struct Certificate {
   std::string title;
   bool automatic = false;      ///< Tolerances were refined, not a step.
@@ -54,7 +54,7 @@ struct Certificate {
   [[nodiscard]] bool converges() const;
 };
 
-/// What a caller of certify() may look at while it runs.
+/// Observers of certify() while it runs.
 struct CertifyHooks {
   /// Before each run (0: coarse, 2: fine), at its start.
   std::function<void(int run, Simulation&)> begin{};

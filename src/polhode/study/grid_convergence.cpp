@@ -58,7 +58,7 @@ std::size_t samples_of(double part, std::size_t n) {
       1, static_cast<std::size_t>(std::lround(part * static_cast<double>(n))));
 }
 
-/// What an observed order makes of a difference.
+/// Error that an observed order makes of a difference.
 struct Trust {
   double order = 0.0, safety = 0.0;
   bool expected = false;
@@ -92,7 +92,7 @@ std::size_t first_lost(const std::vector<char>& lost, std::size_t least) {
   return first;
 }
 
-/// Of the first entries that are numbers.
+/// Norm of the first entries that are numbers.
 std::optional<double> median(const std::vector<double>& list, std::size_t count) {
   std::vector<double> numbers;
   for (std::size_t i = 0; i < count; ++i)

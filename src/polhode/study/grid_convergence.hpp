@@ -16,7 +16,7 @@ struct RefinedSeries {
                               ///< is a value that does not exist, such as the gap of far bodies.
 };
 
-/// What is known of the runs beforehand.
+/// Facts of the runs that are known beforehand.
 struct RefinementRule {
   std::array<double, 3> h{};   ///< Lengths of a step, or their means, of the three runs [s].
   std::vector<double> orders;  ///< Orders that the method may show: 2, or 1 and 2 with impacts.
@@ -32,7 +32,7 @@ struct RefinementRule {
   double safety_far = 3.0;     ///< Factor of the bar elsewhere [-].
 };
 
-/// What three runs say of the error of the finest, and from when on they say nothing.
+/// Error of the finest of three runs as they show it, and the time from which on they show nothing.
 struct ConvergenceReport {
   std::optional<double> order;      ///< Observed: median over the time that converges [-].
   bool as_expected = false;         ///< It is one of RefinementRule::orders.

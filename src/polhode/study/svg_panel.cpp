@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// How far outside its field a curve may go before it is cut [pixel].
+/// Distance outside its field at which a curve is cut [pixel].
 constexpr double kMargin = 50.0;
 constexpr double kClose = 0.5;
 
