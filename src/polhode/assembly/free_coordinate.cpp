@@ -180,7 +180,6 @@ DisplacementStep displacement_step(const FreeDisplacement& displacement, const B
   const double af = a.alpha_f;
   const Vec3 y_alpha = (1.0 - af) * u_n + af * u_n1 + z_a.at_alpha, y_n1 = u_n1 + z_a.at_n1;
   DisplacementStep s;
-  s.at_n = d.at_n.dot(u_n);
   s.at_n1 = d.at_n1.dot(u_n1);
   s.mu_a << -d.at_alpha, -y_alpha.cross(d.at_alpha);
   s.mu_b << d.at_alpha, z_b.at_alpha.cross(d.at_alpha);

@@ -58,10 +58,10 @@ struct FreeDisplacement {
 /// A displacement over the step, as a force along it needs it: quadratic, so that its
 /// gradient at averaged positions does exactly the work F Δs at α_f = ½.
 struct DisplacementStep {
-  double at_n = 0.0, at_n1 = 0.0;  ///< [m]
-  Vec6 mu_a, mu_b;                 ///< Gradient at t_{n+αf}, by (r, θ) of a, of b.
-  Vec6 at_n1_a, at_n1_b;           ///< At t_{n+1}.
-  Mat6 D_aa, D_ab, D_ba, D_bb;     ///< D_ij: of mu_i by the increment of j.
+  double at_n1 = 0.0;           ///< At t_{n+1} [m].
+  Vec6 mu_a, mu_b;              ///< Gradient at t_{n+αf}, by (r, θ) of a, of b.
+  Vec6 at_n1_a, at_n1_b;        ///< At t_{n+1}.
+  Mat6 D_aa, D_ab, D_ba, D_bb;  ///< D_ij: of mu_i by the increment of j.
 };
 
 /// The displacement over a step with its tangents. @eq{joint-plane}

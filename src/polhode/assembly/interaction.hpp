@@ -123,7 +123,7 @@ struct InteractionItem {
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {}; }
   /// Which derivative of the motion these functions are: 0 a position, 1 a speed, 2 a force.
   [[nodiscard]] int time_order() const { return 2; }
-  /// Some of its rows follow functions of time: prescribed() is asked.
+  /// True if some of its rows follow functions of time, which prescribed() gives.
   [[nodiscard]] bool prescribes() const { return false; }
   void prescribed(const PairStep&, TimeSide, PrescribedRows& /*rows*/) const {}
   /// γ in G q̈ + γ = 0 at an instant, one value per row.

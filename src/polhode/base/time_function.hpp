@@ -16,7 +16,7 @@ struct TimeRates {
   double rate = 0.0;    ///< [1/s]
   double second = 0.0;  ///< [1/s²]
 
-  /// The same function that much later (Taylor).
+  /// Value and derivatives at a time later by dt, from the Taylor polynomial.
   [[nodiscard]] TimeRates moved(double dt) const {
     return {value + dt * rate, rate + dt * second, second};
   }

@@ -17,8 +17,8 @@ namespace {
 constexpr double kLeastVariance = 0.05;
 /// Spread of points below which they lie in a plane, of the largest.
 constexpr double kFlat = 1e-6;
-/// Sine of the angle beyond which a face of the boundary does not continue another one: a circle
-/// of ten elements is still round.
+/// Sine of the angle beyond which a face of the boundary does not continue another one: faces
+/// of a circle of ten elements do.
 constexpr double kNewDirection = 0.6;
 /// Points from which on a complete polynomial is of third order: three for each of its terms.
 constexpr std::size_t kPointsForCubes = 60;

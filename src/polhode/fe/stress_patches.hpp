@@ -18,8 +18,8 @@ using RecoveredValues = Eigen::Matrix<double, Eigen::Dynamic, kRecovered, Eigen:
 /// third order, or all products of up to second powers along three directions.
 ///
 /// Coordinates count from the points' mean along their principal axes, or the directions, in units
-/// of their spread; what the points do not determine is left out. So the fit does not depend on
-/// axes and units, and flat clouds of points do no harm. @eq{stress-patch}
+/// of their spread; coefficients that the points do not determine are zero. The fit is independent
+/// of axes and units, also for flat clouds of points. @eq{stress-patch}
 class CloudFit {
  public:
   using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, kRecovered>;

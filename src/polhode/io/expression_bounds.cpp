@@ -299,8 +299,8 @@ Jet run(const Program& program, const Interval& t, Branches& branches) {
   return stack.back();
 }
 
-/// Search of a span of time by halves, the earlier one first. The halves are those of one span,
-/// whatever part of it is asked for.
+/// Search of a span of time by halves, the earlier one first. The halves are those of the whole
+/// span, also in a search of a part of it.
 template <class Program>
 class BreakSearch {
  public:
