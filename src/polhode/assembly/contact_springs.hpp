@@ -9,12 +9,14 @@
 namespace polhode {
 
 /// How the force at a point that a and b share changes as they move: as if by a spring C between
-/// the points of both bodies there. What else the tangent has is left out, so that the matrix is
-/// symmetric and has no negative eigenvalue.
+/// the points of both bodies there, symmetric and without negative eigenvalue, and by the friction
+/// that follows the normal force where the point slides. The rest of the tangent is left out.
 struct ContactSpring {
   int a = kGround, b = kGround;
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass, world [m].
   Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
+  /// Force on a by the displacement of a against b along the normal: rub (normal·u) [N/m].
+  Vec3 rub = Vec3::Zero(), normal = Vec3::Zero();
 };
 
 /// A point that acts.

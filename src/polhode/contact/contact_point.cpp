@@ -147,7 +147,12 @@ class Evaluation {
     f.arm_a = value(c_ - r_a_);
     f.arm_b = value(c_ - r_b_);
     const Vec3 n = value(n_);
-    f.C = std::max(0.0, stiffness_) * n * n.transpose() + friction_C_;
+    const double k = std::max(0.0, stiffness_);
+    f.C = k * n * n.transpose() + friction_C_;
+    f.normal = n;
+    f.slide = slide_;
+    f.lag = lag_;
+    if (lag_ > 0.0) f.rub = (k * rub_) * slide_.normalized();
     return f;
   }
 
@@ -311,7 +316,7 @@ class Evaluation {
       const V3<T> s_0 = start(data_.history.bristle, spin, cone);
       const V3<T> middle = s_0 + (0.5 + f.damping / (f.stiffness * context_.dt)) * u_T;
       const V3<T> F = -f.stiffness * cone.nearest(middle);
-      if constexpr (std::is_same_v<T, double>) friction_C_ = friction_spring(f, middle, F);
+      if constexpr (std::is_same_v<T, double>) set_friction_spring(f, middle, F, normal_force);
       w.force = w.force + F;
       w.moment_a = w.moment_a + cross(c_ - r_a_, F);
       w.moment_b = w.moment_b - cross(c_ - r_b_, F);
@@ -362,15 +367,19 @@ class Evaluation {
   }
 
   /// k_T (½ + c_T/(k_T Δt)) in the tangent plane; sliding, less of it, and none along the force.
-  [[nodiscard]] Mat3 friction_spring(const FrictionLaw& f, const V3<T>& middle,
-                                     const V3<T>& F) const {
+  void set_friction_spring(const FrictionLaw& f, const V3<T>& middle, const V3<T>& F,
+                           double normal_force) {
     const Vec3 n = value(n_), s = value(middle);
     const double k = f.stiffness * (0.5 + f.damping / (f.stiffness * context_.dt));
-    Mat3 C = Mat3::Identity() - n * n.transpose();
+    friction_C_ = Mat3::Identity() - n * n.transpose();
     const double length = s.norm(), part = value(F).norm() / std::max(f.stiffness * length, 1e-300);
-    if (length == 0.0 || !(part < 1.0 - 1e-12)) return k * C;
-    C -= s * s.transpose() / (length * length);
-    return (k * part) * C;
+    const bool sticks = length == 0.0 || !(part < 1.0 - 1e-12);
+    friction_C_ *= sticks ? k : k * part;
+    if (sticks) return;
+    slide_ = s;
+    lag_ = k * part;
+    friction_C_ -= lag_ * s * s.transpose() / (length * length);
+    if (normal_force > 0.0) rub_ = share_ * friction_slope(data_, normal_force);
   }
 
   static void bristle_work(double k, const Vec3& F, const Vec3& u, const Vec3& before,
@@ -423,6 +432,8 @@ class Evaluation {
   T change_{}, lambda_{}, share_{1.0};
   double stiffness_ = 0.0;
   Mat3 friction_C_ = Mat3::Zero();
+  Vec3 slide_ = Vec3::Zero();
+  double lag_ = 0.0, rub_ = 0.0;  ///< Of a point that slides, as in PointForce.
   V3<T> c_, n_, u_, N_, point_N_, r_a_, r_b_, couple_;
 };
 

@@ -104,6 +104,12 @@ template <class T>
   return (s.mu + s.held / full) * normal_force;
 }
 
+/// Its derivative by that force [-].
+[[nodiscard]] inline double friction_slope(const PointData& data, double normal_force) {
+  const double more = 1e-6 * normal_force;  // proportional but for a bend far away
+  return (friction_limit(data, normal_force + more) - friction_limit(data, normal_force)) / more;
+}
+
 /// What happened at a contact point over a step.
 struct PointReport {
   double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
@@ -131,6 +137,10 @@ struct PointForce {
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< About the centres of mass [N m].
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();        ///< From there to the point [m].
   Mat3 C = Mat3::Zero();  ///< Symmetric stiffness between the points of a and b there [N/m].
+  Vec3 normal = Vec3::Zero();
+  Vec3 slide = Vec3::Zero();  ///< Stretch of a bristle that slides [m]; zero of one that sticks.
+  Vec3 rub = Vec3::Zero();    ///< Its force on a by the displacement along the normal [N/m].
+  double lag = 0.0;           ///< Force over stretch of it, which C has not along the slide [N/m].
 };
 
 /// The point's force, the same as that of add_contact(), and the spring that its tangent is like.

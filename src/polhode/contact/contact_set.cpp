@@ -298,6 +298,7 @@ bool ContactSet::begin_step(const State& state, std::span<const BodyStep> steps,
   for (Point& p : points_)
     if (p.law_dt != longest_step_) complete_law(p, longest_step_);
   open_or_close(steps, context);
+  slides_.clear();
   tightest_ = -1;
   return !std::equal(
       before.begin(), before.end(), pairs_.begin(), pairs_.end(),
@@ -366,45 +367,6 @@ double ContactSet::least_gap_at_end(const Point& p, const BodyStep& a, const Bod
 double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) const {
   const Point& p = points_[point];
   return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
-}
-
-std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const BodyStep> steps,
-                                                            const StepContext& context,
-                                                            std::span<const char> moved) {
-  const bool all = moved.empty() || renewed_;
-  renewed_ = false;
-  std::swap(acting_, acting_before_);
-  acting_.clear();
-  pointwise_ = true;
-  double least = std::numeric_limits<double>::infinity();
-  auto before = acting_before_.begin();
-  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    const ApproachOfBalls& balls = balls_[i];
-    if (!all && !moved[balls.a] && !moved[balls.b]) {
-      while (before != acting_before_.end() && before->point < i) ++before;
-      if (before != acting_before_.end() && before->point == i) acting_.push_back(*before);
-      continue;
-    }
-    const BodyStep &a = steps[balls.a], &b = steps[balls.b];
-    double gap_1 = 0.0;
-    if (balls.holds) {  // most are only near: nothing but what lies side by side is read for them
-      gap_1 = balls.gap_n1(a, b);
-      if (balls.gap_n >= balls.reach && gap_1 >= balls.reach) continue;
-    } else {
-      if (least_gap_at_end(points_[i], a, b) >= points_[i].data.normal.reach()) continue;
-      gap_1 = gap_at_end(i, a, b);
-    }
-    if (!acts(i, gap_1, least)) continue;
-    const Point& p = points_[i];
-    const PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
-                                 : point_force(p.data, a, b, context);
-    acting_.push_back({i,
-                       {shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C},
-                       f.force,
-                       f.moment_a,
-                       f.moment_b});
-  }
-  return acting_;
 }
 
 Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {

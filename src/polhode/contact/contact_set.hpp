@@ -156,6 +156,12 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double impact_loss = 0.0;    ///< In impulses, along the normal [J].
     double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
+  /// How a point slid at the last iterate.
+  struct Slide {
+    Vec3 stretch = Vec3::Zero();  ///< Of its bristle [m]; zero: it stuck.
+    double share = 0.0;           ///< Of the lagged stiffness that it got.
+    bool known = false;           ///< There was an iterate in this step.
+  };
   /// Where a body was when candidates were found, and how far it may go from there.
   struct Reference {
     Vec3 r = Vec3::Zero();
@@ -163,6 +169,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double margin = -1.0;
   };
 
+  static void damp_slide(Slide& before, PointForce& force);
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
   [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
@@ -233,6 +240,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   std::vector<Point> points_;
   std::vector<ApproachOfBalls> balls_;               ///< By point.
   std::vector<ActingPoint> acting_, acting_before_;  ///< When forces were asked for last.
+  std::vector<Slide> slides_;                        ///< By point.
   bool renewed_ = true;                              ///< Points are others since then.
   std::vector<Participants> pairs_;
   std::vector<int> settling_;  ///< Points of the impacts that were listed last.

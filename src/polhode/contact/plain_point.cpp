@@ -146,7 +146,13 @@ PointForce plain_force(const PointData& data, double gap_n, double gap_n1, const
     const double k_T = f.stiffness * factor * part;
     out.C = (k - k_T) * n * n.transpose();
     out.C.diagonal().array() += k_T;
-    if (slides) out.C -= (k_T / square) * middle * middle.transpose();
+    if (slides) {
+      out.C -= (k_T / square) * middle * middle.transpose();
+      out.normal = n;
+      out.slide = middle;
+      out.lag = k_T;
+      out.rub = (k * friction_slope(data, normal_force) / std::sqrt(square)) * middle;
+    }
     if (report) {
       report->friction_force = F;
       const Vec3 after = value(in_disc(v3(s_0 + u_T), radius));

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include <polhode/base/time_jet.hpp>
 #include <polhode/io/expression_ops.hpp>
-#include <polhode/io/time_jet.hpp>
 
 namespace polhode {
 

@@ -30,6 +30,12 @@ Vec6 times(const double* rows, const double* lambda, int count) {
   return w;
 }
 
+[[noreturn]] void refuse_both(const std::string& joint) {
+  throw InputError(format("joints.{}.motion", joint),
+                   "a joint whose frame moves has neither friction nor limits",
+                   "Let a body without friction and limits carry the motion, and join it to that");
+}
+
 constexpr const char* kAxisName[3] = {"x", "y", "z"};
 constexpr const char* kRotationName[3] = {"rx", "ry", "rz"};
 
@@ -78,12 +84,11 @@ auto Joint::with_view(const PairStep& step, What&& what) const {
   return what(view);
 }
 
-void Joint::evaluate(const PairStep& step, PairTerms& t) const {
+void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration& q_n1) const {
   const BodyStep &a = step.a, &b = step.b;
   const Carried z_a = a.vector(frames_.Z_a), z_b = b.vector(frames_.Z_b);
   const double af = a.alpha_f;
   const Vec3 u_n = (b.r_n - a.r_n) + (z_b.at_n - z_a.at_n);
-  Configuration q_alpha, q_n1;
   q_n1.u = (b.r_n1 - a.r_n1) + (z_b.at_n1 - z_a.at_n1);
   q_n1.z_a = z_a.at_n1;
   q_n1.z_b = z_b.at_n1;
@@ -100,13 +105,20 @@ void Joint::evaluate(const PairStep& step, PairTerms& t) const {
     q_alpha.R_b = R_b.at_alpha;
     q_n1.R_b = R_b.at_n1;
   }
+}
+
+void Joint::evaluate(const PairStep& step, PairTerms& t) const {
+  Configuration q_alpha, q_n1, moved;
+  arrange(step, q_alpha, q_n1);
+  if (motion_) moved = move_frame(*motion_, frames_, step, q_alpha, q_n1);
+  const Configuration& turned = motion_ ? moved : q_n1;
   const PairRows G{t.G_a.data(), t.G_b.data()}, B{t.B_a.data(), t.B_b.data()};
   parts_.for_each([&](const auto& part, int row) {
     part.residual(q_n1, t.g.data() + row);
     part.gradient(q_alpha, row, B);
     if (!step.context.tangents) return;
     part.gradient(q_n1, row, G);
-    part.add_wrench_tangent(q_alpha, q_n1, af, step.lambda + row, t);
+    part.add_wrench_tangent(q_alpha, turned, step.a.alpha_f, step.lambda + row, t);
   });
   t.wrench_a = times(B.a, step.lambda, rows_);
   t.wrench_b = times(B.b, step.lambda, rows_);
@@ -121,7 +133,16 @@ void Joint::set_resistance(const JointResistance& data) {
     throw InputError(
         format("joints.{}", name), format("{} joints have neither friction nor limits", type_),
         "Use a revolute, prismatic, cylindrical, spherical or universal joint, or leave them out");
+  if (data.any() && motion_) refuse_both(name);
   resistance_ = data.any() ? std::make_shared<const Resistance>(*kind, data) : nullptr;
+}
+
+void Joint::set_motion(const FrameMotion& motion) {
+  if (parts_.distance)
+    throw InputError(format("joints.{}.motion", name), "a distance has no frame that could move",
+                     "Prescribe the motion of a spherical joint, or leave it out");
+  if (resistance_) refuse_both(name);
+  motion_ = std::make_shared<const FrameMotion>(motion);
 }
 
 ResistanceReport Joint::resistance_report(const PairStep& step) const {
@@ -150,21 +171,104 @@ double Joint::reach() const {
 Configuration Joint::at_n1(const PairStep& step) const {
   const BodyStep &a = step.a, &b = step.b;
   const Vec3 z_a = a.Lambda_n1 * frames_.Z_a, z_b = b.Lambda_n1 * frames_.Z_b;
-  return {.u = (b.r_n1 - a.r_n1) + (z_b - z_a),
-          .z_a = z_a,
-          .z_b = z_b,
-          .R_a = a.Lambda_n1 * frames_.R_a,
-          .R_b = b.Lambda_n1 * frames_.R_b};
+  Configuration q{.u = (b.r_n1 - a.r_n1) + (z_b - z_a),
+                  .z_a = z_a,
+                  .z_b = z_b,
+                  .R_a = a.Lambda_n1 * frames_.R_a,
+                  .R_b = b.Lambda_n1 * frames_.R_b};
+  if (motion_) {
+    Configuration unused = q;
+    move_frame(*motion_, frames_, step, unused, q);
+  }
+  return q;
+}
+
+Vec6 Joint::velocity_terms(const PairStep& step, const FrameRates& frame) const {
+  const Configuration q = at_n1(step);
+  SideRates w{.omega_a = step.a.Lambda_n1 * step.a.W_n1 + frame.omega,
+              .omega_b = step.b.Lambda_n1 * step.b.W_n1,
+              .u_dot = Vec3::Zero()};
+  w.u_dot = step.b.v_n1 + w.omega_b.cross(q.z_b) - step.a.v_n1 - frame.v - w.omega_a.cross(q.z_a);
+  Vec6 gamma = Vec6::Zero();
+  parts_.for_each(
+      [&](const auto& part, int row) { part.acceleration_terms(q, w, gamma.data() + row); });
+  return gamma;
 }
 
 void Joint::acceleration_terms(const PairStep& step, Vec6& gamma) const {
-  const Configuration q = at_n1(step);
-  SideRates w{.omega_a = step.a.Lambda_n1 * step.a.W_n1,
-              .omega_b = step.b.Lambda_n1 * step.b.W_n1,
-              .u_dot = Vec3::Zero()};
-  w.u_dot = step.b.v_n1 + w.omega_b.cross(q.z_b) - step.a.v_n1 - w.omega_a.cross(q.z_a);
-  parts_.for_each(
-      [&](const auto& part, int row) { part.acceleration_terms(q, w, gamma.data() + row); });
+  const Vec6 all =
+      motion_ ? acceleration_terms(step, TimeSide::kAfter) : velocity_terms(step, FrameRates{});
+  gamma.head(rows_) = all.head(rows_);
+}
+
+namespace {
+
+/// Rows of the derivative of g by the motion of both sides.
+struct Rows {
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> a, b;
+
+  Rows(const JointParts& parts, const Configuration& q) {
+    a.setZero();
+    b.setZero();
+    const PairRows G{a.data(), b.data()};
+    parts.for_each([&](const auto& part, int row) { part.gradient(q, row, G); });
+  }
+};
+
+Vec6 stacked(const Vec3& r, const Vec3& theta) {
+  Vec6 x;
+  x << r, theta;
+  return x;
+}
+
+}  // namespace
+
+Vec6 Joint::acceleration_terms(const PairStep& step, TimeSide side) const {
+  const FrameRates frame = frame_rates(*motion_, frames_, step.a, step.context, side);
+  return velocity_terms(step, frame) + Rows(parts_, at_n1(step)).a * stacked(frame.a, frame.alpha);
+}
+
+/// The discrete gradient by the bodies' motion less the change of the rows' values: what is left is
+/// the frame's own. @eq{moving-frame}
+Vec6 Joint::drive_increments(const PairStep& step) const {
+  Configuration q_alpha, q_n1;
+  arrange(step, q_alpha, q_n1);
+  move_frame(*motion_, frames_, step, q_alpha, q_n1);
+  const Rows G(parts_, q_alpha);
+  const BodyStep &a = step.a, &b = step.b;
+  const FrameMotion::Placement at_n = motion_->at(step.context.t_n, step.context.load_factor);
+  Configuration q_n;
+  q_n.z_a = a.Lambda_n * (frames_.Z_a + frames_.R_a * at_n.d);
+  q_n.z_b = b.Lambda_n * frames_.Z_b;
+  q_n.u = (b.r_n - a.r_n) + (q_n.z_b - q_n.z_a);
+  q_n.R_a = a.Lambda_n * frames_.R_a * at_n.D;
+  q_n.R_b = b.Lambda_n * frames_.R_b;
+  Vec6 change = Vec6::Zero(), before = Vec6::Zero();
+  parts_.for_each([&](const auto& part, int row) {
+    part.residual(q_n1, change.data() + row);
+    part.residual(q_n, before.data() + row);
+  });
+  return G.a * stacked(a.u, a.theta) + G.b * stacked(b.u, b.theta) - (change - before);
+}
+
+void Joint::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const {
+  if (!motion_) return;
+  const FrameRates frame = frame_rates(*motion_, frames_, step.a, step.context, side);
+  rows.rate = -(Rows(parts_, at_n1(step)).a * stacked(frame.v, frame.omega));
+  rows.second = velocity_terms(step, FrameRates{}) - acceleration_terms(step, side);
+  if (step.context.dt != 0.0) rows.increment = drive_increments(step);
+}
+
+double Joint::drive_power(const PairStep& step) const {
+  PrescribedRows rows;
+  prescribed(step, TimeSide::kAfter, rows);
+  double power = 0.0;
+  for (int k = 0; k < rows_; ++k) power += step.lambda[k] * rows.rate[k];
+  return power;
+}
+
+double Joint::drive_work(const PairStep& step) const {
+  return motion_ ? step.history[angles()] : 0.0;
 }
 
 Vec6 Joint::residual(const PairStep& step) const {
@@ -174,19 +278,28 @@ Vec6 Joint::residual(const PairStep& step) const {
   return g;
 }
 
+template <class With>
+auto Joint::with_sides(const PairStep& step, With&& with) const {
+  if (motion_) return with(carried_step(*motion_, frames_, step.a, step.context), step.b);
+  return reversed_ ? with(step.b, step.a) : with(step.a, step.b);
+}
+
 bool Joint::acceptable(const PairStep& step) const {
   // Axes held parallel by right angles could also stand antiparallel: the rows do not see it.
-  const auto same_side = [&](int axis) {
-    const Carried on_a = step.a.vector(frames_.R_a.col(axis));
-    const Carried on_b = step.b.vector(frames_.R_b.col(axis));
-    return (on_a.at_n.dot(on_b.at_n) > 0.0) == (on_a.at_n1.dot(on_b.at_n1) > 0.0);
-  };
-  return (parts_.axes < 2 || same_side(kZ)) && (parts_.axes < 3 || same_side(kX));
+  return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
+    const auto same_side = [&](int axis) {
+      const Carried on_a = a.vector(user_frames_.R_a.col(axis));
+      const Carried on_b = b.vector(user_frames_.R_b.col(axis));
+      return (on_a.at_n.dot(on_b.at_n) > 0.0) == (on_a.at_n1.dot(on_b.at_n1) > 0.0);
+    };
+    return (parts_.axes < 2 || same_side(kZ)) && (parts_.axes < 3 || same_side(kX));
+  });
 }
 
 std::optional<MotionBasis> Joint::motion_basis() const {
-  // Friction depends on the multipliers: the tree, which eliminates them, leaves it to loops.
-  if (resistance_ || rows_ < 3 || parts_.distance) return std::nullopt;
+  // Friction depends on the multipliers, and moving frames have work of their own: the tree, which
+  // eliminates multipliers, leaves both to loops.
+  if (resistance_ || motion_ || rows_ < 3 || parts_.distance) return std::nullopt;
   MotionBasis m;
   m.coincident = parts_.coincident;
   m.slides = parts_.planes;
@@ -272,15 +385,23 @@ bool Joint::translation_free(int user_axis) const {
 }
 
 void Joint::initialize(const PairStep& step, double* history) const {
-  for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(user_a(step), user_b(step), 0.0);
+  with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
+    for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(a, b, 0.0);
+  });
   if (resistance_) resistance_->initialize(history + angles());
+  if (motion_) history[angles()] = 0.0;
 }
 
 void Joint::commit(const PairStep& step, double* history) const {
   if (resistance_)
     with_view(step, [&](const Resistance::View& v) { resistance_->commit(v, history + angles()); });
-  for (int i = 0; i < angles(); ++i)
-    history[i] = angle(i).at_n1(user_a(step), user_b(step), step.history[i]);
+  if (motion_) {
+    const Vec6 increments = drive_increments(step);
+    for (int k = 0; k < rows_; ++k) history[angles()] += step.lambda[k] * increments[k];
+  }
+  with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
+    for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(a, b, step.history[i]);
+  });
 }
 
 std::vector<std::string> Joint::coordinate_names() const {
@@ -296,7 +417,12 @@ std::vector<std::string> Joint::coordinate_names() const {
 }
 
 JointCoordinates Joint::coordinates(const PairStep& step) const {
-  const BodyStep &a = user_a(step), &b = user_b(step);
+  return with_sides(
+      step, [&](const BodyStep& a, const BodyStep& b) { return coordinates(a, b, step.history); });
+}
+
+JointCoordinates Joint::coordinates(const BodyStep& a, const BodyStep& b,
+                                    const double* history) const {
   JointCoordinates c;
   const auto add = [&](double value, double rate) {
     c.value[static_cast<std::size_t>(c.count)] = value;
@@ -316,7 +442,7 @@ JointCoordinates Joint::coordinates(const PairStep& step) const {
     for (int k = 0; k < 3; ++k) add(chi[k], omega[k]);
   }
   for (int i = 0; i < angles(); ++i)
-    add(angle(i).at_n1(a, b, step.history[i]), angle(i).rate_at_n1(a, b));
+    add(angle(i).at_n1(a, b, history[i]), angle(i).rate_at_n1(a, b));
   return c;
 }
 
@@ -334,9 +460,11 @@ Reaction Joint::reaction(const PairStep& step, bool joint_axes) const {
     on_b.moment = -on_b.moment + q.u.cross(on_b.force);
   }
   if (joint_axes) {
+    const Mat3 axes = with_sides(step, [&](const BodyStep& a, const BodyStep&) -> Mat3 {
+      return a.Lambda_n1 * user_frames_.R_a;
+    });
     Mat3 R;
-    for (int i = 0; i < 3; ++i)
-      R.col((i + shift_) % 3) = user_a(step).Lambda_n1 * user_frames_.R_a.col(i);
+    for (int i = 0; i < 3; ++i) R.col((i + shift_) % 3) = axes.col(i);
     return {R.transpose() * on_b.force, R.transpose() * on_b.moment};
   }
   return on_b;

@@ -8,6 +8,7 @@
 
 #include <polhode/assembly/free_coordinate.hpp>
 #include <polhode/assembly/interaction.hpp>
+#include <polhode/joints/frame_motion.hpp>
 #include <polhode/joints/recipe.hpp>
 #include <polhode/joints/resistance.hpp>
 
@@ -52,13 +53,22 @@ class Joint : public InteractionItem {
   /// How they stand. @param step  An instant with its history; the joint must have a resistance.
   [[nodiscard]] ResistanceReport resistance_report(const PairStep& step) const;
 
+  /// Prescribes how the frame on the first body moves, before the system is finished.
+  /// @throws InputError if the joint is a distance, or has friction or stops.
+  void set_motion(const FrameMotion& motion);
+  [[nodiscard]] bool frame_moves() const { return motion_ != nullptr; }
+  /// Work of the prescribed motion since the start [J]. @param step  With the history at hand.
+  [[nodiscard]] double drive_work(const PairStep& step) const;
+  /// Its power at an instant [W].
+  [[nodiscard]] double drive_power(const PairStep& step) const;
+
   // The contract of an interaction.
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int history_size() const {
-    return angles() + (resistance_ ? resistance_->memory_size() : 0);
+    return angles() + (resistance_ ? resistance_->memory_size() : 0) + (motion_ ? 1 : 0);
   }
-  [[nodiscard]] bool lazy_history() const { return !resistance_; }
-  [[nodiscard]] bool conservative() const { return !resistance_; }
+  [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_; }
+  [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
   [[nodiscard]] bool works() const { return resistance_ != nullptr; }
   [[nodiscard]] bool has_barrier() const { return resistance_ && resistance_->has_limits(); }
@@ -68,6 +78,12 @@ class Joint : public InteractionItem {
   [[nodiscard]] double reach() const;
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
+    return motion_ ? motion_->time_functions() : std::vector<TimeFunctionPtr>();
+  }
+  [[nodiscard]] int time_order() const { return 0; }
+  [[nodiscard]] bool prescribes() const { return motion_ != nullptr; }
+  void prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
@@ -108,11 +124,22 @@ class Joint : public InteractionItem {
   [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
   [[nodiscard]] bool translation_free(int user_axis) const;
   [[nodiscard]] Configuration at_n1(const PairStep& step) const;
+  /// Sides at t_{n+αf} and t_{n+1}, with what of them the parts need.
+  void arrange(const PairStep& step, Configuration& q_alpha, Configuration& q_n1) const;
+  /// γ without the accelerations of a moving frame. @param frame  Its velocities.
+  [[nodiscard]] Vec6 velocity_terms(const PairStep& step, const FrameRates& frame) const;
+  /// γ of the prescribed motion.
+  [[nodiscard]] Vec6 acceleration_terms(const PairStep& step, TimeSide side) const;
+  /// Work of the prescribed motion over the step by unit multipliers.
+  [[nodiscard]] Vec6 drive_increments(const PairStep& step) const;
+  /// What with(a, b) gives for the sides in the user's order, a moving frame at rest on its side.
+  template <class With>
+  auto with_sides(const PairStep& step, With&& with) const;
   /// Calls what(view) with what the resistance wants to know.
   template <class What>
   auto with_view(const PairStep& step, What&& what) const;
-  [[nodiscard]] const BodyStep& user_a(const PairStep& s) const { return reversed_ ? s.b : s.a; }
-  [[nodiscard]] const BodyStep& user_b(const PairStep& s) const { return reversed_ ? s.a : s.b; }
+  [[nodiscard]] JointCoordinates coordinates(const BodyStep& a, const BodyStep& b,
+                                             const double* history) const;
 
   JointFrames frames_;
   JointParts parts_;
@@ -121,6 +148,7 @@ class Joint : public InteractionItem {
   JointFrames user_frames_;  ///< As frames_ before any reversal.
   std::string type_;
   std::shared_ptr<const Resistance> resistance_;
+  std::shared_ptr<const FrameMotion> motion_;
 };
 
 }  // namespace polhode

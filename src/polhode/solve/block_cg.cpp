@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include <polhode/solve/block_cg.hpp>
@@ -126,6 +128,7 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
   }
   inverse_ = block_;
   springs_.clear();
+  rubs_.clear();
   for (const ActingPoint& point : points) {
     const ContactSpring& from = point.spring;
     Spring s;
@@ -138,6 +141,9 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
     if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
     springs_.push_back(s);
+    if (!from.rub.isZero(0.0))
+      rubs_.push_back(
+          {four(from.rub, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
   }
   // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
   for (int k = 0; k < count; ++k)
@@ -161,31 +167,44 @@ void BlockCg::multiply() {
   }
 }
 
-int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most) {
-  const std::size_t n = moving_.size();
-  const Pair zero{};
-  x_.assign(n, zero);
-  r_.resize(n);
-  z_.resize(n);
-  p_.assign(n + 1, zero);
-  y_.assign(n + 1, zero);
-  // Scaled to size one as well: forces of any unit fit into single precision.
+double BlockCg::scale(std::span<const Vec6> rhs, Vectors& b) const {
+  // Forces of any unit fit into single precision.
   double size = 0.0;
-  for (const int b : moving_) {
-    const Vec6& f = rhs[b];
+  for (const int body : moving_) {
+    const Vec6& f = rhs[body];
     size = std::max(size, per_length_ * f.head<3>().lpNorm<Eigen::Infinity>());
     size = std::max(size, per_turn_ * f.tail<3>().lpNorm<Eigen::Infinity>());
   }
-  x.assign(rhs.size(), Vec6::Zero());
-  if (!(size > 0.0) || !std::isfinite(size)) return 0;
+  if (!(size > 0.0) || !std::isfinite(size)) return 0.0;
   const double by_length = per_length_ / size, by_turn = per_turn_ / size;
+  b.assign(moving_.size(), Pair{});
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      b[k].moved[i] = static_cast<float>(by_length * rhs[moving_[k]][i]);
+      b[k].turned[i] = static_cast<float>(by_turn * rhs[moving_[k]][3 + i]);
+    }
+  return size;
+}
+
+void BlockCg::unscale(const Vectors& from, double size, std::vector<Vec6>& x) const {
+  const double length = per_length_ * size, turn = per_turn_ * size;
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      x[moving_[k]][i] = length * from[k].moved[i];
+      x[moving_[k]][3 + i] = turn * from[k].turned[i];
+    }
+}
+
+int BlockCg::iterate(const Vectors& b, double part, int most) {
+  const std::size_t n = moving_.size();
+  const Pair zero{};
+  x_.assign(n, zero);
+  r_ = b;
+  z_.resize(n);
+  p_.assign(n + 1, zero);
+  y_.assign(n + 1, zero);
   double rz = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      r_[k].moved[i] = static_cast<float>(by_length * rhs[moving_[k]][i]);
-      r_[k].turned[i] = static_cast<float>(by_turn * rhs[moving_[k]][3 + i]);
-    }
-    r_[k].moved[3] = r_[k].turned[3] = 0.0f;
     z_[k] = p_[k] = times(inverse_[k], r_[k]);
     rz += dot(r_[k], z_[k]);
   }
@@ -214,12 +233,79 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
       p_[k].turned = z_[k].turned + beta * p_[k].turned;
     }
   }
-  const double length = per_length_ * size, turn = per_turn_ * size;
-  for (std::size_t k = 0; k < n; ++k)
-    for (int i = 0; i < 3; ++i) {
-      x[moving_[k]][i] = length * x_[k].moved[i];
-      x[moving_[k]][3 + i] = turn * x_[k].turned[i];
+  return iterations;
+}
+
+int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most,
+                   int directions) {
+  x.assign(rhs.size(), Vec6::Zero());
+  const double size = scale(rhs, basis_[0]);
+  if (size == 0.0) return 0;
+  const int iterations = rubs_.empty() || directions == 0
+                             ? iterate(basis_[0], part, most)
+                             : iterate_rubbing(part, most, std::min(directions, kMostDirections));
+  unscale(x_, size, x);
+  return iterations;
+}
+
+void BlockCg::subtract_rubs(const Vectors& p, Vectors& y) const {
+  for (const Rub& s : rubs_) {
+    const Pair &a = p[s.a], &b = p[s.b];
+    const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
+    const Four n = s.normal * u, F = (n[0] + n[1] + n[2]) * s.force;
+    y[s.a].moved -= F;
+    y[s.a].turned -= cross(s.arm_a, F);
+    y[s.b].moved += F;
+    y[s.b].turned += cross(s.arm_b, F);
+  }
+}
+
+/// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993) for S − U: S z is what conjugate gradients
+/// took from v.
+int BlockCg::iterate_rubbing(double part, int most, int directions) {
+  const std::size_t n = moving_.size();
+  const auto product = [n](const Vectors& p, const Vectors& q) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < n; ++k) sum += dot(p[k], q[k]);
+    return sum;
+  };
+  const auto add_times = [n](double factor, const Vectors& p, Vectors& to) {
+    const auto s = static_cast<float>(factor);
+    for (std::size_t k = 0; k < n; ++k) {
+      to[k].moved += s * p[k].moved;
+      to[k].turned += s * p[k].turned;
     }
+  };
+  const double length = std::sqrt(product(basis_[0], basis_[0]));
+  add_times(1.0 / length - 1.0, basis_[0], basis_[0]);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(directions + 1, directions);
+  Eigen::VectorXd weights;
+  int iterations = 0;
+  for (int j = 0; j < directions; ++j) {
+    iterations += iterate(basis_[j], part, most);
+    Vectors& w = basis_[j + 1];
+    w = basis_[j];
+    add_times(-1.0, r_, w);
+    x_.resize(n + 1);
+    w.resize(n + 1);
+    x_.back() = Pair{};
+    subtract_rubs(x_, w);
+    w.resize(n);
+    found_[j] = x_;
+    for (int i = 0; i <= j; ++i) {
+      H(i, j) = product(basis_[i], w);
+      add_times(-H(i, j), basis_[i], w);
+    }
+    H(j + 1, j) = std::sqrt(product(w, w));
+    const Eigen::MatrixXd so_far = H.topLeftCorner(j + 2, j + 1);
+    const Eigen::VectorXd start = length * Eigen::VectorXd::Unit(j + 2, 0);
+    weights = so_far.colPivHouseholderQr().solve(start);
+    const double left = (so_far * weights - start).squaredNorm();
+    if (!(left > part * length * length) || !(H(j + 1, j) > 0.0)) break;
+    add_times(1.0 / H(j + 1, j) - 1.0, w, w);
+  }
+  x_.assign(n, Pair{});
+  for (int j = 0; j < weights.size(); ++j) add_times(weights[j], found_[j], x_);
   return iterations;
 }
 

@@ -15,7 +15,11 @@ namespace {
 /// How far the squared residual falls in the inner iterations: coarse while Newton is far.
 constexpr double kCoarse = 1e-3, kFine = 1e-4;
 constexpr int kCoarseIterations = 2, kMostInner = 400;
-constexpr int kMostCuts = 8;
+/// Residual, in weights, below which friction follows the normal forces within an increment, and
+/// directions that it is sought in: farther away sliding points change too much.
+constexpr double kRubbing = 1.0;
+constexpr int kDirections = 3;
+constexpr int kMostCuts = 2;
 /// Bodies are moved on while their residual is above this part of what counts as solved; others
 /// within so many contacts of them go with them. Where these are most, all are.
 constexpr double kLate = 0.02, kMost = 0.7;
@@ -217,7 +221,8 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
     return done;
   }
   cg_.set_springs(acting_, moving_);
-  inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner);
+  inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner,
+                      residual_ < kRubbing ? kDirections : 0);
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
   double part = std::min(damping, contacts_->filter(steps_, x_));

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts as solvers of crowds see them: forces and springs point by point.
+#include <cmath>
+#include <limits>
+
+#include <polhode/contact/contact_set.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+/// Share of the lagged stiffness that a point gets which began to slide or turned back, and the
+/// part of it that is left at the next iterate.
+constexpr double kTurnedBack = 0.5, kFades = 0.25;
+
+}  // namespace
+
+/// Along a slide the force does not change, so Newton goes on until the point slides back and would
+/// then return. With the stiffness force over stretch, which bounds the force from above, it stops
+/// in between. @eq{contact-slide-damping}
+void ContactSet::damp_slide(Slide& before, PointForce& f) {
+  if (f.lag == 0.0) {
+    before = {Vec3::Zero(), 0.0, true};
+    return;
+  }
+  const bool turned_back = before.known && !(before.stretch.dot(f.slide) > 0.0);
+  before.share = turned_back ? kTurnedBack : kFades * before.share;
+  before.stretch = f.slide;
+  before.known = true;
+  f.C += (before.share * f.lag / f.slide.squaredNorm()) * f.slide * f.slide.transpose();
+}
+
+std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const BodyStep> steps,
+                                                            const StepContext& context,
+                                                            std::span<const char> moved) {
+  const bool all = moved.empty() || renewed_;
+  renewed_ = false;
+  std::swap(acting_, acting_before_);
+  acting_.clear();
+  pointwise_ = true;
+  if (all && slides_.size() != points_.size()) slides_.assign(points_.size(), {});
+  double least = std::numeric_limits<double>::infinity();
+  auto before = acting_before_.begin();
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const ApproachOfBalls& balls = balls_[i];
+    if (!all && !moved[balls.a] && !moved[balls.b]) {
+      while (before != acting_before_.end() && before->point < i) ++before;
+      if (before != acting_before_.end() && before->point == i) acting_.push_back(*before);
+      continue;
+    }
+    const BodyStep &a = steps[balls.a], &b = steps[balls.b];
+    double gap_1 = 0.0;
+    if (balls.holds) {  // most are only near: nothing but what lies side by side is read for them
+      gap_1 = balls.gap_n1(a, b);
+      if (balls.gap_n >= balls.reach && gap_1 >= balls.reach) continue;
+    } else {
+      if (least_gap_at_end(points_[i], a, b) >= points_[i].data.normal.reach()) continue;
+      gap_1 = gap_at_end(i, a, b);
+    }
+    if (!acts(i, gap_1, least)) continue;
+    const Point& p = points_[i];
+    PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
+                           : point_force(p.data, a, b, context);
+    damp_slide(slides_[i], f);
+    acting_.push_back(
+        {i,
+         {shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C, f.rub, f.normal},
+         f.force,
+         f.moment_a,
+         f.moment_b});
+  }
+  return acting_;
+}
+
+}  // namespace polhode::contact
