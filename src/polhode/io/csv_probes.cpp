@@ -115,6 +115,7 @@ std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
       header.push_back(format("{}{} [{}{}]", quantity, name, name[0] == 'r' ? "rad" : "m",
                               *quantity == '\0' ? "" : "/s"));
   extend_by_resistance(header, *item, names);
+  if (item->frame_moves()) header.insert(header.end(), {"power [W]", "work [J]"});
   return header;
 }
 
@@ -369,6 +370,8 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
     row.insert(row.end(), joint.friction.begin(), joint.friction.end());
     if (!joint.friction.empty()) row.push_back(joint.slips ? 1.0 : 0.0);
     row.insert(row.end(), joint.stops.begin(), joint.stops.end());
+    row.insert(row.end(), joint.power.begin(), joint.power.end());
+    row.insert(row.end(), joint.work.begin(), joint.work.end());
   }
   return row;
 }

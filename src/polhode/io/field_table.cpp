@@ -205,6 +205,11 @@ const FieldTable& body_fields() {
            .meaning = "Freedoms held at their start values: a generic joint to ground at the "
                       "centre of mass, world axes, named <body>.hold.",
            .choices = {"x", "y", "z", "rx", "ry", "rz"}},
+          {.name = "motion",
+           .kind = kSection,
+           .meaning = "Prescribed motion: a generic joint to ground at the centre of mass, world "
+                      "axes, whose frame moves, named <body>.motion. What is not given stays free.",
+           .table = "body motion"},
       }};
   return table;
 }
@@ -400,10 +405,14 @@ const FieldTable& time_table_fields() {
 }
 
 std::vector<const FieldTable*> all_field_tables() {
-  std::vector<const FieldTable*> tables = {
-      &model_fields(),       &units_fields(),        &body_fields(),        &inertia_fields(),
-      &orientation_fields(), &euler_fields(),        &shape_fields(),       &mesh_fields(),
-      &hull_fields(),        &height_field_fields(), &contact_side_fields()};
+  std::vector<const FieldTable*> tables = {&model_fields(),        &units_fields(),
+                                           &body_fields(),         &inertia_fields(),
+                                           &orientation_fields(),  &euler_fields(),
+                                           &body_motion_fields(),  &motion_fields(),
+                                           &moving_euler_fields(), &moving_quaternion_fields(),
+                                           &shape_fields(),        &mesh_fields(),
+                                           &hull_fields(),         &height_field_fields(),
+                                           &contact_side_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);
   tables.push_back(&angle_limit_fields());

@@ -118,6 +118,11 @@ KindTable joint_table(const JointKind& kind) {
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
   add_resistance(kind.name, fields);
+  if (kind.name != "distance")
+    fields.push_back({.name = "motion",
+                      .kind = kSection,
+                      .meaning = "Prescribed motion of the joint's frame on the first body.",
+                      .table = motion_fields().title});
   return result;
 }
 

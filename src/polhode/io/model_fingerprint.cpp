@@ -95,9 +95,12 @@ class Fingerprint {
     add(f.mu, f.radius, f.face_radius, f.length, f.constant, f.stiffness, f.damping);
   }
   void one(const JointLimitsSpec& l) { add(l.lower, l.upper, l.restitution, l.band, l.stiffness); }
+  void one(const FrameMotion& m) {
+    add(m.displacement, static_cast<int>(m.rotation), m.parameters, m.sequence);
+  }
   void one(const JointSpec& j) {
     add(j.name, j.type, j.a, j.b, j.Z_a, j.Z_b, j.R_a, j.R_b, j.free, j.parameters, j.friction,
-        j.limits, j.angle_limits);
+        j.limits, j.angle_limits, j.motion);
   }
   void one(const Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,

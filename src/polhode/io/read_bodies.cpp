@@ -35,6 +35,7 @@ class BodyReader {
     read_place();
     read_velocities();
     read_hold();
+    read_body_motion();
   }
 
  private:
@@ -202,11 +203,50 @@ class BodyReader {
     joint.b = context_.bodies.at(body_.name);
     joint.Z_a = body_.position;
     joint.R_b = body_.orientation.toRotationMatrix().transpose();
+    add_joint(std::move(joint), *held);
+  }
+
+  void add_joint(JointSpec joint, const std::vector<std::string>& locked) {
     for (const std::string& freedom : body_fields().at("hold").choices)
-      if (std::find(held->begin(), held->end(), freedom) == held->end())
+      if (std::find(locked.begin(), locked.end(), freedom) == locked.end())
         joint.free.push_back(freedom);
     context_.joints.emplace(joint.name, static_cast<int>(context_.model.joints.size()));
     context_.model.joints.push_back(std::move(joint));
+  }
+
+  void read_body_motion() {
+    const SourceNode* node = section_.find("motion");
+    if (!node) return;
+    if (body_.fixed) section_.fault("motion", "the body is fixed", "Leave it or 'fixed' out.");
+    if (section_.refuse_both("motion", "hold", "Prescribe 0 for what is held.")) return;
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("motion"),
+                    body_motion_fields());
+    if (!node->is_map()) return;
+    std::array<bool, 3> moves{};
+    const auto motion = read_motion(context_, section, moves);
+    const bool from_world = section.choice("measured_from").value_or("start") == "world";
+    if (!motion) return;
+    const bool turns = motion->rotation != FrameMotion::Rotation::none;
+    if (turns && body_.point_mass)
+      section.fault("a point mass does not turn", "Leave the rotation or 'point_mass' out.");
+    JointSpec joint;
+    joint.name = body_.name + ".motion";
+    joint.type = "generic";
+    joint.place = context_.tree.place_of(*node);
+    joint.a = kGround;
+    joint.b = context_.bodies.at(body_.name);
+    joint.motion = motion;
+    joint.assembled_start = true;
+    if (!from_world) {
+      joint.Z_a = body_.position;
+      joint.R_b = body_.orientation.toRotationMatrix().transpose();
+    }
+    std::vector<std::string> locked;
+    const char* axes[] = {"x", "y", "z"};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (moves[k]) locked.emplace_back(axes[k]);
+    if (turns) locked.insert(locked.end(), {"rx", "ry", "rz"});
+    add_joint(std::move(joint), locked);
   }
 
   ReadContext& context_;

@@ -170,6 +170,13 @@ std::string shown(double value);
 // The parts of a model, each in its own file.
 void read_units(ReadContext& context, const SourceNode& node);
 void read_variables(ReadContext& context, const SourceNode& node);
+/// A rotation as an Euler sequence: three letters of one case, neighbours different; adds a fault
+/// if it is none.
+bool check_euler_sequence(Section& section, const std::string& sequence);
+/// Prescribed motion among the keys of a section; nothing if it prescribes nothing.
+/// @param moves  By component x, y, z: whether it is given.
+std::optional<FrameMotion> read_motion(ReadContext& context, Section& section,
+                                       std::array<bool, 3>& moves);
 std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& node,
                                      const std::string& path);
 void read_bodies(ReadContext& context, const SourceNode& node);

@@ -68,6 +68,7 @@ class JointReader {
     read_friction();
     joint_.limits = read_limits("limits");
     joint_.angle_limits = read_limits("angle_limits");
+    read_frame_motion();
     // What follows needs sound numbers, and bodies that stand where they should.
     const auto sound = [&](int body) {
       return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
@@ -246,6 +247,21 @@ class JointReader {
     else if (l.lower && l.upper && l.band && *l.upper - *l.lower <= *l.band)
       section.fault("band", "is wider than the way between the stops", "Give a narrower band.");
     return l;
+  }
+
+  void read_frame_motion() {
+    const SourceNode* node = takes("motion") ? section_.find("motion") : nullptr;
+    if (!node) return;
+    for (const char* other : {"friction", "limits", "angle_limits"})
+      if (takes(other) && section_.has(other))
+        section_.fault("motion", format("stands beside '{}'", other),
+                       "Let a body of its own carry the motion, and join it without.");
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("motion"),
+                    motion_fields());
+    if (!node->is_map()) return;
+    std::array<bool, 3> moves{};
+    joint_.motion = read_motion(context_, section, moves);
+    joint_.assembled_start = joint_.assembled_start || joint_.motion;
   }
 
   /// Joints given with `at` stand at zero; others are looked at when the start is assembled.

@@ -37,16 +37,7 @@ std::optional<Quat> from_euler(ReadContext& context, const SourceNode& node,
   const auto angles = section.vector("angles");
   if (!sequence || !angles) return std::nullopt;
   const std::string& s = *sequence;
-  const auto all = [&](const std::string& letters) {
-    return s.size() == 3 && s.find_first_not_of(letters) == std::string::npos;
-  };
-  if (!(all("xyz") || all("XYZ")) || s[0] == s[1] || s[1] == s[2]) {
-    section.fault("sequence", quote(s) + " is no Euler sequence",
-                  "Give three letters, neighbours different: lower case (zxz) for turns about the "
-                  "body's axes, "
-                  "upper case (XYZ) about the world's.");
-    return std::nullopt;
-  }
+  if (!check_euler_sequence(section, s)) return std::nullopt;
   Quat q = Quat::Identity();
   for (int k = 0; k < 3; ++k) {
     const char letter = s[static_cast<std::size_t>(k)];
@@ -87,6 +78,17 @@ std::optional<Quat> from_matrix(ReadContext& context, const SourceNode& node,
 }
 
 }  // namespace
+
+bool check_euler_sequence(Section& section, const std::string& s) {
+  const auto all = [&](const std::string& letters) {
+    return s.size() == 3 && s.find_first_not_of(letters) == std::string::npos;
+  };
+  if ((all("xyz") || all("XYZ")) && s[0] != s[1] && s[1] != s[2]) return true;
+  section.fault("sequence", quote(s) + " is no Euler sequence",
+                "Give three letters, neighbours different: lower case (zxz) for turns about the "
+                "body's axes, upper case (XYZ) about the world's.");
+  return false;
+}
 
 std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& node,
                                      const std::string& path) {

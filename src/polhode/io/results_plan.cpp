@@ -58,7 +58,7 @@ void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
     }
 }
 
-/// Friction and stops of joints, in the order of results_frame().
+/// Friction, stops and drives of joints, in the order of results_frame().
 void plan_resistance(const ResultsLayout& layout, FilePlan& p, bool named) {
   namespace r = results;
   const auto add = [&](const Quantity& q, auto&& count_of, bool integer) {
@@ -80,6 +80,9 @@ void plan_resistance(const ResultsLayout& layout, FilePlan& p, bool named) {
       {"slips", 1, "-"}, [](const Entry& joint) { return joint.friction > 0 ? 1 : 0; }, true);
   add(
       {"stops", 1, "N or N m"}, [](const Entry& joint) { return joint.stops; }, false);
+  const auto driven = [](const Entry& joint) { return joint.driven ? 1 : 0; };
+  add({"power", 1, "W"}, driven, true);
+  add({"work", 1, "J"}, driven, true);
 }
 
 /// What impacts and friction took, and the pairs, in the order of add_contacts().

@@ -61,9 +61,10 @@ ResultsLayout results_layout(const Simulation& simulation) {
   for (const BodySpec& body : model.bodies) layout.bodies.push_back(body.name);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const JointReport joint = simulation.joint(static_cast<int>(i));
-    layout.joints.push_back(
-        {model.joints[i].name, model.joints[i].type, static_cast<int>(joint.coordinates.size()),
-         static_cast<int>(joint.friction.size()), static_cast<int>(joint.stops.size())});
+    layout.joints.push_back({model.joints[i].name, model.joints[i].type,
+                             static_cast<int>(joint.coordinates.size()),
+                             static_cast<int>(joint.friction.size()),
+                             static_cast<int>(joint.stops.size()), !joint.power.empty()});
   }
   for (const LoadSpec& load : model.loads)
     if (load.solid < 0) layout.loads.push_back({load.name, load.type});
@@ -107,6 +108,8 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.friction.insert(frame.friction.end(), joint.friction.begin(), joint.friction.end());
     if (!joint.friction.empty()) frame.slips.push_back(joint.slips ? 1.0 : 0.0);
     frame.stops.insert(frame.stops.end(), joint.stops.begin(), joint.stops.end());
+    frame.power.insert(frame.power.end(), joint.power.begin(), joint.power.end());
+    frame.work.insert(frame.work.end(), joint.work.begin(), joint.work.end());
   }
   for (std::size_t i = 0; i < model.loads.size(); ++i) {
     if (model.loads[i].solid >= 0) continue;
@@ -212,7 +215,8 @@ void ResultsFile::append(const ResultsFrame& frame) {
   vectors(frame.force);
   vectors(frame.moment);
   for (double x : frame.coordinates) scalar(x);
-  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.loads})
+  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power,
+                           &frame.work, &frame.loads})
     for (double x : *list) scalar(x);
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})

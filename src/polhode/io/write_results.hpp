@@ -28,6 +28,7 @@ struct ResultsLayout {
     int coordinates = 0;  ///< Free coordinates reported.
     int friction = 0;     ///< Of them with friction; 0: none.
     int stops = 0;        ///< Of them with limits.
+    bool driven = false;  ///< Its frame moves as prescribed.
   };
   struct LoadEntry {
     std::string name, type;
@@ -70,7 +71,8 @@ struct ResultsFrame {
       angular_velocity;           ///< Centre of mass, world [m, m/s, rad/s].
   std::vector<Quat> orientation;  ///< Body to world.
   std::vector<double> coordinates, rates, loads;
-  std::vector<double> friction, slips, stops;  ///< Of joints that have them, see JointReport.
+  /// Of joints that have them, see JointReport.
+  std::vector<double> friction, slips, stops, power, work;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
   std::vector<SolidReport> solids;
   std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.

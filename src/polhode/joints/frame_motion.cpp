@@ -209,28 +209,22 @@ BodyStep carried_step(const FrameMotion& motion, const JointFrames& frames, cons
   return s;
 }
 
-/// What is linear in the frame and in the rotation of a is averaged in each by itself: the wrenches
-/// on a and b then are equal and opposite, and the rest of a row's change is the drive's.
-Configuration move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
-                         Configuration& q_alpha, Configuration& q_n1) {
+void move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
+                Configuration& q_alpha, Configuration& q_n1) {
   const StepContext& c = step.context;
   const BodyStep& a = step.a;
   const double af = a.alpha_f;
   const FrameInBody at_n = in_body(motion.at(c.t_n, c.load_factor), frames),
                     at_n1 = in_body(motion.at(c.t_n1(), c.load_factor), frames);
-  const Vec3 Z = (1.0 - af) * at_n.Z + af * at_n1.Z;
-  const Mat3 R = (1.0 - af) * at_n.R + af * at_n1.R;
-  const Mat3 Lambda_alpha = (1.0 - af) * a.Lambda_n + af * a.Lambda_n1;
+  const Vec3 z_n = a.Lambda_n * at_n.Z, z_n1 = a.Lambda_n1 * at_n1.Z;
+  const Mat3 R_n = a.Lambda_n * at_n.R, R_n1 = a.Lambda_n1 * at_n1.R;
   const auto put = [](Configuration& q, const Vec3& z_a, const Mat3& R_a) {
     q.u += q.z_a - z_a;
     q.z_a = z_a;
     q.R_a = R_a;
   };
-  Configuration turned = q_n1;
-  put(turned, a.Lambda_n1 * Z, a.Lambda_n1 * R);
-  put(q_alpha, Lambda_alpha * Z, Lambda_alpha * R);
-  put(q_n1, a.Lambda_n1 * at_n1.Z, a.Lambda_n1 * at_n1.R);
-  return turned;
+  put(q_alpha, (1.0 - af) * z_n + af * z_n1, (1.0 - af) * R_n + af * R_n1);
+  put(q_n1, z_n1, R_n1);
 }
 
 FrameRates frame_rates(const FrameMotion& motion, const JointFrames& frames, const BodyStep& a,

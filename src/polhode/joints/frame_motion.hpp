@@ -48,10 +48,9 @@ struct FrameMotion {
 
 /// The sides of a joint whose frame on a moves, from the sides with the frame at rest.
 /// @param q_alpha, q_n1  At t_{n+αf} and t_{n+1}; the frame's point and axes are replaced.
-/// @return  Arms and axes whose turn with a is the tangent of those at t_{n+αf}.
 /// @eq{moving-frame}
-Configuration move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
-                         Configuration& q_alpha, Configuration& q_n1);
+void move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
+                Configuration& q_alpha, Configuration& q_n1);
 
 /// Velocity and acceleration of the frame at t_{n+1} beyond those that a gives it, as of a body
 /// about the centre of mass of a, world components.

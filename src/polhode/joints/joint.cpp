@@ -105,20 +105,19 @@ void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration&
     q_alpha.R_b = R_b.at_alpha;
     q_n1.R_b = R_b.at_n1;
   }
+  if (motion_) move_frame(*motion_, frames_, step, q_alpha, q_n1);
 }
 
 void Joint::evaluate(const PairStep& step, PairTerms& t) const {
-  Configuration q_alpha, q_n1, moved;
+  Configuration q_alpha, q_n1;
   arrange(step, q_alpha, q_n1);
-  if (motion_) moved = move_frame(*motion_, frames_, step, q_alpha, q_n1);
-  const Configuration& turned = motion_ ? moved : q_n1;
   const PairRows G{t.G_a.data(), t.G_b.data()}, B{t.B_a.data(), t.B_b.data()};
   parts_.for_each([&](const auto& part, int row) {
     part.residual(q_n1, t.g.data() + row);
     part.gradient(q_alpha, row, B);
     if (!step.context.tangents) return;
     part.gradient(q_n1, row, G);
-    part.add_wrench_tangent(q_alpha, turned, step.a.alpha_f, step.lambda + row, t);
+    part.add_wrench_tangent(q_alpha, q_n1, step.a.alpha_f, step.lambda + row, t);
   });
   t.wrench_a = times(B.a, step.lambda, rows_);
   t.wrench_b = times(B.b, step.lambda, rows_);
@@ -233,7 +232,6 @@ Vec6 Joint::acceleration_terms(const PairStep& step, TimeSide side) const {
 Vec6 Joint::drive_increments(const PairStep& step) const {
   Configuration q_alpha, q_n1;
   arrange(step, q_alpha, q_n1);
-  move_frame(*motion_, frames_, step, q_alpha, q_n1);
   const Rows G(parts_, q_alpha);
   const BodyStep &a = step.a, &b = step.b;
   const FrameMotion::Placement at_n = motion_->at(step.context.t_n, step.context.load_factor);

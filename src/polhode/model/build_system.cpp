@@ -146,6 +146,7 @@ class Builder {
         joint.name, joint.type, Participants{system_body(joint.a), system_body(joint.b)}, r);
     if (joint.friction || joint.limits || joint.angle_limits)
       system_.group<Joint>().items.back().set_resistance(joint_resistance(model_, joint));
+    if (joint.motion) system_.group<Joint>().items.back().set_motion(*joint.motion);
   }
 
   /// A load along a coordinate that its joint does not leave free.
@@ -188,6 +189,10 @@ class Builder {
       a = joint.a;
       b = joint.b;
       const Joint& item = system_.group<Joint>().items[static_cast<std::size_t>(index)];
+      if (item.frame_moves())
+        throw InputError(where + ".joint",
+                         format("the frame of '{}' has a prescribed motion", joint.name),
+                         "Let a body of its own carry the motion, and act in a joint to that");
       if (kind.drives.empty())
         angle = item.axis_angle();
       else if (kind.turns)

@@ -11,6 +11,7 @@
 
 #include <polhode/base/time_function.hpp>
 #include <polhode/base/types.hpp>
+#include <polhode/joints/frame_motion.hpp>
 #include <polhode/model/beam_spec.hpp>
 #include <polhode/model/contact_spec.hpp>
 #include <polhode/model/material_spec.hpp>
@@ -86,7 +87,8 @@ struct JointSpec {
   std::optional<JointFrictionSpec> friction;
   std::optional<JointLimitsSpec> limits;        ///< Of the angle; with a displacement, of that.
   std::optional<JointLimitsSpec> angle_limits;  ///< Of the angle beside a displacement.
-  bool assembled_start = false;  ///< Given with at_body: the start must be assembled.
+  std::optional<FrameMotion> motion;            ///< Prescribed, of the frame on a.
+  bool assembled_start = false;  ///< Given with at_body or moving: the start must be assembled.
 };
 
 /// One load as described; which fields matter depends on the type (see loads/registry).

@@ -40,6 +40,8 @@ struct JointReport {
   /// slipped in the last step, force of the stops by limited coordinate [N or N m].
   std::vector<double> friction, stops;
   bool slips = false;
+  /// Of a joint whose frame moves as prescribed: power [W] and work since the start [J].
+  std::vector<double> power, work;
 };
 
 /// The figures a run ends with; `run --json` prints them under these names.

@@ -49,6 +49,10 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   report.moment = reaction.moment;
   report.residual =
       item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
+  if (item.frame_moves()) {
+    report.power = {item.drive_power(step)};
+    report.work = {item.drive_work(step)};
+  }
   if (!item.resistance()) return report;
   const ResistanceReport resistance = item.resistance_report(step);
   report.friction.assign(resistance.friction.begin(),
