@@ -39,12 +39,26 @@ struct Family {
   std::vector<int> sizes;  ///< Bodies; cells for n_four_bar.
 };
 
+/// A motor at the first hinge keeps the speed of the start.
+Model driven_four_bar(int N) {
+  Model model = test::n_four_bar(N);
+  LoadSpec motor;
+  motor.name = "motor";
+  motor.type = "rotary_motor";
+  motor.joint = "ground0";
+  motor.drive = "speed";
+  motor.value = std::make_shared<test::Constant>(-1.0);
+  model.loads.push_back(motor);
+  return model;
+}
+
 const std::vector<Family>& families() {
   static const std::vector<Family> all{
       {"chain_revolute", [](int N) { return chain(N, "revolute"); }, 5e-3, {10, 100, 1000}},
       {"chain_spherical", [](int N) { return chain(N, "spherical"); }, 5e-3, {10, 100, 1000}},
       {"binary_tree", binary_tree, 5e-3, {10, 100, 1000}},
-      {"n_four_bar", [](int N) { return test::n_four_bar(N); }, 1e-2, {1, 10, 40, 100}}};
+      {"n_four_bar", [](int N) { return test::n_four_bar(N); }, 1e-2, {1, 10, 40, 100}},
+      {"n_four_bar_driven", driven_four_bar, 1e-2, {1, 10, 40, 100}}};
   return all;
 }
 

@@ -74,7 +74,7 @@ def targets(results):
     """Rows (what, measured, at most, unit) of everything that has a target and was measured."""
     rows = []
     for line in results.of("elimination", solver="tree", instruction_set=results.widest()):
-        tree = line["model"] != "n_four_bar"
+        tree = not line["model"].startswith("n_four_bar")
         limit = (0.25 if line["bodies"] <= 1000 else 0.5) if tree else 0.6 if line["size"] == 40 else None
         name = f"{line['model']} {line['size']}"
         if limit:

@@ -17,6 +17,7 @@ import numpy as np  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "examples"))
+import render_connectors  # noqa: E402
 import render_contact  # noqa: E402
 import support  # noqa: E402
 
@@ -488,6 +489,9 @@ def main():
         if name in wanted or not sys.argv[1:]:
             picture = getattr(render_contact.Pictures(sys.modules[__name__]), name)()
             save(picture, ROOT / "examples" / name / "picture.png")
+    for name in ("planetary_gearbox", "suspension_corner"):
+        if name in wanted or not sys.argv[1:]:
+            save(getattr(render_connectors, name)(sys.modules[__name__]), ROOT / "examples" / name / "picture.png")
     if "hero" in wanted:
         save(hero(), ROOT / "docs/images/hero.png", 105, None)
 

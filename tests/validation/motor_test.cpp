@@ -140,6 +140,25 @@ TEST(Motor, DrivesACartWithTheOrderOfTheMethodAndItsWork) {
   }
 }
 
+// Order 8 at steps that are long enough to see it: errors fall by more than 2^7 as the step halves,
+// down to round-off.
+TEST(Motor, DrivesACartWithOrderEight) {
+  const auto x_of = [](const char* h, int order) {
+    Simulation s(read_model_text(
+        kCart, "cart.yaml",
+        {std::string("variables.h=") + h, "analysis.order=" + std::to_string(order)}));
+    const RunSummary r = s.run();
+    EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+    EXPECT_LT(r.energy_drift, 1e-11) << order << ' ' << h;
+    return s.body(s.model().body_index("lower")).r.x();
+  };
+  const double reference = x_of("5 ms", 8);
+  const double coarse = std::abs(x_of("50 ms", 8) - reference);
+  const double fine = std::abs(x_of("25 ms", 8) - reference);
+  EXPECT_GT(std::log2(coarse / std::max(fine, 1e-14)), 7.0) << coarse << ' ' << fine;
+  EXPECT_NEAR(x_of("5 ms", 6), reference, 1e-10);
+}
+
 // A ramp that begins and ends: after its kinks the force is that of the pendulum alone and does not
 // alternate. @tests{drive-kink}
 TEST(Motor, DoesNotRingAfterAKink) {

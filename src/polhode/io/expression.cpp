@@ -192,4 +192,17 @@ std::optional<double> Expression::factor_to_si(const Dimension& wanted,
   return with_angle ? units.factor(wanted) : units.factor_without_angle(wanted);
 }
 
+std::shared_ptr<const Expression> Expression::parse(std::string_view text,
+                                                    const Variables& variables,
+                                                    const UnitSystem& units, bool allow_time,
+                                                    ExpressionFault& fault) {
+  return parse(text, variables, units, allow_time ? "t" : "", units.time, fault);
+}
+
+std::vector<std::string> reserved_names() {
+  std::vector<std::string> names = {"t", "pi"};
+  for (const auto& f : kExpressionFunctions) names.emplace_back(f.name);
+  return names;
+}
+
 }  // namespace polhode

@@ -53,6 +53,13 @@ class Expression {
                                                  const UnitSystem& units, bool allow_time,
                                                  ExpressionFault& fault);
 
+  /// The same of another variable than t, such as an elongation x.
+  /// @param variable  Its name; it hides a variable of the user's of this name.
+  /// @param in_units  Size of the user's base unit of it, SI.
+  static std::shared_ptr<const Expression> parse(std::string_view text, const Variables& variables,
+                                                 const UnitSystem& units, std::string_view variable,
+                                                 double in_units, ExpressionFault& fault);
+
   /// The value at time t [s], in SI or the user's base units as certainty() says.
   [[nodiscard]] double operator()(double t) const;
   /// The value and its derivatives by time on one side of t: exact ones, by automatic

@@ -26,9 +26,14 @@ class ExpressionParser {
  public:
   using Op = ExpressionOp;
 
+  /// @param variable  What the expression may depend on; "" for nothing.
   ExpressionParser(std::string_view text, const Variables& variables, const UnitSystem& units,
-                   bool allow_time)
-      : text_(text), variables_(variables), units_(units), allow_time_(allow_time) {}
+                   std::string_view variable, double in_units)
+      : text_(text),
+        variables_(variables),
+        units_(units),
+        variable_(variable),
+        in_units_(in_units) {}
 
   std::shared_ptr<const Expression> parse(ExpressionFault& fault) {
     try {
@@ -282,13 +287,13 @@ class ExpressionParser {
       push({Op::kPush, std::numbers::pi});
       return {{}, start, offset};
     }
-    if (word == "t") {
-      if (!allow_time_)
-        stop(offset, 1, "'t' (the time) has no meaning here", "This value cannot depend on time.");
+    if (word == variable_) {
       result_.depends_on_time_ = true;
-      push({Op::kTime, 1.0 / units_.time});
+      push({Op::kTime, 1.0 / in_units_});
       return {{0.0, Certainty::kBare, {}}, start, offset};
     }
+    if (word == "t")
+      stop(offset, 1, "'t' (the time) has no meaning here", "This value cannot depend on time.");
     const auto found = variables_.find(word);
     if (found == variables_.end()) unknown_name(word, offset);
     push({Op::kPush, found->second.value});
@@ -476,24 +481,20 @@ class ExpressionParser {
   std::string_view text_;
   const Variables& variables_;
   const UnitSystem& units_;
-  bool allow_time_;
+  std::string_view variable_;
+  double in_units_;  ///< Size of the user's base unit of the variable, SI.
   std::size_t at_ = 0;
   std::size_t number_begin_ = 0, number_end_ = 0;  ///< Of the number read last.
   int depth_ = 0, height_ = 0;
   Expression result_;
 };
 
-std::vector<std::string> reserved_names() {
-  std::vector<std::string> names = {"t", "pi"};
-  for (const auto& f : kExpressionFunctions) names.emplace_back(f.name);
-  return names;
-}
-
 std::shared_ptr<const Expression> Expression::parse(std::string_view text,
                                                     const Variables& variables,
-                                                    const UnitSystem& units, bool allow_time,
+                                                    const UnitSystem& units,
+                                                    std::string_view variable, double in_units,
                                                     ExpressionFault& fault) {
-  return ExpressionParser(text, variables, units, allow_time).parse(fault);
+  return ExpressionParser(text, variables, units, variable, in_units).parse(fault);
 }
 
 }  // namespace polhode

@@ -404,6 +404,25 @@ const FieldTable& time_table_fields() {
   return table;
 }
 
+const FieldTable& law_table_fields() {
+  static const FieldTable table{
+      "law",
+      "A force over a coordinate or a rate, given by points. Before the first and after the last "
+      "point the end value holds.",
+      {
+          {.name = "table",
+           .kind = kNumbers,
+           .meaning = "[[x, force], ...] with increasing x.",
+           .required = true},
+          {.name = "interpolation",
+           .kind = kChoice,
+           .meaning = "Between the points: straight lines or a natural cubic spline.",
+           .standard = "linear",
+           .choices = {"linear", "cubic"}},
+      }};
+  return table;
+}
+
 std::vector<const FieldTable*> all_field_tables() {
   std::vector<const FieldTable*> tables = {&model_fields(),        &units_fields(),
                                            &body_fields(),         &inertia_fields(),
@@ -434,7 +453,8 @@ std::vector<const FieldTable*> all_field_tables() {
        {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),
         &contacts_fields(), &contact_law_fields(), &contact_material_fields(),
         &contact_combination_fields(), &contact_pair_fields(), &contact_sensor_fields(),
-        &time_table_fields(), &analysis_fields(), &output_fields(), &probe_fields()})
+        &time_table_fields(), &law_table_fields(), &analysis_fields(), &output_fields(),
+        &probe_fields()})
     tables.push_back(table);
   return tables;
 }

@@ -14,6 +14,7 @@ namespace polhode {
 enum class FieldKind : unsigned char {
   kNumber,      ///< A number, with unit, or an expression.
   kTimeNumber,  ///< The same, of t too, or a table.
+  kLaw,         ///< An expression of a coordinate or rate, or a table over it.
   kInteger,
   kBoolean,  ///< true or false.
   kText,
@@ -76,7 +77,9 @@ struct Field {
   bool required = false;
   Range range{};
   std::vector<std::string> choices{};
-  std::string table{};  ///< Of kSection and kNamed: title of the section's table.
+  std::string table{};     ///< Of kSection and kNamed: title of the section's table.
+  std::string variable{};  ///< Of kLaw: what it depends on, x or v.
+  Dimension of{};          ///< Dimension of that.
   std::string since = "0.1";
 };
 
@@ -141,6 +144,7 @@ const FieldTable& solid_contact_fields();
 const FieldTable& hull_fields();
 const FieldTable& height_field_fields();
 const FieldTable& time_table_fields();
+const FieldTable& law_table_fields();
 const FieldTable& analysis_fields();
 const FieldTable& output_fields();
 const FieldTable& probe_fields();

@@ -147,10 +147,14 @@ const Field kLoadPointsBody{
     .kind = kVectorPair,
     .dimension = kLength,
     .meaning = "The points on a and b, each in its body's coordinates (ground: world)."};
-const Field kLoadJoint{.name = "joint",
-                       .kind = kJoint,
-                       .meaning = "A joint that turns about its axis: revolute or cylindrical.",
-                       .required = true};
+const Field kLoadJoint{
+    .name = "joint", .kind = kJoint, .meaning = "The joint it acts in.", .required = true};
+const Field kLoadJoints{
+    .name = "joints", .kind = kNames, .meaning = "[first joint, second joint]", .required = true};
+const Field kLoadFrameAt{.name = "at",
+                         .kind = kVector,
+                         .dimension = kLength,
+                         .meaning = "The point at the start on both bodies, world. Or at_body."};
 
 KindTable load(const std::string& name, const std::string& meaning,
                const std::vector<Field>& more) {
@@ -166,14 +170,32 @@ KindTable load_table(const LoadKind& kind) {
   switch (kind.place) {
     case LoadPlace::body:
       fields.push_back(kLoadBody);
-      if (!kind.turns) fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
+      if (!kind.turns && !kind.vector.empty())
+        fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
       break;
     case LoadPlace::points:
       fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody});
       break;
     case LoadPlace::joint:
       fields.push_back(kLoadJoint);
-      if (!kind.drives.empty()) fields.back().meaning = "The joint it drives.";
+      break;
+    case LoadPlace::joints:
+      fields.push_back(kLoadJoints);
+      fields.push_back({.name = "coordinates",
+                        .kind = kNames,
+                        .meaning = "Which free coordinate of each: x, y, z, rx, ry or rz.",
+                        .standard = "the only one of each"});
+      break;
+    case LoadPlace::frames:
+      fields.insert(fields.end(), {kLoadBodies, kLoadFrameAt, kLoadPointsBody, kAxis, kXAxis});
+      fields[fields.size() - 2].standard = "z";
+      break;
+    case LoadPlace::surface:
+      fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody, kAxis, kXAxis});
+      fields[fields.size() - 2].standard = "z";
+      break;
+    case LoadPlace::centres:
+      fields.push_back(kLoadBodies);
       break;
   }
   if (!kind.vector.empty()) {
@@ -185,13 +207,33 @@ KindTable load_table(const LoadKind& kind) {
     fields.push_back(kBodyFixed);
   }
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
-  if (kind.drives.empty()) return result;
-  fields.push_back({.name = "coordinate",
-                    .kind = kChoice,
-                    .meaning = "Which of the joint's free coordinates.",
-                    .standard = "the only one of its kind",
-                    .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
-                                          : std::vector<std::string>{"x", "y", "z"}});
+  for (const LawParameter& l : kind.laws)
+    fields.push_back({.name = l.name,
+                      .kind = kLaw,
+                      .dimension = read_unit(l.unit).unit.value().dimension,
+                      .meaning = sentence(l.meaning),
+                      .variable = l.variable,
+                      .of = read_unit(l.of).unit.value().dimension});
+  for (const ChoiceParameter& w : kind.words)
+    fields.push_back({.name = w.name,
+                      .kind = kChoice,
+                      .meaning = sentence(w.meaning),
+                      .standard = w.choices.front(),
+                      .choices = w.choices});
+  for (const Parameter& p : kind.vectors) {
+    fields.push_back(parameter_field(p));
+    fields.back().kind = kVector;
+    if (p.standard) fields.back().standard = "[0, 0, 0]";
+  }
+  for (const Parameter& p : kind.matrices)
+    fields.push_back({.name = p.name, .kind = kMatrix6, .meaning = sentence(p.meaning) + " SI."});
+  if (kind.place == LoadPlace::joint && kind.name != "screw")
+    fields.push_back({.name = "coordinate",
+                      .kind = kChoice,
+                      .meaning = "Which of the joint's free coordinates.",
+                      .standard = "the only one of its kind",
+                      .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
+                                            : std::vector<std::string>{"x", "y", "z"}});
   for (const DriveParameter& d : kind.drives)
     fields.push_back({.name = d.name,
                       .kind = kTimeNumber,

@@ -106,6 +106,10 @@ std::optional<std::string> read_file_name(ReadContext& context, const SourceNode
 bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                 const std::string& collection);
 
+/// An expression of the field's variable, or a table over it.
+TimeFunctionPtr read_law(ReadContext& context, const SourceNode& node, const std::string& path,
+                         const Field& field);
+
 /// A map that is read by the fields of a table.
 class Section {
  public:
@@ -134,6 +138,7 @@ class Section {
   std::optional<std::vector<std::string>> choices(const std::string& name);
   std::optional<Vec3> vector(const std::string& name);
   TimeFunctionPtr time_number(const std::string& name);  ///< Null if absent or faulty.
+  TimeFunctionPtr law(const std::string& name);          ///< Likewise.
   std::optional<TimeVector> time_vector(const std::string& name);
   std::optional<std::array<Vec3, 2>> vector_pair(const std::string& name);
   std::optional<Vec3> direction(const std::string& name);

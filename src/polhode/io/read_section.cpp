@@ -158,6 +158,11 @@ TimeFunctionPtr Section::time_number(const std::string& name) {
   return node ? read_time_number(context_, *node, path(name), table_.at(name)) : nullptr;
 }
 
+TimeFunctionPtr Section::law(const std::string& name) {
+  const SourceNode* node = find(name);
+  return node ? read_law(context_, *node, path(name), table_.at(name)) : nullptr;
+}
+
 std::optional<TimeVector> Section::time_vector(const std::string& name) {
   const SourceNode* node = find(name);
   if (!node) return std::nullopt;

@@ -88,6 +88,8 @@ json field_schema(const FieldTable& table, const Field& field) {
     }
     case kTimeNumber:
       return reference("time_number");
+    case kLaw:
+      return {{"anyOf", json::array({reference("number"), reference("law")})}};
     case kBoolean:
       return {{"type", "boolean"}};
     case kText:
@@ -110,7 +112,8 @@ json field_schema(const FieldTable& table, const Field& field) {
     case kDirectionPair:
       return list_of(reference("direction"), 2, 2);
     case kNumbers:
-      if (&table == &time_table_fields()) return list_of(list_of(reference("number"), 2, 2), 2, 0);
+      if (&table == &time_table_fields() || &table == &law_table_fields())
+        return list_of(list_of(reference("number"), 2, 2), 2, 0);
       return list_of(reference("number"), 4, 4);  // A quaternion.
     case kMatrix:
       return list_of(reference("vector"), 3, 3);

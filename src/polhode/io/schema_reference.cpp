@@ -17,6 +17,8 @@ std::string form(const Field& field) {
       return "number";
     case kTimeNumber:
       return "number over time";
+    case kLaw:
+      return format("expression of {}, or table", field.variable);
     case kInteger:
       return "whole number";
     case kBoolean:

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <polhode/assembly/free_coordinate.hpp>
@@ -13,6 +14,25 @@
 #include <polhode/base/time_function.hpp>
 
 namespace polhode {
+
+/// A coordinate of a gear: that of a joint, or the angle of one wheel against the other.
+struct GearCoordinate {
+  enum class Kind {
+    angle,         ///< `angle`, between the bodies named.
+    displacement,  ///< `displacement`, likewise.
+    centres,       ///< Angle of the wheel against the line of centres.
+    axes           ///< Angle of the wheel against the other wheel's axis.
+  };
+  Kind kind = Kind::angle;
+  int from = 0, to = 0;  ///< Its bodies: 0 the ground, 1 the gear's a, 2 its b.
+  FreeAngle angle{};
+  FreeDisplacement displacement{};
+};
+
+/// What a gear keeps in ratio: x_0 = ratio·x_1 + constant.
+struct GearPair {
+  std::array<GearCoordinate, 2> coordinate;
+};
 
 /// A load with its bodies numbered: what a kind of load is built from.
 struct LoadDescription {
@@ -27,6 +47,27 @@ struct LoadDescription {
   TimeFunctionPtr function{};                      ///< Of a motor.
   std::string drive{};                             ///< What that is: key of LoadKind::drives.
   double start_length = 0.0;                       ///< Distance of the points at the start [m].
+  std::map<std::string, TimeFunctionPtr> laws{};   ///< Functions of a coordinate or rate by key.
+  std::map<std::string, std::string> words{};      ///< Choices by key.
+  std::map<std::string, Mat6> matrices{};          ///< By key.
+  Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing on its bodies.
+  double mass_a = 0.0, mass_b = 0.0;                    ///< Of the bodies; 0 for the ground [kg].
+  Mat3 inertia_b = Mat3::Zero();   ///< Of b about its centre of mass, body axes [kg m²].
+  std::optional<GearPair> gear{};  ///< Of a gear.
+
+  /// The free coordinate of the joint that the load acts in.
+  [[nodiscard]] std::variant<FreeAngle, FreeDisplacement> coordinate() const {
+    if (angle) return *angle;
+    return displacement.value();
+  }
+  [[nodiscard]] TimeFunctionPtr law(const std::string& key) const {
+    const auto found = laws.find(key);
+    return found == laws.end() ? nullptr : found->second;
+  }
+  [[nodiscard]] std::string word(const std::string& key) const {
+    const auto found = words.find(key);
+    return found == words.end() ? std::string() : found->second;
+  }
 
   [[nodiscard]] double value(const std::string& key, double otherwise) const {
     const auto found = values.find(key);

@@ -15,57 +15,24 @@ constexpr std::array<std::pair<double, double>, 5> kGauss{{{0.046910077030668, 0
                                                            {0.769234655052842, 0.239314335249683},
                                                            {0.953089922969332, 0.118463442528095}}};
 
-/// The coordinate over a step in the form that both kinds share.
-struct CoordinateStep {
-  double at_n1;
-  Vec6 mu_a, mu_b, at_n1_a, at_n1_b;
-  Mat6 D_aa, D_ab, D_ba, D_bb;  ///< Of mu.
-};
-
-CoordinateStep coordinate_step(const FreeAngle& angle, const PairStep& step) {
-  const AngleStep s = angle_step(angle, step.a, step.b, step.history[0], step.context.conserving);
-  const double per_alpha = 1.0 / step.a.alpha_f;
-  CoordinateStep c;
-  c.at_n1 = s.at_n1;
-  c.mu_a << Vec3::Zero(), -s.mu;
-  c.mu_b << Vec3::Zero(), s.mu;
-  c.at_n1_a << Vec3::Zero(), per_alpha * s.D_alpha_a;
-  c.at_n1_b << Vec3::Zero(), per_alpha * s.D_alpha_b;
-  for (Mat6* D : {&c.D_aa, &c.D_ab, &c.D_ba, &c.D_bb}) D->setZero();
-  c.D_aa.bottomRightCorner<3, 3>() = -s.D_mu_a;
-  c.D_ab.bottomRightCorner<3, 3>() = -s.D_mu_b;
-  c.D_ba.bottomRightCorner<3, 3>() = s.D_mu_a;
-  c.D_bb.bottomRightCorner<3, 3>() = s.D_mu_b;
-  return c;
-}
-
-CoordinateStep coordinate_step(const FreeDisplacement& displacement, const PairStep& step) {
-  const DisplacementStep s = displacement_step(displacement, step.a, step.b);
-  return {s.at_n1, s.mu_a, s.mu_b, s.at_n1_a, s.at_n1_b, s.D_aa, s.D_ab, s.D_ba, s.D_bb};
-}
-
 }  // namespace
 
-Motor::Motor(const LoadDescription& load) : function_(load.function) {
+Motor::Motor(const LoadDescription& load)
+    : coordinate_(load.coordinate()), function_(load.function) {
   name = load.name;
   bodies = load.bodies;
-  if (load.angle)
-    coordinate_ = *load.angle;
-  else
-    coordinate_ = load.displacement.value();
   drive_ = load.drive == "speed"                             ? Drive::speed
            : load.drive == "force" || load.drive == "moment" ? Drive::effort
                                                              : Drive::position;
 }
 
-double Motor::coordinate_at_n1(const PairStep& step) const {
-  if (const auto* angle = std::get_if<FreeAngle>(&coordinate_))
-    return angle->at_n1(step.a, step.b, step.history[kCoordinate]);
-  return std::get<FreeDisplacement>(coordinate_).at_n1(step.a, step.b);
+CoordinateMotion Motor::coordinate(const PairStep& step) const {
+  return coordinate_motion(coordinate_, step.a, step.b, step.history[kCoordinate],
+                           step.context.conserving);
 }
 
-double Motor::rate_at_n1(const PairStep& step) const {
-  return std::visit([&](const auto& q) { return q.rate_at_n1(step.a, step.b); }, coordinate_);
+double Motor::at_n1(const PairStep& step) const {
+  return coordinate_at_n1(coordinate_, step.a, step.b, step.history[kCoordinate]);
 }
 
 double Motor::target(const PairStep& step) const {
@@ -92,11 +59,9 @@ void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows
 }
 
 void Motor::evaluate(const PairStep& step, PairTerms& t) const {
-  const CoordinateStep q =
-      std::visit([&](const auto& x) { return coordinate_step(x, step); }, coordinate_);
+  const CoordinateMotion q = coordinate(step);
   const double force = rows() > 0 ? step.lambda[0] : effort(step);
-  t.wrench_a = force * q.mu_a;
-  t.wrench_b = force * q.mu_b;
+  add_force(q, force, step, t);
   if (rows() > 0) {
     // Before the start is assembled a rate does not say where the coordinate stands.
     const bool known = drive_ == Drive::position || step.history[kStarted] != 0.0;
@@ -104,15 +69,9 @@ void Motor::evaluate(const PairStep& step, PairTerms& t) const {
     t.B_a.col(0) = q.mu_a;
     t.B_b.col(0) = q.mu_b;
   }
-  if (step.context.tangents) {
-    t.D_aa = force * q.D_aa;
-    t.D_ab = force * q.D_ab;
-    t.D_ba = force * q.D_ba;
-    t.D_bb = force * q.D_bb;
-    if (rows() > 0) {
-      t.G_a.row(0) = q.at_n1_a;
-      t.G_b.row(0) = q.at_n1_b;
-    }
+  if (step.context.tangents && rows() > 0) {
+    t.G_a.row(0) = q.at_n1_a;
+    t.G_b.row(0) = q.at_n1_b;
   }
   clear_ground_sides(step, t);
 }
@@ -126,7 +85,7 @@ void Motor::acceleration_terms(const PairStep& step, Vec6& gamma) const {
 }
 
 double Motor::work_of_step(const PairStep& step) const {
-  if (rows() == 0) return effort(step) * (coordinate_at_n1(step) - step.history[kCoordinate]);
+  if (rows() == 0) return effort(step) * (at_n1(step) - step.history[kCoordinate]);
   PrescribedRows rows;
   prescribed(step, TimeSide::kBefore, rows);
   return step.lambda[0] * rows.increment[0];
@@ -138,23 +97,20 @@ Work Motor::work(const PairStep& step) const {
 }
 
 std::vector<double> Motor::report(const PairStep& step) const {
-  const double force = rows() > 0 ? step.lambda[0] : effort(step), rate = rate_at_n1(step);
-  const Vec6 on_b =
-      force *
-      std::visit([&](const auto& q) { return coordinate_step(q, step); }, coordinate_).at_n1_b;
-  const bool turns = std::holds_alternative<FreeAngle>(coordinate_);
-  return numbers(turns ? on_b.tail<3>() : on_b.head<3>(),
-                 {coordinate_at_n1(step), rate, force * rate, step.history[kWork]});
+  const double force = rows() > 0 ? step.lambda[0] : effort(step);
+  const double rate = coordinate_rate_at_n1(coordinate_, step.a, step.b);
+  return numbers(on_b(coordinate_, coordinate(step), force),
+                 {at_n1(step), rate, force * rate, step.history[kWork]});
 }
 
 void Motor::initialize(const PairStep& step, double* history) const {
-  history[kCoordinate] = history[kTarget] = coordinate_at_n1(step);
+  history[kCoordinate] = history[kTarget] = at_n1(step);
   history[kWork] = 0.0;
   history[kStarted] = 1.0;
 }
 
 void Motor::commit(const PairStep& step, double* history) const {
-  const double work = work_of_step(step), at = coordinate_at_n1(step);
+  const double work = work_of_step(step), at = at_n1(step);
   const double target = drive_ == Drive::speed ? this->target(step) : at;
   history[kCoordinate] = at;
   history[kTarget] = target;

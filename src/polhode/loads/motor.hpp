@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <variant>
-
+#include <polhode/loads/coordinate_motion.hpp>
 #include <polhode/loads/load_description.hpp>
 
 namespace polhode {
@@ -44,8 +43,8 @@ class Motor : public InteractionItem {
   /// Coordinate and prescribed value at t_n, work since the start, and 1 once these are known.
   enum History : int { kCoordinate, kTarget, kWork, kStarted, kHistory };
 
-  [[nodiscard]] double coordinate_at_n1(const PairStep& step) const;
-  [[nodiscard]] double rate_at_n1(const PairStep& step) const;
+  [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
+  [[nodiscard]] double at_n1(const PairStep& step) const;
   /// c(t_{n+1}).
   [[nodiscard]] double target(const PairStep& step) const;
   /// Prescribed force over the step [N or N m].
@@ -53,7 +52,7 @@ class Motor : public InteractionItem {
   /// Work over the step [J].
   [[nodiscard]] double work_of_step(const PairStep& step) const;
 
-  std::variant<FreeAngle, FreeDisplacement> coordinate_;
+  JointCoordinate coordinate_;
   TimeFunctionPtr function_;
   Drive drive_;
 };

@@ -11,9 +11,13 @@ namespace polhode {
 
 /// What a kind of load acts on, hence which entries the model file wants.
 enum class LoadPlace {
-  body,    ///< A body, at a point: `body`, `at` or `at_body`.
-  points,  ///< Two points of two bodies: `bodies`, `at` or `at_body`.
-  joint    ///< The freedom of a joint: `joint`.
+  body,     ///< A body, at a point: `body`, `at` or `at_body`.
+  points,   ///< Two points of two bodies: `bodies`, `at` or `at_body`.
+  joint,    ///< The freedom of a joint: `joint`.
+  joints,   ///< Free coordinates of two joints: `joints`.
+  surface,  ///< Two points of two bodies and axes on the first one.
+  frames,   ///< Two frames of two bodies: `bodies`, `at` or `at_body`, `axis`.
+  centres   ///< The centres of mass of two bodies: `bodies`.
 };
 
 /// A quantity that a load reports at an instant: one number, or a vector along the world's axes.
@@ -30,6 +34,22 @@ struct DriveParameter {
   std::string meaning;  ///< One line.
 };
 
+/// A function of a coordinate or its rate that a kind of load takes.
+struct LawParameter {
+  std::string name;      ///< Key in the model file.
+  std::string unit;      ///< Of the value, SI.
+  std::string variable;  ///< x for a coordinate, v for a rate.
+  std::string of;        ///< Unit of that, SI.
+  std::string meaning;   ///< One line.
+};
+
+/// A word out of a list that a kind of load takes.
+struct ChoiceParameter {
+  std::string name;
+  std::vector<std::string> choices;  ///< The first one holds if it is left out.
+  std::string meaning;               ///< One line.
+};
+
 /// A type of load as users name it.
 struct LoadKind {
   std::string name;     ///< "type" in the model file.
@@ -44,6 +64,12 @@ struct LoadKind {
   /// The channels' numbers one after the other, for an item of its group and a step that ends at
   /// the instant. Forces and moments are those on body b.
   std::vector<double> (*report)(const InteractionGroup&, int item, const PairStep&) = nullptr;
+  std::vector<LawParameter> laws{};
+  std::vector<ChoiceParameter> words{};
+  std::vector<Parameter> vectors{};   ///< Of three numbers each.
+  std::vector<Parameter> matrices{};  ///< Of six rows of six numbers each, SI.
+  /// Parameters, laws, vectors and matrices of which at least one must be there.
+  std::vector<std::string> needs_one_of{};
 
   [[nodiscard]] int report_size() const;  ///< Numbers in a report.
 };

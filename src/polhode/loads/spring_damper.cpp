@@ -5,6 +5,9 @@ namespace polhode {
 
 namespace {
 
+/// Newton's constant of gravitation, CODATA 2018 [m³/(kg s²)].
+constexpr double kGravitation = 6.67430e-11;
+
 using Row12 = Eigen::Matrix<double, 1, 12>;  ///< Derivative by (Δr_a, Δθ_a, Δr_b, Δθ_b).
 using Mat3x12 = Eigen::Matrix<double, 3, 12>;
 
@@ -27,16 +30,17 @@ Mat3 point_velocity_by_turn(const BodyStep& body, const Carried& z) {
 struct SpringDamper::Stretch {
   Carried z_a, z_b;
   Vec3 u_alpha, u_n1, u_dot;
-  double l_n1 = 0.0, l_alpha = 0.0, rate = 0.0;
+  double l_n = 0.0, l_n1 = 0.0, l_alpha = 0.0, rate = 0.0;
   bool has_direction = true;
 };
 
 SpringDamper::SpringDamper(const LoadDescription& load)
     : Z_a_(load.Z_a),
       Z_b_(load.Z_b),
-      k_(load.value("stiffness", 0.0)),
-      c_(load.value("damping", 0.0)),
-      l_0_(load.value("free_length", load.start_length)) {
+      l_0_(load.value("free_length", load.start_length)),
+      spring_(load, "spring_force"),
+      damper_(load, "damper_force"),
+      pull_(load.drive == "pull" ? load.function : nullptr) {
   name = load.name;
   bodies = load.bodies;
 }
@@ -50,8 +54,9 @@ SpringDamper::Stretch SpringDamper::stretch(const PairStep& step) const {
   const Vec3 u_n = (b.r_n - a.r_n) + (s.z_b.at_n - s.z_a.at_n);
   s.u_n1 = (b.r_n1 - a.r_n1) + (s.z_b.at_n1 - s.z_a.at_n1);
   s.u_alpha = (1.0 - af) * u_n + af * s.u_n1;
+  s.l_n = u_n.norm();
   s.l_n1 = s.u_n1.norm();
-  s.l_alpha = step.context.conserving ? (1.0 - af) * u_n.norm() + af * s.l_n1 : s.u_alpha.norm();
+  s.l_alpha = step.context.conserving ? (1.0 - af) * s.l_n + af * s.l_n1 : s.u_alpha.norm();
   s.has_direction = s.l_alpha > kNoLength;
   s.u_dot = point_velocity(b, s.z_b) - point_velocity(a, s.z_a);
   if (s.has_direction) s.rate = s.u_alpha.dot(s.u_dot) / s.l_alpha;
@@ -70,26 +75,30 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
   Vec3 F = Vec3::Zero();
   Mat3x12 D_F = Mat3x12::Zero();
   if (s.has_direction) {
-    const double N = k_ * (s.l_alpha - l_0_) + c_ * s.rate;
+    const LawValue spring = tension(step, s);
+    const LawValue damper = damper_.at(s.rate);
+    const double N = spring.value + damper.value + pull(step);
     const Vec3 n = s.u_alpha / s.l_alpha;
     Row12 D_l = Row12::Zero();
     if (!step.context.conserving)
       D_l = n.transpose() * D_u;
     else if (s.l_n1 > kNoLength)
       D_l = s.u_n1.transpose() * D_u / s.l_n1;
-    Row12 D_N = k_ * D_l;
-    if (c_ != 0.0) {
+    // The law's slope is by l_{n+1}; without the discrete gradient by l_α.
+    Row12 D_N = (step.context.conserving ? spring.slope / af : spring.slope) * D_l;
+    if (!damper_.is_zero()) {
       Mat3x12 D_u_dot;
       D_u_dot << -af * a.rate * Mat3::Identity(), -point_velocity_by_turn(a, s.z_a),
           af * b.rate * Mat3::Identity(), point_velocity_by_turn(b, s.z_b);
-      D_N += c_ / s.l_alpha *
+      D_N += damper.slope / s.l_alpha *
              (s.u_dot.transpose() * D_u + s.u_alpha.transpose() * D_u_dot - s.rate * D_l);
     }
     F = -N * n;
     D_F = -N / s.l_alpha * D_u - n * (D_N - N / s.l_alpha * D_l);
   } else if (l_0_ == 0.0) {
-    F = -k_ * s.u_alpha;
-    D_F = -k_ * D_u;
+    const double k = spring_.at(0.0).slope;
+    F = -k * s.u_alpha;
+    D_F = -k * D_u;
   }
 
   t.wrench_b << F, s.z_b.at_alpha.cross(F);
@@ -107,25 +116,52 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
 
 Work SpringDamper::work(const PairStep& step) const {
   const Stretch s = stretch(step);
-  const double stretched = s.l_n1 - l_0_;
-  return {.stored = 0.5 * k_ * stretched * stretched,
-          .dissipated = c_ * s.rate * s.rate * step.context.dt};
+  return {.stored = spring_.energy(s.l_n1 - l_0_),
+          .dissipated = damper_.at(s.rate).value * s.rate * step.context.dt,
+          .put_in = pull_ ? -pull(step) * (s.l_n1 - s.l_n) : 0.0};
 }
 
-Vec3 SpringDamper::force_on_b(const Stretch& s) const {
-  if (s.has_direction) return -(k_ * (s.l_alpha - l_0_) + c_ * s.rate) / s.l_alpha * s.u_alpha;
-  return l_0_ == 0.0 ? Vec3(-k_ * s.u_alpha) : Vec3::Zero();
+double SpringDamper::pull(const PairStep& step) const {
+  return pull_ ? step.context.load_factor * (*pull_)(step.context.t_alpha()) : 0.0;
+}
+
+LawValue SpringDamper::tension(const PairStep& step, const Stretch& s) const {
+  return step.context.conserving ? spring_.over_step(s.l_n - l_0_, s.l_n1 - l_0_, step.a.alpha_f)
+                                 : spring_.at(s.l_alpha - l_0_);
 }
 
 std::vector<double> SpringDamper::report(const PairStep& step) const {
   const Stretch s = stretch(step);
-  return numbers(force_on_b(s), {s.l_n1, s.rate, work(step).stored});
+  Vec3 force = Vec3::Zero();
+  if (s.has_direction)
+    force =
+        -(tension(step, s).value + damper_.at(s.rate).value + pull(step)) / s.l_alpha * s.u_alpha;
+  else if (l_0_ == 0.0)
+    force = -spring_.at(0.0).slope * s.u_alpha;
+  return numbers(force, {s.l_n1, s.rate, work(step).stored});
 }
 
 double SpringDamper::length(const PairStep& step) const { return stretch(step).l_n1; }
 
 void add_spring_damper(System& system, const LoadDescription& load) {
   system.group<SpringDamper>().items.emplace_back(load);
+}
+
+Attraction::Attraction(const LoadDescription& load)
+    : SpringDamper([&] {
+        LoadDescription d = load;
+        d.values["free_length"] = 0.0;
+        d.values["inverse_square"] =
+            load.value("strength", kGravitation * load.mass_a * load.mass_b);
+        return d;
+      }()) {}
+
+void add_axial_force(System& system, const LoadDescription& load) {
+  system.group<AxialForce>().items.emplace_back(load);
+}
+
+void add_attraction(System& system, const LoadDescription& load) {
+  system.group<Attraction>().items.emplace_back(load);
 }
 
 }  // namespace polhode

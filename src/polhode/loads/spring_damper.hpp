@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/loads/load_description.hpp>
+#include <polhode/loads/force_law.hpp>
 
 namespace polhode {
 
-/// A linear spring and a damper, side by side, between a point of a and a point of b.
+/// A spring and a damper, side by side, between a point of a and a point of b.
 ///
 /// In conserving form the length at t_{n+αf} is the average of the lengths at the ends of the
 /// step, not the length of the averaged offset u_α, and the force on b is
 ///
 ///   F = −N u_α / l_α,   N = k (l_α − l_0) + c l̇_α,   l̇_α = u_α·u̇_α / l_α.   @eq{spring-gradient}
+///
+/// With k (l_α − l_0) replaced by the mean of a law over the step where it is not linear
+/// @eq{law-mean}.
 ///
 /// Then l_{n+1} − l_n = u_α·Δu/l_α at ρ∞ = 1, so the spring gives back exactly what it stored
 /// and the damper takes c l̇_α² Δt ≥ 0. While the points coincide only a spring of free length
@@ -18,11 +21,13 @@ namespace polhode {
 class SpringDamper : public InteractionItem {
  public:
   static constexpr const char* kKind = "spring_damper";
-  /// @param load  Values stiffness [N/m], damping [N s/m], free_length [m].
+  /// @param load  Values stiffness [N/m], quadratic [N/m²], damping [N s/m], free_length [m]; laws
+  ///              spring_force of the elongation, damper_force of its rate; the word acts.
   explicit SpringDamper(const LoadDescription& load);
 
-  [[nodiscard]] bool conservative() const { return c_ == 0.0; }
-  [[nodiscard]] bool dissipates() const { return c_ != 0.0; }
+  [[nodiscard]] bool conservative() const { return damper_.is_zero() && !pull_; }
+  [[nodiscard]] bool dissipates() const { return !damper_.is_zero(); }
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {pull_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
   /// At an instant: force on b [N], length [m], its rate [m/s], energy stored [J].
@@ -33,12 +38,32 @@ class SpringDamper : public InteractionItem {
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
-  [[nodiscard]] Vec3 force_on_b(const Stretch& s) const;
+  [[nodiscard]] double pull(const PairStep& step) const;
+  [[nodiscard]] LawValue tension(const PairStep& step, const Stretch& s) const;
 
   Vec3 Z_a_, Z_b_;
-  double k_, c_, l_0_;
+  double l_0_;
+  ForceLaw spring_;
+  ResistanceLaw damper_;
+  TimeFunctionPtr pull_;  ///< Force that draws the points together [N], or null.
 };
 
+/// A given force along the line between two points, positive where it draws them together, with a
+/// damper beside it.
+struct AxialForce : SpringDamper {
+  static constexpr const char* kKind = "axial_force";
+  using SpringDamper::SpringDamper;
+};
+
+/// Gravity between two centres of mass, V = −K/l with K = G m_a m_b unless it is given.
+/// @eq{attraction-gradient}
+struct Attraction : SpringDamper {
+  static constexpr const char* kKind = "attraction";
+  explicit Attraction(const LoadDescription& load);
+};
+
+void add_axial_force(System& system, const LoadDescription& load);
+void add_attraction(System& system, const LoadDescription& load);
 /// Adds a SpringDamper to the system. free_length left out is the distance at the start.
 void add_spring_damper(System& system, const LoadDescription& load);
 

@@ -9,10 +9,12 @@
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/beam_mesh.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/build_system.hpp>
+#include <polhode/model/gear_geometry.hpp>
 #include <polhode/model/joint_resistance.hpp>
 
 namespace polhode {
@@ -160,7 +162,7 @@ class Builder {
                        format("'{}' is not free as {} {} in '{}' ({})", load.coordinate,
                               turns ? "an" : "a", what, joint.name, joint.type),
                        names.empty() ? "Name another joint" : "Free are: " + name_list(names));
-    if (load.drive.empty())
+    if (load.drive.empty() && turns)
       throw InputError(
           where + ".joint",
           format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
@@ -183,6 +185,7 @@ class Builder {
     int a = load.a, b = load.b;
     std::optional<FreeAngle> angle;
     std::optional<FreeDisplacement> displacement;
+    std::optional<GearGeometry> gear;
     if (kind.place == LoadPlace::joint) {
       const int index = model_.joint_index(load.joint);
       const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
@@ -193,16 +196,25 @@ class Builder {
         throw InputError(where + ".joint",
                          format("the frame of '{}' has a prescribed motion", joint.name),
                          "Let a body of its own carry the motion, and act in a joint to that");
-      if (kind.drives.empty())
-        angle = item.axis_angle();
-      else if (kind.turns)
+      if (kind.turns)
         angle = item.free_angle(load.coordinate);
       else
         displacement = item.free_displacement(load.coordinate);
-      if (!angle && !displacement) refuse_coordinate(where, load, joint, item, kind.turns);
+      if (kind.name == Screw::kKind)
+        gear = gear_of(where, {load.joint, load.joint}, {"z", "rz"});
+      else if (!angle && !displacement)
+        refuse_coordinate(where, load, joint, item, kind.turns);
       if (load.drive == "speed" && model_.analysis.type != "dynamics")
         throw InputError(where + ".speed", "is a rate, but in statics and modes nothing moves",
                          kind.turns ? "Give the angle" : "Give the displacement");
+    } else if (kind.place == LoadPlace::joints) {
+      gear = gear_of(where, {load.joint, load.joint_2}, {load.coordinate, load.coordinate_2});
+      const bool has_radius = load.parameters.contains("radius");
+      if (gear->mixed != has_radius || load.parameters.contains("ratio") == has_radius)
+        throw InputError(where,
+                         gear->mixed ? "turns an angle into a displacement, which takes a radius"
+                                     : "takes a ratio between coordinates of one kind",
+                         gear->mixed ? "Give radius alone" : "Give ratio alone");
     }
     check_movable(where, kind.place == LoadPlace::body ? b : a, b);
     for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
@@ -219,8 +231,38 @@ class Builder {
         .displacement = displacement,
         .function = load.value,
         .drive = load.drive};
+    d.laws = load.laws;
+    d.words = load.words;
+    d.matrices = load.matrices;
+    d.R_a = axes(a, load.R_a);
+    d.R_b = axes(b, load.R_b);
+    if (const BodySpec* one = spec(a)) d.mass_a = one->mass;
+    if (const BodySpec* one = spec(b)) {
+      d.mass_b = one->mass;
+      if (!one->point_mass) d.inertia_b = one->inertia;
+    }
+    if (gear) {
+      d.bodies = gear->bodies;
+      d.gear = gear->pair;
+    }
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
     kind.add(system_, d);
+  }
+
+  [[nodiscard]] GearGeometry gear_of(const std::string& where,
+                                     const std::array<std::string, 2>& joints,
+                                     const std::array<std::string, 2>& coordinates) {
+    std::array<GearJoint, 2> pair;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto index = static_cast<std::size_t>(model_.joint_index(joints[i]));
+      pair[i] = {&system_.group<Joint>().items[index], coordinates[i],
+                 model_.joints[index].assembled_start};
+    }
+    std::vector<GearPose> poses;
+    for (const BodySpec& body : model_.bodies)
+      if (!body.fixed)
+        poses.push_back({body.position, body.orientation.normalized().toRotationMatrix()});
+    return gear_geometry(where, pair, poses);
   }
 
   void add_beam(const BeamSpec& beam) {

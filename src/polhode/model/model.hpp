@@ -111,6 +111,12 @@ struct LoadSpec {
   std::string keeps = "momentum";  ///< Of a follower pressure: momentum or work is exact.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
+  /// Laws of a coordinate or a rate by key, SI: called with that instead of a time.
+  std::map<std::string, TimeFunctionPtr> laws;
+  std::map<std::string, std::string> words;             ///< Choices by key.
+  std::map<std::string, Mat6> matrices;                 ///< By key, SI.
+  std::string joint_2, coordinate_2;                    ///< Of a gear: its second coordinate.
+  Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing, as Z_a and Z_b.
 };
 
 /// A channel recorded at its own rate.

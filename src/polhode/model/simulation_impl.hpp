@@ -187,7 +187,7 @@ struct Simulation::Impl {
             refuse_jumps(format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[c]),
                          *p.displacement[c], "m");
     for (const LoadSpec& load : model.loads)
-      if (load.drive == "angle" || load.drive == "displacement")
+      if (load.type.ends_with("motor") && (load.drive == "angle" || load.drive == "displacement"))
         refuse_jumps(format("loads.{}.{}", load.name, load.drive), *load.value,
                      load.drive == "angle" ? "rad" : "m");
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <loads/load_samples.hpp>
-#include <polhode/loads/torsional_spring.hpp>
+#include <polhode/loads/joint_spring.hpp>
 
 namespace polhode::test {
 namespace {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// Resistance of a medium at rest to a body: force −(c_1 + c_2 |v| + α m) v at its centre of mass,
+/// moment −(c_θ + α J) ω, with mean velocities of the step: it takes F·Δr + M·θ, never less than
+/// nothing. α is mass-proportional damping. @eq{drag-law}
+class Drag : public InteractionItem {
+ public:
+  static constexpr const char* kKind = "drag";
+  /// @param load  Values linear [N s/m], quadratic_drag [N s²/m²], turning [N m s/rad],
+  ///              per_mass [1/s].
+  explicit Drag(const LoadDescription& load);
+
+  [[nodiscard]] bool conservative() const { return false; }
+  [[nodiscard]] bool dissipates() const { return true; }
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  [[nodiscard]] Work work(const PairStep& step) const;
+  /// At an instant: force [N] and moment [N m].
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
+
+ private:
+  double linear_, quadratic_, turning_, per_mass_, mass_;
+  Mat3 inertia_;
+};
+
+/// A damper between points that resists all of their relative velocity, and the relative rotation:
+/// force −c u̇, moment −c_θ (ω_b − ω_a). @eq{drag-law}
+class VectorDamper : public InteractionItem {
+ public:
+  static constexpr const char* kKind = "vector_damper";
+  /// @param load  Values damping [N s/m], turning_damping [N m s/rad].
+  explicit VectorDamper(const LoadDescription& load);
+
+  [[nodiscard]] bool conservative() const { return false; }
+  [[nodiscard]] bool dissipates() const { return true; }
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  [[nodiscard]] Work work(const PairStep& step) const;
+  /// At an instant: force [N] and moment [N m] on b at its point.
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
+
+ private:
+  Vec3 Z_a_, Z_b_;
+  double c_, c_turn_;
+};
+
+void add_drag(System& system, const LoadDescription& load);
+void add_vector_damper(System& system, const LoadDescription& load);
+
+}  // namespace polhode

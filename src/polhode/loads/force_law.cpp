@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <polhode/loads/force_law.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Gauss-Legendre points and weights on (0, 1): exact for polynomials of degree 9.
+constexpr std::array<std::pair<double, double>, 5> kGauss{
+    {{0.046910077030668004, 0.118463442528094544},
+     {0.230765344947158454, 0.239314335249683234},
+     {0.5, 0.284444444444444444},
+     {0.769234655052841546, 0.239314335249683234},
+     {0.953089922969331996, 0.118463442528094544}}};
+/// Halvings that leave nothing of an interval but round-off.
+constexpr int kMostHalvings = 44;
+/// Part of the largest value below which two estimates agree.
+constexpr double kAgree = 4e-16;
+/// Steps shorter than this part of x have no difference quotient worth the name.
+constexpr double kShort = 1e-6;
+
+struct Estimate {
+  double mean = 0.0, size = 0.0;
+};
+
+Estimate gauss(const TimeFunction& f, double p, double q) {
+  Estimate e;
+  for (const auto& [place, weight] : kGauss) {
+    const double value = f(p + place * (q - p));
+    e.mean += weight * value;
+    e.size = std::max(e.size, std::abs(value));
+  }
+  return e;
+}
+
+/// @param part  Of the whole interval: what is wrong here counts so much.
+double refine(const TimeFunction& f, double p, double q, const Estimate& whole, double part,
+              double size, int halvings) {
+  const double m = 0.5 * (p + q);
+  const Estimate left = gauss(f, p, m), right = gauss(f, m, q);
+  const double both = 0.5 * (left.mean + right.mean);
+  size = std::max({size, left.size, right.size});
+  const bool agree = std::abs(both - whole.mean) * part <= kAgree * size;
+  if (agree || halvings == 0 || !(m != p && m != q)) return both;
+  return 0.5 * (refine(f, p, m, left, 0.5 * part, size, halvings - 1) +
+                refine(f, m, q, right, 0.5 * part, size, halvings - 1));
+}
+
+double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
+
+}  // namespace
+
+double mean_value(const TimeFunction& f, double p, double q) {
+  if (p == q || f.is_constant()) return f(q);
+  const double low = std::min(p, q), high = std::max(p, q);
+  // A kink near the end of an interval is between Gauss's points: pieces end at kinks.
+  double sum = 0.0;
+  for (double from = low; from < high;) {
+    const TimeBreak kink = f.next_break(from, high);
+    const double to = kink.exists() && kink.t > from && kink.t < high ? kink.t : high;
+    const Estimate whole = gauss(f, from, to);
+    sum += (to - from) / (high - low) * refine(f, from, to, whole, 1.0, whole.size, kMostHalvings);
+    from = to;
+  }
+  return sum;
+}
+
+ForceLaw::ForceLaw(const LoadDescription& load, const std::string& law)
+    : k_(load.value("stiffness", 0.0)),
+      k_2_(load.value("quadratic", 0.0)),
+      K_(load.value("inverse_square", 0.0)),
+      f_(load.law(law)) {
+  const std::string acts = load.word("acts");
+  acts_ = acts == "tension"       ? Acts::tension
+          : acts == "compression" ? Acts::compression
+                                  : Acts::both;
+}
+
+/// k (p + q)/2 + k₂ (p² + pq + q²)/3 + K/(pq): between points of one sign.
+double ForceLaw::mean_on_one_side(double p, double q) const {
+  const double x = p + q;
+  if (!acts_on(x)) return 0.0;
+  double mean = 0.5 * k_ * x + sign_of(x) * k_2_ * (p * p + p * q + q * q) / 3.0;
+  if (K_ != 0.0) mean += K_ / (p * q);
+  if (f_) mean += mean_value(*f_, p, q);
+  return mean;
+}
+
+double ForceLaw::mean(double p, double q) const {
+  const bool kink = acts_ != Acts::both || k_2_ != 0.0;
+  if (!kink || p * q >= 0.0) return mean_on_one_side(p, q);
+  const double part = std::abs(p) / (std::abs(p) + std::abs(q));
+  return part * mean_on_one_side(p, 0.0) + (1.0 - part) * mean_on_one_side(0.0, q);
+}
+
+LawValue ForceLaw::at(double x) const {
+  if (!acts_on(x)) return {};
+  LawValue v{k_ * x + k_2_ * std::abs(x) * x, k_ + 2.0 * k_2_ * std::abs(x)};
+  if (K_ != 0.0) {
+    v.value += K_ / (x * x);
+    v.slope -= 2.0 * K_ / (x * x * x);
+  }
+  if (!f_) return v;
+  const TimeRates r = f_->rates(x, TimeSide::kAfter);
+  v.value += (*f_)(x);
+  v.slope += r.rate;
+  return v;
+}
+
+LawValue ForceLaw::over_step(double x_n, double x_n1, double alpha_f) const {
+  const double shift = 2.0 * alpha_f - 1.0;  // of the lower end, by x_{n+1}
+  const double low = x_n + shift * (x_n1 - x_n);
+  const LawValue end = at(x_n1);
+  if (low == x_n1) return {end.value, 0.5 * (1.0 + shift) * end.slope};
+  const double m = mean(low, x_n1), way = x_n1 - low;
+  if (std::abs(way) <= kShort * (std::abs(low) + std::abs(x_n1)))
+    return {m, 0.5 * (1.0 + shift) * end.slope};
+  return {m, (end.value - m + shift * (m - at(low).value)) / way};
+}
+
+double ForceLaw::energy(double x) const {
+  double energy = 0.0;
+  if (acts_on(x)) {
+    energy = (0.5 * k_ + k_2_ * std::abs(x) / 3.0) * x * x;
+    if (K_ != 0.0) energy -= K_ / x;
+    if (f_) energy += x * mean_value(*f_, 0.0, x);
+  }
+  return energy;
+}
+
+LawValue ResistanceLaw::at(double v) const {
+  LawValue value{c_ * v, c_};
+  if (!f_) return value;
+  value.value += (*f_)(v);
+  value.slope += f_->rates(v, TimeSide::kAfter).rate;
+  return value;
+}
+
+}  // namespace polhode

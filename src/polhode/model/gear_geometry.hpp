@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <polhode/joints/joint.hpp>
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// A joint of a gear before the system is finished.
+struct GearJoint {
+  const Joint* joint = nullptr;
+  std::string coordinate;        ///< As in the user's file; "" for the only one.
+  bool assembled_start = false;  ///< Bodies stand elsewhere at the start than given.
+};
+
+/// Where a body stands at the start; the ground is the world.
+struct GearPose {
+  Vec3 r = Vec3::Zero();
+  Mat3 Lambda = Mat3::Identity();
+};
+
+/// Bodies and coordinates of a gear between two joints. @eq{gear-angle}
+struct GearGeometry {
+  Participants bodies;
+  GearPair pair;
+  bool mixed = false;  ///< The first coordinate is a displacement, the second an angle.
+};
+
+/// @param where  Path for messages, such as loads.train.
+/// @param poses  By body of the system.
+/// @throws InputError if the joints leave no such coordinates or share no body that carries both.
+[[nodiscard]] GearGeometry gear_geometry(const std::string& where,
+                                         const std::array<GearJoint, 2>& joints,
+                                         const std::vector<GearPose>& poses);
+
+}  // namespace polhode
