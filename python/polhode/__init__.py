@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Polhode: implicit dynamics of rigid and deformable multibody systems.
+
+    import polhode
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "2 s", "step": "5 ms"})
+    arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])
+    m.add_joint("hinge", "revolute", ["ground", arm], at=[0, 0, 0], axis="y")
+    r = polhode.run(m)
+    r.bodies["arm"].position    # (T, 3), m
+
+SI units; vectors have world axes unless something else is said.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from . import rotations
+from ._errors import Fault, ModelError, NotConverged
+from ._model import Model, from_text, load
+from ._native import __version__
+from ._result import Result, open, run
+
+if TYPE_CHECKING:
+    from ._modes import Matrices, Mode, Modes, matrices, modes
+    from ._simulation import Simulation, Step
+    from ._sweep import Fit, fit, sweep
+
+_LATER = {"modes": "_modes", "matrices": "_modes", "Matrices": "_modes", "Mode": "_modes", "Modes": "_modes", "Simulation": "_simulation", "Step": "_simulation",
+          "sweep": "_sweep", "fit": "_sweep", "Fit": "_sweep"}
+
+__all__ = ["Fault", "Model", "ModelError", "NotConverged", "Result", "__version__", "from_text", "load", "open",
+           "rotations", "run", *_LATER]
+
+
+def __getattr__(name: str) -> Any:
+    """Shapes are made from the engine's tables, and rarer parts loaded, when they are first wanted."""
+    if name in _LATER:
+        import importlib
+
+        return getattr(importlib.import_module(f".{_LATER[name]}", __name__), name)
+    if name[:1].isupper():
+        from . import _shapes
+
+        if name in _shapes.kinds():
+            return _shapes.shape_class(name)
+    raise AttributeError(f"module 'polhode' has no attribute '{name}'")
+
+
+def __dir__() -> "list[str]":
+    from . import _shapes
+
+    return sorted({*__all__, *_shapes.kinds()})
