@@ -13,32 +13,42 @@ SI units; vectors have world axes unless something else is said.
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
-from . import rotations
 from ._errors import Fault, ModelError, NotConverged
 from ._model import Model, from_text, load
-from ._native import __version__
-from ._result import Result, open, run
+from ._native import version as __version__
 
 if TYPE_CHECKING:
+    from . import rotations
     from ._modes import Matrices, Mode, Modes, matrices, modes
+    from ._result import Result, open, run
     from ._simulation import Simulation, Step
     from ._sweep import Fit, fit, sweep
 
-_LATER = {"modes": "_modes", "matrices": "_modes", "Matrices": "_modes", "Mode": "_modes", "Modes": "_modes", "Simulation": "_simulation", "Step": "_simulation",
-          "sweep": "_sweep", "fit": "_sweep", "Fit": "_sweep"}
+# Loaded when they are first wanted: NumPy takes longer to import than all the rest.
+_LATER = {
+    "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
+    "_result": ["Result", "open", "run"],
+    "_simulation": ["Simulation", "Step"],
+    "_sweep": ["Fit", "fit", "sweep"],
+}
+_HOME = {name: module for module, names in _LATER.items() for name in names}
 
-__all__ = ["Fault", "Model", "ModelError", "NotConverged", "Result", "__version__", "from_text", "load", "open",
-           "rotations", "run", *_LATER]
+__all__ = [
+    "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
+    "Simulation", "Step", "__version__", "fit", "from_text", "load", "matrices", "modes", "open",
+    "rotations", "run", "sweep",
+]
 
 
 def __getattr__(name: str) -> Any:
     """Shapes are made from the engine's tables, and rarer parts loaded, when they are first wanted."""
-    if name in _LATER:
-        import importlib
-
-        return getattr(importlib.import_module(f".{_LATER[name]}", __name__), name)
+    if name == "rotations":
+        return importlib.import_module(".rotations", __name__)
+    if name in _HOME:
+        return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
     if name[:1].isupper():
         from . import _shapes
 

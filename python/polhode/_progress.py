@@ -34,7 +34,7 @@ class Bar:
             try:
                 from tqdm.auto import tqdm
             except ImportError:
-                self._show = lambda _: None  # type: ignore[method-assign]
+                self._wanted, self._started = None, float("inf")
                 return
             form = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s [{elapsed}<{remaining}]"
             self._bar = tqdm(total=self._end, disable=False if self._wanted else None, bar_format=form)

@@ -23,6 +23,8 @@ _QUANTITIES = {
     "loads": ("values",),
     "contacts": ("gap", "normal_force", "impulse", "energy_lost", "points", "status", "force", "friction", "point"),
 }
+# Data sets without a frame for each time.
+_FIXED = ("/names", "/types", "/first", "/count", "/reference", "/connectivity", "/offsets", "/vtk_type", "/model")
 
 
 class _MemoryStore:
@@ -267,8 +269,8 @@ class Result:
         array = self._store.read(path)
         # A run that was killed may leave unfinished frames behind the last whole one.
         frames = len(self._store.read("/time"))
-        per_frame = not path.endswith(("/names", "/types", "/first", "/count", "/reference", "/connectivity", "/offsets"))
-        return array[:frames] if per_frame and isinstance(array, np.ndarray) and len(array) > frames else array
+        longer = isinstance(array, np.ndarray) and not path.endswith(_FIXED) and len(array) > frames
+        return array[:frames] if longer else array
 
     def _resolve(self, channel: str) -> "tuple[str, Any]":
         """Path and array or group of "joints.A.force"."""

@@ -35,6 +35,9 @@ class Shape:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Shape) and self.tree() == other.tree()
 
+    def __reduce__(self) -> "tuple[Any, ...]":
+        return (_restore, (type(self).__name__, self._keys))
+
     __hash__ = None  # type: ignore[assignment]
 
 
@@ -53,7 +56,8 @@ def _make(kind: str) -> "type[Shape]":
     entry = _schema.definition("shape")["properties"][kind]
     sizes = _sizes(entry)
     either = inspect.Parameter.POSITIONAL_OR_KEYWORD
-    parameters = [inspect.Parameter(k, either, default=inspect.Parameter.empty if needed else None) for k, needed, _ in sizes]
+    empty = inspect.Parameter.empty
+    parameters = [inspect.Parameter(k, either, default=empty if needed else None) for k, needed, _ in sizes]
     parameters += [inspect.Parameter(k, inspect.Parameter.KEYWORD_ONLY, default=None) for k in _PLACED]
     name = "".join(word.capitalize() for word in kind.split("_"))
     doc = str(entry["description"]) + "\n\n" + "\n".join(f"{k}: {meaning}" for k, _, meaning in sizes)
@@ -80,6 +84,3 @@ _CLASSES: "dict[str, type[Shape]]" = {}
 
 def _restore(name: str, keys: "dict[str, Any]") -> Shape:
     return shape_class(name)(**keys)
-
-
-Shape.__reduce__ = lambda self: (_restore, (type(self).__name__, self._keys))  # type: ignore[method-assign,assignment]

@@ -26,7 +26,8 @@ def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed
 
     names = list(parameters)
     if method == "grid":
-        axes = [np.linspace(*v, n or 5).tolist() if isinstance(v, tuple) else list(v) for v in parameters.values()]
+        axes = [np.linspace(v[0], v[1], n or 5).tolist() if isinstance(v, tuple) else list(v)
+                for v in parameters.values()]
         return [dict(zip(names, values)) for values in itertools.product(*axes)]
     if n is None:
         raise ValueError(f"the method {method} takes n, the number of points")
@@ -52,7 +53,10 @@ def _last(result: Result, outputs: "Sequence[str]") -> "dict[str, Any]":
     for name in outputs:
         value = np.asarray(result[name])[-1]
         letters = {3: "xyz", 4: "wxyz"}.get(value.size, "0123456789") if value.ndim else ""
-        row.update({f"{name}.{c}": float(x) for c, x in zip(letters, value.ravel())} if value.ndim else {name: float(value)})
+        if value.ndim:
+            row.update({f"{name}.{c}": float(x) for c, x in zip(letters, value.ravel())})
+        else:
+            row[name] = float(value)
     return row
 
 
@@ -102,7 +106,8 @@ def sweep(
     import pandas
 
     points = _points(parameters, n, method, seed)
-    identity = hashlib.sha256(pickle.dumps((model.to_dict(), str(outputs) if not callable(outputs) else outputs))).hexdigest()
+    wanted = outputs if callable(outputs) else list(outputs)
+    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted))).hexdigest()
     rows: "dict[int, dict[str, Any]]" = {}
     path = os.fspath(resume) if resume is not None else None
     if path is not None and os.path.exists(path):
@@ -194,7 +199,8 @@ def fit(
     parameters: first guesses, by path as overrides: {"loads.damper.damping": 0.1}.
     bounds:     (lowest, highest) by path.
 
-    Raises ModelError or NotConverged if the model does not run at the first guesses, ValueError if the data do not match.
+    Raises ModelError or NotConverged if the model does not run at the first guesses, ValueError if the
+    data do not match.
     """
     from scipy.interpolate import CubicSpline
     from scipy.optimize import least_squares

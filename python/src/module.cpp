@@ -3,7 +3,7 @@
 
 NB_MODULE(_native, m) {
   m.doc() = "The engine behind the package polhode: use that one.";
-  m.attr("__version__") = POLHODE_VERSION;
+  m.attr("version") = POLHODE_VERSION;
   polhode::python::bind_errors(m);
   polhode::python::bind_model(m);
   polhode::python::bind_recording(m);

@@ -13,7 +13,10 @@ _turns = st.tuples(*[st.floats(-1.7, 1.7)] * 3).map(np.array)
 _shifts = st.tuples(*[st.floats(-3, 3)] * 3).map(np.array)
 
 
-def double_pendulum(R=np.eye(3), shift=np.zeros(3), **scale):
+_EYE, _ZERO = np.eye(3), np.zeros(3)
+
+
+def double_pendulum(R=_EYE, shift=_ZERO, **scale):
     """Two bars on spherical joints and a spring, in a frame that is turned and shifted."""
     L, M, T = scale.get("length", 1), scale.get("mass", 1), scale.get("time", 1)
     units = {k: u for k, u in (("length", "mm" if L != 1 else "m"), ("mass", "g" if M != 1 else "kg"),

@@ -54,7 +54,7 @@ def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum):
     with pytest.raises(polhode.ModelError, match="is taken"):
         pendulum.add_body("arm", mass=1)
     with pytest.raises(KeyError, match="Did you mean 'arm'"):
-        pendulum.bodies["amr"]
+        _ = pendulum.bodies["amr"]
 
 
 def test_faults_have_path_and_hint_and_in_files_line_and_column(tmp_path, pendulum):
@@ -91,7 +91,7 @@ def test_shapes_have_the_sizes_of_the_model_file():
     with pytest.raises(TypeError):
         polhode.Box(1, 2)
     with pytest.raises(AttributeError):
-        polhode.Boxes
+        _ = polhode.Boxes
 
 
 @pytest.mark.parametrize("kind", ["Box", "Sphere", "Cylinder", "Capsule", "Cone", "Ellipsoid", "Tube"])

@@ -56,9 +56,9 @@ def test_arrays_are_the_memory_of_the_engine(pendulum):
     assert r.unit("bodies.arm.velocity") == "m/s" and r.energy.unit("total") == "J"
     assert "position" in dir(body) and "bodies" in dir(r) and "arm" in r.bodies
     with pytest.raises(AttributeError, match="Did you mean 'position'"):
-        body.positon
+        _ = body.positon
     with pytest.raises(KeyError, match="no channel"):
-        r["bodies.leg.position"]
+        _ = r["bodies.leg.position"]
 
 
 def test_results_are_those_of_the_command_line_bit_for_bit(pendulum, tmp_path):
@@ -206,7 +206,8 @@ def test_the_version_is_that_of_the_build():
     import importlib.metadata
 
     assert importlib.metadata.version("polhode") == polhode.__version__
-    assert polhode.__version__ in subprocess.run([CLI, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    program = subprocess.run([CLI, "--version"], check=True, stdout=subprocess.PIPE, text=True)
+    assert polhode.__version__ in program.stdout
 
 
 def test_the_command_is_installed():

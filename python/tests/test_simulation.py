@@ -12,7 +12,8 @@ from conftest import make_pendulum
 def test_steps_are_those_of_a_run(pendulum):
     sim = polhode.Simulation(pendulum)
     heights = [sim.bodies["arm"].position[2]]
-    for step in sim:
+    step = None
+    for step in sim:  # noqa: B007
         heights.append(sim.bodies["arm"].position[2])
     r = polhode.run(pendulum)
     assert np.array_equal(heights, r.bodies["arm"].position[:, 2])
@@ -21,7 +22,7 @@ def test_steps_are_those_of_a_run(pendulum):
     assert sim.joints["hinge"].coordinates == pytest.approx(r.joints["hinge"].coordinates[-1], abs=0)
     assert sim.energy.total == pytest.approx(r.energy.total[-1], abs=0)
     with pytest.raises(KeyError, match="Did you mean 'arm'"):
-        sim.bodies["amr"]
+        _ = sim.bodies["amr"]
 
 
 def test_a_state_is_restored_bit_for_bit(pendulum):
