@@ -23,14 +23,16 @@ from ._native import version as __version__
 if TYPE_CHECKING:
     from . import rotations
     from ._modes import Matrices, Mode, Modes, matrices, modes
-    from ._result import Result, open, run
+    from ._result import Result, open
+    from ._run import run
     from ._simulation import Simulation, Step
     from ._sweep import Fit, fit, sweep
 
 # Loaded when they are first wanted: NumPy takes longer to import than all the rest.
 _LATER = {
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
-    "_result": ["Result", "open", "run"],
+    "_result": ["Result", "open"],
+    "_run": ["run"],
     "_simulation": ["Simulation", "Step"],
     "_sweep": ["Fit", "fit", "sweep"],
 }

@@ -174,7 +174,7 @@ class Model(Section):
 
     def run(self, **options: Any) -> "Result":
         """Runs the model: polhode.run(model, **options)."""
-        from ._result import run
+        from ._run import run
 
         return run(self, **options)
 

@@ -3,20 +3,15 @@
 
 from __future__ import annotations
 
-import json
-import logging
 import os
-import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _native
-from ._errors import NotConverged
-from ._model import Model, Overrides, overrides_list
+from ._stores import FileStore, Store
 
-_log = logging.getLogger("polhode")
 _QUANTITIES = {
     "bodies": ("position", "orientation", "velocity", "angular_velocity"),
     "joints": ("coordinates", "rates", "force", "moment"),
@@ -25,66 +20,6 @@ _QUANTITIES = {
 }
 # Data sets without a frame for each time.
 _FIXED = ("/names", "/types", "/first", "/count", "/reference", "/connectivity", "/offsets", "/vtk_type", "/model")
-
-
-class _MemoryStore:
-    """Channels that the engine has handed over; views of them share the memory."""
-
-    def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]") -> None:
-        self.channels, self.views, self.fixed = channels, views, fixed
-
-    def paths(self) -> "list[str]":
-        return [*self.channels, *self.views, *self.fixed]
-
-    def read(self, path: str) -> Any:
-        if path in self.channels:
-            return self.channels[path][0]
-        if path in self.fixed:
-            return self.fixed[path]
-        channel, first, count, squeeze, _ = self.views[path]
-        array = self.channels[channel][0]
-        return array[:, first] if squeeze and count == 1 else array[:, first : first + count]
-
-    def unit(self, path: str) -> str:
-        if path in self.channels:
-            return str(self.channels[path][1])
-        return str(self.views[path][4]) if path in self.views else ""
-
-    def title(self) -> str:
-        return ""
-
-
-class _FileStore:
-    """Data sets of a results file, read when they are first wanted and kept."""
-
-    def __init__(self, file: str) -> None:
-        self.file = file
-        self._reader = _native.ResultsReader(file)
-        self._paths = self._reader.paths()
-        self._known = set(self._paths)
-        self._kept: "dict[str, Any]" = {}
-
-    def paths(self) -> "list[str]":
-        return self._paths
-
-    def read(self, path: str) -> Any:
-        if path not in self._known:
-            raise KeyError(path)
-        if path not in self._kept:
-            self._kept[path] = self._reader.read(path)
-        return self._kept[path]
-
-    def unit(self, path: str) -> str:
-        return str(self._reader.attribute(path, "unit") or "")
-
-    def title(self) -> str:
-        return str(self._reader.attribute("/", "title") or "")
-
-    def __reduce__(self) -> "tuple[Any, ...]":
-        return (_FileStore, (self.file,))
-
-
-_Store = Union[_MemoryStore, _FileStore]
 
 
 class Group(Mapping):  # type: ignore[type-arg]
@@ -161,7 +96,7 @@ class Result:
     engine's memory, not copies. docs/reference/results_file.md lists them all.
     """
 
-    def __init__(self, store: _Store, ledger: "Optional[dict[str, Any]]" = None) -> None:
+    def __init__(self, store: Store, ledger: "Optional[dict[str, Any]]" = None) -> None:
         self._store = store
         self._ledger = ledger
         self._tables: "Optional[dict[str, list[str]]]" = None
@@ -414,61 +349,4 @@ def open(path: "Union[str, os.PathLike[str]]") -> Result:
     Data sets are read when they are first looked at. The run may still go on.
     """
     name = os.fspath(path)
-    return Result(_FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name))
-
-
-def run(
-    model: "Union[Model, str, os.PathLike[str]]",
-    *,
-    overrides: Overrides = None,
-    output: "Union[str, os.PathLike[str], None]" = None,
-    progress: "Optional[bool]" = None,
-) -> Result:
-    """Runs a model to the end of its analysis and returns what it computed.
-
-    model:     a Model, or the path of a model file.
-    overrides: changes for this run alone, by path: {"analysis.step": "1 ms", "variables.L": 2}.
-    output:    a folder; what `polhode run -o` writes is written there too.
-    progress:  show a bar with tqdm; None: if tqdm is there and the run takes more than a second.
-
-    Frames are kept at output.every, else after every step. Other Python threads go on meanwhile.
-    Ctrl-C stops the run: the result then holds what was computed, and its `end` is "interrupted".
-    Raises ModelError for a model with faults, NotConverged (with `result`) if a step does not
-    converge, OSError if the folder cannot be written.
-    """
-    from ._progress import Bar
-
-    if not isinstance(model, Model):
-        from ._model import load
-
-        model = load(model)
-    compiled = model._compile(overrides)
-    if compiled.analysis == "modes":
-        from ._errors import fault
-
-        raise fault("analysis.type", "modes have no motion to run", "Call polhode.modes(model)")
-    engine = _native.Engine(compiled)
-    recording = engine.record()
-    end = 1.0 if compiled.analysis == "statics" else compiled.duration
-    with Bar(end, progress) as bar:
-        text = engine.run(recording, os.fspath(output) if output is not None else "", model._source()[0],
-                          overrides_list(overrides), bar.show)
-    ledger = json.loads(text)
-    for key in ("exit_code", "results"):
-        ledger.pop(key)
-    result = Result(_MemoryStore(recording.channels(), recording.views(), recording.fixed()), ledger)
-    _report(ledger)
-    if ledger["end"] == "not_converged":
-        raise NotConverged(ledger["message"], result)
-    return result
-
-
-def _report(ledger: "dict[str, Any]") -> None:
-    """Tells logging what was chosen, and warnings what deserves a look."""
-    for line in ledger["narration"].splitlines():
-        _log.info(line)
-    _log.info("reached t = %g in %d steps, %.3g s", ledger["t"], ledger["steps"], ledger["wall_time_s"])
-    for warning in ledger["warnings"]:
-        warnings.warn(warning, stacklevel=3)
-    if ledger["end"] == "interrupted":
-        warnings.warn(f"the run was stopped at t = {ledger['t']:g} s", stacklevel=3)
+    return Result(FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name))

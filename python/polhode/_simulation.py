@@ -11,7 +11,8 @@ from typing import Any, Callable, NamedTuple, Optional, Union
 from . import _native
 from ._errors import NotConverged
 from ._model import Model, Overrides, load
-from ._result import Report, Result, _MemoryStore
+from ._result import Report, Result
+from ._stores import MemoryStore
 
 
 class Step(NamedTuple):
@@ -173,7 +174,7 @@ class Simulation:
             if self.time >= end * (1 - 1e-9):
                 break
             self.step(end)
-        store = _MemoryStore(recording.channels(), recording.views(), recording.fixed())
+        store = MemoryStore(recording.channels(), recording.views(), recording.fixed())
         return Result(store, {"end": ended, **self.ledger})
 
     @property

@@ -15,7 +15,8 @@ import numpy as np
 
 from ._errors import ModelError, NotConverged
 from ._model import Model
-from ._result import Result, run
+from ._result import Result
+from ._run import run
 
 _FIGURES = ("t", "steps", "newton_iterations", "energy_drift", "constraint_residual_max", "wall_time_s", "result_hash")
 

@@ -2,6 +2,7 @@
 #include "engine.hpp"
 
 #include <chrono>
+#include <filesystem>
 #include <optional>
 
 #include <polhode/assembly/state_archive.hpp>
@@ -47,7 +48,13 @@ class Attention {
       PyErr_Clear();
       stop = true;
     }
-    if (!progress_.is_none()) progress_(time);
+    if (progress_.is_none()) return;
+    try {
+      progress_(time);
+    } catch (const nb::python_error& e) {  // Ctrl-C may come while the bar is drawn
+      if (!e.matches(PyExc_KeyboardInterrupt)) throw;
+      stop = true;
+    }
   }
   std::atomic<bool> stop{false};
 
@@ -70,7 +77,7 @@ std::string Engine::run(Recording* recording, const std::string& folder,
                  Provenance{.version = POLHODE_VERSION,
                             .solver = s.solver,
                             .instruction_set = s.instruction_set,
-                            .model_file = model().source_file,
+                            .model_file = std::filesystem::path(model().source_file).filename().string(),
                             .model_text = model_text,
                             .overrides = overrides});
     file->step(*simulation_);

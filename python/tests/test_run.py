@@ -78,6 +78,16 @@ def test_results_are_those_of_the_command_line_bit_for_bit(pendulum, tmp_path):
     assert file.ledger.energy_drift < 1e-13 and file.ledger.steps == 200
 
 
+def test_a_folder_of_results_says_where_they_come_from(pendulum, tmp_path):
+    pendulum.save(tmp_path / "m.yaml")
+    polhode.run(tmp_path / "m.yaml", output=tmp_path / "out", overrides={"analysis.duration": "20 ms"})
+    with h5py.File(tmp_path / "out/results.h5") as h5:
+        origin = h5["provenance"]
+        assert origin.attrs["version"] == polhode.__version__ and origin.attrs["model_file"] == "m.yaml"
+        assert origin.attrs["overrides"] == "analysis.duration=20 ms"
+        assert origin["model"].asstr()[0] == (tmp_path / "m.yaml").read_text()
+
+
 def test_models_of_many_bodies_are_read_by_name_too(tmp_path):
     m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 0.02, "step": 0.01})
     for i in range(150):
@@ -187,6 +197,18 @@ def test_progress_is_shown_by_tqdm(pendulum, monkeypatch):
     monkeypatch.setattr(_progress.Bar, "show", property(lambda self: seen.append))
     polhode.run(pendulum, overrides={"analysis.step": "20 us", "output.every": 1})
     assert seen and seen == sorted(seen) and seen[-1] <= 1
+
+
+def test_ctrl_c_within_the_progress_stops_too(pendulum, monkeypatch):
+    from polhode import _progress
+
+    def interrupt(t):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(_progress.Bar, "show", property(lambda self: interrupt))
+    with pytest.warns(UserWarning, match="was stopped"):
+        r = polhode.run(pendulum, overrides={"analysis.step": "10 us", "output.every": "1 ms"})
+    assert r.end == "interrupted" and 0 < r.time[-1] < 1
 
 
 def test_an_exception_in_the_progress_stops_the_run(pendulum, monkeypatch):

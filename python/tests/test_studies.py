@@ -2,6 +2,9 @@
 """Sweeps and fits."""
 
 import json
+import os
+import pathlib
+import signal
 
 import numpy as np
 import pytest
@@ -54,6 +57,22 @@ def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path):
     assert again.drop(columns="wall_time_s").equals(alone.drop(columns="wall_time_s"))
     added = log.read_text().splitlines()[len(kept):]
     assert [json.loads(line)["point"] for line in added] == [{"variables.k": 40}]
+
+
+def die_once(result):
+    """Kills its process the first time, as the system does when memory is short."""
+    mark = pathlib.Path(os.environ["POLHODE_TEST_MARK"])
+    if result.ledger.t > 2.9 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"height": float(result.bodies["b"].position[-1, 2])}
+
+
+def test_the_runs_of_a_killed_process_are_run_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("POLHODE_TEST_MARK", str(tmp_path / "mark"))
+    table = polhode.sweep(oscillator(), {"variables.k": [20, 30, 40, 50]}, outputs=die_once, processes=2)
+    assert (tmp_path / "mark").exists() and list(table.message) == [""] * 4
+    assert table.height.to_numpy() == pytest.approx([height(3.0, k) for k in (20, 30, 40, 50)], abs=2e-3)
 
 
 def test_points_fill_their_ranges():
