@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 environment=$PWD/build/python-tests
 python=$environment/bin/python
-[ -x "$python" ] || python3 -m venv "$environment"
+[ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
 "$python" -m pip install --quiet --disable-pip-version-check -r python/requirements.txt
 # The same compiler names and base folder as the other builds, so that a compiler cache serves all of them.
 export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
