@@ -160,9 +160,9 @@ TEST(ResultsFile, HoldsDeformableSolids) {
     report.nodal.strain_energy_density = {0.5, 0.5, 0.5, 0.0, 1.0};
     report.nodal.stress_error = {0.25, 0.75};
     f.solids = {report};
-    f.interfaces.resize(2);
-    f.interfaces[0].force = {1.0 * k, 2.0, 3.0};
-    f.interfaces[1].moment = {4.0, 5.0, 6.0 * k};
+    f.interfaces.emplace_back(2);
+    f.interfaces[0][0].force = {1.0 * k, 2.0, 3.0};
+    f.interfaces[0][1].moment = {4.0, 5.0, 6.0 * k};
     file.append(f);
   }
   file.close();

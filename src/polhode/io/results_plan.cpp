@@ -127,6 +127,40 @@ void plan_lines(const ResultsLayout& layout, FilePlan& p) {
   }
 }
 
+/// Start of the nodes and the nodes of each element.
+void fix_mesh(const ResultsLayout::SolidEntry& solid, FixedData& data) {
+  std::vector<std::int64_t> connectivity, offsets{0}, types;
+  for (int e = 0; e < solid.mesh->element_count(); ++e) {
+    for (const int node : solid.mesh->element_nodes(e)) connectivity.push_back(node);
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(solid.mesh->element_shape(e).vtk);
+  }
+  data.vectors.emplace_back(part(solid.name, "nodes/reference"), solid.reference);
+  data.numbers.emplace_back(part(solid.name, "elements/connectivity"), connectivity);
+  data.numbers.emplace_back(part(solid.name, "elements/offsets"), offsets);
+  data.numbers.emplace_back(part(solid.name, "elements/vtk_type"), types);
+}
+
+/// Names and types of joints or loads, and which of the packed numbers each owns.
+template <class Entry, class Size>
+void fix_entries(const char* group, const std::vector<Entry>& entries, Size&& size,
+                 FixedData& data) {
+  std::vector<std::string> names, types;
+  std::vector<std::int64_t> first, count;
+  std::int64_t next = 0;
+  for (const Entry& entry : entries) {
+    names.push_back(entry.name);
+    types.push_back(entry.type);
+    first.push_back(next);
+    count.push_back(size(entry));
+    next += count.back();
+  }
+  data.names.emplace_back(join(group, "names"), names);
+  data.names.emplace_back(join(group, "types"), types);
+  data.numbers.emplace_back(join(group, "first"), first);
+  data.numbers.emplace_back(join(group, "count"), count);
+}
+
 }  // namespace
 
 FilePlan plan_results(const ResultsLayout& layout) {
@@ -174,6 +208,25 @@ FilePlan plan_results(const ResultsLayout& layout) {
   plan_solids(layout, p);
   plan_lines(layout, p);
   return p;
+}
+
+FixedData fixed_data(const ResultsLayout& layout) {
+  namespace r = results;
+  FixedData data;
+  for (const auto& solid : layout.solids) fix_mesh(solid, data);
+  for (const auto& beam : layout.beams)
+    data.vectors.emplace_back(format("{}/{}/nodes/reference", r::kBeams, beam.name),
+                              beam.reference);
+  data.names.emplace_back(join(r::kPackedBodies, "names"), layout.bodies);
+  fix_entries(
+      r::kPackedJoints, layout.joints, [](const auto& e) { return e.coordinates; }, data);
+  if (layout.load_numbers() > 0)
+    fix_entries(
+        r::kPackedLoads, layout.loads,
+        [](const auto& e) { return load_kind(e.type).report_size(); }, data);
+  if (!layout.contacts.empty())
+    data.names.emplace_back(join(r::kPackedContacts, "names"), layout.contacts);
+  return data;
 }
 
 }  // namespace polhode

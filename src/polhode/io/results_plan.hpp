@@ -52,7 +52,18 @@ struct FilePlan {
   return format("{}/{}/{}", results::kSolids, solid, name);
 }
 
-/// The order of the channels is the order in which ResultsFile::append() lists the numbers.
+/// The order of the channels is the order in which list_numbers() lists the numbers.
 [[nodiscard]] FilePlan plan_results(const ResultsLayout& layout);
+
+/// Appends the numbers of a frame, channel after channel.
+void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers);
+
+/// Parts of results that do not change: names, numbers and meshes, by path.
+struct FixedData {
+  std::vector<std::pair<std::string, std::vector<std::string>>> names;
+  std::vector<std::pair<std::string, std::vector<std::int64_t>>> numbers;
+  std::vector<std::pair<std::string, std::vector<Vec3>>> vectors;  ///< [m]
+};
+[[nodiscard]] FixedData fixed_data(const ResultsLayout& layout);
 
 }  // namespace polhode

@@ -10,28 +10,9 @@ namespace polhode {
 
 namespace {
 
-/// What does not change: where the nodes start and which of them an element has.
-void write_mesh(Hdf5File& file, const ResultsLayout::SolidEntry& solid) {
-  std::vector<std::int64_t> connectivity, offsets{0}, types;
-  for (int e = 0; e < solid.mesh->element_count(); ++e) {
-    for (const int node : solid.mesh->element_nodes(e)) connectivity.push_back(node);
-    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-    types.push_back(solid.mesh->element_shape(e).vtk);
-  }
-  file.vectors(part(solid.name, "nodes/reference"), solid.reference, "m");
-  file.numbers(part(solid.name, "elements/connectivity"), connectivity);
-  file.numbers(part(solid.name, "elements/offsets"), offsets);
-  file.numbers(part(solid.name, "elements/vtk_type"), types);
-}
-
 Hdf5File create(const std::string& path, const ResultsLayout& layout) {
   FilePlan p = plan_results(layout);
   return {path, std::move(p.channels), p.views};
-}
-
-void add_quaternion(std::vector<double>& numbers, const Quat& q) {
-  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation.
-  for (double x : {q.w(), q.x(), q.y(), q.z()}) numbers.push_back(sign * x);
 }
 
 std::string lines(const std::vector<std::string>& list) {
@@ -119,7 +100,9 @@ ResultsFrame results_frame(const Simulation& simulation) {
   for (int i = 0; i < static_cast<int>(model.solids.size()); ++i) {
     frame.solids.push_back(simulation.solid(i));
     const auto count = static_cast<int>(simulation.interfaces(i).size());
-    for (int k = 0; k < count; ++k) frame.interfaces.push_back(simulation.interface_reaction(i, k));
+    frame.interfaces.emplace_back();
+    for (int k = 0; k < count; ++k)
+      frame.interfaces.back().push_back(simulation.interface_reaction(i, k));
   }
   for (int i = 0; i < static_cast<int>(model.beams.size()); ++i)
     frame.beams.push_back(simulation.beam(i));
@@ -127,6 +110,7 @@ ResultsFrame results_frame(const Simulation& simulation) {
     frame.cables.push_back(simulation.cable(i));
   for (int i = 0; i < static_cast<int>(simulation.contact_map().pairs.size()); ++i)
     frame.contacts.push_back(simulation.contact(i));
+  frame.has_contacts = simulation.has_contacts();
   frame.losses = simulation.contact_losses();
   frame.balance = simulation.balance();
   const State& state = simulation.state();
@@ -139,29 +123,12 @@ ResultsFrame results_frame(const Simulation& simulation) {
 
 ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
                          const Provenance& provenance)
-    : file_(create(path, layout)), solids_(layout.solids), has_contacts_(layout.has_contacts) {
+    : file_(create(path, layout)) {
   namespace r = results;
-  std::vector<std::string> joints, types;
-  std::vector<std::int64_t> first, count;
-  std::int64_t next = 0;
-  for (const auto& joint : layout.joints) {
-    joints.push_back(joint.name);
-    types.push_back(joint.type);
-    first.push_back(next);
-    count.push_back(joint.coordinates);
-    next += joint.coordinates;
-  }
-  for (const auto& solid : layout.solids) write_mesh(file_, solid);
-  for (const auto& beam : layout.beams)
-    file_.vectors(format("{}/{}/nodes/reference", r::kBeams, beam.name), beam.reference, "m");
-  file_.names(join(r::kPackedBodies, "names"), layout.bodies);
-  file_.names(join(r::kPackedJoints, "names"), joints);
-  file_.names(join(r::kPackedJoints, "types"), types);
-  file_.numbers(join(r::kPackedJoints, "first"), first);
-  file_.numbers(join(r::kPackedJoints, "count"), count);
-
-  if (layout.load_numbers() > 0) name_loads(layout);
-  if (!layout.contacts.empty()) file_.names(join(r::kPackedContacts, "names"), layout.contacts);
+  const FixedData fixed = fixed_data(layout);
+  for (const auto& [where, rows] : fixed.vectors) file_.vectors(where, rows, "m");
+  for (const auto& [where, list] : fixed.names) file_.names(where, list);
+  for (const auto& [where, list] : fixed.numbers) file_.numbers(where, list);
 
   file_.attribute("/", "format", "polhode results");
   file_.attribute("/", "format_version", r::kFormatVersion);
@@ -176,127 +143,14 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.flush();
 }
 
-void ResultsFile::name_loads(const ResultsLayout& layout) {
-  namespace r = results;
-  std::vector<std::string> names, types;
-  std::vector<std::int64_t> first, count;
-  std::int64_t next = 0;
-  for (const auto& load : layout.loads) {
-    names.push_back(load.name);
-    types.push_back(load.type);
-    first.push_back(next);
-    count.push_back(load_kind(load.type).report_size());
-    next += count.back();
-  }
-  file_.names(join(r::kPackedLoads, "names"), names);
-  file_.names(join(r::kPackedLoads, "types"), types);
-  file_.numbers(join(r::kPackedLoads, "first"), first);
-  file_.numbers(join(r::kPackedLoads, "count"), count);
-}
-
 ResultsFile ResultsFile::append_to(const std::string& path, const ResultsLayout& layout, double t) {
-  return {Hdf5File::append_to(path, plan_results(layout).channels, t), layout};
+  return ResultsFile(Hdf5File::append_to(path, plan_results(layout).channels, t));
 }
 
 void ResultsFile::append(const ResultsFrame& frame) {
   numbers_.clear();
-  const auto scalar = [this](double x) { numbers_.push_back(x); };
-  const auto vector = [&](const Vec3& x) {
-    for (int i = 0; i < 3; ++i) scalar(x[i]);
-  };
-  const auto vectors = [&](const std::vector<Vec3>& list) {
-    for (const Vec3& x : list) vector(x);
-  };
-  scalar(frame.t);
-  vectors(frame.position);
-  for (const Quat& q : frame.orientation) add_quaternion(numbers_, q);
-  vectors(frame.velocity);
-  vectors(frame.angular_velocity);
-  vectors(frame.force);
-  vectors(frame.moment);
-  for (double x : frame.coordinates) scalar(x);
-  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power,
-                           &frame.work, &frame.loads})
-    for (double x : *list) scalar(x);
-  const Balance& b = frame.balance;
-  for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})
-    scalar(x);
-  vector(b.linear_momentum);
-  vector(b.angular_momentum);
-  scalar(frame.dt);
-  for (std::int64_t x : {frame.steps, frame.iterations, frame.rejected})
-    scalar(static_cast<double>(x));
-  if (has_contacts_) add_contacts(frame);
-  add_solids(frame);
-  add_lines(frame);
+  list_numbers(frame, numbers_);
   file_.append(numbers_);
-}
-
-void ResultsFile::add_contacts(const ResultsFrame& frame) {
-  numbers_.push_back(frame.losses.impacts);
-  numbers_.push_back(frame.losses.friction);
-  const auto each = [&](auto&& value) {
-    for (const ContactReport& c : frame.contacts) numbers_.push_back(value(c));
-  };
-  each([](const ContactReport& c) { return c.gap; });
-  each([](const ContactReport& c) { return c.normal_force; });
-  each([](const ContactReport& c) { return c.impulse; });
-  each([](const ContactReport& c) { return c.energy_lost; });
-  each([](const ContactReport& c) { return static_cast<double>(c.points); });
-  each([](const ContactReport& c) { return static_cast<double>(c.status); });
-  for (const auto member : {&ContactReport::force, &ContactReport::friction, &ContactReport::point})
-    for (const ContactReport& c : frame.contacts)
-      numbers_.insert(numbers_.end(), (c.*member).begin(), (c.*member).end());
-}
-
-void ResultsFile::add_solids(const ResultsFrame& frame) {
-  const auto vector = [&](const Vec3& x) { numbers_.insert(numbers_.end(), x.begin(), x.end()); };
-  const auto tensor = [&](const Mat3& T) {
-    numbers_.insert(numbers_.end(), {T(0, 0), T(1, 1), T(2, 2), T(0, 1), T(1, 2), T(0, 2)});
-  };
-  std::size_t next = 0;
-  for (std::size_t s = 0; s < solids_.size(); ++s) {
-    const SolidReport& report = frame.solids[s];
-    const NodalFields& nodal = report.nodal;
-    for (const Vec3& x : report.displacement) vector(x);
-    for (const Vec3& x : report.velocity) vector(x);
-    for (const Mat3& T : nodal.cauchy) tensor(T);
-    numbers_.insert(numbers_.end(), nodal.von_mises.begin(), nodal.von_mises.end());
-    numbers_.insert(numbers_.end(), nodal.strain_energy_density.begin(),
-                    nodal.strain_energy_density.end());
-    for (const ElementSample& e : report.elements) tensor(e.cauchy);
-    for (const ElementSample& e : report.elements) numbers_.push_back(von_mises(e.cauchy));
-    for (const ElementSample& e : report.elements) vector(e.principal_stretches);
-    for (const ElementSample& e : report.elements) numbers_.push_back(e.strain_energy_density);
-    numbers_.insert(numbers_.end(), nodal.stress_error.begin(), nodal.stress_error.end());
-    for (std::size_t k = 0; k < solids_[s].interfaces.size(); ++k) {
-      vector(frame.interfaces[next].force);
-      vector(frame.interfaces[next++].moment);
-    }
-  }
-}
-
-void ResultsFile::add_lines(const ResultsFrame& frame) {
-  const auto vectors = [&](const std::vector<Vec3>& list) {
-    for (const Vec3& x : list) numbers_.insert(numbers_.end(), x.begin(), x.end());
-  };
-  const auto halves = [&](const std::vector<Vec6>& list) {
-    for (const Eigen::Index first : {0, 3})
-      for (const Vec6& x : list)
-        numbers_.insert(numbers_.end(), x.data() + first, x.data() + first + 3);
-  };
-  for (const BeamReport& beam : frame.beams) {
-    vectors(beam.position);
-    for (const Quat& q : beam.orientation) add_quaternion(numbers_, q);
-    vectors(beam.velocity);
-    halves(beam.forces);
-    halves(beam.strains);
-  }
-  for (const CableReport& cable : frame.cables) {
-    vectors(cable.position);
-    numbers_.insert(numbers_.end(), cable.tension.begin(), cable.tension.end());
-    numbers_.insert(numbers_.end(), cable.length.begin(), cable.length.end());
-  }
 }
 
 }  // namespace polhode

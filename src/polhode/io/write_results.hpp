@@ -75,9 +75,10 @@ struct ResultsFrame {
   std::vector<double> friction, slips, stops, power, work;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
   std::vector<SolidReport> solids;
-  std::vector<InterfaceReport> interfaces;  ///< Of all solids, one solid after the other.
+  std::vector<std::vector<InterfaceReport>> interfaces;  ///< By solid.
   std::vector<BeamReport> beams;
   std::vector<CableReport> cables;
+  bool has_contacts = false;
   std::vector<ContactReport> contacts;
   ContactLosses losses;
   Balance balance;
@@ -101,16 +102,9 @@ class ResultsFile {
   void close() { file_.close(); }  ///< @throws FileError
 
  private:
-  void name_loads(const ResultsLayout& layout);
-  ResultsFile(Hdf5File file, const ResultsLayout& layout)
-      : file_(std::move(file)), solids_(layout.solids), has_contacts_(layout.has_contacts) {}
-  void add_solids(const ResultsFrame& frame);
-  void add_lines(const ResultsFrame& frame);
-  void add_contacts(const ResultsFrame& frame);
+  explicit ResultsFile(Hdf5File file) : file_(std::move(file)) {}
 
   Hdf5File file_;
-  std::vector<ResultsLayout::SolidEntry> solids_;
-  bool has_contacts_ = false;
   std::vector<double> numbers_;
 };
 

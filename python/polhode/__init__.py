@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Polhode: implicit dynamics of rigid and deformable multibody systems.
+
+    import polhode
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": "2 s", "step": "5 ms"})
+    arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])
+    m.add_joint("hinge", "revolute", ["ground", arm], at=[0, 0, 0], axis="y")
+    r = polhode.run(m)
+    r.bodies["arm"].position    # (T, 3), m
+
+SI units; vectors have world axes unless something else is said.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from ._errors import Fault, ModelError, NotConverged
+from ._model import Model, from_text, load
+from ._native import version as __version__
+
+if TYPE_CHECKING:
+    from . import rotations
+    from ._modes import Matrices, Mode, Modes, matrices, modes
+    from ._result import Result, open
+    from ._run import run
+    from ._simulation import Simulation, Step
+    from ._sweep import Fit, fit, sweep
+
+# Loaded when they are first wanted: NumPy takes longer to import than all the rest.
+_LATER = {
+    "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
+    "_result": ["Result", "open"],
+    "_run": ["run"],
+    "_simulation": ["Simulation", "Step"],
+    "_sweep": ["Fit", "fit", "sweep"],
+}
+_HOME = {name: module for module, names in _LATER.items() for name in names}
+
+__all__ = [
+    "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
+    "Simulation", "Step", "__version__", "fit", "from_text", "load", "matrices", "modes", "open",
+    "rotations", "run", "sweep",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Shapes are made from the engine's tables, and rarer parts loaded, when they are first wanted."""
+    if name == "rotations":
+        return importlib.import_module(".rotations", __name__)
+    if name in _HOME:
+        return getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    if name[:1].isupper():
+        from . import _shapes
+
+        if name in _shapes.kinds():
+            return _shapes.shape_class(name)
+    raise AttributeError(f"module 'polhode' has no attribute '{name}'")
+
+
+def __dir__() -> "list[str]":
+    from . import _shapes
+
+    return sorted({*__all__, *_shapes.kinds()})

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `polhode`: the program that the package carries."""
+
+import os
+import sys
+
+
+def main() -> None:
+    """Becomes the program, with the arguments given."""
+    program = os.path.join(os.path.dirname(__file__), "bin", "polhode")
+    os.execv(program, ["polhode", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

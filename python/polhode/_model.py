@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models in code, with the keywords of the model file."""
+
+from __future__ import annotations
+
+import copy
+import json
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+from . import _native, _schema, _text
+from ._errors import ModelError, fault
+from ._tree import Named, Section, plain
+
+if TYPE_CHECKING:
+    from ._result import Result
+
+Overrides = Optional[Mapping[str, Any]]
+
+
+class _Origin(NamedTuple):
+    """The file that a model was loaded from, so that faults can be shown there."""
+
+    file: str
+    text: str
+    tree: "dict[str, Any]"
+
+
+def overrides_list(overrides: Overrides) -> "list[str]":
+    """Changes as the command line takes them: {"variables.L": 2} → ["variables.L=2"]."""
+    return [f"{path}={_text.flow(plain(value))}" for path, value in (overrides or {}).items()]
+
+
+class Model(Section):
+    """A model: bodies, joints, loads, what to compute and what to record.
+
+    Its keys are those of the model file (docs/reference/model_file.md), and so are its units: bare
+    numbers count in `units`, SI and radians if that is left out; texts such as "5 ms" carry their
+    own. Vectors are in world axes unless the key says otherwise.
+
+        m = polhode.Model(gravity=[0, 0, -9.81])
+        arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])
+        m.add_joint("hinge", "revolute", ["ground", arm], at=[0, 0, 0], axis="y")
+
+    Unknown keys raise ModelError at once; what depends on more than one key is checked by check().
+    """
+
+    __slots__ = ("_root", "_origin")
+
+    def __init__(self, **keys: Any) -> None:
+        super().__init__(None, "", "")
+        object.__setattr__(self, "_root", {"format": 1})
+        object.__setattr__(self, "_origin", None)
+        for key, value in keys.items():
+            self[key] = value
+
+    # The tree
+
+    def _tree(self, create: bool = False) -> "dict[str, Any]":
+        return self._root  # type: ignore[no-any-return]
+
+    def _path(self) -> str:
+        return ""
+
+    def _kind(self) -> Optional[str]:
+        return ""
+
+    def _known(self) -> "dict[str, str]":
+        return _schema.keys("")
+
+    def _wrap(self, key: str, value: Any) -> Any:
+        item = _schema.named_of("", key)
+        if item:
+            return Named(self, key, item)
+        section = _schema.section_of("", key)
+        return Section(self, key, section) if section or key in ("variables",) else value
+
+    # Adding things
+
+    def add_body(self, name: str, **fields: Any) -> Section:
+        """Adds a rigid body and returns it.
+
+        mass [kg], inertia [kg m²] about the centre of mass in body axes; or shape with density [kg/m³].
+        position [m] (3,) of the centre of mass, orientation, velocity [m/s] (3,), angular_velocity
+        [rad/s] (3,): world axes. fixed, point_mass, contact, hold as in the model file.
+        Raises ModelError for an unknown key or a name that is taken.
+        """
+        return self._add("bodies", name, fields)
+
+    def add_joint(self, name: str, type: str, bodies: "list[Any]", **fields: Any) -> Section:
+        """Adds a joint between two bodies ("ground" is one) and returns it.
+
+        at [m] (3,) and axis (a direction: "x", "-z" or three numbers) hold at the start, world axes;
+        at_body and axis_body give both in body coordinates. friction and limits as in the model file.
+        """
+        return self._add("joints", name, {"type": type, "bodies": bodies, **fields})
+
+    def add_load(self, name: str, type: str, **fields: Any) -> Section:
+        """Adds a force, moment, spring, motor or load of a solid, and returns it.
+
+        force, moment and the drive of a motor may be Python callables of the time: f(t [s]) gives
+        three numbers, or one for a component or a motor, in SI units. They are called at the times
+        at which the method wants them; what they raise stops the run and is raised.
+        """
+        return self._add("loads", name, {"type": type, **fields})
+
+    def add_material(self, name: str, type: str, **fields: Any) -> Section:
+        """Adds a material of solids and beams, and returns it."""
+        return self._add("materials", name, {"type": type, **fields})
+
+    def add_section(self, name: str, **fields: Any) -> Section:
+        """Adds a cross-section of beams, and returns it."""
+        return self._add("sections", name, fields)
+
+    def add_beam(self, name: str, **fields: Any) -> Section:
+        """Adds a beam, and returns it."""
+        return self._add("beams", name, fields)
+
+    def add_cable(self, name: str, **fields: Any) -> Section:
+        """Adds a cable or rod, and returns it."""
+        return self._add("cables", name, fields)
+
+    def add_solid(self, name: str, **fields: Any) -> Section:
+        """Adds a deformable solid, and returns it."""
+        return self._add("solids", name, fields)
+
+    def add_probe(self, name: str, **fields: Any) -> Section:
+        """Adds an entry of output.probes: a table that a run writes at its own rate."""
+        return self.output.probes.add(name, **fields)  # type: ignore[no-any-return]
+
+    def add_contact_material(self, name: str, **fields: Any) -> Section:
+        """Adds a contact material, for the key contact of bodies and shapes."""
+        return self.contacts.materials.add(name, **fields)  # type: ignore[no-any-return]
+
+    def add_contact_pair(self, name: str, **fields: Any) -> Section:
+        """Adds the law of a pair of bodies or contact materials."""
+        return self.contacts.pairs.add(name, **fields)  # type: ignore[no-any-return]
+
+    def _add(self, group: str, name: str, fields: "dict[str, Any]") -> Section:
+        named: Named = self._wrap(group, None)
+        return named.add(name, **fields)
+
+    # Reading and writing
+
+    def to_dict(self) -> "dict[str, Any]":
+        """The model as dicts, lists, numbers and texts: a copy."""
+        return copy.deepcopy(self._tree())
+
+    def to_yaml(self) -> str:
+        """The text of a model file."""
+        return _text.block(self._tree())
+
+    def save(self, path: "Union[str, os.PathLike[str]]") -> None:
+        """Writes a model file: JSON if the name ends with .json, else YAML.
+
+        Nothing is lost but comments. Paths of meshes in the model stay as they are: they count from
+        the folder of the file.
+        """
+        name = os.fspath(path)
+        for load, _, call in self._calls()[1]:
+            raise fault(f"loads.{load}", f"{call!r} cannot be written to a file", "Write an expression of t instead")
+        text = json.dumps(self._tree(), indent=2, ensure_ascii=False) if name.endswith(".json") else self.to_yaml()
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text if text.endswith("\n") else text + "\n")
+
+    def copy(self) -> "Model":
+        """A model that does not change with this one."""
+        return _restore(self.to_dict(), self._origin)
+
+    def check(self, overrides: Overrides = None) -> None:
+        """Reads the model as a run does. Raises ModelError with all its faults."""
+        self._compile(overrides)
+
+    def run(self, **options: Any) -> "Result":
+        """Runs the model: polhode.run(model, **options)."""
+        from ._run import run
+
+        return run(self, **options)
+
+    def _source(self) -> "tuple[str, str, bool]":
+        """Text, name and whether both are those of a file."""
+        origin: Optional[_Origin] = self._origin
+        if origin and origin.tree == self._tree():
+            return origin.text, origin.file, True
+        folder = os.path.dirname(origin.file) if origin else ""
+        return json.dumps(self._calls()[0], ensure_ascii=False), os.path.join(folder, "model.json"), False
+
+    def _calls(self) -> "tuple[dict[str, Any], list[tuple[str, int, Any]]]":
+        """The tree without callables, and those of loads: name, component or -1, callable."""
+        calls: "list[tuple[str, int, Any]]" = []
+
+        def without(value: Any, path: "tuple[Any, ...]") -> Any:
+            if isinstance(value, dict):
+                return {k: without(v, (*path, k)) for k, v in value.items()}
+            if isinstance(value, list):
+                return [without(v, (*path, i)) for i, v in enumerate(value)]
+            if not callable(value):
+                return value
+            if len(path) not in (3, 4) or path[0] != "loads":
+                raise fault(".".join(map(str, path)), "a callable cannot stand here",
+                            "Callables of the time may give vectors and drives of loads")
+            calls.append((path[1], path[3] if len(path) == 4 else -1, value))
+            vector = len(path) == 3 and path[2] in ("force", "moment") and "body" in self._tree()["loads"][path[1]]
+            return ["0*t"] * 3 if vector else "0*t"
+
+        return without(self._tree(), ()), calls
+
+    def _compile(self, overrides: Overrides = None) -> "_native.CompiledModel":
+        text, name, in_file = self._source()
+        try:
+            compiled = _native.compile(text, name, overrides_list(overrides))
+            for call in () if in_file else self._calls()[1]:
+                compiled.set_function(*call)
+            return compiled
+        except ModelError as error:
+            if in_file:
+                raise
+            # Lines of a text that nobody has seen help nobody.
+            raise ModelError([
+                (f.file if not f.line and f.file != name else None, None, None, f.path, f.what, f.hint, "")
+                for f in error.faults
+            ]) from None
+
+    # What all objects can do
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Model) and self._tree() == other._tree()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> "tuple[Any, ...]":
+        return (_restore, (self.to_dict(), self._origin))
+
+    def __dir__(self) -> "list[str]":
+        own = [name for name in type(self).__dict__ if not name.startswith("_")]
+        return sorted({*own, *self._known()})
+
+    def __repr__(self) -> str:
+        tree = self._tree()
+        counts = [f"{len(tree[k])} {k}" for k in tree if _schema.named_of("", k) and tree[k]]
+        title = f" '{tree['title']}'" if tree.get("title") else ""
+        return f"<polhode.Model{title}: {', '.join(counts) or 'empty'}>"
+
+
+def _restore(tree: "dict[str, Any]", origin: "Optional[_Origin]") -> Model:
+    model = Model()
+    object.__setattr__(model, "_root", tree)
+    object.__setattr__(model, "_origin", origin)
+    return model
+
+
+def load(path: "Union[str, os.PathLike[str]]") -> Model:
+    """Reads a model file, YAML or JSON. Raises ModelError if it is not well-formed, OSError if it
+    cannot be read. Whether the model makes sense is checked by check() and when it runs."""
+    name = os.fspath(path)
+    return from_text(_native.read_text(name), name)
+
+
+def from_text(text: str, name: str = "model.yaml") -> Model:
+    """A model from the text of a model file. Its meshes count from the folder of `name`."""
+    tree = _native.parse(text, name)
+    if not isinstance(tree, dict):
+        raise ModelError([(name, None, None, "", "the model is not a map", "Begin with the line 'format: 1'.", "")])
+    return _restore(tree, _Origin(name, text, copy.deepcopy(tree)))

@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results of a run, in memory or in a file results.h5: the same object."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _native
+from ._stores import FileStore, Store
+
+_QUANTITIES = {
+    "bodies": ("position", "orientation", "velocity", "angular_velocity"),
+    "joints": ("coordinates", "rates", "force", "moment"),
+    "loads": ("values",),
+    "contacts": ("gap", "normal_force", "impulse", "energy_lost", "points", "status", "force", "friction", "point"),
+}
+# Data sets without a frame for each time.
+_FIXED = ("/names", "/types", "/first", "/count", "/reference", "/connectivity", "/offsets", "/vtk_type", "/model")
+
+
+class Group(Mapping):  # type: ignore[type-arg]
+    """Results under a common name: `r.bodies["crank"]` has position, velocity, ...
+
+    Quantities are read as attributes or items: arrays whose first dimension is the frame, SI units,
+    world axes.
+    """
+
+    def __init__(self, result: "Result", path: str) -> None:
+        self._result, self._path = result, path
+
+    def __getitem__(self, name: str) -> Any:
+        found = self._result._find(f"{self._path}/{name}")
+        if found is None:
+            near = _native.closest(name, list(self))
+            hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(list(self)[:20])}."
+            raise KeyError(f"{self._path[1:].replace('/', '.')} has no '{name}'.{hint}")
+        return found
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __iter__(self) -> "Iterator[str]":
+        return iter(self._result._names(self._path))
+
+    def __len__(self) -> int:
+        return len(self._result._names(self._path))
+
+    def __dir__(self) -> "list[str]":
+        return [name for name in self if name.isidentifier()] + ["keys", "values", "items", "unit"]
+
+    def _ipython_key_completions_(self) -> "list[str]":
+        return list(self)
+
+    def unit(self, name: str) -> str:
+        """Unit of a quantity, such as "m/s"."""
+        return self._result.unit(f"{self._path[1:]}.{name}".replace("/", "."))
+
+    def __repr__(self) -> str:
+        names = list(self)
+        shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+        return f"<{self._path[1:].replace('/', '.')}: {shown}>"
+
+
+class Report(dict):  # type: ignore[type-arg]
+    """Figures that a run ends with, as `polhode run --json` names them; items or attributes."""
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    def __dir__(self) -> "list[str]":
+        return [*self]
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{key:34} {value}" for key, value in self.items() if not isinstance(value, (dict, list)))
+
+
+class Result:
+    """What a run computed, frame by frame. SI units; vectors have world axes.
+
+    time (T,) [s]; bodies[name].position (T, 3) [m], .orientation (T, 4) quaternion (w, x, y, z) body
+    to world, .velocity [m/s], .angular_velocity [rad/s]; joints[name].force (T, 3) [N] that the first
+    body exerts on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
+    solids, beams and cables by name; energy, momentum and solver. Arrays of a run are views of the
+    engine's memory, not copies. docs/reference/results_file.md lists them all.
+    """
+
+    def __init__(self, store: Store, ledger: "Optional[dict[str, Any]]" = None) -> None:
+        self._store = store
+        self._ledger = ledger
+        self._tables: "Optional[dict[str, list[str]]]" = None
+        self._columns: "dict[str, dict[str, int]]" = {}
+
+    # Looking up
+
+    @property
+    def time(self) -> Any:
+        """Times of the frames (T,) [s]; in statics the load factor."""
+        return self._store.read("/time")
+
+    @property
+    def frames(self) -> int:
+        """How many frames there are."""
+        return len(self.time)
+
+    @property
+    def ledger(self) -> Report:
+        """The figures the run ended with: drifts of energy and momenta [-], constraint residuals,
+        steps, time taken [s]. Of an opened file those that its channels show."""
+        if self._ledger is not None:
+            return Report(self._ledger)
+        e = self.energy
+        balance = e.total + e.dissipated - e.put_in
+        size = float(np.max(np.abs(np.concatenate([e.kinetic, e.potential, e.total]))) or 1.0)
+        return Report(t=float(self.time[-1]), steps=int(self.solver.steps[-1]), frames=self.frames,
+                      rejected_steps=int(self.solver.rejected[-1]), newton_iterations=int(self.solver.iterations[-1]),
+                      energy_drift=float(np.max(np.abs(balance - balance[0])) / size))
+
+    @property
+    def end(self) -> str:
+        """How the run ended: finished, interrupted or not_converged; "" if a file does not know."""
+        return str((self._ledger or {}).get("end", ""))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        found = self._find("/" + name)
+        if found is None:
+            raise AttributeError(f"the results have no '{name}'; there are: {', '.join(self._names(''))}")
+        return found
+
+    def __dir__(self) -> "list[str]":
+        own = [name for name in type(self).__dict__ if not name.startswith("_")]
+        return sorted({*own, *self._names("")})
+
+    def _children(self) -> "dict[str, list[str]]":
+        """Names under each path."""
+        if self._tables is None:
+            tables: "dict[str, dict[str, None]]" = {}
+            for path in self._store.paths():
+                parts = path.split("/")
+                for i in range(1, len(parts)):
+                    tables.setdefault("/".join(parts[:i]), {})[parts[i]] = None
+            self._tables = {path: list(names) for path, names in tables.items()}
+        return self._tables
+
+    def _packed_names(self, group: str) -> "dict[str, int]":
+        if group not in self._columns:
+            path = f"/packed/{group}/names"
+            known = "names" in self._children().get(f"/packed/{group}", ())
+            self._columns[group] = {n: i for i, n in enumerate(self._store.read(path))} if known else {}
+        return self._columns[group]
+
+    def _names(self, path: str) -> "list[str]":
+        names = list(self._children().get(path, ()))
+        parts = path.split("/")
+        if len(parts) == 2 and not names:
+            return list(self._packed_names(parts[1]))
+        if len(parts) == 3 and not names and parts[1] in _QUANTITIES:
+            return [q for q in _QUANTITIES[parts[1]] if self._packed(path + "/" + q) is not None]
+        if path == "":
+            packed = [k[len("/packed/"):] for k in self._children() if k.startswith("/packed/")]
+            names = [n for n in [*names, *packed] if n not in ("packed", "provenance")]
+            return list(dict.fromkeys(names))
+        return names
+
+    def _find(self, path: str) -> Any:
+        children = self._children()
+        above, _, name = path.rpartition("/")
+        if name in children.get(above, ()):
+            return Group(self, path) if path in children else self._array(path)
+        parts = path.split("/")
+        if len(parts) == 2 and f"/packed/{name}" in children:
+            return Group(self, path)
+        if len(parts) == 3 and name in self._packed_names(parts[1]):
+            return Group(self, path)
+        return self._packed(path) if len(parts) == 4 else None
+
+    def _packed(self, path: str) -> Any:
+        """A quantity out of the arrays of all bodies or joints side by side."""
+        _, group, name, quantity = path.split("/")
+        index = self._packed_names(group).get(name)
+        if index is None or quantity not in self._children().get(f"/packed/{group}", ()):
+            return None
+        array = self._array(f"/packed/{group}/{quantity}")
+        if quantity not in ("coordinates", "rates", "values"):
+            return array[:, index]
+        first = self._store.read(f"/packed/{group}/first")[index]
+        count = self._store.read(f"/packed/{group}/count")[index]
+        return array[:, first : first + count] if count else None
+
+    def _array(self, path: str) -> Any:
+        array = self._store.read(path)
+        # A run that was killed may leave unfinished frames behind the last whole one.
+        frames = len(self._store.read("/time"))
+        longer = isinstance(array, np.ndarray) and not path.endswith(_FIXED) and len(array) > frames
+        return array[:frames] if longer else array
+
+    def _resolve(self, channel: str) -> "tuple[str, Any]":
+        """Path and array or group of "joints.A.force"."""
+        path, found = "", None
+        for part in channel.split("."):
+            path += "/" + part
+            found = self._find(path)
+            if found is None:
+                raise KeyError(f"'{channel}' is no channel: {path[1:].rpartition('/')[0] or 'the results'} "
+                               f"has no '{part}'")
+        return path, found
+
+    def __getitem__(self, channel: str) -> Any:
+        """An array or group by its dotted name: r["joints.A.force"]; of vectors and quaternions a
+        component too: r["joints.A.force.z"]."""
+        above, _, last = channel.rpartition(".")
+        if above and last in ("w", "x", "y", "z"):
+            found = self._resolve(above)[1]
+            letters = {3: "xyz", 4: "wxyz"}.get(found.shape[-1], "") if isinstance(found, np.ndarray) else ""
+            if last in letters:
+                return found[..., letters.index(last)]
+        return self._resolve(channel)[1]
+
+    def unit(self, channel: str) -> str:
+        """Unit of a channel: r.unit("bodies.crank.velocity") is "m/s"."""
+        path = self._resolve(channel)[0]
+        above, _, name = path.rpartition("/")
+        if name in self._children().get(above, ()):
+            return self._store.unit(path)
+        parts = path.split("/")
+        return self._store.unit(f"/packed/{parts[1]}/{parts[-1]}")
+
+    def channels(self) -> "list[str]":
+        """Dotted names of all channels over time."""
+        names = []
+
+        def walk(path: str) -> None:
+            for name in self._names(path):
+                found = self._find(f"{path}/{name}")
+                if isinstance(found, Group):
+                    walk(f"{path}/{name}")
+                elif isinstance(found, np.ndarray) and len(found) == self.frames:
+                    names.append(f"{path}/{name}"[1:].replace("/", "."))
+
+        walk("")
+        return names
+
+    # For other libraries
+
+    def to_pandas(self, *channels: str) -> Any:
+        """A pandas.DataFrame with the time as index and a column for each component, such as
+        "bodies.crank.position.x"; of all channels if none is named."""
+        import pandas
+
+        columns: "dict[str, Any]" = {}
+        for name in self._expand(channels):
+            array = np.asarray(self[name])
+            flat = array.reshape(len(array), -1)
+            labels = _components(array.shape[1:])
+            for k, label in enumerate(labels):
+                columns[name + label] = flat[:, k]
+        frame = pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
+        return frame.drop(columns="time", errors="ignore")
+
+    def to_xarray(self, *channels: str) -> Any:
+        """An xarray.Dataset with the dimension time; units are attributes. No numbers are copied."""
+        import xarray
+
+        data = {}
+        for name in self._expand(channels):
+            if name == "time":
+                continue
+            array = self[name]
+            axes = {(3,): ["axis"], (4,): ["quaternion"]}.get(array.shape[1:])
+            dims = ["time"] + (axes or [f"{name}_{k}" for k in range(1, array.ndim)])
+            data[name] = xarray.DataArray(array, dims=dims, attrs={"units": self.unit(name)})
+        coordinates = {"time": ("time", self.time, {"units": "s"}), "axis": list("xyz"), "quaternion": list("wxyz")}
+        return xarray.Dataset(data, coords=coordinates)
+
+    def plot(self, *channels: str, axes: Any = None) -> Any:
+        """Draws channels over time with matplotlib, one panel each: r.plot("energy", "joints.A.force").
+        A group draws all its channels in one panel. Returns the figure."""
+        from matplotlib import pyplot
+
+        wanted = channels or ("energy",)
+        if axes is None:
+            figure, axes = pyplot.subplots(len(wanted), 1, sharex=True, squeeze=False, layout="constrained")
+            axes = axes[:, 0]
+        panels = np.atleast_1d(np.asarray(axes, dtype=object))
+        for panel, name in zip(panels, wanted):
+            found = self[name]
+            parts = [f"{name}.{k}" for k in found] if isinstance(found, Group) else [name]
+            for part in parts:
+                array = np.asarray(self[part])
+                flat = array.reshape(len(array), -1)
+                for k, label in enumerate(_components(array.shape[1:])):
+                    panel.plot(self.time, flat[:, k], label=(part[len(name) + 1 :] + label).lstrip(".") or None)
+            panel.set_ylabel(f"{name} [{self.unit(parts[0])}]")
+            if panel.get_legend_handles_labels()[0]:
+                panel.legend(loc="best", fontsize="small")
+        panels[-1].set_xlabel("time [s]")
+        return panels[0].figure
+
+    def _expand(self, channels: "tuple[str, ...]") -> "list[str]":
+        if not channels:
+            return self.channels()
+        every = None
+        names = []
+        for channel in channels:
+            if isinstance(self[channel], Group):
+                every = every or self.channels()
+                names += [c for c in every if c.startswith(channel + ".")]
+            else:
+                names.append(channel)
+        return names
+
+    def __getstate__(self) -> "dict[str, Any]":
+        return {"_store": self._store, "_ledger": self._ledger, "_tables": None, "_columns": {}}
+
+    def __setstate__(self, state: "dict[str, Any]") -> None:
+        self.__dict__.update(state)
+
+    def __repr__(self) -> str:
+        t = self.time
+        span = f"{self.frames} frames from {t[0]:g} to {t[-1]:g} s" if len(t) else "no frames"
+        counts = [f"{len(self._names('/' + g))} {g}" for g in ("bodies", "joints", "loads") if self._names("/" + g)]
+        return f"<polhode.Result: {', '.join([span, *counts, *([self.end] if self.end else [])])}>"
+
+
+def _components(shape: "tuple[int, ...]") -> "list[str]":
+    if shape in ((3,), (4,)):
+        return ["." + c for c in ("xyz" if shape == (3,) else "wxyz")]
+    if shape in ((), (1,)):
+        return [""]
+    return ["".join(f".{i}" for i in index) for index in np.ndindex(*shape)]
+
+
+def open(path: "Union[str, os.PathLike[str]]") -> Result:
+    """The results in a file results.h5, or in the folder of a run. Raises OSError if there are none.
+
+    Data sets are read when they are first looked at. The run may still go on.
+    """
+    name = os.fspath(path)
+    return Result(FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name))

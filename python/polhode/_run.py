@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of a model from start to end."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import warnings
+from typing import Any, Optional, Union
+
+from . import _native
+from ._errors import NotConverged, fault
+from ._model import Model, Overrides, load, overrides_list
+from ._progress import Bar
+from ._result import Result
+from ._stores import MemoryStore
+
+_log = logging.getLogger("polhode")
+
+
+def run(
+    model: "Union[Model, str, os.PathLike[str]]",
+    *,
+    overrides: Overrides = None,
+    output: "Union[str, os.PathLike[str], None]" = None,
+    progress: "Optional[bool]" = None,
+) -> Result:
+    """Runs a model to the end of its analysis and returns what it computed.
+
+    model:     a Model, or the path of a model file.
+    overrides: changes for this run alone, by path: {"analysis.step": "1 ms", "variables.L": 2}.
+    output:    a folder; what `polhode run -o` writes is written there too.
+    progress:  show a bar with tqdm; None: if tqdm is there and the run takes more than a second.
+
+    Frames are kept at output.every, else after every step. Other Python threads go on meanwhile.
+    Ctrl-C stops the run: the result then holds what was computed, and its `end` is "interrupted".
+    Raises ModelError for a model with faults, NotConverged (with `result`) if a step does not
+    converge, OSError if the folder cannot be written.
+    """
+    if not isinstance(model, Model):
+        model = load(model)
+    compiled = model._compile(overrides)
+    if compiled.analysis == "modes":
+        raise fault("analysis.type", "modes have no motion to run", "Call polhode.modes(model)")
+    engine = _native.Engine(compiled)
+    recording = engine.record()
+    end = 1.0 if compiled.analysis == "statics" else compiled.duration
+    with Bar(end, progress) as bar:
+        text = engine.run(recording, os.fspath(output) if output is not None else "", model._source()[0],
+                          overrides_list(overrides), bar.show)
+    ledger = json.loads(text)
+    for key in ("exit_code", "results"):
+        ledger.pop(key)
+    result = Result(MemoryStore(recording.channels(), recording.views(), recording.fixed()), ledger)
+    _report(ledger)
+    if ledger["end"] == "not_converged":
+        raise NotConverged(ledger["message"], result)
+    return result
+
+
+def _report(ledger: "dict[str, Any]") -> None:
+    """Tells logging what was chosen, and warnings what deserves a look."""
+    for line in ledger["narration"].splitlines():
+        _log.info(line)
+    _log.info("reached t = %g in %d steps, %.3g s", ledger["t"], ledger["steps"], ledger["wall_time_s"])
+    for warning in ledger["warnings"]:
+        warnings.warn(warning, stacklevel=3)
+    if ledger["end"] == "interrupted":
+        warnings.warn(f"the run was stopped at t = {ledger['t']:g} s", stacklevel=3)

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model that is run step by step."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any, Callable, NamedTuple, Optional, Union
+
+from . import _native
+from ._errors import NotConverged
+from ._model import Model, Overrides, load
+from ._result import Report, Result
+from ._stores import MemoryStore
+
+
+class Step(NamedTuple):
+    """An accepted step."""
+
+    time: float  #: Reached [s]; in statics the load factor.
+    dt: float  #: Length [s].
+    iterations: int  #: Newton iterations of the last trial.
+    rejected: int  #: Trials that were refused on the way.
+
+
+class _Things(Mapping):  # type: ignore[type-arg]
+    """Bodies, joints or loads of a simulation by name."""
+
+    def __init__(self, names: "list[str]", make: "Callable[[int], Any]") -> None:
+        self._index = {name: i for i, name in enumerate(names)}
+        self._make = make
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._index:
+            near = _native.closest(str(name), list(self._index))
+            raise KeyError(f"unknown name '{name}'." + (f" Did you mean '{near}'?" if near else ""))
+        return self._make(self._index[name])
+
+    def __iter__(self) -> "Iterator[str]":
+        return iter(self._index)
+
+    def __len__(self) -> int:
+        return len(self._index)
+
+    def _ipython_key_completions_(self) -> "list[str]":
+        return list(self._index)
+
+    def __repr__(self) -> str:
+        return f"<{', '.join(self._index)}>"
+
+
+class BodyNow:
+    """A body at the present time; position, orientation, velocity and angular_velocity can be set."""
+
+    _settable = ("position", "orientation", "velocity", "angular_velocity")
+
+    def __init__(self, simulation: "Simulation", index: int) -> None:
+        object.__setattr__(self, "_simulation", simulation)
+        object.__setattr__(self, "_index", index)
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in (*self._settable, "acceleration"):
+            raise AttributeError(name)
+        return self._simulation._engine.body(self._index)[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self._settable:
+            raise AttributeError(f"{name} cannot be set; {', '.join(self._settable)} can")
+        self.set(**{name: value})
+
+    def set(self, **values: Any) -> None:
+        """Sets several at once: body.set(position=..., velocity=...)."""
+        numbers = {name: None if (v := values.get(name)) is None else [float(x) for x in v] for name in self._settable}
+        if set(values) - set(self._settable):
+            raise TypeError(f"{sorted(set(values) - set(self._settable))} cannot be set")
+        self._simulation._engine.set_body(self._index, *numbers.values())
+
+    def __dir__(self) -> "list[str]":
+        return [*self._settable, "acceleration", "set"]
+
+    def __repr__(self) -> str:
+        now = self._simulation._engine.body(self._index)
+        return "\n".join(f"{name:18} {value}" for name, value in now.items())
+
+
+class Simulation:
+    """A model with its state: steps, runs, is looked at, set, copied and restored.
+
+        sim = polhode.Simulation(m)
+        for step in sim:
+            print(step.time, sim.bodies["arm"].position)
+
+    bodies[name] has position (3,) [m], orientation (4,) quaternion (w, x, y, z) body to world,
+    velocity [m/s], angular_velocity [rad/s], acceleration [m/s²]: of the centre of mass, world axes.
+    joints[name] has coordinates, rates, force and moment. Raises ModelError for a model with faults.
+    """
+
+    def __init__(self, model: "Union[Model, str, os.PathLike[str]]", overrides: Overrides = None) -> None:
+        model = model if isinstance(model, Model) else load(model)
+        self._compiled = model._compile(overrides)
+        self._engine = _native.Engine(self._compiled)
+
+    @property
+    def time(self) -> float:
+        """[s]; in statics the load factor."""
+        return float(self._engine.time)
+
+    @property
+    def end(self) -> float:
+        """Time that the model's analysis ends at [s]."""
+        return 1.0 if self._compiled.analysis == "statics" else float(self._compiled.duration)
+
+    @property
+    def bodies(self) -> "_Things":
+        """Bodies by name: read, and set, their motion."""
+        return _Things(self._engine.bodies, lambda i: BodyNow(self, i))
+
+    @property
+    def joints(self) -> "_Things":
+        """Joints by name: coordinates, rates, force, moment, residual."""
+        return _Things(self._engine.joints, lambda i: Report(self._engine.joint(i)))
+
+    @property
+    def loads(self) -> "_Things":
+        """Loads by name: the numbers they report, in the order of docs/reference/loads.md."""
+        return _Things(self._engine.loads, self._engine.load)
+
+    @property
+    def energy(self) -> Report:
+        """kinetic, potential, total, put_in, dissipated [J]; linear_momentum, angular_momentum."""
+        return Report(self._engine.energy())
+
+    @property
+    def ledger(self) -> Report:
+        """The figures so far, as those of a run."""
+        figures = json.loads(self._engine.summary())
+        for key in ("end", "exit_code", "results", "frames"):
+            figures.pop(key)
+        return Report(figures)
+
+    def step(self, until: Optional[float] = None) -> Step:
+        """Takes one accepted step, not beyond `until` [s]. Raises NotConverged; the state is then
+        that before the step."""
+        accepted, t, dt, rejected, iterations, message = self._engine.step(self.end if until is None else until)
+        if not accepted:
+            raise NotConverged(message)
+        return Step(t, dt, iterations, rejected)
+
+    def __iter__(self) -> "Iterator[Step]":
+        """Steps to the end of the analysis."""
+        while self.time < self.end * (1 - 1e-9):
+            yield self.step()
+
+    def run(
+        self,
+        until: Optional[float] = None,
+        *,
+        stop: "Optional[Callable[[Simulation], Any]]" = None,
+        observe: "Optional[Callable[[Simulation], Any]]" = None,
+    ) -> Result:
+        """Steps until a time [s] or until stop(simulation) is true after a step; observe(simulation)
+        is called at the beginning and after every step. Returns the frames of all steps."""
+        end = self.end if until is None else until
+        recording = self._engine.record()
+        ended = "finished"
+        while True:
+            self._engine.record_frame(recording)
+            if observe is not None:
+                observe(self)
+            if stop is not None and recording.frames > 1 and stop(self):
+                ended = "stopped"
+                break
+            if self.time >= end * (1 - 1e-9):
+                break
+            self.step(end)
+        store = MemoryStore(recording.channels(), recording.views(), recording.fixed())
+        return Result(store, {"end": ended, **self.ledger})
+
+    @property
+    def state(self) -> bytes:
+        """Every bit of the state: to be kept, compared and restored."""
+        return bytes(self._engine.state)
+
+    def restore(self, state: bytes) -> None:
+        """Goes back to a state of this model: what follows is equal bit for bit. Raises ModelError
+        if the state belongs to another model."""
+        self._engine.restore(state)
+
+    def copy(self) -> "Simulation":
+        """A simulation at the same state that goes its own way."""
+        other = object.__new__(Simulation)
+        other._compiled = self._compiled
+        other._engine = self._engine.copy()
+        return other
+
+    def __repr__(self) -> str:
+        return f"<polhode.Simulation at t = {self.time:g} s of {self.end:g} s>"

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Studies: many runs of a model, and parameters that fit data."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import pickle
+from collections.abc import Mapping, Sequence
+from typing import Any, Callable, NamedTuple, Optional, Union
+
+import numpy as np
+
+from ._errors import ModelError, NotConverged
+from ._model import Model
+from ._result import Result
+from ._run import run
+
+_FIGURES = ("t", "steps", "newton_iterations", "energy_drift", "constraint_residual_max", "wall_time_s", "result_hash")
+
+
+def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed: int) -> "list[dict[str, Any]]":
+    """Values of all parameters, point by point."""
+    import itertools
+
+    names = list(parameters)
+    if method == "grid":
+        axes = [np.linspace(v[0], v[1], n or 5).tolist() if isinstance(v, tuple) else list(v)
+                for v in parameters.values()]
+        return [dict(zip(names, values)) for values in itertools.product(*axes)]
+    if n is None:
+        raise ValueError(f"the method {method} takes n, the number of points")
+    pairs = np.array([tuple(v) for v in parameters.values()], dtype=float)
+    if pairs.shape != (len(names), 2):
+        raise ValueError(f"the method {method} takes two numbers for each parameter: "
+                         + ("(mean, standard deviation)" if method == "normal" else "(lowest, highest)"))
+    if method == "normal":
+        values = np.random.default_rng(seed).normal(pairs[:, 0], pairs[:, 1], (n, len(names)))
+    elif method in ("sobol", "lhs"):
+        from scipy.stats import qmc
+
+        maker = qmc.Sobol if method == "sobol" else qmc.LatinHypercube
+        values = qmc.scale(maker(len(names), seed=seed).random(n), pairs[:, 0], pairs[:, 1])
+    else:
+        raise ValueError(f"unknown method '{method}'; use grid, sobol, lhs or normal")
+    return [dict(zip(names, row)) for row in values.tolist()]
+
+
+def _last(result: Result, outputs: "Sequence[str]") -> "dict[str, Any]":
+    """Channels at the last frame, a number for each component."""
+    row: "dict[str, Any]" = {}
+    for name in outputs:
+        value = np.asarray(result[name])[-1]
+        letters = {3: "xyz", 4: "wxyz"}.get(value.size, "0123456789") if value.ndim else ""
+        if value.ndim:
+            row.update({f"{name}.{c}": float(x) for c, x in zip(letters, value.ravel())})
+        else:
+            row[name] = float(value)
+    return row
+
+
+def _one(task: "tuple[Model, dict[str, Any], Any]") -> "dict[str, Any]":
+    """One run as a row; a failure is a row with its message."""
+    model, point, outputs = task
+    row: "dict[str, Any]" = {**point, "message": ""}
+    try:
+        result = run(model, overrides=point, progress=False)
+        row.update({name: result.ledger[name] for name in _FIGURES})
+        row.update(outputs(result) if callable(outputs) else _last(result, outputs))
+    except NotConverged as error:
+        row["message"] = str(error)
+        if error.result is not None:
+            row.update({name: error.result.ledger[name] for name in _FIGURES})
+    except Exception as error:  # a row of a study, whatever its callables raise
+        row["message"] = f"{type(error).__name__}: {error}"
+    return row
+
+
+def sweep(
+    model: Model,
+    parameters: "Mapping[str, Any]",
+    *,
+    n: Optional[int] = None,
+    method: str = "grid",
+    outputs: "Union[Sequence[str], Callable[[Result], dict[str, Any]]]" = (),
+    processes: Optional[int] = None,
+    resume: "Union[str, os.PathLike[str], None]" = None,
+    seed: int = 0,
+) -> Any:
+    """Runs a model at many values of its parameters; returns a pandas.DataFrame, a row for each run.
+
+    parameters: by path, as overrides: {"bodies.rod.mass": [1, 2, 3], "variables.L": (0.8, 1.2)}.
+    method:     "grid": all combinations; a list gives values, a tuple (from, to) n equal steps.
+                "sobol", "lhs" (Latin hypercube): n points between (lowest, highest) of each.
+                "normal": n points of (mean, standard deviation).
+    outputs:    channels whose last values become columns, or a function of the Result that returns a
+                dict; with several processes it must be one that can be pickled.
+    processes:  how many at once; None: one for each processor. 1 runs in this process.
+    resume:     a file that rows are added to as they come; runs that it holds are not run again.
+    seed:       of sobol, lhs and normal.
+
+    A run that fails is a row with its "message"; the others have an empty one. Rows are in the order of
+    the points, and their numbers do not depend on the number of processes.
+    """
+    import pandas
+
+    points = _points(parameters, n, method, seed)
+    wanted = outputs if callable(outputs) else list(outputs)
+    identity = hashlib.sha256(pickle.dumps((model.to_dict(), wanted))).hexdigest()
+    rows: "dict[int, dict[str, Any]]" = {}
+    path = os.fspath(resume) if resume is not None else None
+    if path is not None and os.path.exists(path):
+        rows = _rows_of(path, identity, points)
+    tasks = {i: (model, point, outputs) for i, point in enumerate(points) if i not in rows}
+    log = None
+    if path is not None:
+        log = io.open(path, "a", encoding="utf-8")
+    try:
+        for i, row in _run_all(tasks, processes):
+            rows[i] = row
+            if log is not None:
+                log.write(json.dumps({"model": identity, "point": points[i], "row": row}) + "\n")
+                log.flush()
+    finally:
+        if log is not None:
+            log.close()
+    return pandas.DataFrame([rows[i] for i in range(len(points))])
+
+
+def _rows_of(path: str, identity: str, points: "list[dict[str, Any]]") -> "dict[int, dict[str, Any]]":
+    """Rows of an earlier sweep of the same model, by index of their point."""
+    index = {json.dumps(point): i for i, point in enumerate(points)}
+    rows = {}
+    with io.open(path, encoding="utf-8") as file:
+        for line in file:
+            try:
+                entry = json.loads(line)
+            except ValueError:
+                continue  # the last line of a sweep that was killed
+            if entry["model"] == identity and (i := index.get(json.dumps(entry["point"]))) is not None:
+                rows[i] = entry["row"]
+    return rows
+
+
+def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
+    """Index and row of each task, as they come; the runs of a killed process are run again."""
+    if processes == 1 or len(tasks) < 2:
+        for i, task in tasks.items():
+            yield i, _one(task)
+        return
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import get_context
+
+    left, deaths = dict(tasks), 0
+    while left:
+        with ProcessPoolExecutor(processes or os.cpu_count(), mp_context=get_context("spawn")) as pool:
+            waiting = {pool.submit(_one, task): i for i, task in left.items()}
+            try:
+                while waiting:
+                    done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                    for future in done:
+                        i = waiting.pop(future)
+                        row = future.result()
+                        del left[i]
+                        yield i, row
+            except BrokenProcessPool:
+                deaths += 1
+                if deaths > 3:
+                    raise
+
+
+class Fit(NamedTuple):
+    """Parameters that fit data best, in the least-squares sense."""
+
+    parameters: "dict[str, float]"  #: Estimates by path.
+    covariance: Any  #: (p, p), in the order of `parameters`, from the residuals' own scatter.
+    residuals: Any  #: (m,) at the estimates.
+    result: Result  #: The run with them.
+
+    @property
+    def errors(self) -> "dict[str, float]":
+        """Standard errors of the estimates."""
+        return dict(zip(self.parameters, np.sqrt(np.diag(self.covariance)).tolist()))
+
+
+def fit(
+    model: Model,
+    data: "Mapping[str, Any]",
+    parameters: "Mapping[str, float]",
+    *,
+    bounds: "Optional[Mapping[str, tuple[float, float]]]" = None,
+) -> Fit:
+    """Estimates parameters of a model from measured channels, by scipy.optimize.least_squares.
+
+    data:       by channel, ("time" itself among them): {"time": t (m,) [s], "joints.A.coordinates": y};
+                columns of a pandas.DataFrame do. Results are interpolated at these times by cubics.
+    parameters: first guesses, by path as overrides: {"loads.damper.damping": 0.1}.
+    bounds:     (lowest, highest) by path.
+
+    Raises ModelError or NotConverged if the model does not run at the first guesses, ValueError if the
+    data do not match.
+    """
+    from scipy.interpolate import CubicSpline
+    from scipy.optimize import least_squares
+
+    times = np.asarray(data["time"], dtype=float)
+    measured = {name: np.asarray(data[name], dtype=float) for name in data if name != "time"}
+    if np.any(np.diff(times) < 0):
+        raise ValueError("the times of the data must not decrease")
+    for name, values in measured.items():
+        if len(values) != len(times):
+            raise ValueError(f"'{name}' has {len(values)} values at {len(times)} times")
+    names = list(parameters)
+    scale = np.array([abs(parameters[k]) or 1.0 for k in names])
+
+    runs: "list[int]" = []
+
+    def run_at(x: Any) -> Result:
+        return run(model, overrides=dict(zip(names, (x * scale).tolist())), progress=False)
+
+    def residuals(x: Any) -> Any:
+        try:
+            result = run_at(x)
+        except (ModelError, NotConverged):
+            if not runs:
+                raise
+            # Not finite: the search takes a shorter step.
+            return np.full(sum(values.size for values in measured.values()), np.inf)
+        runs.append(1)
+        parts = []
+        for name, values in measured.items():
+            channel = np.asarray(result[name]).reshape(len(result.time), -1)
+            parts.append((CubicSpline(result.time, channel)(times) - values.reshape(len(times), -1)).ravel())
+        return np.concatenate(parts)
+
+    limits = [(bounds or {}).get(k, (-np.inf, np.inf)) for k in names]
+    low, high = (np.array([b[i] for b in limits]) / scale for i in (0, 1))
+    start = np.array([parameters[k] for k in names]) / scale
+    found = least_squares(residuals, start, bounds=(low, high), diff_step=1e-5, x_scale="jac", xtol=1e-12, ftol=1e-12)
+    freedoms = max(1, len(found.fun) - len(names))
+    covariance = np.linalg.inv(found.jac.T @ found.jac) * (found.fun @ found.fun / freedoms) * np.outer(scale, scale)
+    return Fit(dict(zip(names, (found.x * scale).tolist())), covariance, found.fun, run_at(found.x))

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include <polhode/assembly/state_archive.hpp>
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/io/recorder.hpp>
+#include <polhode/io/summary_json.hpp>
+#include <polhode/model/method.hpp>
+#include <polhode/solve/start.hpp>
+
+namespace polhode::python {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLook{50};
+
+const char* end_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::not_converged:
+      return "not_converged";
+    case RunEnd::limit:
+      return "limit";
+    case RunEnd::interrupted:
+      break;
+  }
+  return "interrupted";
+}
+
+/// What Python wants to do while a run goes on: it is looked after every 50 ms of wall time.
+class Attention {
+ public:
+  explicit Attention(const nb::object& progress) : progress_(progress) {}
+
+  void look(double time) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    next_ = now + kLook;
+    const nb::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() != 0) {
+      if (PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) == 0) throw nb::python_error();
+      PyErr_Clear();
+      stop = true;
+    }
+    if (progress_.is_none()) return;
+    try {
+      progress_(time);
+    } catch (const nb::python_error& e) {  // Ctrl-C may come while the bar is drawn
+      if (!e.matches(PyExc_KeyboardInterrupt)) throw;
+      stop = true;
+    }
+  }
+  std::atomic<bool> stop{false};
+
+ private:
+  const nb::object& progress_;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kLook;
+};
+
+}  // namespace
+
+std::string Engine::run(Recording* recording, const std::string& folder,
+                        const std::string& model_text, const std::vector<std::string>& overrides,
+                        const nb::object& progress) {
+  Attention attention(progress);
+  const nb::gil_scoped_release unlocked;
+  std::optional<Recorder> file;
+  if (!folder.empty()) {
+    const RunSummary s = simulation_->summary();
+    file.emplace(*simulation_, folder,
+                 Provenance{.version = POLHODE_VERSION,
+                            .solver = s.solver,
+                            .instruction_set = s.instruction_set,
+                            .model_file = std::filesystem::path(model().source_file).filename().string(),
+                            .model_text = model_text,
+                            .overrides = overrides});
+    file->step(*simulation_);
+  }
+  const auto frame = [&](Simulation& s) {
+    if (recording) recording->frame(s);
+    if (file) file->frame(s);
+  };
+  const RunSummary summary = simulation_->run(
+      frame,
+      [&](Simulation& s) {
+        if (file) file->step(s);
+        attention.look(s.time());
+      },
+      &attention.stop);
+  if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged) frame(*simulation_);
+  if (file) file->close();
+  return summary_json(summary, {.end = end_name(summary.end),
+                                .exit_code = 0,
+                                .folder = folder,
+                                .frames = recording ? recording->frames() : 0});
+}
+
+std::string Engine::summary() const {
+  const RunSummary summary = simulation_->summary();
+  return summary_json(summary, {.end = end_name(summary.end)});
+}
+
+nb::bytes Engine::state() const {
+  const std::string bytes = state_bytes(simulation_->system(), simulation_->state());
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+void Engine::restore(const nb::bytes& bytes) {
+  State state = state_from_bytes(simulation_->system(), {bytes.c_str(), bytes.size()}, "state");
+  simulation_ = std::make_unique<Simulation>(model(), std::move(state));
+}
+
+void Engine::set_motion(int body, const BodyMotion& motion) {
+  const Model& m = model();
+  if (m.analysis.type != "dynamics" || !m.solids.empty() || simulation_->has_contacts())
+    throw InputError(format("bodies.{}", m.bodies.at(body).name),
+                     "cannot be set in a model of statics, with solids or with contacts",
+                     "Change the model and start a new simulation");
+  if (m.bodies.at(body).fixed)
+    throw InputError(format("bodies.{}", m.bodies.at(body).name), "is fixed", "Set another body");
+  const System& system = simulation_->system();
+  State state = system.initial_state();
+  int moving = 0;
+  for (int i = 0; i < static_cast<int>(m.bodies.size()); ++i)
+    if (!m.bodies[i].fixed)
+      state.set_motion(system.slot(moving++), i == body ? motion : simulation_->body(i));
+  state.t = simulation_->time();
+  Method method = choose_method(system, m.analysis);
+  StartOptions options;
+  options.smooth_multipliers =
+      m.analysis.smooth_multipliers && m.analysis.step && method.control.order == 2;
+  const StartReport report =
+      start(system, state, method.ga, m.analysis.step.value_or(0.0), options);
+  if (!report.assembled)
+    throw InputError(format("bodies.{}", m.bodies.at(body).name),
+                     "cannot be there: its joints cannot be assembled", "Set it nearer to where it is");
+  Stepper stepper(system, std::move(method.engine), method.ga, method.control, *method.kernels);
+  stepper.begin(state);
+  simulation_ = std::make_unique<Simulation>(m, std::move(state));
+}
+
+namespace {
+
+nb::dict body_report(Engine& engine, int body) {
+  const BodyMotion m = engine.simulation().body(body);
+  const Quat q = m.q.w() < 0.0 ? Quat(-m.q.coeffs()) : m.q;
+  const auto point = engine.simulation().point(body, Vec3::Zero());
+  nb::dict result;
+  result["position"] = array_of(m.r);
+  result["orientation"] = array_of(std::vector<double>{q.w(), q.x(), q.y(), q.z()}, {4});
+  result["velocity"] = array_of(m.v);
+  result["angular_velocity"] = array_of(m.omega());
+  result["acceleration"] = array_of(point.acceleration);
+  return result;
+}
+
+nb::dict joint_report(Engine& engine, int joint) {
+  JointReport r = engine.simulation().joint(joint);
+  const auto list = [](std::vector<double> numbers) {
+    const std::size_t n = numbers.size();
+    return array_of(std::move(numbers), {n});
+  };
+  nb::dict result;
+  result["coordinates"] = list(std::move(r.coordinates));
+  result["rates"] = list(std::move(r.rates));
+  result["force"] = array_of(r.force);
+  result["moment"] = array_of(r.moment);
+  result["residual"] = r.residual;
+  return result;
+}
+
+nb::dict energy(Engine& engine) {
+  const Balance b = engine.simulation().balance();
+  nb::dict result;
+  result["kinetic"] = b.kinetic;
+  result["potential"] = b.potential;
+  result["total"] = b.kinetic + b.potential;
+  result["put_in"] = b.put_in;
+  result["dissipated"] = b.dissipated;
+  result["linear_momentum"] = array_of(b.linear_momentum);
+  result["angular_momentum"] = array_of(b.angular_momentum);
+  return result;
+}
+
+using Numbers = std::optional<std::vector<double>>;
+
+Vec3 vector(const std::vector<double>& x, const char* what) {
+  if (x.size() != 3) throw InputError(what, "expects three numbers", "Give [x, y, z]");
+  return {x[0], x[1], x[2]};
+}
+
+void set_body(Engine& engine, int body, const Numbers& position, const Numbers& orientation,
+              const Numbers& velocity, const Numbers& angular_velocity) {
+  BodyMotion m = engine.simulation().body(body);
+  const Vec3 omega = angular_velocity ? vector(*angular_velocity, "angular_velocity") : m.omega();
+  if (position) m.r = vector(*position, "position");
+  if (velocity) m.v = vector(*velocity, "velocity");
+  if (orientation) {
+    if (orientation->size() != 4)
+      throw InputError("orientation", "expects four numbers", "Give [w, x, y, z]");
+    const std::vector<double>& q = *orientation;
+    m.q = Quat(q[0], q[1], q[2], q[3]).normalized();
+  }
+  m.W = m.q.conjugate() * omega;
+  engine.set_motion(body, m);
+}
+
+template <class Specs>
+std::vector<std::string> names_of(const Specs& specs) {
+  std::vector<std::string> names;
+  for (const auto& spec : specs) names.push_back(spec.name);
+  return names;
+}
+
+nb::tuple step(Engine& engine, double limit) {
+  StepReport report;
+  {
+    const nb::gil_scoped_release unlocked;
+    report = engine.simulation().step(limit);
+  }
+  return nb::make_tuple(report.accepted, report.t, report.dt, report.rejected,
+                        report.newton.iterations, report.message);
+}
+
+}  // namespace
+
+void bind_engine(nb::module_& m) {
+  nb::class_<Engine>(m, "Engine", "A compiled model with its state.")
+      .def(nb::init<const Model&>(), nb::arg("model"), nb::call_guard<nb::gil_scoped_release>())
+      .def("record", [](Engine& e) { return Recording(e.simulation()); })
+      .def("run", &Engine::run, nb::arg("recording").none(), nb::arg("folder"),
+           nb::arg("model_text"), nb::arg("overrides"), nb::arg("progress").none())
+      .def("step", &step, nb::arg("limit"))
+      .def("record_frame", [](Engine& e, Recording& r) { r.frame(e.simulation()); })
+      .def("copy", &Engine::copy)
+      .def("set_body", &set_body, nb::arg("index"), nb::arg("position").none(),
+           nb::arg("orientation").none(), nb::arg("velocity").none(),
+           nb::arg("angular_velocity").none())
+      .def_prop_ro("time", [](Engine& e) { return e.simulation().time(); })
+      .def_prop_ro("bodies", [](Engine& e) { return names_of(e.model().bodies); })
+      .def_prop_ro("joints", [](Engine& e) { return names_of(e.model().joints); })
+      .def_prop_ro("loads", [](Engine& e) { return names_of(e.model().loads); })
+      .def_prop_ro("state", &Engine::state)
+      .def("restore", &Engine::restore, nb::arg("state"))
+      .def_prop_ro("state_hash", [](Engine& e) { return e.simulation().state_hash(); })
+      .def("body", &body_report, nb::arg("index"))
+      .def("joint", &joint_report, nb::arg("index"))
+      .def("load", [](Engine& e, int i) { return e.simulation().load(i); }, nb::arg("index"))
+      .def("energy", &energy)
+      .def("summary", &Engine::summary);
+}
+
+}  // namespace polhode::python

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/io/write_results.hpp>
+#include <polhode/model/simulation.hpp>
+
+#include "parts.hpp"
+#include "recording.hpp"
+
+namespace polhode::python {
+
+/// A simulation with its names, as Python steps, runs, reads and sets it.
+class Engine {
+ public:
+  explicit Engine(const Model& model) : simulation_(std::make_unique<Simulation>(model)) {}
+  Engine(const Model& model, State state)
+      : simulation_(std::make_unique<Simulation>(model, std::move(state))) {}
+
+  [[nodiscard]] Simulation& simulation() { return *simulation_; }
+  [[nodiscard]] const Model& model() const { return simulation_->model(); }
+
+  /// Runs to the end; looks for Ctrl-C and calls progress(time) every 50 ms of wall time.
+  /// @param folder      Results are written there too, unless it is empty.
+  /// @returns the figures as JSON, see summary_json().
+  std::string run(Recording* recording, const std::string& folder, const std::string& model_text,
+                  const std::vector<std::string>& overrides, const nb::object& progress);
+  [[nodiscard]] std::string summary() const;
+
+  [[nodiscard]] nb::bytes state() const;
+  void restore(const nb::bytes& bytes);
+  [[nodiscard]] Engine copy() const { return {model(), simulation_->state()}; }
+  /// Puts a moving body in another place or motion at the present time. Then joints are assembled
+  /// and velocities projected again, turns counted anew, and the ledger begins anew.
+  /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
+  void set_motion(int body, const BodyMotion& motion);
+
+ private:
+  std::unique_ptr<Simulation> simulation_;
+};
+
+}  // namespace polhode::python

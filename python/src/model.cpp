@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+
+#include <polhode/base/names.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/io/schema.hpp>
+#include <polhode/io/source_tree.hpp>
+
+#include <nanobind/stl/string_view.h>
+
+#include "parts.hpp"
+#include "time_call.hpp"
+
+namespace polhode::python {
+
+namespace {
+
+template <class Number>
+bool reads_as(const std::string& text, Number& value) {
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return fault == std::errc() && end == text.data() + text.size();
+}
+
+nb::object scalar(const SourceNode& node) {
+  if (node.in_quotes) return nb::str(node.text.c_str(), node.text.size());
+  if (node.text == "true" || node.text == "false") return nb::bool_(node.text == "true");
+  std::int64_t whole = 0;
+  if (reads_as(node.text, whole)) return nb::int_(whole);
+  double number = 0.0;
+  const bool digits = node.text.find_first_not_of("0123456789.+-eE") == std::string::npos;
+  if (digits && reads_as(node.text, number)) return nb::float_(number);
+  return nb::str(node.text.c_str(), node.text.size());
+}
+
+nb::object tree(const SourceNode& node) {
+  switch (node.kind) {
+    case SourceNode::Kind::kEmpty:
+      return nb::none();
+    case SourceNode::Kind::kText:
+      return scalar(node);
+    case SourceNode::Kind::kList: {
+      nb::list list;
+      for (const SourceNode& child : node.children) list.append(tree(child));
+      return list;
+    }
+    case SourceNode::Kind::kMap:
+      break;
+  }
+  nb::dict map;
+  for (std::size_t i = 0; i < node.keys.size(); ++i)
+    map[nb::str(node.keys[i].name.c_str())] = tree(node.children[i]);
+  return map;
+}
+
+/// Lets a Python callable give what a load depends on: its vector or one component of it, or the
+/// drive of a motor.
+/// @param component  Of the vector; −1: all three, or a motor's number.
+void set_function(Model& model, const std::string& load, int component, nb::object function) {
+  LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
+  if (spec.value) {
+    spec.value = std::make_shared<CalledFunction>(std::make_shared<TimeCall>(function, 1), 0);
+    return;
+  }
+  if (!spec.vector) spec.vector.emplace();
+  if (component >= 0) {
+    spec.vector->at(static_cast<std::size_t>(component)) =
+        std::make_shared<CalledFunction>(std::make_shared<TimeCall>(function, 1), 0);
+    return;
+  }
+  const auto call = std::make_shared<TimeCall>(function, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    spec.vector->at(i) = std::make_shared<CalledFunction>(call, i);
+}
+
+}  // namespace
+
+void bind_model(nb::module_& m) {
+  m.def("schema_text", &json_schema, "JSON Schema of the model file.");
+  m.def("read_text", &read_file, nb::arg("path"), "The text of a file.");
+  m.def(
+      "parse", [](std::string text, std::string name) {
+        return tree(SourceTree::parse(std::move(text), std::move(name)).root());
+      },
+      nb::arg("text"), nb::arg("name"), "A model text as dicts, lists, numbers and texts.");
+  m.def("closest", &closest, nb::arg("word"), nb::arg("candidates"),
+        "The candidate nearest to a mistyped word, or an empty text.");
+  nb::class_<Model>(m, "CompiledModel", "A model that was read and checked.")
+      .def_prop_ro("title", [](const Model& model) { return model.title; })
+      .def_prop_ro("analysis", [](const Model& model) { return model.analysis.type; })
+      .def("set_function", &set_function, nb::arg("load"), nb::arg("component"),
+           nb::arg("function"))
+      .def_prop_ro("step", [](const Model& model) { return model.analysis.step; })
+      .def_prop_ro("duration", [](const Model& model) { return model.analysis.duration; });
+  m.def("compile", &read_model_text, nb::arg("text"), nb::arg("name"), nb::arg("overrides"),
+        nb::call_guard<nb::gil_scoped_release>(), "Reads and checks a model text.");
+}
+
+}  // namespace polhode::python

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parts.hpp"
+
+NB_MODULE(_native, m) {
+  m.doc() = "The engine behind the package polhode: use that one.";
+  m.attr("version") = POLHODE_VERSION;
+  polhode::python::bind_errors(m);
+  polhode::python::bind_model(m);
+  polhode::python::bind_recording(m);
+  polhode::python::bind_engine(m);
+  polhode::python::bind_results_reader(m);
+  polhode::python::bind_rotations(m);
+  polhode::python::bind_modes(m);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/io/results_plan.hpp>
+
+#include "parts.hpp"
+
+namespace polhode::python {
+
+/// Results of a run in memory: the channels of a results file, one block of numbers each.
+class Recording {
+ public:
+  explicit Recording(const Simulation& simulation);
+
+  /// Adds a frame; one that stands already is not added twice.
+  void frame(const Simulation& simulation);
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  /// Path → (array, unit). The arrays take over the numbers: call once.
+  [[nodiscard]] nb::dict channels();
+  /// Path → (channel, first, count, squeeze, unit).
+  [[nodiscard]] nb::dict views() const;
+  /// Path → list of names, or array of numbers.
+  [[nodiscard]] nb::dict fixed() const;
+
+ private:
+  ResultsLayout layout_;
+  FilePlan plan_;
+  std::vector<std::vector<double>> columns_;
+  std::vector<double> numbers_;
+  std::size_t frames_ = 0;
+  double last_ = 0.0;
+};
+
+}  // namespace polhode::python

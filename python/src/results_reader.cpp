@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hdf5.h>
+
+#include <polhode/io/file_error.hpp>
+
+#include "parts.hpp"
+
+namespace polhode::python {
+
+namespace {
+
+/// An HDF5 identifier that is closed when it goes.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Reads data sets of a results file, also while a run still writes it.
+class ResultsReader {
+ public:
+  explicit ResultsReader(std::string path)
+      : path_(std::move(path)), file_(open(path_), H5Fclose) {}
+
+  [[nodiscard]] std::vector<std::string> paths() const {
+    std::vector<std::string> list;
+    const auto visit = [](hid_t, const char* name, const H5O_info_t* info, void* out) -> herr_t {
+      if (info->type == H5O_TYPE_DATASET)
+        static_cast<std::vector<std::string>*>(out)->emplace_back(std::string("/") + name);
+      return 0;
+    };
+    H5Ovisit(file_, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &list);
+    return list;
+  }
+
+  /// A data set as array, or list of texts.
+  [[nodiscard]] nb::object read(const std::string& name) const {
+    const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (set < 0) throw nb::key_error(name.c_str());
+    const Handle space(H5Dget_space(set), H5Sclose), type(H5Dget_type(set), H5Tclose);
+    std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+    H5Sget_simple_extent_dims(space, dims.data(), nullptr);
+    const std::vector<std::size_t> shape(dims.begin(), dims.end());
+    std::size_t count = 1;
+    for (const std::size_t n : shape) count *= n;
+    switch (H5Tget_class(type)) {
+      case H5T_STRING:
+        return texts(set, type, count);
+      case H5T_INTEGER:
+        return nb::cast(array_of(numbers<std::int64_t>(set, H5T_NATIVE_INT64, count), shape));
+      default:
+        return nb::cast(array_of(numbers<double>(set, H5T_NATIVE_DOUBLE, count), shape));
+    }
+  }
+
+  /// An attribute of a group or data set as text or number; none if there is none.
+  [[nodiscard]] nb::object attribute(const std::string& object, const std::string& name) const {
+    if (H5Aexists_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return nb::none();
+    const Handle a(
+        H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(a), H5Tclose);
+    if (H5Tget_class(type) != H5T_STRING) {
+      double value = 0.0;
+      H5Aread(a, H5T_NATIVE_DOUBLE, &value);
+      return nb::float_(value);
+    }
+    if (H5Tis_variable_str(type) > 0) {
+      char* text = nullptr;
+      H5Aread(a, type, static_cast<void*>(&text));
+      nb::str result(text ? text : "");
+      H5free_memory(text);
+      return result;
+    }
+    std::string text(H5Tget_size(type), '\0');
+    H5Aread(a, type, text.data());
+    return nb::str(text.c_str());
+  }
+
+ private:
+  static hid_t open(const std::string& path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_file_locking(access, false, true);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+    if (file < 0)
+      throw FileError(path, "cannot be opened as HDF5",
+                      "Give the path of a file results.h5 that a run has written");
+    return file;
+  }
+
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers(hid_t set, hid_t type, std::size_t count) const {
+    std::vector<T> values(count);
+    if (count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+      throw FileError(path_, "a data set cannot be read", "Run the model again");
+    return values;
+  }
+
+  [[nodiscard]] static nb::object texts(hid_t set, hid_t type, std::size_t count) {
+    nb::list list;
+    if (count == 0) return list;
+    if (H5Tis_variable_str(type) > 0) {
+      std::vector<char*> pointers(count);
+      H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<void*>(pointers.data()));
+      for (char* text : pointers) {
+        list.append(nb::str(text ? text : ""));
+        H5free_memory(text);
+      }
+      return list;
+    }
+    const std::size_t size = H5Tget_size(type);
+    std::string all(size * count, '\0');
+    H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data());
+    for (std::size_t i = 0; i < count; ++i)
+      list.append(nb::str(all.substr(i * size, size).c_str()));
+    return list;
+  }
+
+  std::string path_;
+  Handle file_;
+};
+
+}  // namespace
+
+void bind_results_reader(nb::module_& m) {
+  nb::class_<ResultsReader>(m, "ResultsReader", "Reads a file results.h5.")
+      .def(nb::init<std::string>(), nb::arg("path"))
+      .def("paths", &ResultsReader::paths)
+      .def("read", &ResultsReader::read, nb::arg("path"))
+      .def("attribute", &ResultsReader::attribute, nb::arg("object"), nb::arg("name"));
+}
+
+}  // namespace polhode::python

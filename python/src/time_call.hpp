@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include <polhode/base/time_function.hpp>
+
+#include "parts.hpp"
+
+namespace polhode::python {
+
+/// A Python callable of the time that gives one number or three; it is called once for each time.
+class TimeCall {
+ public:
+  TimeCall(nb::object function, std::size_t size)
+      : function_(std::move(function)), values_(size, 0.0) {}
+  ~TimeCall() {
+    const nb::gil_scoped_acquire locked;
+    function_.reset();
+  }
+  TimeCall(const TimeCall&) = delete;
+  TimeCall& operator=(const TimeCall&) = delete;
+
+  /// @throws nb::python_error if the function raises.
+  double value(double t, std::size_t component) {
+    if (t != time_) {
+      const nb::gil_scoped_acquire locked;
+      const nb::object result = function_(t);
+      if (values_.size() == 1) {
+        values_[0] = nb::cast<double>(nb::float_(result));
+      } else {
+        for (std::size_t i = 0; i < values_.size(); ++i)
+          values_[i] = nb::cast<double>(nb::float_(result[i]));
+      }
+      time_ = t;
+    }
+    return values_[component];
+  }
+
+ private:
+  nb::object function_;
+  std::vector<double> values_;
+  double time_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// A component of a TimeCall as a function of time; derivatives are taken by differences.
+class CalledFunction final : public TimeFunction {
+ public:
+  CalledFunction(std::shared_ptr<TimeCall> call, std::size_t component)
+      : call_(std::move(call)), component_(component) {}
+  [[nodiscard]] double operator()(double t) const override { return call_->value(t, component_); }
+
+ private:
+  std::shared_ptr<TimeCall> call_;
+  std::size_t component_;
+};
+
+}  // namespace polhode::python

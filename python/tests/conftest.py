@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models that several tests run."""
+
+import pathlib
+
+import pytest
+
+import polhode
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / "examples").glob("*/model.yaml"))
+
+
+def make_pendulum(**keys):
+    """A bar on a hinge, let go from the horizontal."""
+    analysis = {"duration": 1, "step": "5 ms"}
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis=analysis, **keys)
+    arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])
+    m.add_joint("hinge", "revolute", ["ground", arm], at=[0, 0, 0], axis="y")
+    return m
+
+
+@pytest.fixture
+def pendulum():
+    return make_pendulum()

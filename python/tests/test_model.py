@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models in code: keys, faults, round trips."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import polhode
+from conftest import EXAMPLES, make_pendulum
+from polhode import _native, _text
+
+
+def test_a_model_in_code_is_the_model_of_the_file(pendulum):
+    text = """\
+format: 1
+gravity: [0, 0, -9.81]
+analysis: {duration: 1, step: 5 ms}
+bodies:
+  arm: {shape: {box: [1, 0.05, 0.05]}, density: 1000, position: [0.5, 0, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, arm], at: [0, 0, 0], axis: y}
+"""
+    assert polhode.from_text(text) == pendulum
+    assert pendulum.to_yaml() == text
+
+
+def test_values_are_read_and_set_by_name(pendulum):
+    body = pendulum.bodies["arm"]
+    body.mass = 2
+    body.density = None
+    body.position[2] = 0.25
+    assert pendulum.to_dict()["bodies"]["arm"] == {
+        "shape": {"box": [1, 0.05, 0.05]}, "position": [0.5, 0, 0.25], "mass": 2}
+    assert body.velocity is None
+    pendulum.output.probes.add("tip", body="arm", point=np.array([0.5, 0, 0]))
+    assert pendulum.to_dict()["output"] == {"probes": {"tip": {"body": "arm", "point": [0.5, 0.0, 0.0]}}}
+    assert "angular_velocity" in dir(body) and "add_body" in dir(pendulum) and "Box" in dir(polhode)
+    assert body._ipython_key_completions_() == ["shape", "position", "mass"]
+    assert repr(body) == "<body 'arm' {shape: {box: [1, 0.05, 0.05]}, position: [0.5, 0, 0.25], mass: 2}>"
+    assert repr(pendulum) == "<polhode.Model: 1 bodies, 1 joints>"
+
+
+def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum):
+    with pytest.raises(polhode.ModelError) as error:
+        pendulum.bodies["arm"].densty = 3
+    assert error.value.path == "bodies.arm.densty" and "Did you mean 'density'" in error.value.hint
+    with pytest.raises(polhode.ModelError, match="axix"):
+        pendulum.add_joint("other", "revolute", ["ground", "arm"], at=[0, 0, 0], axix="y")
+    assert list(pendulum.joints) == ["hinge"]
+    with pytest.raises(polhode.ModelError, match="is taken"):
+        pendulum.add_body("arm", mass=1)
+    with pytest.raises(KeyError, match="Did you mean 'arm'"):
+        _ = pendulum.bodies["amr"]
+
+
+def test_faults_have_path_and_hint_and_in_files_line_and_column(tmp_path, pendulum):
+    pendulum.joints["hinge"].bodies = ["ground", "arn"]
+    with pytest.raises(polhode.ModelError) as error:
+        pendulum.check()
+    assert error.value.path == "joints.hinge.bodies" and "Did you mean 'arm'?" in error.value.hint
+    assert error.value.line is None and error.value.file is None
+    path = tmp_path / "m.yaml"
+    pendulum.save(path)
+    with pytest.raises(polhode.ModelError) as error:
+        polhode.load(path).check()
+    assert error.value.file == str(path) and error.value.line == 7 and "^" in str(error.value)
+    copied = pickle.loads(pickle.dumps(error.value))
+    assert str(copied) == str(error.value)
+    path.write_text("format: [1")
+    with pytest.raises(polhode.ModelError) as error:
+        polhode.load(path)
+    assert error.value.line == 1
+    with pytest.raises(OSError):
+        polhode.load(tmp_path / "none.yaml")
+
+
+def test_shapes_have_the_sizes_of_the_model_file():
+    assert polhode.Box(1, 2, 3, position=[0, 0, 1]).tree() == {"box": [1, 2, 3], "position": [0, 0, 1]}
+    assert polhode.Tube(outer=0.2, inner="100 mm", length=1).tree() == {"tube": [0.2, "100 mm", 1]}
+    assert polhode.Plane("z").tree() == {"plane": "z"}
+    assert polhode.Mesh("a.stl", scale="1 mm").tree() == {"mesh": {"file": "a.stl", "scale": "1 mm"}}
+    assert polhode.Hull(points=[[0, 0, 0]]).tree() == {"hull": {"points": [[0, 0, 0]]}}
+    assert polhode.HeightField(1, [[0, 1], [0, 1]]).tree() == {
+        "height_field": {"spacing": 1, "heights": [[0, 1], [0, 1]]}}
+    assert repr(polhode.Sphere(0.1)) == "Sphere(diameter=0.1)"
+    assert pickle.loads(pickle.dumps(polhode.Cone(1, 2))) == polhode.Cone(1, 2)
+    with pytest.raises(TypeError):
+        polhode.Box(1, 2)
+    with pytest.raises(AttributeError):
+        _ = polhode.Boxes
+
+
+@pytest.mark.parametrize("kind", ["Box", "Sphere", "Cylinder", "Capsule", "Cone", "Ellipsoid", "Tube"])
+def test_every_shape_is_read_by_the_engine(kind):
+    shape = getattr(polhode, kind)
+    m = polhode.Model(gravity=[0, 0, -1])
+    sizes = {"x": 1, "y": 2, "z": 3, "diameter": 0.5, "length": 1, "outer": 0.5, "inner": 0.25}
+    m.add_body("b", shape=shape(*[sizes[name] for name in shape.sizes]), density=10)
+    m.check()
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.parent.name)
+def test_examples_go_through_text_without_loss(path, tmp_path):
+    m = polhode.load(path)
+    for name in ("again.yaml", "again.json"):
+        m.save(tmp_path / name)
+        assert polhode.load(tmp_path / name).to_dict() == m.to_dict()
+    assert copy.copy(m) == m and pickle.loads(pickle.dumps(m)) == m
+
+
+_values = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(st.characters(exclude_categories=["Cs", "Cc"], exclude_characters="\u2028\u2029\ufeff\x85")),
+    lambda inner: st.lists(inner, max_size=4)
+    | st.dictionaries(st.text("abcxyz019_-", min_size=1), inner, max_size=4), max_leaves=12)
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.dictionaries(st.text("abcxyz019_-", min_size=1), _values, min_size=1, max_size=5))
+def test_any_tree_goes_through_yaml_without_loss(tree):
+    assert _native.parse(_text.block(tree), "t.yaml") == tree
+
+
+def test_an_edited_model_reads_meshes_from_its_own_folder(tmp_path):
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    faces = [(1, 3, 2), (1, 2, 4), (1, 4, 3), (2, 3, 4)]
+    (tmp_path / "t.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+                                    + "".join(f"f {a} {b} {c}\n" for a, b, c in faces))
+    m = polhode.Model()
+    m.add_body("t", shape=polhode.Mesh("t.obj"), density=6)
+    m.save(tmp_path / "m.yaml")
+    m = polhode.load(tmp_path / "m.yaml")
+    m.title = "changed"
+    r = polhode.run(m, overrides={"analysis.duration": "1 ms"})
+    assert r.bodies["t"].position[0] == pytest.approx([0.25] * 3, rel=1e-14)
+
+
+def test_copies_do_not_change_with_the_model(pendulum):
+    other = pendulum.copy()
+    pendulum.bodies["arm"].density = 1
+    assert other == make_pendulum() and other != pendulum

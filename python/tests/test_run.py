@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs and their results."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import h5py
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import polhode
+from conftest import ROOT, make_pendulum
+
+CLI = os.path.join(os.path.dirname(polhode.__file__), "bin", "polhode")
+
+
+def exact_height(times):
+    """Height of the bar's centre by SciPy: a physical pendulum with its length along x."""
+    length, width, g = 1.0, 0.05, 9.81
+    inertia = (length**2 + width**2) / 12 + 0.25
+    motion = solve_ivp(lambda t, y: [y[1], -0.5 * g / inertia * np.cos(y[0])], (0, times[-1]), [0, 0],
+                       method="DOP853", rtol=1e-12, atol=1e-12, t_eval=times)
+    return 0.5 * np.sin(motion.y[0])
+
+
+@pytest.mark.parametrize("step", [0.02, 0.005, 0.0005])
+def test_a_pendulum_moves_as_its_equation_says(step):
+    m = make_pendulum()
+    m.analysis.step = step
+    r = polhode.run(m)
+    # Order 2: c Δt² with one c at all steps. The midpoint rule's phase error, Δt² ω³ t/12 with ω up
+    # to 5.4 rad/s, bounds c by 13 rad times the arm, 0.5 m.
+    error = np.max(np.abs(r.bodies["arm"].position[:, 2] - exact_height(r.time)))
+    assert 2.3 * step**2 < error < 2.5 * step**2
+    assert r.frames == round(1 / step) + 1
+    assert r.ledger.energy_drift < 1e-13 and r.end == "finished"
+
+
+def test_arrays_are_the_memory_of_the_engine(pendulum):
+    r = polhode.run(pendulum)
+    body = r.bodies["arm"]
+    assert body.position.shape == (201, 3) and body.orientation.shape == (201, 4)
+    assert np.shares_memory(body.position, r["packed.bodies.position"])
+    assert np.shares_memory(body.position, r.bodies["arm"].position)
+    assert r.joints["hinge"].force.shape == (201, 3)
+    assert r.joints["hinge"].coordinates.shape == (201, 1)
+    assert r.solver.steps.dtype == np.int64 and r.solver.steps[-1] == 200
+    assert np.array_equal(r["bodies.arm.orientation.w"], body.orientation[:, 0])
+    assert r.unit("bodies.arm.velocity") == "m/s" and r.energy.unit("total") == "J"
+    assert "position" in dir(body) and "bodies" in dir(r) and "arm" in r.bodies
+    with pytest.raises(AttributeError, match="Did you mean 'position'"):
+        _ = body.positon
+    with pytest.raises(KeyError, match="no channel"):
+        _ = r["bodies.leg.position"]
+
+
+def test_results_are_those_of_the_command_line_bit_for_bit(pendulum, tmp_path):
+    pendulum.add_load("spring", "spring_damper", bodies=["ground", "arm"], at=[[0, 0, 1], [1, 0, 0]], stiffness=5)
+    pendulum.save(tmp_path / "m.yaml")
+    figures = json.loads(subprocess.run([CLI, "run", "m.yaml", "--json", "--quiet"], cwd=tmp_path, check=True,
+                                        stdout=subprocess.PIPE).stdout)
+    memory, file = polhode.run(pendulum), polhode.open(tmp_path / "m.results")
+    assert memory.ledger.result_hash == figures["result_hash"]
+    assert set(memory.channels()) == set(file.channels())
+    with h5py.File(tmp_path / "m.results/results.h5") as h5:
+        for name in memory.channels():
+            assert np.array_equal(memory[name], file[name]), name
+            assert np.array_equal(memory[name], h5[name.replace(".", "/")][:]), name
+            assert memory.unit(name) == file.unit(name), name
+            assert memory[name].dtype.kind == file[name].dtype.kind, name
+    assert file.ledger.energy_drift < 1e-13 and file.ledger.steps == 200
+
+
+def test_a_folder_of_results_says_where_they_come_from(pendulum, tmp_path):
+    pendulum.save(tmp_path / "m.yaml")
+    polhode.run(tmp_path / "m.yaml", output=tmp_path / "out", overrides={"analysis.duration": "20 ms"})
+    with h5py.File(tmp_path / "out/results.h5") as h5:
+        origin = h5["provenance"]
+        assert origin.attrs["version"] == polhode.__version__ and origin.attrs["model_file"] == "m.yaml"
+        assert origin.attrs["overrides"] == "analysis.duration=20 ms"
+        assert origin["model"].asstr()[0] == (tmp_path / "m.yaml").read_text()
+
+
+def test_models_of_many_bodies_are_read_by_name_too(tmp_path):
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 0.02, "step": 0.01})
+    for i in range(150):
+        m.add_body(f"b{i}", mass=1, inertia=[1, 1, 1], position=[i, 0, 0], velocity=[0, 0, i])
+        m.add_joint(f"j{i}", "prismatic", ["ground", f"b{i}"], at=[i, 0, 0], axis="z")
+    for r in (polhode.run(m, output=tmp_path / "out"), polhode.open(tmp_path / "out")):
+        assert r.bodies["b7"].position[-1] == pytest.approx([7, 0, 7 * 0.02 - 0.5 * 9.81 * 0.02**2], rel=1e-12)
+        assert r.joints["j7"].coordinates.shape == (3, 1)
+        assert r.joints["j7"].rates[0] == pytest.approx([7])
+        assert len(r.bodies) == 150 and "force" in list(r.joints["j7"])
+        assert r.unit("bodies.b7.position") == "m"
+
+
+def test_overrides_hold_for_one_run(pendulum):
+    pendulum.variables["g"] = 9.81
+    pendulum.gravity = [0, 0, "-g"]
+    r = polhode.run(pendulum, overrides={"variables.g": 0, "analysis.duration": "20 ms"})
+    assert r.frames == 5 and np.all(r.bodies["arm"].velocity == 0)
+    assert pendulum.variables["g"] == 9.81
+
+
+def test_results_go_to_other_libraries(pendulum):
+    r = polhode.run(pendulum)
+    table = r.to_pandas("bodies.arm", "energy.total")
+    assert list(table.columns[:3]) == ["bodies.arm.position.x", "bodies.arm.position.y", "bodies.arm.position.z"]
+    assert table.index.name == "time" and table["energy.total"].iloc[-1] == r.energy.total[-1]
+    assert "joints.hinge.force.z" in r.to_pandas().columns
+    data = r.to_xarray("bodies.arm.position", "energy")
+    assert data["bodies.arm.position"].dims == ("time", "axis")
+    assert data["bodies.arm.position"].attrs["units"] == "m"
+    assert np.shares_memory(data["bodies.arm.position"].values, r.bodies["arm"].position)
+    import matplotlib
+
+    matplotlib.use("Agg")
+    figure = r.plot("energy", "joints.hinge.force")
+    assert [a.get_ylabel() for a in figure.axes] == ["energy [J]", "joints.hinge.force [N]"]
+    assert len(figure.axes[1].lines) == 3
+    assert np.array_equal(figure.axes[1].lines[2].get_ydata(), r.joints["hinge"].force[:, 2])
+
+
+def test_results_can_be_pickled(pendulum, tmp_path):
+    for r in (polhode.run(pendulum, output=tmp_path / "o"), polhode.open(tmp_path / "o")):
+        again = pickle.loads(pickle.dumps(r))
+        assert np.array_equal(again.bodies["arm"].position, r.bodies["arm"].position)
+        assert again.ledger.t == r.ledger.t and again.channels() == r.channels()
+
+
+def test_a_step_that_does_not_converge_raises_with_what_was_computed(pendulum):
+    pendulum.add_load("push", "force", body="arm", at=[1, 0, 0], force=["1e300*t", 0, 0])
+    pendulum.analysis.step = "0.5 s"
+    with pytest.raises(polhode.NotConverged) as error, pytest.warns(UserWarning, match="velocities are far"):
+        polhode.run(pendulum, overrides={"analysis.min_step": "0.4 s"})
+    assert error.value.result.frames >= 1 and error.value.result.end == "not_converged"
+
+
+def test_statics_runs_over_the_load_factor():
+    m = polhode.Model(gravity=[0, 0, -10], analysis={"type": "statics", "load_steps": 4})
+    m.add_body("b", mass=2, inertia=[1, 1, 1])
+    m.add_joint("slide", "prismatic", ["ground", "b"], at=[0, 0, 0], axis="z")
+    m.add_load("s", "spring_damper", bodies=["ground", "b"], at=[[0, 0, 1], [0, 0, 0]], stiffness=100)
+    r = polhode.run(m)
+    assert r.time == pytest.approx([0, 0.25, 0.5, 0.75, 1])
+    assert r.bodies["b"].position[:, 2] == pytest.approx(-0.2 * r.time, abs=1e-12)
+
+
+def test_the_interpreter_goes_on_while_a_run_goes_on(pendulum):
+    counted = [0]
+    done = threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    polhode.run(pendulum, overrides={"analysis.step": "20 us", "output.every": 1})
+    done.set()
+    thread.join()
+    assert counted[0] > 20
+
+
+def test_ctrl_c_stops_with_what_was_computed():
+    program = """
+import sys, warnings
+sys.path.insert(0, sys.argv[1])
+import polhode
+from conftest import make_pendulum
+warnings.simplefilter("ignore")
+m = make_pendulum()
+print("begin", flush=True)
+r = polhode.run(m, overrides={"analysis.duration": "1 h", "analysis.step": "1 ms", "output.every": "1 s"})
+print(r.end, 1 < r.ledger.t < 3600, r.frames > 1, flush=True)
+"""
+    folder = str(ROOT / "python/tests")
+    with subprocess.Popen([sys.executable, "-c", program, folder], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "begin\n"
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        assert process.communicate(timeout=60)[0] == "interrupted True True\n"
+
+
+def test_progress_is_shown_by_tqdm(pendulum, monkeypatch):
+    from polhode import _progress
+
+    seen = []
+    monkeypatch.setattr(_progress.Bar, "show", property(lambda self: seen.append))
+    polhode.run(pendulum, overrides={"analysis.step": "20 us", "output.every": 1})
+    assert seen and seen == sorted(seen) and seen[-1] <= 1
+
+
+def test_ctrl_c_within_the_progress_stops_too(pendulum, monkeypatch):
+    from polhode import _progress
+
+    def interrupt(t):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(_progress.Bar, "show", property(lambda self: interrupt))
+    with pytest.warns(UserWarning, match="was stopped"):
+        r = polhode.run(pendulum, overrides={"analysis.step": "10 us", "output.every": "1 ms"})
+    assert r.end == "interrupted" and 0 < r.time[-1] < 1
+
+
+def test_an_exception_in_the_progress_stops_the_run(pendulum, monkeypatch):
+    from polhode import _progress
+
+    def fail(t):
+        raise ZeroDivisionError("in progress")
+
+    monkeypatch.setattr(_progress.Bar, "show", property(lambda self: fail))
+    with pytest.raises(ZeroDivisionError):
+        polhode.run(pendulum, overrides={"analysis.step": "10 us", "output.every": 1})
+
+
+def test_the_version_is_that_of_the_build():
+    text = (ROOT / "CMakeLists.txt").read_text()
+    assert f"project(polhode VERSION {polhode.__version__} " in text
+    import importlib.metadata
+
+    assert importlib.metadata.version("polhode") == polhode.__version__
+    program = subprocess.run([CLI, "--version"], check=True, stdout=subprocess.PIPE, text=True)
+    assert polhode.__version__ in program.stdout
+
+
+def test_the_command_is_installed():
+    program = os.path.join(os.path.dirname(sys.executable), "polhode")
+    text = subprocess.run([program, "examples"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    assert "double_pendulum" in text

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stepping, setting, copying; loads from Python; modes and matrices."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+import polhode
+from conftest import make_pendulum
+
+
+def test_steps_are_those_of_a_run(pendulum):
+    sim = polhode.Simulation(pendulum)
+    heights = [sim.bodies["arm"].position[2]]
+    step = None
+    for step in sim:  # noqa: B007
+        heights.append(sim.bodies["arm"].position[2])
+    r = polhode.run(pendulum)
+    assert np.array_equal(heights, r.bodies["arm"].position[:, 2])
+    assert sim.ledger.result_hash == r.ledger.result_hash
+    assert step.time == sim.time == pytest.approx(1) and step.dt == pytest.approx(0.005) and step.iterations > 0
+    assert sim.joints["hinge"].coordinates == pytest.approx(r.joints["hinge"].coordinates[-1], abs=0)
+    assert sim.energy.total == pytest.approx(r.energy.total[-1], abs=0)
+    with pytest.raises(KeyError, match="Did you mean 'arm'"):
+        _ = sim.bodies["amr"]
+
+
+def test_a_state_is_restored_bit_for_bit(pendulum):
+    sim = polhode.Simulation(pendulum)
+    sim.run(0.3)
+    state, other = sim.state, sim.copy()
+    first = sim.run(0.8).bodies["arm"].position
+    assert other.time == pytest.approx(0.3) and other.state == state
+    sim.restore(state)
+    assert np.array_equal(sim.run(0.8).bodies["arm"].position, first)
+    assert np.array_equal(other.run(0.8).bodies["arm"].position, first)
+    assert other.state == sim.state != state
+    with pytest.raises(polhode.ModelError):
+        sim.restore(state[:-8])
+
+
+def test_stop_conditions_and_observers(pendulum):
+    seen = []
+    r = polhode.Simulation(pendulum).run(
+        stop=lambda s: s.bodies["arm"].position[2] < -0.4, observe=lambda s: seen.append(s.time))
+    assert r.end == "stopped" and r.bodies["arm"].position[-1, 2] < -0.4 <= r.bodies["arm"].position[-2, 2]
+    assert np.array_equal(seen, r.time)
+
+
+def test_a_body_set_in_motion_keeps_its_joints(pendulum):
+    sim = polhode.Simulation(pendulum)
+    sim.run(0.5)
+    # About the hinge the bar turns with 2 rad/s: the part along the bar is projected away.
+    x, _, z = sim.bodies["arm"].position
+    sim.bodies["arm"].set(velocity=[0.3 * x + 2 * z, 0, 0.3 * z - 2 * x], angular_velocity=[0, 2, 0])
+    assert sim.time == pytest.approx(0.5)
+    assert sim.joints["hinge"].rates == pytest.approx([2], rel=1e-3)
+    assert sim.bodies["arm"].velocity @ sim.bodies["arm"].position == pytest.approx(0, abs=1e-12)
+    before = sim.energy.total
+    sim.run()
+    assert sim.energy.total == pytest.approx(before, rel=1e-12) and sim.ledger.energy_drift < 1e-12
+    sim.bodies["arm"].position = [0.6, 0, 0]
+    assert sim.bodies["arm"].position @ sim.bodies["arm"].position == pytest.approx(0.25, rel=1e-10)
+    with pytest.raises(AttributeError, match="cannot be set"):
+        sim.bodies["arm"].acceleration = [0, 0, 0]
+
+
+def test_a_force_from_python_is_the_force_of_the_file():
+    results = []
+    for force in (["2*sin(3*t)", 0, 0], lambda t: [2 * np.sin(3 * t), 0, 0], [lambda t: 2 * np.sin(3 * t), 0, 0]):
+        m = polhode.Model(analysis={"duration": 2, "step": 0.01})
+        m.add_body("b", mass=2, inertia=[1, 1, 1])
+        m.add_load("push", "force", body="b", at=[0, 0, 0], force=force)
+        results.append(polhode.run(m))
+    x = results[0].bodies["b"].position[:, 0]
+    t = results[0].time
+    # ẍ = sin 3t: x = t/3 − sin(3t)/9; the midpoint rule's error is t Δt²/24 times 3² below.
+    assert np.max(np.abs(x - (t / 3 - np.sin(3 * t) / 9))) < 2e-4
+    for r in results[1:]:
+        assert r.bodies["b"].position[:, 0] == pytest.approx(x, abs=1e-14)
+        assert r.loads["push"].force[-1, 0] == pytest.approx(2 * np.sin(6))
+
+
+def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor():
+    times = []
+
+    def speed(t):
+        times.append(t)
+        return 3.0 * t
+
+    m = make_pendulum()
+    m.add_load("motor", "rotary_motor", joint="hinge", speed=speed)
+    r = polhode.run(m, overrides={"analysis.duration": 0.1, "analysis.step": 0.01})
+    assert r.joints["hinge"].rates[-1, 0] == pytest.approx(0.3, rel=1e-3)
+    assert min(times) >= -1e-3 and max(times) <= 0.1 + 1e-3  # derivatives look 0.2 ms aside
+    with pytest.raises(polhode.ModelError, match="cannot be written"):
+        m.save("never.yaml")
+
+
+def test_an_exception_in_a_force_stops_the_run_and_is_raised():
+    m = polhode.Model(analysis={"duration": 1, "step": 0.01})
+    m.add_body("b", mass=2, inertia=[1, 1, 1])
+
+    def fail(t):
+        if t > 0.5:
+            raise ZeroDivisionError(f"at {t}")
+        return [0, 0, 0]
+
+    m.add_load("push", "force", body="b", at=[0, 0, 0], force=fail)
+    with pytest.raises(ZeroDivisionError, match="at 0.5"):
+        polhode.run(m)
+    m.bodies["b"].mass = lambda t: 1
+    with pytest.raises(polhode.ModelError, match="callable cannot stand here"):
+        m.check()
+
+
+def two_masses():
+    """Two masses on springs along z: K = [[300, -100], [-100, 100]], M = diag(2, 1)."""
+    m = polhode.Model(analysis={"type": "modes", "about": "start"})
+    for name, mass, z in (("a", 2, 1), ("b", 1, 2)):
+        m.add_body(name, mass=mass, inertia=[1, 1, 1], position=[0, 0, z])
+        m.add_joint(f"slide_{name}", "prismatic", ["ground", name], at=[0, 0, z], axis="z")
+    m.add_load("s1", "spring_damper", bodies=["ground", "a"], at=[[0, 0, 0], [0, 0, 1]], stiffness=200, damping=3)
+    m.add_load("s2", "spring_damper", bodies=["a", "b"], at=[[0, 0, 1], [0, 0, 2]], stiffness=100)
+    return m
+
+
+def test_modes_are_those_of_two_masses():
+    m = two_masses()
+    m.loads["s1"].damping = None
+    K, M = np.array([[300, -100], [-100, 100]]), np.diag([2, 1])
+    squares, shapes = scipy.linalg.eigh(K, M)
+    found = polhode.modes(m)
+    assert found.frequencies == pytest.approx(np.sqrt(squares) / (2 * np.pi), rel=1e-10)
+    first = np.array([found[0].shape(name)[2] for name in "ab"])
+    assert np.abs(first.real) == pytest.approx(np.abs(shapes[:, 0]), rel=1e-9) and not first.imag.any()
+    assert found.total_mass == pytest.approx(3) and found[0].kind == "oscillation"
+    assert len(polhode.modes(m, 1)) == 1
+
+
+def test_matrices_are_those_of_two_masses():
+    m = two_masses()
+    m.analysis = {"type": "dynamics"}
+    matrices = polhode.matrices(m)
+    z = [2, 8]
+    assert matrices.K.toarray()[np.ix_(z, z)] == pytest.approx(np.array([[300, -100], [-100, 100]]), abs=1e-9)
+    assert matrices.C.toarray()[np.ix_(z, z)] == pytest.approx(np.diag([3, 0]), abs=1e-9)
+    assert matrices.M.toarray() == pytest.approx(np.diag([2, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1]), abs=1e-12)
+    G = matrices.G.toarray()
+    assert G.shape == (10, 12) and np.linalg.matrix_rank(G) == 10
+    assert G[:, z] == pytest.approx(np.zeros((10, 2)), abs=1e-14)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sweeps and fits."""
+
+import json
+import os
+import pathlib
+import signal
+
+import numpy as np
+import pytest
+
+import polhode
+from conftest import make_pendulum
+from polhode import _sweep
+
+
+def oscillator():
+    """A damped mass on a spring along z."""
+    m = polhode.Model(variables={"k": 40, "c": 0.8}, analysis={"duration": 3, "step": 0.005})
+    m.add_body("b", mass=1, inertia=[1, 1, 1], position=[0, 0, 1.5])
+    m.add_joint("slide", "prismatic", ["ground", "b"], at=[0, 0, 0], axis="z")
+    m.add_load("s", "spring_damper", bodies=["ground", "b"], at=[[0, 0, 0], [0, 0, 1.5]], stiffness="k", damping="c",
+               free_length=1)
+    return m
+
+
+def height(t, k=40.0, c=0.8):
+    w = np.sqrt(k - c * c / 4)
+    return 1 + 0.5 * np.exp(-c * t / 2) * (np.cos(w * t) + c / (2 * w) * np.sin(w * t))
+
+
+def test_a_grid_is_every_combination_and_failures_are_rows():
+    table = polhode.sweep(oscillator(), {"variables.k": [20, 40, -1], "variables.c": (0.2, 0.4)}, n=2, processes=1,
+                          outputs=["bodies.b.position"])
+    assert table[["variables.k", "variables.c"]].values.tolist() == [
+        [20, 0.2], [20, 0.4], [40, 0.2], [40, 0.4], [-1, 0.2], [-1, 0.4]]
+    good = table[table.message == ""]
+    assert len(good) == 4
+    exact = [height(3.0, k, c) for k, c in zip(good["variables.k"], good["variables.c"])]
+    assert good["bodies.b.position.z"].to_numpy() == pytest.approx(exact, abs=2e-3)
+    assert all("loads.s.stiffness" in message for message in table.message[4:])
+
+
+def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path):
+    def sweep(n, **options):
+        return polhode.sweep(oscillator(), {"variables.k": [20, 30, 40][:n]}, outputs=["energy.total"], **options)
+
+    alone, together = sweep(3, processes=1), sweep(3, processes=2)
+    assert alone.drop(columns="wall_time_s").equals(together.drop(columns="wall_time_s"))
+    log = tmp_path / "rows.jsonl"
+    sweep(2, processes=1, resume=log)
+    with log.open("a") as file:
+        file.write('{"model": "cut sh')
+        file.write("\n")
+    kept = log.read_text().splitlines()
+    again = sweep(3, processes=1, resume=log)
+    assert again.drop(columns="wall_time_s").equals(alone.drop(columns="wall_time_s"))
+    added = log.read_text().splitlines()[len(kept):]
+    assert [json.loads(line)["point"] for line in added] == [{"variables.k": 40}]
+
+
+def die_once(result):
+    """Kills its process the first time, as the system does when memory is short."""
+    mark = pathlib.Path(os.environ["POLHODE_TEST_MARK"])
+    if result.ledger.t > 2.9 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"height": float(result.bodies["b"].position[-1, 2])}
+
+
+def test_the_runs_of_a_killed_process_are_run_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("POLHODE_TEST_MARK", str(tmp_path / "mark"))
+    table = polhode.sweep(oscillator(), {"variables.k": [20, 30, 40, 50]}, outputs=die_once, processes=2)
+    assert (tmp_path / "mark").exists() and list(table.message) == [""] * 4
+    assert table.height.to_numpy() == pytest.approx([height(3.0, k) for k in (20, 30, 40, 50)], abs=2e-3)
+
+
+def test_points_fill_their_ranges():
+    pairs = {"a": (0, 1), "b": (10, 20)}
+    for method in ("sobol", "lhs"):
+        points = _sweep._points(pairs, 16, method, 1)
+        for name, (low, high) in pairs.items():
+            cells = np.floor([(p[name] - low) / (high - low) * 16 for p in points])
+            assert sorted(cells) == list(range(16)), method  # one point in each sixteenth
+    normal = [p["a"] for p in _sweep._points({"a": (5, 2)}, 4000, "normal", 1)]
+    assert np.mean(normal) == pytest.approx(5, abs=0.15) and np.std(normal) == pytest.approx(2, abs=0.1)
+    with pytest.raises(ValueError, match="unknown method"):
+        _sweep._points(pairs, 4, "halton", 0)
+
+
+def test_a_fit_finds_stiffness_and_damper_in_noisy_data():
+    times = np.linspace(0, 3, 200)
+    noise = np.random.default_rng(3).normal(0, 0.005, 200)
+    fit = polhode.fit(oscillator(), {"time": times, "bodies.b.position.z": height(times) + noise},
+                      {"variables.k": 36, "variables.c": 1.2})
+    assert fit.errors["variables.k"] < 0.1 and fit.errors["variables.c"] < 0.05
+    assert abs(fit.parameters["variables.k"] - 40) < 4 * fit.errors["variables.k"]
+    assert abs(fit.parameters["variables.c"] - 0.8) < 4 * fit.errors["variables.c"]
+    assert np.std(fit.residuals) == pytest.approx(0.005, rel=0.15)
+    with pytest.raises(ValueError, match="values at"):
+        polhode.fit(make_pendulum(), {"time": times, "energy.total": [1]}, {"gravity.2": 9})
