@@ -52,6 +52,7 @@ void add_within_option(CLI::App& command, CertifyRequest& request);
 Action add_run(CLI::App& command);
 Action add_certify(CLI::App& command);
 Action add_modes(CLI::App& command);
+Action add_view(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_schema(CLI::App& command);

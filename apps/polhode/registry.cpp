@@ -15,6 +15,7 @@ const std::vector<Command>& commands() {
       {"certify", "Run a model three times, ever finer, and tell how far its results are right",
        add_certify},
       {"modes", "Natural frequencies and shapes of a model about its equilibrium", add_modes},
+      {"view", "Show results, or a model before it runs, as moving pictures in a browser", add_view},
       {"check", "Look for faults in a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "Tell what a model holds, or which joints, loads and shapes exist", add_info},
       {"schema", "Write the JSON Schema or the reference page of the model file", add_schema},

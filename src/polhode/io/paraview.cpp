@@ -26,7 +26,9 @@ void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, co
     sum.triangles.push_back({first + a, first + b, first + c});
 }
 
-/// The box with this mass and inertia: I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
+}  // namespace
+
+// I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
 TriangleSurface inertia_box(const BodySpec& body, double size) {
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(body.inertia);
   const Vec3& I = axes.eigenvalues();
@@ -43,6 +45,8 @@ TriangleSurface inertia_box(const BodySpec& body, double size) {
   append(box, shape_surface(*find_shape_kind("box"), lengths), R, Vec3::Zero());
   return box;
 }
+
+namespace {
 
 /// A square of a plane about its point; both sides are seen.
 TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
