@@ -91,12 +91,16 @@ export class Bodies {
     this.update();
   }
 
-  /** Box around all bodies now; planes do not count. */
+  /** Box around all bodies now; planes do not count, of ghosts the centre of mass alone. */
   box(): Box3 {
     const all = new Box3(), matrix = new Matrix4(), one = new Box3();
     for (const batch of this.batches) {
       batch.solid.geometry.computeBoundingBox();
       for (const part of batch.parts) {
+        if (this.showing[part.body] !== "shown") {
+          all.expandByPoint(this.poses.r_of(part.body, new Vector3()));
+          continue;
+        }
         one.copy(batch.solid.geometry.boundingBox as Box3).applyMatrix4(this.poses.matrix_of(part.body, matrix).multiply(part.local));
         all.union(one);
       }

@@ -27,6 +27,7 @@ export function follow(hash: string, view: View, player: Player): Choice | null 
     stage.parallel.updateProjectionMatrix();
   }
   if (eye && at) {
+    stage.looking = null;
     stage.controls.target.set(...at);
     stage.camera.position.set(...eye);
     stage.controls.update();

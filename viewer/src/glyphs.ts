@@ -33,15 +33,15 @@ function jointShape(type: string): BufferGeometry {
   }
 }
 
-/** A coil along z from 0 to 1, of radius 1 across. */
+/** A coil along z from 0 to 1, of radius 1 across. Springs are some 20 times as long as wide: their wire is made thin along z. */
 function coil(): BufferGeometry {
-  const turns = 9, points: Vector3[] = [new Vector3(0, 0, 0), new Vector3(0, 0, 0.06)];
+  const turns = 9, long = 20, points: Vector3[] = [new Vector3(0, 0, 0), new Vector3(0, 0, 0.06 * long)];
   for (let i = 0; i <= 12 * turns; i++) {
     const a = 2 * Math.PI * i / 12;
-    points.push(new Vector3(Math.cos(a), Math.sin(a), 0.1 + 0.8 * i / (12 * turns)));
+    points.push(new Vector3(Math.cos(a), Math.sin(a), long * (0.1 + 0.8 * i / (12 * turns))));
   }
-  points.push(new Vector3(0, 0, 0.94), new Vector3(0, 0, 1));
-  return new TubeGeometry(new CatmullRomCurve3(points), 24 * turns, 0.05, 5);
+  points.push(new Vector3(0, 0, 0.94 * long), new Vector3(0, 0, long));
+  return new TubeGeometry(new CatmullRomCurve3(points), 30 * turns, 0.13, 6).scale(1, 1, 1 / long);
 }
 
 class Glyphs {
@@ -68,6 +68,7 @@ const byKind = (types: string[]): Map<string, number[]> => {
 export class Joints {
   readonly group = new Group();
   private readonly kinds: Glyphs[] = [];
+  private readonly arm: number;
   chosen = -1;
   scale = 1;
   constructor(private readonly list: JointEntry[], private readonly poses: Poses) {
@@ -78,6 +79,9 @@ export class Joints {
       this.kinds.push(glyphs);
       this.group.add(glyphs.mesh);
     }
+    // Joints are as large as suits the bodies that they tie together.
+    const arms = list.filter((j) => j.Za && j.Zb).map((j) => Math.max((j.a ?? -1) < 0 ? 0 : Math.hypot(...j.Za!), (j.b ?? -1) < 0 ? 0 : Math.hypot(...j.Zb!))).filter((x) => x > 0).sort((x, y) => x - y);
+    this.arm = arms.length > 0 ? arms[arms.length >> 1] : Infinity;
     this.colours();
   }
   colours(): void {
@@ -95,7 +99,7 @@ export class Joints {
     return this.poses.q_of(joint.a ?? -1, out).multiply(quaternion(joint.q));
   }
   update(size: number): void {
-    const matrix = new Matrix4(), at = new Vector3(), turn = new Quaternion(), scale = new Vector3().setScalar(0.016 * size * this.scale);
+    const matrix = new Matrix4(), at = new Vector3(), turn = new Quaternion(), scale = new Vector3().setScalar(this.scale * Math.min(0.018 * size, Math.max(0.005 * size, 0.13 * this.arm)));
     for (const kind of this.kinds) {
       kind.indices.forEach((j, i) => {
         this.point(j, at);

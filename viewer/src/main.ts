@@ -8,7 +8,7 @@ import { Plot, type Mode } from "./plots";
 import { offered, seriesOf } from "./series";
 import { View, type Choice } from "./view";
 
-const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4", "front, side, top, oblique"],
+const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, as at first"],
   ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["/", "search"],
   ["d", "dark or light"], ["b", "put camera and time into the address"], ["Esc", "choose nothing"], ["?", "this list"]];
 
@@ -27,7 +27,7 @@ async function start(app: HTMLElement): Promise<void> {
   const dark = matchMedia("(prefers-color-scheme: dark)").matches;
   document.documentElement.dataset.theme = dark ? "dark" : "light";
 
-  const holder = h("section", { class: "view", "aria-label": "Moving picture" });
+  const holder = h("main", { class: "view", "aria-label": "Moving picture" });
   const drift = h("span", { class: "drift", title: "Change of the energy balance since the start, over the largest energy" });
   const head = h("header", {}, h("h1", {}, m.title || m.source.file || "Model"), drift);
   const side = h("aside", { "aria-label": "Objects and display" });
@@ -180,7 +180,7 @@ async function start(app: HTMLElement): Promise<void> {
     "/": () => { app.classList.remove("wide"); tab(0); objects.focus(); }, o: () => view.stage.setParallel(view.stage.camera !== view.stage.parallel),
     h: () => { if (chosenBody() >= 0) view.show(chosenBody(), "hidden"); }, g: () => { if (chosenBody() >= 0) view.show(chosenBody(), "ghost"); }, i: () => { if (chosenBody() >= 0) view.isolate(chosenBody()); },
   };
-  [..."1234"].forEach((key, i) => { keys[key] = () => display.querySelectorAll<HTMLButtonElement>(".buttons button")[i].click(); });
+  [..."12340"].forEach((key, i) => { keys[key] = () => display.querySelectorAll<HTMLButtonElement>(".buttons button")[i].click(); });
   const changeSpeed = (by: number): void => {
     speed.selectedIndex = Math.min(speeds.length - 1, Math.max(0, speed.selectedIndex + by));
     player.speed = Number(speed.value);
@@ -218,10 +218,12 @@ async function start(app: HTMLElement): Promise<void> {
 /** Loads the page again when the file it shows is saved. */
 function watchFile(): void {
   let before = "";
-  setInterval(() => void fetch("stamp").then((r) => r.text()).then((stamp) => {
+  const look = (): void => void fetch("stamp").then((r) => r.text()).then((stamp) => {
     if (before && stamp !== before && stamp !== "gone") location.reload();
     before = stamp;
-  }).catch(() => undefined), 1000);
+  }).catch(() => undefined);
+  look();
+  setInterval(look, 1000);
 }
 
 const app = document.getElementById("app") as HTMLElement;

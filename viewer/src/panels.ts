@@ -126,7 +126,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
   const sides = view.stage.sides();
   const look = (label: string, key: string, d: Vector3) => h("button", { type: "button", title: `${label} (${key})`, onclick: () => { view.stage.view(d.clone()); refresh(); } }, label);
   const camera = part("Camera", h("div", { class: "buttons" }, look("Front", "1", sides[1].clone().negate()), look("Side", "2", sides[0]), look("Top", "3", view.stage.up.clone().addScaledVector(sides[1], -1e-3)),
-    look("Oblique", "4", new Vector3().addScaledVector(sides[0], 0.45).addScaledVector(sides[1], -0.85).addScaledVector(view.stage.up, 0.42))),
+    look("Oblique", "4", new Vector3().addScaledVector(sides[0], 0.45).addScaledVector(sides[1], -0.85).addScaledVector(view.stage.up, 0.42)), look("First", "0", view.stage.firstLook())),
     check("Parallel projection (o)", false, (on) => view.stage.setParallel(on)));
   const sectionAxis = h("select", { "aria-label": "Section plane", onchange: () => section() }, ...["none", "x", "y", "z"].map((a) => h("option", { value: a }, a === "none" ? "No section" : `Across ${a}`)));
   let offset = 0;
@@ -142,7 +142,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
     part("Show", check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
       check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }),
       check("Trails", false, (on) => view.setTrails(on)), check("Centres of mass", false, (on) => { view.centres.visible = on; }), check("Body axes", false, (on) => { view.frames.visible = on; }),
-      m.joints.length > 0 ? slide("Size of joints", 0.1, 4, view.joints.scale, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
+      m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
     all.length > 0 ? part("Forces", contacts ? check("Contact forces", true, (on) => { contacts.group.visible = on; }) : null, reactions ? check("Reactions of joints", false, (on) => { reactions.group.visible = on; }) : null,
       loads ? check("Applied and spring forces", true, (on) => { loads.group.visible = on; }) : null, slide("Length of arrows", 0.1, 5, 1, (x) => all.forEach((f) => { f.scale = x; })),
       slide("Smallest shown, part of the largest", 0, 0.5, 0.01, (x) => all.forEach((f) => { f.threshold = x; }))) : null,
@@ -161,7 +161,7 @@ function solidPart(view: View, part: (title: string, ...rows: HTMLElement[]) => 
   const field = h("select", { "aria-label": "Field in colours", onchange: async () => { solids.fixedRange = false; await solids.choose(Number(field.value)); show(); update(); } },
     h("option", { value: -1, selected: solids.choice < 0 }, "plain"), ...solids.choices.map((c, i) => h("option", { value: i, selected: i === solids.choice }, c.label.replaceAll("_", " "))));
   show();
-  return part("Solids", h("label", {}, "Colour by ", field), h("div", { class: "range" }, low, " to ", high, h("button", { type: "button", onclick: () => { solids.fixedRange = false; solids.range = solids.fullRange(); show(); update(); } }, "All")),
+  return part("Solids", h("label", {}, "Colour by ", field), h("div", { class: "range" }, low, " to ", high, h("button", { type: "button", onclick: () => { solids.fixedRange = false; solids.range = solids.fullRange(true); show(); update(); } }, "Peaks")),
     slide("Displacements times", 1, 50, 1, (x) => { solids.enlarge = x; }));
 }
 

@@ -3,8 +3,8 @@ import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, G
 import type { Scene, SolidEntry } from "./data";
 import type { Poses } from "./poses";
 
-/** Viridis by Smith and van der Walt (CC0), nine of its colours. */
-const kMap = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"].map((c) => new Color(c));
+/** Cool to warm (after Moreland, "Diverging color maps for scientific visualization", 2009), in nine colours. */
+const kMap = ["#3b4cc0", "#6282ea", "#8db0fe", "#b8d0f9", "#dddddd", "#f5c4ad", "#f49a7b", "#de604d", "#b40426"].map((c) => new Color(c));
 
 export function mapped(x: number, out: Color): Color {
   const at = Math.min(0.9999, Math.max(0, x)) * (kMap.length - 1), k = Math.floor(at);
@@ -80,20 +80,22 @@ export class Solids {
     if (!this.fixedRange) this.range = this.fullRange();
   }
 
-  /** Least and largest value over all frames. */
-  fullRange(): [number, number] {
-    let low = Infinity, high = -Infinity;
+  /** Range of nearly all values of all frames: the highest half per cent, peaks at edges, are left out unless `peaks`. */
+  fullRange(peaks = false): [number, number] {
+    const all: number[] = [];
     this.own.forEach(({ entry }, s) => {
-      const data = this.fields[s];
+      const data = this.fields[s], size = this.width(entry);
       if (!data) return;
-      const count = data.length / this.width(entry);
-      for (let i = 0; i < count; i++) {
-        const v = this.value(data, i, this.width(entry));
-        if (v < low) low = v;
-        if (v > high) high = v;
+      const count = data.length / size, step = Math.max(1, Math.floor(count / 200000));
+      for (let i = 0; i < count; i += step) {
+        const v = this.value(data, i, size);
+        if (Number.isFinite(v)) all.push(v);
       }
     });
-    return low <= high ? [low, high > low ? high : low + 1e-30] : [0, 1];
+    if (all.length === 0) return [0, 1];
+    const sorted = Float64Array.from(all).sort(), cut = peaks ? 0 : Math.floor(0.005 * sorted.length);
+    const low = sorted[0] >= 0 ? 0 : sorted[cut], high = sorted[sorted.length - 1 - cut];
+    return [low, high > low ? high : low + 1e-30];
   }
   private width(entry: SolidEntry): number { return entry.fields[this.choices[this.choice].field].size; }
   private value(data: Float32Array, i: number, size: number): number {

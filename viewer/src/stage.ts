@@ -19,8 +19,10 @@ export class Stage {
   readonly grid = new Group();
   readonly axes = new Group();
   readonly section = new Plane(new Vector3(-1, 0, 0), 0);
-  private readonly sun = new DirectionalLight(0xffffff, 2.2);
+  private readonly sun = new DirectionalLight(0xffffff, 2.6);
   private readonly box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+  /** Direction of the present look, until somebody moves the camera: then a resize changes nothing. */
+  looking: Vector3 | null = null;
   size = 1;
   dirty = true;
 
@@ -31,12 +33,13 @@ export class Stage {
     this.renderer.shadowMap.type = PCFShadowMap;
     holder.prepend(this.renderer.domElement);
     for (const camera of [this.perspective, this.parallel]) camera.up.copy(up);
-    this.world.add(new HemisphereLight(0xffffff, 0x8c99a6, 1.6), new AmbientLight(0xffffff, 0.25), this.sun, this.sun.target, this.grid, this.axes);
+    this.world.add(new HemisphereLight(0xffffff, 0xa8b2bb, 1.9), new AmbientLight(0xffffff, 0.5), this.sun, this.sun.target, this.grid, this.axes);
     this.sun.castShadow = shadows;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.controls = new OrbitControls(this.perspective, this.renderer.domElement);
+    this.controls.addEventListener("start", () => { this.looking = null; });
     this.controls.addEventListener("change", () => { this.dirty = true; });
-    new ResizeObserver(() => this.resize()).observe(holder);
+    new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
   }
 
   /** Fits light, grid and cameras to what the scene fills. */
@@ -58,8 +61,17 @@ export class Stage {
       camera.far = 60 * this.size;
     }
     this.controls.target.copy(middle);
-    this.view(new Vector3().addScaledVector(e1, 0.45).addScaledVector(e2, -0.85).addScaledVector(this.up, 0.42));
     this.resize();
+    this.view(this.firstLook());
+  }
+
+  /** A flat mechanism is seen from the front, others obliquely. */
+  firstLook(): Vector3 {
+    const [e1, e2] = this.sides(), size = this.box.getSize(new Vector3()), all = [size.x, size.y, size.z], k = all.indexOf(Math.min(...all));
+    const normal = new Vector3().setComponent(k, 1), right = new Vector3().crossVectors(this.up, normal);
+    if (all[k] > 0.15 * Math.max(...all) || right.lengthSq() < 0.5) return e1.multiplyScalar(0.45).addScaledVector(e2, -0.85).addScaledVector(this.up, 0.42);
+    if (right.dot(e1) + 0.1 * right.dot(e2) < 0) { normal.negate(); right.negate(); }
+    return normal.addScaledVector(this.up, 0.16).addScaledVector(right, 0.12);
   }
 
   /** Two horizontal directions; the first is x of the world where x is horizontal. */
@@ -105,14 +117,28 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Looks at the target from a direction, near enough to fill the view. */
+  /** Looks at the middle of the scene from a direction, as near as shows all of it. */
   view(direction: Vector3): void {
-    const aspect = this.camera === this.perspective ? this.perspective.aspect : 1;
-    const distance = 0.56 * this.size / Math.tan(this.perspective.fov * Math.PI / 360) / Math.min(1, aspect);
-    this.camera.position.copy(this.controls.target).addScaledVector(direction.normalize(), distance);
-    this.camera.lookAt(this.controls.target);
-    if (this.camera === this.parallel) { this.parallel.zoom = 1; this.resize(); }
+    this.resize();
+    const to = direction.clone().normalize(), middle = this.box.getCenter(new Vector3());
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(to, this.size);
+    this.camera.lookAt(middle);
+    this.camera.updateMatrixWorld();
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), above = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    const slope = Math.tan(this.perspective.fov * Math.PI / 360), aspect = this.perspective.aspect;
+    let distance = 0, half = 0;
+    for (let i = 0; i < 8; i++) {
+      const c = new Vector3(i & 1 ? this.box.max.x : this.box.min.x, i & 2 ? this.box.max.y : this.box.min.y, i & 4 ? this.box.max.z : this.box.min.z).sub(middle);
+      const high = Math.max(Math.abs(c.dot(above)), Math.abs(c.dot(right)) / aspect);
+      distance = Math.max(distance, high / slope + c.dot(to));
+      half = Math.max(half, high);
+    }
+    this.camera.position.copy(middle).addScaledVector(to, Math.max(1.12 * distance, 0.05 * this.size));
+    this.parallel.zoom = 0.6 * this.size / (1.12 * half || 1);
+    this.resize();
     this.controls.update();
+    this.looking = to;
     this.dirty = true;
   }
 

@@ -49,8 +49,9 @@ export class View {
     view.centres.visible = view.frames.visible = false;
     for (const object of [view.centres, view.frames]) object.frustumCulled = false;
     view.centres.renderOrder = 5;
-    // A crowd of joints would hide the bodies.
-    if (m.joints.length > 0) joints.scale = Math.min(1, 6 / Math.cbrt(m.joints.length + 1));
+    // Boxes that stand for mass and inertia would hide what has a shape.
+    const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
+    if (shapes) m.bodies.forEach((body, i) => { if (body.parts?.[0]?.mesh !== undefined && m.meshes[body.parts[0].mesh].type === "inertia") bodies.showing[i] = "ghost"; });
     stage.fit(view.box());
     bodies.sizePlanes(stage.size);
     view.update();
@@ -108,6 +109,7 @@ export class View {
     const at = this.chosen && this.placeOf(this.chosen);
     if (!on || !at) return;
     this.followed.copy(at);
+    this.stage.looking = null;
     const step = at.clone().sub(this.stage.controls.target);
     this.stage.controls.target.copy(at);
     this.stage.camera.position.add(step);

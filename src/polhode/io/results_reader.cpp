@@ -121,12 +121,18 @@ std::string attribute_of(hid_t object, const char* name) {
   return text_of(attribute.get());
 }
 
-/// Frames of a data set before the first chunk that lies beyond the end of the file.
+/// Whole frames of a data set before the first part that lies beyond the end of the file.
 hsize_t frames_before(hid_t dataset, std::uint64_t end, hsize_t frames) {
   hsize_t chunks = 0;
   const Id space(H5Dget_space(dataset), H5Sclose);
   if (H5Dget_num_chunks(dataset, space.get(), &chunks) < 0) return 0;
-  const std::size_t rank = extent(dataset).size();
+  const std::vector<hsize_t> dims = extent(dataset);
+  const std::size_t rank = dims.size();
+  std::vector<hsize_t> chunk(rank);
+  const Id creation(H5Dget_create_plist(dataset), H5Pclose);
+  H5Pget_chunk(creation.get(), static_cast<int>(rank), chunk.data());
+  const bool all_of_a_frame = std::equal(dims.begin() + 1, dims.end(), chunk.begin() + 1);
+  const hsize_t depth = all_of_a_frame ? chunk[0] : 0;
   std::vector<hsize_t> offset(rank);
   hsize_t whole = frames;
   for (hsize_t i = 0; i < chunks; ++i) {
@@ -135,7 +141,10 @@ hsize_t frames_before(hid_t dataset, std::uint64_t end, hsize_t frames) {
     hsize_t bytes = 0;
     if (H5Dget_chunk_info(dataset, space.get(), i, offset.data(), &filter, &address, &bytes) < 0)
       return 0;
-    if (address + bytes > end) whole = std::min(whole, offset[0]);
+    if (address + bytes <= end) continue;
+    // Frames of a chunk lie one after the other: those before the cut are whole.
+    const hsize_t rows = address < end && bytes > 0 ? (end - address) * depth / bytes : 0;
+    whole = std::min(whole, offset[0] + rows);
   }
   return chunks == 0 ? 0 : whole;
 }
@@ -172,8 +181,8 @@ struct ResultsReader::Impl {
     const std::vector<hsize_t> dims = extent(dataset.get());
     if (dims.empty()) return 0;
     if (self.copy)
-      self.frames = std::min<std::size_t>(self.frames,
-                                          frames_before(dataset.get(), self.end, self.frames));
+      self.frames =
+          std::min<std::size_t>(self.frames, frames_before(dataset.get(), self.end, self.frames));
     self.sets.push_back(
         {path, {dims.begin() + 1, dims.end()}, attribute_of(dataset.get(), "unit")});
     return 0;
@@ -272,8 +281,8 @@ std::vector<std::int64_t> ResultsReader::numbers(const std::string& path) const 
   if (!dataset.valid()) return {};
   const std::vector<hsize_t> dims = extent(dataset.get());
   std::vector<std::int64_t> values(dims.empty() ? 0 : dims[0]);
-  if (!values.empty() && H5Dread(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                 values.data()) < 0)
+  if (!values.empty() &&
+      H5Dread(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
   return values;
 }
@@ -284,8 +293,8 @@ std::vector<double> ResultsReader::vectors(const std::string& path) const {
   const std::vector<hsize_t> dims = extent(dataset.get());
   std::vector<double> values(
       std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>()));
-  if (!values.empty() && H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                 values.data()) < 0)
+  if (!values.empty() &&
+      H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
   return values;
 }

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
 #include <polhode/base/format.hpp>
+#include <polhode/body/mass_properties.hpp>
 #include <polhode/io/paraview.hpp>
 #include <polhode/io/results_format.hpp>
 #include <polhode/loads/registry.hpp>
@@ -14,10 +18,20 @@ namespace {
 /// Triangles around round shapes: fewer where many bodies are drawn.
 int segments_for(std::size_t bodies) { return bodies > 2000 ? 10 : bodies > 200 ? 16 : 32; }
 
+/// Thickness of the box that stands for a slender body without shapes, as a part of its length: it
+/// is to be seen in the whole of the mechanism.
+double thinnest(const BodySpec& body, double size) {
+  constexpr double kThin = 0.06, kThick = 0.2, kOfAll = 0.004;
+  if (body.point_mass) return kThin;
+  const Vec3 moments = principal_axes(body.inertia).moments;
+  const double length = std::sqrt(6.0 / body.mass * (moments.sum() - 2.0 * moments[0]));
+  return std::clamp(kOfAll * size / length, kThin, kThick);
+}
+
 /// Text that is equal for equal shapes.
 std::string key_of(const ShapeSpec& shape) {
-  std::string key = format("{} {} {} {} {}", shape.type, shape.file, shape.scale, shape.columns,
-                           shape.spacing);
+  std::string key =
+      format("{} {} {} {} {}", shape.type, shape.file, shape.scale, shape.columns, shape.spacing);
   for (double v : shape.sizes) key += format(" {}", v);
   for (const Vec3& p : shape.points) key += format(" {} {} {}", p[0], p[1], p[2]);
   for (double v : shape.heights) key += format(" {}", v);
@@ -85,8 +99,10 @@ Json parts_of(const BodySpec& body, double size, int segments, Meshes& meshes) {
     std::string key = format("inertia {}", body.point_mass);
     for (double v : body.inertia.reshaped()) key += format(" {}", v);
     key += format(" {}", body.mass);
-    parts.push_back({{"mesh", meshes.index(key, "inertia", [&] { return inertia_box(body, size); })},
-                     {"p", {0, 0, 0}}});
+    parts.push_back(
+        {{"mesh", meshes.index(key, "inertia",
+                               [&] { return inertia_box(body, size, thinnest(body, size)); })},
+         {"p", {0, 0, 0}}});
   }
   return parts;
 }
