@@ -53,6 +53,8 @@ Action add_run(CLI::App& command);
 Action add_certify(CLI::App& command);
 Action add_modes(CLI::App& command);
 Action add_view(CLI::App& command);
+Action add_plot(CLI::App& command);
+Action add_convert(CLI::App& command);
 Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_schema(CLI::App& command);

@@ -30,8 +30,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     path_ = (fs::temp_directory_path() / "polhode-view-XXXXXX").string();
-    if (mkdtemp(path_.data()) == nullptr)
-      throw FileError::from_errno(path_, "cannot be made");
+    if (mkdtemp(path_.data()) == nullptr) throw FileError::from_errno(path_, "cannot be made");
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -69,8 +68,7 @@ SceneData scene_of_model(const ViewRequest& request, SceneOptions options) {
   model.output.hdf5 = true;
   const Simulation simulation(std::move(model));
   const TemporaryFolder folder;
-  Recorder recorder(simulation, folder.path(),
-                    provenance_of(request.input, simulation.summary()));
+  Recorder recorder(simulation, folder.path(), provenance_of(request.input, simulation.summary()));
   recorder.frame(simulation);
   recorder.close();
   add_remarks(simulation, options);

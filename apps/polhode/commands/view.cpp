@@ -43,8 +43,7 @@ Action add_view(CLI::App& command) {
       say("polhode view: --set changes models, and this names results. Leave it out.");
       return static_cast<int>(kUsage);
     }
-    if (options->html.empty())
-      return serve_view(options->request, options->port, !options->stay);
+    if (options->html.empty()) return serve_view(options->request, options->port, !options->stay);
     write_view(options->request, options->html, options->quiet);
     return static_cast<int>(kOk);
   };

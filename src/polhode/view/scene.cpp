@@ -78,8 +78,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::string model_text(const ResultsReader& results) {
-  const std::vector<std::string> text =
-      results.names(std::string(results::kProvenance) + "/model");
+  const std::vector<std::string> text = results.names(std::string(results::kProvenance) + "/model");
   return text.empty() ? "" : text[0];
 }
 
@@ -90,10 +89,8 @@ Json json_of(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 Json ChunkList::add(std::string bytes, std::size_t count, std::size_t width, const char* type) {
   chunks_.push_back(std::move(bytes));
-  return {{"c", chunks_.size() - 1},
-          {"n", width == 0 ? 0 : count / width},
-          {"w", width},
-          {"t", type}};
+  return {
+      {"c", chunks_.size() - 1}, {"n", width == 0 ? 0 : count / width}, {"w", width}, {"t", type}};
 }
 
 Json ChunkList::floats(std::span<const double> values, std::size_t width) {

@@ -12,14 +12,15 @@ namespace polhode {
 
 /// Choices about a page of results.
 struct SceneOptions {
-  std::size_t max_frames = 0;                ///< 0: as many as max_bytes allows.
+  std::size_t max_frames = 0;                      ///< 0: as many as max_bytes allows.
   std::size_t max_bytes = std::size_t{160} << 20;  ///< Of numbers before they are deflated.
-  std::vector<std::string> notes;            ///< Shown on the page, e.g. warnings of a check.
+  std::vector<std::string> notes;                  ///< Shown on the page, e.g. warnings of a check.
   std::map<std::string, std::string> marks;  ///< By joint: a remark, e.g. that it is redundant.
 };
 
 /// Everything that a page shows: a JSON text that describes bodies, joints, loads, solids, beams,
-/// cables, contacts and channels, and packed numbers (see pack_floats()) that it refers to by index.
+/// cables, contacts and channels, and packed numbers (see pack_floats()) that it refers to by
+/// index.
 struct SceneData {
   std::string manifest;
   std::vector<std::string> chunks;

@@ -38,8 +38,7 @@ void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results,
 void add_connections(Json& manifest, const ResultsReader& results, const Model* model,
                      const SceneOptions& options);
 /// Fills in "solids": outer faces, edges of elements, and nodal fields on the outside.
-void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
-                std::size_t every);
+void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results, std::size_t every);
 /// Fills in "beams" and "cables".
 void add_lines(Json& manifest, const ResultsReader& results, const Model* model);
 

@@ -35,8 +35,7 @@ Mesh mesh_of(const ResultsReader& results, const std::string& group) {
 std::vector<std::array<int, 3>> triangles_of(const std::string& type) {
   if (type == "tri3") return {{0, 1, 2}};
   if (type == "tri6") return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-  if (type == "quad8")
-    return {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6}, {4, 6, 7}};
+  if (type == "quad8") return {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {6, 3, 7}, {4, 5, 6}, {4, 6, 7}};
   if (type == "quad9")
     return {{0, 4, 8}, {0, 8, 7}, {4, 1, 5}, {4, 5, 8}, {8, 5, 2}, {8, 2, 6}, {7, 8, 6}, {7, 6, 3}};
   return {{0, 1, 2}, {0, 2, 3}};
@@ -132,8 +131,8 @@ void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
     for (const ResultsReader::DataSet& set : results.data_sets()) {
       if (set.path.rfind(prefix, 0) != 0 || set.dims.empty()) continue;
       const std::size_t width = set.size() / std::max<std::size_t>(1, mesh.nodes.size());
-      const std::vector<double> rows = seen_rows(results.read(set.path, every), mesh.nodes.size(),
-                                                 outside.nodes, width);
+      const std::vector<double> rows =
+          seen_rows(results.read(set.path, every), mesh.nodes.size(), outside.nodes, width);
       fields.push_back({{"name", set.path.substr(prefix.size())},
                         {"unit", set.unit},
                         {"size", width},
