@@ -162,7 +162,12 @@ class Arrows {
     this.shaft = new Glyphs(alongZ(new CylinderGeometry(1, 1, 1, 10)).translate(0, 0, 0.5), colour, all, kind);
     this.head = new Glyphs(alongZ(new ConeGeometry(1, 1, 14)).translate(0, 0, 0.5), colour, all, kind);
     this.group.add(this.shaft.mesh, this.head.mesh);
-    this.shaft.mesh.castShadow = this.head.mesh.castShadow = false;
+    for (const { mesh } of [this.shaft, this.head]) {
+      // Forces act inside what they press on: arrows are seen through it.
+      Object.assign(mesh.material, { depthTest: false, transparent: true, opacity: 0.9 });
+      mesh.renderOrder = 4;
+      mesh.castShadow = false;
+    }
   }
   set(i: number, at: Vector3 | null, along: Vector3, length: number, thick: number): void {
     if (!at || !(length > 0)) {

@@ -58,13 +58,14 @@ export class View {
     return view;
   }
 
-  /** Box around the scene at the start, in the middle and at the end of the recording. */
+  /** Box around the scene at times spread over the recording; solids, which take longer, at three of them. */
   private box(): Box3 {
-    const time = this.scene.manifest.time, all = new Box3(), before = time[0];
-    for (const t of [time[0], time[time.length >> 1], time[time.length - 1]]) {
-      this.poses.set(t);
-      this.solids.update();
+    const time = this.scene.manifest.time, all = new Box3(), before = time[0], samples = 24;
+    for (let k = 0; k <= samples; k++) {
+      this.poses.set(time[Math.round(k / samples * (time.length - 1))]);
       all.union(this.bodies.box());
+      if (k % (samples / 2) !== 0) continue;
+      this.solids.update();
       this.solids.box(all);
     }
     this.lines.box(all);

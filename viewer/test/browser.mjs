@@ -20,7 +20,7 @@ export async function openPage(browser, address, options = {}) {
   page.on("console", (m) => { if (["error", "warning"].includes(m.type()) && !/GL Driver Message|software WebGL/.test(m.text())) faults.push(m.text()); });
   page.on("pageerror", (e) => faults.push(String(e)));
   page.on("request", (r) => { if (/^(https?|wss?):/.test(r.url()) && !r.url().startsWith("http://127.0.0.1")) requests.push(r.url()); });
-  await page.goto(address.startsWith("http") ? address : pathToFileURL(address.split("#")[0]).href + (address.includes("#") ? "#" + address.split("#")[1] : ""));
-  await page.waitForFunction(() => document.documentElement.dataset.ready || document.documentElement.dataset.failed, null, { timeout: 60000 });
+  await page.goto(address.startsWith("http") ? address : pathToFileURL(address.split("#")[0]).href + (address.includes("#") ? "#" + address.split("#")[1] : ""), { timeout: 120000 });
+  await page.waitForFunction(() => document.documentElement.dataset.ready || document.documentElement.dataset.failed, null, { timeout: 120000 });
   return { page, context, faults, requests };
 }
