@@ -70,9 +70,10 @@ export class Bodies {
       const flat = new BufferGeometry();
       flat.setAttribute("position", new BufferAttribute(await this.scene.floats(m.meshes[k].points), 3));
       flat.setIndex(new BufferAttribute(await this.scene.integers(m.meshes[k].triangles), 1));
-      const big = m.meshes[k].triangles.n > 200000;
-      const geometry = big ? flat : toCreasedNormals(flat, 0.6);
-      if (big) geometry.computeVertexNormals();
+      // Shapes without edges share their corners, and so do surfaces so large that sharp edges would cost too much.
+      const smooth = m.meshes[k].triangles.n > 200000 || ["sphere", "ellipsoid", "capsule"].includes(m.meshes[k].type);
+      const geometry = smooth ? flat : toCreasedNormals(flat, 0.6);
+      if (smooth) geometry.computeVertexNormals();
       geometry.computeBoundingSphere();
       const make = (ghost: boolean): InstancedMesh => {
         const material = new MeshStandardMaterial({ roughness: 0.62, metalness: 0.05, side: DoubleSide,

@@ -164,6 +164,13 @@ export class Stage {
     this.dirty = true;
   }
 
+  /** Makes drawing cheaper, where a machine is too slow: first without shadows, then with fewer pixels. */
+  lighten(): void {
+    if (this.sun.castShadow) this.sun.castShadow = false;
+    else if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
+    this.resize();
+  }
+
   ray(x: number, y: number): Raycaster {
     const box = this.renderer.domElement.getBoundingClientRect();
     const caster = new Raycaster();

@@ -34,7 +34,7 @@ export class View {
     const axis = up.lengthSq() === 0 ? 2 : [Math.abs(up.x), Math.abs(up.y), Math.abs(up.z)].indexOf(Math.max(Math.abs(up.x), Math.abs(up.y), Math.abs(up.z)));
     const sign = up.getComponent(axis) < 0 ? -1 : 1;
     up.set(0, 0, 0).setComponent(axis, sign);
-    const stage = new Stage(holder, up, m.bodies.length <= 3000);
+    const stage = new Stage(holder, up, m.bodies.length <= 500);
     const poses = await Poses.of(scene);
     const bodies = await Bodies.of(scene, poses), solids = await Solids.of(scene, poses);
     const joints = new Joints(m.joints, poses), lines = await Lines.of(scene, poses, () => bodies.box().getSize(new Vector3()).length() || 1);
