@@ -18,11 +18,12 @@ if [ $# -gt 0 ]; then
 fi
 mkdir -p build/first_run
 "$polhode" examples n_four_bar --set N=40 -o build/first_run/n_four_bar.yaml
-"$polhode" run build/first_run/n_four_bar.yaml --set output.every="20 ms" --set output.paraview=true
+"$polhode" run build/first_run/n_four_bar.yaml --set output.every="20 ms" --set output.paraview=true --view
 
 cat <<END
 
 Where to look:
+  build/first_run/n_four_bar.results/view.html            moving pictures and plots: open it with a browser
   build/first_run/n_four_bar.yaml                         the model
   build/first_run/n_four_bar.results/results.h5           motion, reactions, energies (HDF5)
   build/first_run/n_four_bar.results/paraview/results.pvd moving shapes, for ParaView

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Each folder of src/polhode includes only folders further down, never one on its own line."""
 LAYERS = [["base"], ["so3"], ["body"], ["time"], ["assembly"],
-          ["contact"], ["loads", "joints", "beams", "fe", "solve"], ["coupling"], ["model"], ["io"], ["study"]]
+          ["contact"], ["loads", "joints", "beams", "fe", "solve"], ["coupling"], ["model"], ["io"], ["study", "view"]]
 # Of the line below it, a folder named here may include only these.
 ONLY = {"coupling": ["fe"]}
 

@@ -24,7 +24,8 @@ TEST_F(CommandLine, HelpsWithAMistypedCommand) {
   EXPECT_EQ(
       result.err,
       "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, modes, "
-      "check, info, schema, examples, doctor. Run 'polhode --help' to see what it takes.\n");
+      "view, plot, convert, check, info, schema, examples, doctor. Run 'polhode --help' to see "
+      "what it takes.\n");
 }
 
 TEST_F(CommandLine, HelpsWithAMistypedOption) {

@@ -19,18 +19,20 @@
 #include "modes_report.hpp"
 #include "run_report.hpp"
 #include "stop_signal.hpp"
+#include "view_pages.hpp"
 
 namespace polhode::cli {
 
 namespace {
 
 constexpr const char* kCheckpointName = "checkpoint.pst";
+constexpr const char* kPageName = "view.html";
 
 struct Options {
   ModelArguments model;
   std::string folder, restart, isa;
   std::optional<double> wall_limit;
-  bool json = false, quiet = false, certify = false;
+  bool json = false, quiet = false, certify = false, view = false;
   CertifyRequest certificate;
 };
 
@@ -77,6 +79,15 @@ int exit_code(const RunSummary& summary, bool limit_reached) {
       break;
   }
   return limit_reached ? kLimit : kInterrupted;
+}
+
+/// Writes the page of the results into their folder, and opens it where there is a desktop.
+void show_results(const std::string& folder, bool quiet) {
+  ViewRequest request;
+  request.input.file = folder;
+  const std::string page = folder + "/" + kPageName;
+  write_view(request, page, quiet);
+  open_browser(std::filesystem::absolute(page).string());
 }
 
 int run(const Options& options) {
@@ -147,6 +158,7 @@ int run(const Options& options) {
     if (options.json) json = with_certificate(json, outcome);
     if (!options.json && !options.quiet) print(certificate_table(outcome.certificate));
   }
+  if (options.view) show_results(folder, options.quiet || options.json);
   if (options.json) print(json + "\n");
   return code;
 }
@@ -171,6 +183,8 @@ Action add_run(CLI::App& command) {
   add_within_option(command, options->certificate);
   command.get_option("--within")->needs(certify);
   certify->excludes(command.get_option("--restart"));
+  command.add_flag("--view", options->view,
+                   "Then write view.html into the folder of the results, and open it");
   command.add_flag("--json", options->json, "Print the figures of the run as one JSON object");
   command.add_flag("--quiet", options->quiet, "Say nothing but errors");
   return [options] {

@@ -26,8 +26,10 @@ void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, co
     sum.triangles.push_back({first + a, first + b, first + c});
 }
 
-/// The box with this mass and inertia: I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
-TriangleSurface inertia_box(const BodySpec& body, double size) {
+}  // namespace
+
+// I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
+TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) {
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(body.inertia);
   const Vec3& I = axes.eigenvalues();
   Vec3 squares = 6.0 / body.mass * (Vec3::Constant(I.sum()) - 2.0 * I);
@@ -35,7 +37,7 @@ TriangleSurface inertia_box(const BodySpec& body, double size) {
   if (body.point_mass || !(largest > 0.0)) largest = 0.02 * size;
   std::vector<double> lengths;
   for (double s : squares)
-    lengths.push_back(std::max(s > 0.0 ? std::sqrt(s) : 0.0, 0.02 * largest));
+    lengths.push_back(std::max(s > 0.0 ? std::sqrt(s) : 0.0, thinnest * largest));
   if (body.point_mass) lengths.assign(3, largest);
   Mat3 R = axes.eigenvectors();
   if (R.determinant() < 0.0) R.col(2) *= -1.0;
@@ -43,6 +45,8 @@ TriangleSurface inertia_box(const BodySpec& body, double size) {
   append(box, shape_surface(*find_shape_kind("box"), lengths), R, Vec3::Zero());
   return box;
 }
+
+namespace {
 
 /// A square of a plane about its point; both sides are seen.
 TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {

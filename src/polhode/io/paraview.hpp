@@ -27,6 +27,12 @@ struct BodyPicture {
 /// @throws InputError if a mesh file cannot be read.
 [[nodiscard]] std::vector<BodyPicture> body_pictures(const Model& model, double size);
 
+/// The box with the mass and inertia of a body, about its centre of mass, body axes; of a point
+/// mass a cube of 2 % of `size`.
+/// @param thinnest  Least length of a side, as a part of the largest [-].
+[[nodiscard]] TriangleSurface inertia_box(const BodySpec& body, double size,
+                                          double thinnest = 0.02);
+
 /// Moving shapes for ParaView, as a ParaviewSeries of .vtp files: the triangles of one time, with
 /// point data "velocity" [m/s], cell data "body" (index) and the names of the bodies as field data
 /// "body_names".

@@ -8,7 +8,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/base/xml_text.hpp>
-#include <polhode/study/svg_panel.hpp>
+#include <polhode/io/svg_panel.hpp>
 
 namespace polhode {
 

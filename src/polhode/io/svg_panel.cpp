@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/study/svg_panel.hpp>
+#include <polhode/io/svg_panel.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/view/channels.hpp>
+#include <polhode/view/glb.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "view_pages.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct Options {
+  std::string results, output;
+  std::vector<std::string> channels;
+};
+
+std::string time_label(const ResultsReader& results, const std::string& path) {
+  try {
+    const auto folder = std::filesystem::absolute(path).parent_path().string();
+    if (model_of_results(results, folder).analysis.type == "statics") return "load factor [-]";
+  } catch (const std::exception&) {  // A model that is lost leaves the time.
+  }
+  return "t [s]";
+}
+
+}  // namespace
+
+Action add_plot(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("RESULTS", options->results, "Results (results.h5 or their folder)")
+      ->required();
+  command.add_option(
+      "CHANNEL", options->channels,
+      "energy, bodies.NAME.position.x, joints.NAME.force, ...; left out: lists them");
+  command.add_option("-o,--output", options->output, "SVG file; left out: plot.svg")
+      ->type_name("FILE");
+  return [options] {
+    const std::string path = results_path(options->results);
+    const ResultsReader results(path);
+    if (options->channels.empty()) {
+      for (const std::string& name : channel_names(results)) print(name + "\n");
+      return static_cast<int>(kOk);
+    }
+    const std::string file = options->output.empty() ? "plot.svg" : options->output;
+    write_file_atomically(file, channels_svg(results, options->channels, time_label(results, path)),
+                          false);
+    say(format("{}: {} frames.", file, results.frames()));
+    return static_cast<int>(kOk);
+  };
+}
+
+Action add_convert(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("RESULTS", options->results, "Results (results.h5 or their folder)")
+      ->required();
+  command.add_option("OUTPUT", options->output, "A .csv or .glb file")->required();
+  command
+      .add_option("--channels", options->channels,
+                  "Columns of a .csv file, named as for 'plot'; left out: all")
+      ->type_name("CHANNEL");
+  return [options] {
+    const std::string ending = std::filesystem::path(options->output).extension().string();
+    if (ending == ".csv") {
+      const ResultsReader results(results_path(options->results));
+      write_file_atomically(options->output, channels_csv(results, options->channels), false);
+    } else if (ending == ".glb") {
+      ViewRequest request;
+      request.input.file = options->results;
+      write_file_atomically(options->output, scene_glb(scene_of(request)), false);
+    } else {
+      say(format("polhode convert: cannot write '{}' files. Name a .csv or .glb file.", ending));
+      return static_cast<int>(kUsage);
+    }
+    return static_cast<int>(kOk);
+  };
+}
+
+}  // namespace polhode::cli

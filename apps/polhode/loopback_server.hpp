@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+namespace polhode::cli {
+
+/// An answer to a request for a path.
+struct WebAnswer {
+  int status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string body{};
+};
+
+/// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one connection at a time. Requests whose Host
+/// is not the loopback address are refused, so that no web site can read results by a name that it
+/// lets point here.
+class LoopbackServer {
+ public:
+  /// @param port  0: any that is free. @throws FileError if the port cannot be taken.
+  explicit LoopbackServer(int port);
+  ~LoopbackServer();
+  LoopbackServer(const LoopbackServer&) = delete;
+  [[nodiscard]] int port() const { return port_; }
+  /// Answers requests until `stop` is set.
+  void run(const std::function<WebAnswer(const std::string& path)>& answer,
+           const std::atomic<bool>& stop) const;
+
+ private:
+  int socket_ = -1, port_ = 0;
+};
+
+}  // namespace polhode::cli

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view_pages.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include <spawn.h>
+
+#include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
+#include <polhode/io/file_error.hpp>
+#include <polhode/io/recorder.hpp>
+#include <polhode/io/results_format.hpp>
+#include <polhode/solve/rank_report.hpp>
+
+#include "command.hpp"
+#include "run_report.hpp"
+
+extern char** environ;
+
+namespace polhode::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that is removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    path_ = (fs::temp_directory_path() / "polhode-view-XXXXXX").string();
+    if (mkdtemp(path_.data()) == nullptr) throw FileError::from_errno(path_, "cannot be made");
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Remarks of `polhode check` that a picture of the start can show.
+void add_remarks(const Simulation& simulation, SceneOptions& options) {
+  const RankReport rank = rank_report(simulation.system(), simulation.state());
+  options.notes.push_back(format("Before the run: mobility {}, {} constraint rows, {} redundant.",
+                                 rank.mobility, rank.rows, rank.redundant));
+  for (const JointSpec& joint : simulation.model().joints)
+    for (const std::string& name : rank.names)
+      if (name == format("joint '{}'", joint.name))
+        options.marks[joint.name] = "has a part in redundant constraint rows";
+  const StartReport& start = simulation.start_report();
+  if (start.largest_move > 1e-6)
+    options.notes.push_back(
+        format("The start is not assembled: body '{}' was moved by {:.2g} of the mechanism's size.",
+               start.moved_body, start.largest_move));
+  for (const SolidMap& solid : simulation.solids())
+    options.notes.insert(options.notes.end(), solid.plan.warnings.begin(),
+                         solid.plan.warnings.end());
+}
+
+SceneData scene_of_model(const ViewRequest& request, SceneOptions options) {
+  Model model = load_model(request.input);
+  model.output.paraview = model.output.csv = false;
+  model.output.hdf5 = true;
+  const Simulation simulation(std::move(model));
+  const TemporaryFolder folder;
+  Recorder recorder(simulation, folder.path(), provenance_of(request.input, simulation.summary()));
+  recorder.frame(simulation);
+  recorder.close();
+  add_remarks(simulation, options);
+  const ResultsReader results(folder.path() + "/" + results::kFileName);
+  return make_scene(results, &simulation.model(), options);
+}
+
+}  // namespace
+
+bool is_results(const std::string& path) {
+  return fs::is_directory(path) || fs::path(path).extension() == ".h5";
+}
+
+std::string results_path(const std::string& path) {
+  return fs::is_directory(path) ? path + "/" + results::kFileName : path;
+}
+
+SceneData scene_of(const ViewRequest& request) {
+  SceneOptions options;
+  options.max_frames = request.frames;
+  if (!is_results(request.input.file)) return scene_of_model(request, options);
+  const std::string path = results_path(request.input.file);
+  const ResultsReader results(path);
+  std::optional<Model> model;
+  try {
+    model = model_of_results(results, fs::absolute(path).parent_path().string());
+  } catch (const std::exception& error) {
+    say(format("The model that {} keeps cannot be read; bodies are shown as cubes. {}", path,
+               error.what()));
+  }
+  return make_scene(results, model ? &*model : nullptr, options);
+}
+
+void write_view(const ViewRequest& request, const std::string& file, bool quiet) {
+  const SceneData scene = scene_of(request);
+  const std::string page = scene_page(viewer_text(), scene);
+  write_file_atomically(file, page, false);
+  if (quiet) return;
+  const std::string part =
+      scene.every > 1 ? format(", 1 in {} of the file", scene.every) : std::string();
+  say(format("{}: {}{}, {:.1f} MB. Open it with a browser; it needs no network.", file,
+             counted(scene.frames, "frame", "frames"), part,
+             static_cast<double>(page.size()) / 1e6));
+}
+
+bool open_browser(const std::string& address) {
+#ifdef __APPLE__
+  std::string program = "open";
+#else
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return false;
+  std::string program = "xdg-open";
+#endif
+  std::string argument = address;
+  char* arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  return posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) == 0;
+}
+
+}  // namespace polhode::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/view/scene.hpp>
+
+#include "console.hpp"
+
+namespace polhode::cli {
+
+/// Text of viewer/dist/viewer.html.
+const char* viewer_text();
+
+/// Input of `polhode view`: a results file, a folder of results, or a model.
+struct ViewRequest {
+  ModelArguments input;
+  std::size_t frames = 0;  ///< At most; 0: what fits into SceneOptions::max_bytes.
+};
+
+[[nodiscard]] bool is_results(const std::string& path);
+/// Path of the results file: a folder stands for the results.h5 in it.
+[[nodiscard]] std::string results_path(const std::string& path);
+
+/// Scene of results, or of a model at its assembled start with its mobility and redundant joints.
+/// @throws FileError, ModelErrors, InputError
+[[nodiscard]] SceneData scene_of(const ViewRequest& request);
+
+/// Writes the page of results into one file, and says so unless `quiet`. @throws FileError
+void write_view(const ViewRequest& request, const std::string& file, bool quiet);
+
+/// Opens a file or an address in a browser where there is a desktop. @returns whether it tried.
+bool open_browser(const std::string& address);
+
+/// Serves the page on the loopback address until Ctrl-C. @param port  0: any that is free.
+int serve_view(const ViewRequest& request, int port, bool open);
+
+}  // namespace polhode::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace polhode {
+
+/// A results file opened for reading, while a run goes on, after it was killed, or cut short.
+///
+/// A file that has lost its end, by an interrupted copy or a full disk, is read up to its last
+/// whole frame: a sparse copy of the full length is opened instead, and frames whose chunks lie
+/// beyond the cut are left out.
+class ResultsReader {
+ public:
+  /// A quantity with one entry per frame.
+  struct DataSet {
+    std::string path;
+    std::vector<std::size_t> dims;  ///< Shape of one frame's entry; empty: a number.
+    std::string unit;
+    [[nodiscard]] std::size_t size() const;  ///< Numbers in one frame's entry.
+  };
+
+  /// @throws FileError if the file cannot be read or is no results file of a known version.
+  explicit ResultsReader(const std::string& path);
+  ~ResultsReader();
+  ResultsReader(ResultsReader&&) noexcept;
+
+  [[nodiscard]] std::size_t frames() const;  ///< Whole ones.
+  [[nodiscard]] bool cut_short() const;      ///< The file has lost its end.
+  /// Every quantity that is stored, in the order of their paths; named views are left out.
+  [[nodiscard]] const std::vector<DataSet>& data_sets() const;
+  [[nodiscard]] const DataSet* find(const std::string& path) const;
+  [[nodiscard]] bool has(const std::string& path) const;
+
+  /// Frames 0, every, 2 every, ... of a quantity, one after the other. @throws FileError
+  [[nodiscard]] std::vector<double> read(const std::string& path, std::size_t every = 1) const;
+  /// A list that does not change; empty if there is none. @throws FileError
+  [[nodiscard]] std::vector<std::string> names(const std::string& path) const;
+  [[nodiscard]] std::vector<std::int64_t> numbers(const std::string& path) const;
+  /// A list of vectors that does not change, one after the other.
+  [[nodiscard]] std::vector<double> vectors(const std::string& path) const;
+  /// Text of an attribute; empty if there is none.
+  [[nodiscard]] std::string attribute(const std::string& group, const std::string& name) const;
+  /// Names of the groups in a group.
+  [[nodiscard]] std::vector<std::string> groups(const std::string& path) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/view/channels.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include <polhode/base/error.hpp>
+#include <polhode/base/format.hpp>
+#include <polhode/base/names.hpp>
+#include <polhode/io/results_format.hpp>
+#include <polhode/io/svg_panel.hpp>
+#include <polhode/loads/registry.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Numbers `first` to `first + labels.size() − 1` of each frame of a data set.
+struct Slice {
+  std::string path, head, unit;
+  std::size_t first = 0;
+  std::vector<std::string> labels;  ///< One that is empty: a number without components.
+};
+
+std::vector<std::string> labels_of(std::size_t size) {
+  if (size == 1) return {""};
+  if (size == 3) return {"x", "y", "z"};
+  if (size == 4) return {"w", "x", "y", "z"};
+  if (size == 6) return {"xx", "yy", "zz", "xy", "yz", "xz"};
+  std::vector<std::string> labels;
+  for (std::size_t k = 0; k < size; ++k) labels.push_back(format("{}", k));
+  return labels;
+}
+
+/// Every channel of the results, in the order of the table.
+std::vector<Slice> slices_of(const ResultsReader& results) {
+  std::vector<Slice> list;
+  const auto packed = [&](const char* group, const char* shown,
+                          std::initializer_list<const char*> quantities) {
+    const std::vector<std::string> names = results.names(std::string(group) + "/names");
+    for (std::size_t k = 0; k < names.size(); ++k)
+      for (const char* q : quantities) {
+        const ResultsReader::DataSet* set = results.find(format("{}/{}", group, q));
+        if (set == nullptr) continue;
+        const std::size_t size = set->size() / names.size();
+        list.push_back({set->path, format("{}.{}.{}", shown, names[k], q), set->unit, k * size,
+                        labels_of(size)});
+      }
+  };
+  packed(results::kPackedBodies, "bodies",
+         {"position", "orientation", "velocity", "angular_velocity"});
+  packed(results::kPackedJoints, "joints", {"force", "moment"});
+  const std::string joints = results::kPackedJoints, loads = results::kPackedLoads;
+  const std::vector<std::string> joint_names = results.names(joints + "/names");
+  const std::vector<std::int64_t> first = results.numbers(joints + "/first"),
+                                  count = results.numbers(joints + "/count");
+  for (std::size_t k = 0; k < std::min(joint_names.size(), first.size()); ++k)
+    for (const char* q : {"coordinates", "rates"})
+      if (count[k] > 0) {
+        std::vector<std::string> labels;
+        for (std::int64_t c = 0; c < count[k]; ++c) labels.push_back(format("{}", c));
+        if (labels.size() == 1) labels = {""};
+        list.push_back({format("{}/{}", joints, q), format("joints.{}.{}", joint_names[k], q),
+                        q[0] == 'c' ? "rad or m" : "rad/s or m/s",
+                        static_cast<std::size_t>(first[k]), labels});
+      }
+  const std::vector<std::string> load_names = results.names(loads + "/names"),
+                                 load_types = results.names(loads + "/types");
+  const std::vector<std::int64_t> load_first = results.numbers(loads + "/first");
+  for (std::size_t k = 0; k < load_names.size(); ++k) {
+    auto at = static_cast<std::size_t>(load_first[k]);
+    for (const LoadChannel& c : load_kind(load_types[k]).channels) {
+      const auto size = static_cast<std::size_t>(c.size);
+      list.push_back({loads + "/values", format("loads.{}.{}", load_names[k], c.name), c.unit, at,
+                      labels_of(size)});
+      at += size;
+    }
+  }
+  packed(results::kPackedContacts, "contacts",
+         {"gap", "normal_force", "force", "friction", "point", "points", "status", "impulse",
+          "energy_lost"});
+  for (const ResultsReader::DataSet& set : results.data_sets()) {
+    if (set.path.rfind("/packed/", 0) == 0 || set.path == results::kTime) continue;
+    if (set.path.find("/elements/") != std::string::npos ||
+        set.path.find("/nodes/") != std::string::npos)
+      continue;
+    std::string head = set.path.substr(1);
+    std::replace(head.begin(), head.end(), '/', '.');
+    list.push_back({set.path, head, set.unit, 0, labels_of(set.size())});
+  }
+  return list;
+}
+
+std::string full_name(const Slice& slice, std::size_t k) {
+  return slice.labels[k].empty() ? slice.head : slice.head + "." + slice.labels[k];
+}
+
+/// Reader that keeps what it has read: many columns come from one data set.
+class Columns {
+ public:
+  explicit Columns(const ResultsReader& results) : results_(results), slices_(slices_of(results)) {}
+
+  std::vector<ChannelColumn> find(const std::string& name) {
+    std::vector<ChannelColumn> found;
+    for (const Slice& slice : slices_) {
+      const bool whole = slice.head == name || slice.head.rfind(name + ".", 0) == 0;
+      for (std::size_t k = 0; k < slice.labels.size(); ++k)
+        if (whole || full_name(slice, k) == name)
+          found.push_back({full_name(slice, k), slice.unit, column(slice, k)});
+    }
+    if (!found.empty()) return found;
+    std::vector<std::string> names;
+    for (const Slice& slice : slices_) names.push_back(slice.head);
+    throw InputError("channel", format("there is no '{}'", name),
+                     did_you_mean(name, names) +
+                         "Channels are named like energy.kinetic or bodies.NAME.position.x");
+  }
+  [[nodiscard]] const std::vector<Slice>& slices() const { return slices_; }
+
+ private:
+  std::vector<double> column(const Slice& slice, std::size_t k) {
+    auto [entry, fresh] = read_.try_emplace(slice.path);
+    if (fresh) entry->second = results_.read(slice.path);
+    const std::vector<double>& all = entry->second;
+    const std::size_t width = results_.find(slice.path)->size();
+    std::vector<double> values;
+    for (std::size_t at = slice.first + k; at < all.size(); at += width) values.push_back(all[at]);
+    return values;
+  }
+
+  const ResultsReader& results_;
+  std::vector<Slice> slices_;
+  std::map<std::string, std::vector<double>> read_;
+};
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
+  return result + "\"";
+}
+
+constexpr std::array<const char*, 8> kColours = {"#1f5fa8", "#c8641b", "#2d8a4e", "#8a5fb0",
+                                                 "#b58a12", "#2a98a0", "#b8437f", "#6c7882"};
+
+}  // namespace
+
+std::vector<ChannelColumn> channel_columns(const ResultsReader& results, const std::string& name) {
+  return Columns(results).find(name);
+}
+
+std::vector<std::string> channel_names(const ResultsReader& results) {
+  std::vector<std::string> names;
+  for (const Slice& slice : slices_of(results)) names.push_back(slice.head);
+  return names;
+}
+
+std::string channels_csv(const ResultsReader& results, const std::vector<std::string>& names) {
+  Columns all(results);
+  std::vector<ChannelColumn> columns;
+  if (names.empty())
+    for (const Slice& slice : all.slices())
+      for (ChannelColumn& c : all.find(slice.head)) columns.push_back(std::move(c));
+  for (const std::string& name : names)
+    for (ChannelColumn& c : all.find(name)) columns.push_back(std::move(c));
+  std::string text = "t [s]";
+  for (const ChannelColumn& c : columns) text += "," + quoted(format("{} [{}]", c.name, c.unit));
+  text += "\n";
+  const std::vector<double> t = results.read(results::kTime);
+  for (std::size_t f = 0; f < t.size(); ++f) {
+    text += format("{}", t[f]);
+    for (const ChannelColumn& c : columns) text += format(",{}", c.values[f]);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string channels_svg(const ResultsReader& results, const std::vector<std::string>& names,
+                         const std::string& time_label) {
+  constexpr double kWidth = 720.0, kHeight = 190.0, kLeft = 84.0, kTop = 34.0, kStep = 250.0;
+  Columns all(results);
+  const std::vector<double> t = results.read(results::kTime);
+  const double begin = t.empty() ? 0.0 : t.front(), end = t.empty() ? 1.0 : t.back();
+  std::string content;
+  double y = kTop;
+  for (const std::string& name : names) {
+    std::vector<ChannelColumn> columns = all.find(name);
+    if (columns.size() > kColours.size())
+      throw InputError("channel", format("'{}' holds {} curves", name, columns.size()),
+                       "Name a part of it, at most eight curves go into a panel");
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    std::string units;
+    for (const ChannelColumn& c : columns) {
+      for (double v : c.values)
+        if (std::isfinite(v)) {
+          low = std::min(low, v);
+          high = std::max(high, v);
+        }
+      if (units.find(c.unit) == std::string::npos) units += (units.empty() ? "" : ", ") + c.unit;
+    }
+    if (!(high >= low)) low = 0.0, high = 1.0;
+    const double room = high > low ? 0.06 * (high - low) : std::max(1e-12, 0.1 * std::abs(high));
+    SvgPanel panel({kLeft, y, kWidth - kLeft - 170.0, kHeight}, begin,
+                   end > begin ? end : begin + 1.0, low - room, high + room,
+                   format("{} [{}]", name, units));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      panel.curve(t, columns[i].values, kColours[i]);
+      const double line = y + 10.0 + 18.0 * static_cast<double>(i);
+      content += format(
+          "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" stroke-width=\"2\"/>\n",
+          kWidth - 160.0, line - 4.0, kWidth - 140.0, kColours[i]);
+      const std::string& full = columns[i].name;
+      const std::string part = full.size() > name.size() ? full.substr(name.size() + 1) : full;
+      content += svg_text(kWidth - 134.0, line, part);
+    }
+    content += panel.text();
+    content += svg_text(kLeft + 200.0, y + kHeight + 34.0, time_label);
+    y += kStep;
+  }
+  return svg_page(kWidth, y, content);
+}
+
+}  // namespace polhode

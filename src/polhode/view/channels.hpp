@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/io/results_reader.hpp>
+
+namespace polhode {
+
+/// One number of a channel over all frames.
+struct ChannelColumn {
+  std::string name;  ///< bodies.crank.position.x
+  std::string unit;
+  std::vector<double> values;
+};
+
+/// Columns of a channel by the name that people use: bodies.crank.position, joints.A.force.z,
+/// loads.spring.length, contacts.a+b.gap, energy, energy.kinetic, and any other data set by its
+/// path with dots. A group means all of its channels, a channel all of its components.
+/// @throws InputError that names the nearest channel.
+[[nodiscard]] std::vector<ChannelColumn> channel_columns(const ResultsReader& results,
+                                                         const std::string& name);
+
+/// Names of everything in the results: motion, joints, loads, contacts, energy, momentum, solver.
+[[nodiscard]] std::vector<std::string> channel_names(const ResultsReader& results);
+
+/// Table of channels with the time first. Numbers read back exactly.
+[[nodiscard]] std::string channels_csv(const ResultsReader& results,
+                                       const std::vector<std::string>& names);
+
+/// Picture of channels over time: a panel for each name, at most eight curves in each.
+/// @param time_label  Name of the abscissa.
+[[nodiscard]] std::string channels_svg(const ResultsReader& results,
+                                       const std::vector<std::string>& names,
+                                       const std::string& time_label);
+
+}  // namespace polhode

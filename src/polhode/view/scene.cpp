@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/view/scene.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+#include <polhode/base/format.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/io/results_format.hpp>
+#include <polhode/view/chunk.hpp>
+#include <polhode/view/scene_parts.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Where a page takes its data: viewer/build.mjs writes it.
+constexpr const char* kPlace = "<!--POLHODE-DATA-->";
+
+bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
+
+/// Fields of solids go with add_solids(), and fields of elements are left out.
+bool is_channel(const std::string& path) {
+  if (path == results::kTime) return false;
+  if (!starts_with(path, results::kSolids)) return true;
+  return path.find("/interfaces/") != std::string::npos;
+}
+
+/// Numbers in a frame of everything that the page takes.
+std::size_t frame_size(const ResultsReader& results) {
+  std::size_t size = 0;
+  for (const ResultsReader::DataSet& set : results.data_sets())
+    if (is_channel(set.path) || set.path.find("/nodes/") != std::string::npos) size += set.size();
+  return size;
+}
+
+std::size_t choose_every(const ResultsReader& results, const SceneOptions& options) {
+  const std::size_t frames = results.frames();
+  if (frames == 0) return 1;
+  const std::size_t bytes = std::max<std::size_t>(1, 4 * frame_size(results));
+  std::size_t most = std::max<std::size_t>(2, options.max_bytes / bytes);
+  if (options.max_frames > 0) most = std::min(most, options.max_frames);
+  return std::max<std::size_t>(1, (frames + most - 1) / most);
+}
+
+/// Change of total energy, less work put in, plus what was dissipated, over the largest energy: in
+/// double precision, because 32 bits would hide it.
+std::vector<double> energy_drift(const ResultsReader& results, std::size_t every) {
+  const std::string group = results::kEnergy;
+  for (const char* name : {"/kinetic", "/potential", "/total", "/put_in", "/dissipated"})
+    if (results.find(group + name) == nullptr) return {};
+  const std::vector<double> kinetic = results.read(group + "/kinetic", every),
+                            potential = results.read(group + "/potential", every),
+                            put_in = results.read(group + "/put_in", every),
+                            dissipated = results.read(group + "/dissipated", every);
+  double largest = 0.0;
+  for (std::size_t f = 0; f < kinetic.size(); ++f)
+    for (double part : {kinetic[f], potential[f], kinetic[f] + potential[f], put_in[f]})
+      largest = std::max(largest, std::abs(part));
+  std::vector<double> drift(kinetic.size());
+  for (std::size_t f = 0; f < drift.size(); ++f) {
+    const double change = (kinetic[f] - kinetic[0]) + (potential[f] - potential[0]) +
+                          (dissipated[f] - dissipated[0]) - (put_in[f] - put_in[0]);
+    drift[f] = largest > 0.0 ? change / largest : 0.0;
+  }
+  return drift;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+std::string model_text(const ResultsReader& results) {
+  const std::vector<std::string> text = results.names(std::string(results::kProvenance) + "/model");
+  return text.empty() ? "" : text[0];
+}
+
+}  // namespace
+
+Json json_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Json json_of(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+Json ChunkList::add(std::string bytes, std::size_t count, std::size_t width, const char* type) {
+  chunks_.push_back(std::move(bytes));
+  return {
+      {"c", chunks_.size() - 1}, {"n", width == 0 ? 0 : count / width}, {"w", width}, {"t", type}};
+}
+
+Json ChunkList::floats(std::span<const double> values, std::size_t width) {
+  return add(pack_floats(values, width), values.size(), width, "f");
+}
+
+Json ChunkList::integers(std::span<const std::uint32_t> values, std::size_t width) {
+  return add(pack_integers(values, width), values.size(), width, "u");
+}
+
+Json ChunkList::surface(const TriangleSurface& surface) {
+  std::vector<double> points;
+  for (const Vec3& p : surface.points) points.insert(points.end(), {p[0], p[1], p[2]});
+  std::vector<std::uint32_t> corners;
+  for (const auto& [a, b, c] : surface.triangles)
+    corners.insert(corners.end(), {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                   static_cast<std::uint32_t>(c)});
+  return {{"points", floats(points, 3)}, {"triangles", integers(corners, 3)}};
+}
+
+Model model_of_results(const ResultsReader& results, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const std::string group = results::kProvenance, text = model_text(results);
+  const std::string name = results.attribute(group, "model_file");
+  const Overrides overrides = lines_of(results.attribute(group, "overrides"));
+  const fs::path here = fs::absolute(folder);
+  try {
+    return read_model_text(text, (here.parent_path() / name).string(), overrides);
+  } catch (const std::exception&) {
+    return read_model_text(text, (here / name).string(), overrides);
+  }
+}
+
+SceneData make_scene(const ResultsReader& results, const Model* model,
+                     const SceneOptions& options) {
+  SceneData scene;
+  scene.every = choose_every(results, options);
+  ChunkList chunks(scene.chunks);
+  const std::vector<double> time = results.read(results::kTime, scene.every);
+  scene.frames = time.size();
+  const std::string group = results::kProvenance;
+  Json manifest = {{"format", "polhode scene"},
+                   {"version", 1},
+                   {"title", results.attribute("/", "title")},
+                   {"frames", time.size()},
+                   {"file_frames", results.frames()},
+                   {"time", time},
+                   {"statics", model != nullptr && model->analysis.type == "statics"},
+                   {"cut_short", results.cut_short()},
+                   {"notes", options.notes},
+                   {"source",
+                    {{"file", results.attribute(group, "model_file")},
+                     {"text", model_text(results)},
+                     {"overrides", lines_of(results.attribute(group, "overrides"))},
+                     {"version", results.attribute(group, "version")},
+                     {"solver", results.attribute(group, "solver")}}}};
+  if (model != nullptr) manifest["gravity"] = json_of(model->gravity);
+  if (model == nullptr && !model_text(results).empty())
+    manifest["notes"].push_back("The model of these results cannot be read: shapes are not known.");
+  add_bodies(manifest, chunks, results, model);
+  add_connections(manifest, results, model, options);
+  add_solids(manifest, chunks, results, scene.every);
+  add_lines(manifest, results, model);
+  manifest["contacts"] = results.names(std::string(results::kPackedContacts) + "/names");
+  Json& channels = manifest["channels"] = Json::array();
+  for (const ResultsReader::DataSet& set : results.data_sets())
+    if (is_channel(set.path) && set.size() > 0)
+      channels.push_back(
+          {{"path", set.path.substr(1)},
+           {"unit", set.unit},
+           {"dims", set.dims},
+           {"data", chunks.floats(results.read(set.path, scene.every), set.size())}});
+  if (const std::vector<double> drift = energy_drift(results, scene.every); !drift.empty())
+    channels.push_back({{"path", "energy/drift"},
+                        {"unit", "-"},
+                        {"dims", Json::array()},
+                        {"data", chunks.floats(drift, 1)}});
+  // A replacement for bytes that are no UTF-8: titles and names come from files.
+  scene.manifest = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return scene;
+}
+
+std::string scene_page(const std::string& page, const SceneData& scene) {
+  const std::size_t place = page.find(kPlace);
+  if (place == std::string::npos)
+    throw std::invalid_argument("scene_page: the page has no place for data");
+  std::string data = "<script type=\"application/json\" id=\"polhode-scene\">";
+  for (char c : scene.manifest) {
+    if (c == '<')
+      data += "\\u003c";  // No text of a model can end the element.
+    else
+      data += c;
+  }
+  data += "</script>\n";
+  for (std::size_t i = 0; i < scene.chunks.size(); ++i)
+    data += format("<script type=\"application/octet-stream\" id=\"chunk-{}\">{}</script>\n", i,
+                   base64(scene.chunks[i]));
+  return page.substr(0, place) + data + page.substr(place + std::string(kPlace).size());
+}
+
+}  // namespace polhode

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "command_line.hpp"
+
+namespace polhode {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+using ViewCommand = test::CommandLine;
+
+TEST_F(ViewCommand, WritesOnePageThatNeedsNothingElse) {
+  ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
+  const test::ProgramResult r = run({"view", "model.results", "--html", "page.html"});
+  EXPECT_EQ(r.code, 0);
+  EXPECT_THAT(r.err, HasSubstr("51 frames"));
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("Content-Security-Policy"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, HasSubstr("\"title\":\"Double pendulum\""));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  EXPECT_THAT(page, Not(HasSubstr("unsafe-")));
+}
+
+TEST_F(ViewCommand, ShowsAModelBeforeItRuns) {
+  EXPECT_EQ(run({"view", "model.yaml", "--html", "page.html", "--set", "title=Other"}).code, 0);
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("mobility 4, 8 constraint rows, 0 redundant"));
+  EXPECT_THAT(page, HasSubstr("\"frames\":1,"));
+  EXPECT_FALSE(exists("model.results"));
+}
+
+TEST_F(ViewCommand, ARunMayEndWithAPage) {
+  EXPECT_EQ(run({"run", "model.yaml", "--quiet", "--view"}).code, 0);
+  EXPECT_TRUE(exists("model.results/view.html"));
+}
+
+TEST_F(ViewCommand, SaysWhatIsWrong) {
+  EXPECT_EQ(run({"view", "missing.h5", "--html", "x.html"}).code, 5);
+  EXPECT_EQ(run({"view", "missing.yaml", "--html", "x.html"}).code, 5);
+  write("wrong.yaml", "format: 1\nbodies: {a: {mas: 1}}\n");
+  EXPECT_EQ(run({"view", "wrong.yaml", "--html", "x.html"}).code, 3);
+  ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
+  EXPECT_EQ(run({"view", "model.results", "--set", "a=1", "--html", "x.html"}).code, 2);
+}
+
+/// What a server on the loopback address answers.
+std::string ask(int port, const std::string& request) {
+  const int s = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  std::string text;
+  for (int i = 0; i < 200; ++i) {
+    if (::connect(s, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  (void)!::write(s, request.data(), request.size());
+  std::array<char, 4096> part{};
+  for (ssize_t n = 0; (n = ::read(s, part.data(), part.size())) > 0;)
+    text.append(part.data(), static_cast<std::size_t>(n));
+  ::close(s);
+  return text;
+}
+
+std::string get(int port, const std::string& path, const std::string& host = "127.0.0.1") {
+  return ask(
+      port, "GET " + path + " HTTP/1.1\r\nHost: " + host + ":" + std::to_string(port) + "\r\n\r\n");
+}
+
+TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
+  const int port = 20000 + static_cast<int>(::getpid() % 20000);
+  test::Program program =
+      start({"view", "model.yaml", "--port", std::to_string(port), "--no-open"});
+  EXPECT_THAT(get(port, "/"), HasSubstr("<!doctype html>"));
+  EXPECT_THAT(get(port, "/scene.json"), HasSubstr("\"title\":\"Double pendulum\""));
+  EXPECT_THAT(get(port, "/chunk/0"), HasSubstr("200 OK"));
+  EXPECT_THAT(get(port, "/chunk/9999"), HasSubstr("404"));
+  EXPECT_THAT(get(port, "/../model.yaml"), HasSubstr("404"));
+  EXPECT_THAT(get(port, "/scene.json", "evil.example"), HasSubstr("403"));
+  EXPECT_THAT(ask(port, "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), HasSubstr("405"));
+  write("model.yaml", "format: 1\nbodies: {a: {mas: 1}}\n");
+  EXPECT_THAT(get(port, "/scene.json"), HasSubstr("model.yaml:2:14"));
+  program.signal(SIGINT);
+  const test::ProgramResult r = program.wait();
+  EXPECT_EQ(r.code, 0);
+  EXPECT_THAT(r.out, HasSubstr("http://127.0.0.1:" + std::to_string(port)));
+}
+
+}  // namespace
+}  // namespace polhode

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/view/channels.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <polhode/base/error.hpp>
+#include <polhode/io/read_model.hpp>
+#include <polhode/io/recorder.hpp>
+#include <polhode/view/glb.hpp>
+#include <support/scratch.hpp>
+
+namespace polhode {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kModel = R"(format: 1
+title: Falling arm
+gravity: [0, 0, -10]
+bodies:
+  stone: {shape: {sphere: 0.2}, density: 1000, position: [5, 0, 0]}
+  arm: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [0.5, 0, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, arm], at: [0, 0, 0], axis: y}
+loads:
+  spring: {type: spring_damper, bodies: [ground, arm], at: [[1, 0, 1], [1, 0, 0]], stiffness: 100, damping: 1}
+contacts: {exclude: [[stone, arm]]}
+analysis: {duration: 0.1 s, step: 10 ms}
+)";
+
+class ChannelsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    Simulation simulation(read_model_text(kModel, "model.yaml"));
+    Recorder recorder(simulation, folder_ / "r",
+                      {.model_file = "model.yaml", .model_text = kModel});
+    simulation.run([&](Simulation& s) { recorder.frame(s); }, [](Simulation&) {});
+    recorder.frame(simulation);
+    recorder.close();
+  }
+  [[nodiscard]] ResultsReader results() const { return ResultsReader(folder_ / "r/results.h5"); }
+  [[nodiscard]] std::vector<std::string> names(const std::string& name) const {
+    std::vector<std::string> list;
+    for (const ChannelColumn& c : channel_columns(results(), name)) list.push_back(c.name);
+    return list;
+  }
+  test::Scratch folder_;
+};
+
+TEST_F(ChannelsTest, AStoneFallsAsTheBooksSay) {
+  const std::vector<ChannelColumn> z = channel_columns(results(), "bodies.stone.position.z");
+  ASSERT_EQ(z.size(), 1U);
+  EXPECT_EQ(z[0].unit, "m");
+  ASSERT_EQ(z[0].values.size(), 11U);
+  // The step of order 2 is exact for a constant force.
+  for (std::size_t k = 0; k < 11; ++k)
+    EXPECT_NEAR(z[0].values[k], -0.5 * 10.0 * 1e-4 * static_cast<double>(k * k), 1e-14);
+}
+
+TEST_F(ChannelsTest, ANameMeansAComponentAChannelOrAGroup) {
+  EXPECT_THAT(
+      names("bodies.arm.velocity"),
+      ElementsAre("bodies.arm.velocity.x", "bodies.arm.velocity.y", "bodies.arm.velocity.z"));
+  EXPECT_THAT(names("joints.hinge.coordinates"), ElementsAre("joints.hinge.coordinates"));
+  EXPECT_THAT(names("loads.spring"),
+              ElementsAre("loads.spring.force.x", "loads.spring.force.y", "loads.spring.force.z",
+                          "loads.spring.length", "loads.spring.rate", "loads.spring.energy"));
+  EXPECT_THAT(names("energy"), testing::Contains("energy.kinetic"));
+}
+
+TEST_F(ChannelsTest, TheLengthOfASpringIsThatBetweenItsEnds) {
+  const ResultsReader r = results();
+  const auto length = channel_columns(r, "loads.spring.length")[0].values;
+  const auto angle = channel_columns(r, "joints.hinge.coordinates")[0].values;
+  for (std::size_t k = 0; k < length.size();
+       ++k)  // The arm turns about y: its end is at (cos, −sin).
+    EXPECT_NEAR(length[k], std::hypot(1.0 - std::cos(angle[k]), 1.0 + std::sin(angle[k])), 1e-12);
+}
+
+TEST_F(ChannelsTest, SaysWhichNameIsNearest) {
+  try {
+    (void)names("bodies.amr.position");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("there is no 'bodies.amr.position'"));
+    EXPECT_THAT(error.what(), HasSubstr("bodies.arm.position"));
+  }
+}
+
+TEST_F(ChannelsTest, ATableReadsBackExactly) {
+  const ResultsReader r = results();
+  std::istringstream table(channels_csv(r, {"energy.kinetic"}));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "t [s],energy.kinetic [J]");
+  const std::vector<double> kinetic = channel_columns(r, "energy.kinetic")[0].values;
+  for (double expected : kinetic) {
+    std::getline(table, line);
+    EXPECT_EQ(std::stod(line.substr(line.find(',') + 1)), expected);
+  }
+  EXPECT_THAT(channels_csv(r, {}), HasSubstr("joints.hinge.moment.y [N m]"));
+}
+
+TEST_F(ChannelsTest, APictureHasACurveForEachColumn) {
+  const std::string svg =
+      channels_svg(results(), {"bodies.arm.position", "energy.kinetic"}, "t [s]");
+  EXPECT_THAT(svg, HasSubstr("<svg"));
+  EXPECT_THAT(svg, HasSubstr("bodies.arm.position [m]"));
+  std::size_t curves = 0;
+  for (const char* colour : {"#1f5fa8", "#c8641b", "#2d8a4e"})
+    curves += svg.find(colour) != std::string::npos ? 1 : 0;
+  EXPECT_EQ(curves, 3U);
+  EXPECT_THROW((void)channels_svg(results(), {"bodies"}, "t [s]"), InputError);
+}
+
+TEST_F(ChannelsTest, AnAnimatedSceneHoldsTheMotion) {
+  const ResultsReader r = results();
+  const Model model = read_model_text(kModel, "model.yaml");
+  const std::string glb = scene_glb(make_scene(r, &model));
+  ASSERT_EQ(glb.substr(0, 4), "glTF");
+  std::uint32_t total = 0, length = 0;
+  std::memcpy(&total, glb.data() + 8, 4);
+  std::memcpy(&length, glb.data() + 12, 4);
+  EXPECT_EQ(total, glb.size());
+  const auto file = nlohmann::json::parse(glb.substr(20, length));
+  const char* numbers = glb.data() + 20 + length + 8;
+  EXPECT_EQ(file["meshes"].size(), 2U);
+  int stones = 0;
+  for (const auto& channel : file["animations"][0]["channels"]) {
+    if (file["nodes"][channel["target"]["node"].get<std::size_t>()]["name"] != "stone" ||
+        channel["target"]["path"] != "translation")
+      continue;
+    ++stones;
+    const auto& sampler = file["animations"][0]["samplers"][channel["sampler"].get<std::size_t>()];
+    const auto& accessor = file["accessors"][sampler["output"].get<std::size_t>()];
+    const auto& view = file["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    EXPECT_EQ(accessor["count"], 11);
+    float z = 0.0F;
+    std::memcpy(&z, numbers + view["byteOffset"].get<std::size_t>() + 4 * (3 * 10 + 2), 4);
+    EXPECT_NEAR(z, -0.05, 1e-7);
+  }
+  EXPECT_EQ(stones, 1);
+}
+
+}  // namespace
+}  // namespace polhode

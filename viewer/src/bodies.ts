@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+import {
+  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, InstancedMesh, Matrix4, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion,
+  Vector3,
+} from "three";
+import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
+import type { Four, Scene, Triple } from "./data";
+import type { Poses } from "./poses";
+
+export type Showing = "shown" | "ghost" | "hidden";
+
+/** Colours that differ for colour-blind eyes too (after Okabe and Ito 2008), softened. */
+const kPalette = ["#4c86c6", "#e0a030", "#4fa287", "#cc6f4a", "#8f7bc0", "#7fb7dd", "#c9b64a", "#b06a92"];
+const kFixed = "#9aa5ae";
+const kChosen = new Color("#ffd23f");
+
+export const quaternion = (q: Four | undefined): Quaternion => (q ? new Quaternion(q[1], q[2], q[3], q[0]) : new Quaternion());
+export const vector = (v: Triple | undefined): Vector3 => (v ? new Vector3(...v) : new Vector3());
+
+interface Part { body: number; local: Matrix4 }
+interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh }
+
+const kNothing = new Matrix4().makeScale(0, 0, 0);
+
+/** All bodies: each different shape is one instanced mesh, a second one for ghosts. */
+export class Bodies {
+  readonly group = new Group();
+  readonly showing: Showing[];
+  private readonly batches: Batch[] = [];
+  private readonly planes: { body: number; local: Matrix4; mesh: Mesh }[] = [];
+  chosen = -1;
+  plain = false;
+
+  private constructor(private readonly scene: Scene, private readonly poses: Poses) {
+    this.showing = scene.manifest.bodies.map(() => "shown");
+  }
+
+  static async of(scene: Scene, poses: Poses): Promise<Bodies> {
+    const bodies = new Bodies(scene, poses);
+    await bodies.build();
+    return bodies;
+  }
+
+  colour(body: number): Color {
+    const entry = this.scene.manifest.bodies[body];
+    if (body === this.chosen) return kChosen;
+    return new Color(entry.fixed ? kFixed : kPalette[body % kPalette.length]);
+  }
+
+  private async build(): Promise<void> {
+    const m = this.scene.manifest;
+    const parts: Part[][] = m.meshes.map(() => []);
+    m.bodies.forEach((body, index) => {
+      for (const part of body.parts ?? []) {
+        const local = new Matrix4().compose(vector(part.p), quaternion(part.q), new Vector3(1, 1, 1));
+        if (part.plane) {
+          const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), vector(part.plane).normalize());
+          const mesh = new Mesh(new PlaneGeometry(1, 1), new MeshStandardMaterial({ color: kFixed, transparent: true, opacity: 0.28, side: DoubleSide,
+            depthWrite: false }));
+          mesh.matrixAutoUpdate = false;
+          mesh.receiveShadow = true;
+          mesh.userData = { pick: () => ({ kind: "body", index }) };
+          this.planes.push({ body: index, local: local.multiply(new Matrix4().makeRotationFromQuaternion(turn)), mesh });
+          this.group.add(mesh);
+        } else if (part.mesh !== undefined) parts[part.mesh].push({ body: index, local });
+      }
+    });
+    for (let k = 0; k < m.meshes.length; k++) {
+      if (parts[k].length === 0) continue;
+      const flat = new BufferGeometry();
+      flat.setAttribute("position", new BufferAttribute(await this.scene.floats(m.meshes[k].points), 3));
+      flat.setIndex(new BufferAttribute(await this.scene.integers(m.meshes[k].triangles), 1));
+      // Shapes without edges share their corners, and so do surfaces so large that sharp edges would cost too much.
+      const smooth = m.meshes[k].triangles.n > 200000 || ["sphere", "ellipsoid", "capsule"].includes(m.meshes[k].type);
+      const geometry = smooth ? flat : toCreasedNormals(flat, 0.6);
+      if (smooth) geometry.computeVertexNormals();
+      geometry.computeBoundingSphere();
+      const make = (ghost: boolean): InstancedMesh => {
+        const material = new MeshStandardMaterial({ roughness: 0.62, metalness: 0.05, side: DoubleSide,
+          ...(ghost ? { transparent: true, opacity: 0.16, depthWrite: false } : {}) });
+        const mesh = new InstancedMesh(geometry, material, parts[k].length);
+        mesh.frustumCulled = false;
+        mesh.castShadow = !ghost;
+        mesh.receiveShadow = !ghost;
+        mesh.userData = { pick: (instance: number) => ({ kind: "body", index: parts[k][instance].body }) };
+        this.group.add(mesh);
+        return mesh;
+      };
+      this.batches.push({ parts: parts[k], solid: make(false), ghost: make(true) });
+    }
+    this.colours();
+    this.update();
+  }
+
+  /** Box around all bodies now; planes do not count, of ghosts the centre of mass alone. */
+  box(): Box3 {
+    const all = new Box3(), matrix = new Matrix4(), one = new Box3();
+    for (const batch of this.batches) {
+      batch.solid.geometry.computeBoundingBox();
+      for (const part of batch.parts) {
+        if (this.showing[part.body] !== "shown") {
+          all.expandByPoint(this.poses.r_of(part.body, new Vector3()));
+          continue;
+        }
+        one.copy(batch.solid.geometry.boundingBox as Box3).applyMatrix4(this.poses.matrix_of(part.body, matrix).multiply(part.local));
+        all.union(one);
+      }
+    }
+    return all;
+  }
+
+  /** Planes have no end: squares that reach beyond the scene. */
+  sizePlanes(size: number): void {
+    for (const plane of this.planes) plane.local.scale(new Vector3(1.6 * size, 1.6 * size, 1));
+    // A bin has walls on all sides; those that hide the scene are left as outlines of light.
+    if (this.planes.length > 1) for (const plane of this.planes) (plane.mesh.material as MeshStandardMaterial).opacity = 0.07;
+    this.update();
+  }
+
+  colours(): void {
+    for (const batch of this.batches)
+      batch.parts.forEach((part, i) => {
+        const colour = this.colour(part.body);
+        batch.solid.setColorAt(i, colour);
+        batch.ghost.setColorAt(i, colour);
+      });
+    for (const batch of this.batches)
+      for (const mesh of [batch.solid, batch.ghost]) if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+  }
+
+  update(): void {
+    const matrix = new Matrix4();
+    for (const { parts, solid, ghost } of this.batches) {
+      let ghosts = false;
+      parts.forEach((part, i) => {
+        const showing = this.showing[part.body];
+        this.poses.matrix_of(part.body, matrix).multiply(part.local);
+        solid.setMatrixAt(i, showing === "shown" && !this.plain ? matrix : kNothing);
+        const faint = showing === "ghost" || (this.plain && showing === "shown");
+        ghost.setMatrixAt(i, faint ? matrix : kNothing);
+        ghosts ||= faint;
+      });
+      ghost.visible = ghosts;
+      solid.instanceMatrix.needsUpdate = ghost.instanceMatrix.needsUpdate = true;
+      solid.boundingSphere = ghost.boundingSphere = null;
+    }
+    for (const plane of this.planes) {
+      plane.mesh.visible = this.showing[plane.body] !== "hidden";
+      this.poses.matrix_of(plane.body, plane.mesh.matrix).multiply(plane.local);
+      plane.mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+}

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+import { bookmarkOf, follow } from "./bookmark";
+import { Scene } from "./data";
+import { figure, h, save } from "./dom";
+import { displayPanel, Legend, ObjectPanel, objectsOf } from "./panels";
+import { Player } from "./player";
+import { Plot, type Mode } from "./plots";
+import { offered, seriesOf } from "./series";
+import { View, type Choice } from "./view";
+
+const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, as at first"],
+  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["/", "search"],
+  ["d", "dark or light"], ["b", "put camera and time into the address"], ["Esc", "choose nothing"], ["?", "this list"]];
+
+/** Speed at which a recording takes about ten seconds, from 1, 2, 5 times a power of ten; real time if that is near. */
+function pleasantSpeed(duration: number): number {
+  if (duration >= 2 && duration <= 30) return 1;
+  const wanted = duration / 10, power = 10 ** Math.floor(Math.log10(wanted));
+  return [1, 2, 5, 10].map((k) => k * power).reduce((a, b) => (Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
+}
+
+async function start(app: HTMLElement): Promise<void> {
+  const begun = performance.now();
+  const scene = await Scene.load(), m = scene.manifest;
+  if (m.time.length === 0) throw new Error("These results hold no whole frame yet. Run the model, or run it longer.");
+  document.title = `${m.title || "Model"} – Polhode`;
+  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+
+  const holder = h("main", { class: "view", "aria-label": "Moving picture" });
+  const drift = h("span", { class: "drift", title: "Change of the energy balance since the start, over the largest energy" });
+  const head = h("header", {}, h("h1", {}, m.title || m.source.file || "Model"), drift);
+  const side = h("aside", { "aria-label": "Objects and display" });
+  const plots = h("section", { class: "plots", "aria-label": "Plots", hidden: true });
+  const bar = h("footer", { class: "time" });
+  app.replaceChildren(head, holder, side, plots, bar);
+  if (innerWidth <= 720) app.classList.add("wide");
+
+  const view = await View.of(scene, holder);
+  const canvas = view.stage.renderer.domElement;
+  canvas.setAttribute("tabindex", "0");
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `${m.title || "Model"}: ${m.bodies.length} bodies, ${m.joints.length} joints in motion. Drag to turn, scroll to come nearer.`);
+  const player = new Player(m.time[0], m.time[m.time.length - 1]);
+  player.speed = pleasantSpeed(player.end - player.begin || 1);
+
+  const theme = (on: boolean): void => {
+    document.documentElement.dataset.theme = on ? "dark" : "light";
+    view.stage.theme(on);
+    for (const plot of open) plot.redraw();
+  };
+  const open: Plot[] = [];
+  const clock = { time: () => player.t, seek: (t: number) => player.seek(t) };
+  const openPlot = (names: string[], mode: Mode = "time"): void => {
+    const plot = new Plot(scene, clock, names, (p) => {
+      open.splice(open.indexOf(p), 1);
+      p.element.remove();
+      plots.hidden = open.length === 0;
+    }, mode);
+    open.push(plot);
+    plots.append(plot.element);
+    plots.hidden = false;
+  };
+  const addPlot = async (name: string, own: boolean): Promise<void> => {
+    const last = open[open.length - 1];
+    if (own || !last) openPlot([name]); else await last.add(name);
+  };
+  const choose = (choice: Choice | null): void => {
+    view.choose(choice);
+    void objects.choose(choice);
+  };
+  const objects = new ObjectPanel(scene, view, { choose, plot: (name) => void addPlot(name, false), refresh: () => { view.stage.dirty = true; } });
+  const legend = new Legend(view);
+  holder.append(legend.element);
+
+  const search = h("input", { type: "text", list: "channels", placeholder: "bodies.NAME.position.z", "aria-label": "Channel to plot" });
+  const trouble = h("p", { class: "warn", role: "status" });
+  const tryPlot = async (own: boolean): Promise<void> => {
+    const found = await seriesOf(scene, search.value);
+    trouble.textContent = found.length === 0 ? `There is no channel '${search.value}'.` : "";
+    if (found.length > 0) await addPlot(search.value, own);
+  };
+  const has = (path: string): boolean => scene.entry(path) !== undefined;
+  const preset = (label: string, names: string[], mode: Mode = "time") =>
+    names.every((n) => has(n.replaceAll(".", "/"))) ? h("button", { type: "button", onclick: () => openPlot([...names], mode) }, label) : null;
+  const plotPanel = h("div", { class: "panel" }, h("datalist", { id: "channels" }, ...offered(scene).slice(0, 1500).map((name) => h("option", { value: name }))),
+    h("div", { class: "addplot" }, search, h("button", { type: "button", onclick: () => void tryPlot(false) }, "Add"), h("button", { type: "button", onclick: () => void tryPlot(true) }, "New plot")), trouble,
+    h("div", { class: "buttons" }, preset("Energy drift", ["energy.drift"]), preset("Ledger", ["energy.kinetic", "energy.potential", "energy.dissipated"], "stacked"),
+      preset("Work and losses", ["energy.put_in", "energy.dissipated"]), preset("Momentum", ["momentum.linear", "momentum.angular"]), preset("Step length", ["solver.dt"])),
+    h("p", { class: "faint" }, "Click a plot to move the time there; drag to zoom, double-click for the whole range. A phase plot draws the other curves over the first. "
+      + "The ledger stacks energies, each counted from its lowest value if that is below zero."));
+  search.addEventListener("keydown", (e) => { if (e.key === "Enter") void tryPlot(false); });
+
+  const display = displayPanel(view, () => { legend.tick(); view.stage.dirty = true; }, theme);
+  const panels = [["Objects", objects.element], ["Display", display], ["Plot", plotPanel]] as const;
+  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Panels" });
+  panels.forEach(([label, panel], i) => {
+    panel.id = `panel-${i}`;
+    panel.setAttribute("role", "tabpanel");
+    panel.setAttribute("aria-label", label);
+    tabs.append(h("button", { type: "button", role: "tab", id: `tab-${i}`, "aria-controls": panel.id, onclick: () => tab(i) }, label));
+  });
+  const tab = (k: number): void => panels.forEach(([, panel], i) => {
+    panel.hidden = i !== k;
+    tabs.children[i].setAttribute("aria-selected", String(i === k));
+  });
+  tab(0);
+  side.append(tabs, ...panels.map(([, panel]) => panel));
+
+  const togglePanel = h("button", { type: "button", "aria-pressed": String(!app.classList.contains("wide")), onclick: () => {
+    app.classList.toggle("wide");
+    togglePanel.setAttribute("aria-pressed", String(!app.classList.contains("wide")));
+  } }, "Panel");
+  const help = h("dialog", { "aria-label": "Keyboard" }, h("h2", {}, "Keyboard"), h("table", {}, h("tbody", {}, ...kKeys.map(([key, what]) => h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, key)), h("td", {}, what))))),
+    h("p", { class: "faint" }, `Polhode ${m.source.version}. ${m.frames} frames${m.frames < m.file_frames ? ` of ${m.file_frames} in the file` : ""}.`), h("button", { type: "button", onclick: () => help.close() }, "Close"));
+  document.body.append(help);
+  const picture = (): void => { view.stage.draw(); canvas.toBlob((blob) => { if (blob) save("picture.png", blob); }); };
+  head.append(h("button", { type: "button", class: "optional", onclick: picture }, "Picture"), h("button", { type: "button", class: "optional", onclick: () => link() }, "Link"), togglePanel, h("button", { type: "button", "aria-label": "Keyboard help", onclick: () => help.showModal() }, "?"));
+  const link = (): void => { location.hash = bookmarkOf(view, player); void navigator.clipboard?.writeText(location.href).catch(() => undefined); };
+
+  const play = h("button", { type: "button", "aria-label": "Play", onclick: () => player.toggle() }, "▶");
+  const scrub = h("input", { type: "range", min: 0, max: Math.max(1, m.frames - 1), step: "any", value: 0, "aria-label": m.statics ? "Load factor" : "Time", oninput: () => {
+    const x = scrub.valueAsNumber, k = Math.min(m.frames - 1, Math.floor(x));
+    player.seek(m.time[k] + (x - k) * ((m.time[k + 1] ?? m.time[k]) - m.time[k]));
+  } });
+  const shown = h("output", { class: "clock", "aria-label": "Time now" });
+  const speeds = [...new Set([player.speed, ...[1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 100, 1000]])].sort((a, b) => a - b);
+  const speed = h("select", { "aria-label": "Speed", onchange: () => { player.speed = Number(speed.value); } }, ...speeds.map((s) => h("option", { value: s, selected: s === player.speed }, `${s}×`)));
+  const loop = h("button", { type: "button", class: "optional", "aria-pressed": "true", title: "Start again at the end", onclick: () => { player.loop = !player.loop; loop.setAttribute("aria-pressed", String(player.loop)); } }, "Loop");
+  bar.append(play, scrub, shown, speed, loop);
+  if (m.frames < 2) for (const control of [play, scrub, speed, loop]) control.disabled = true;
+
+  const notes = [...m.notes];
+  if (m.cut_short) notes.unshift(`The results file is cut short: shown up to its last whole frame, ${m.statics ? "load factor" : "t ="} ${figure(player.end)}${m.statics ? "" : " s"}.`);
+  if (notes.length > 0) {
+    const box = h("div", { class: "notes", role: "note" }, h("button", { type: "button", "aria-label": "Close the notes", onclick: () => box.remove() }, "✕"), h("ul", {}, ...notes.map((note) => h("li", {}, note))));
+    holder.append(box);
+  }
+  const ruler = h("div", { class: "measure", role: "status", hidden: true });
+  holder.append(ruler);
+
+  const balance = await scene.channel("energy/drift");
+  let worst = 0;
+  for (const x of balance ?? []) worst = Math.max(worst, Math.abs(x));
+  const tick = (): void => {
+    view.set(player.t);
+    const f = view.poses.frame + view.poses.part;
+    if (document.activeElement !== scrub || player.playing) scrub.valueAsNumber = f;
+    scrub.setAttribute("aria-valuetext", `${figure(player.t)}${m.statics ? "" : " s"}`);
+    shown.textContent = m.statics ? figure(player.t) : `${player.t.toFixed(Math.max(2, Math.min(6, 3 - Math.floor(Math.log10(player.end - player.begin || 1)))))} s`;
+    play.textContent = player.playing ? "❚❚" : "▶";
+    play.setAttribute("aria-label", player.playing ? "Pause" : "Play");
+    if (balance && !m.statics) {
+      drift.textContent = `energy drift ${Math.abs(balance[view.poses.frame]).toExponential(1)} (at most ${worst.toExponential(1)})`;
+      drift.classList.toggle("bad", worst > 1e-3);
+    }
+    objects.tick();
+    legend.tick();
+    for (const plot of open) plot.tick();
+    const measured = view.measured();
+    ruler.hidden = !view.measuring && !measured;
+    if (!ruler.hidden) ruler.textContent = measured ? `${figure(measured.distance)} m${Number.isFinite(measured.angle) ? `, ${figure(measured.angle * 180 / Math.PI)}°` : ""}` : "Click two points, or three for an angle.";
+  };
+  player.onchange(tick);
+
+  let down = [0, 0];
+  canvas.addEventListener("pointerdown", (e) => { down = [e.clientX, e.clientY]; });
+  canvas.addEventListener("pointerup", (e) => {
+    if (Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return;
+    const hit = view.pick(e.clientX, e.clientY);
+    if (view.measuring && hit) { view.addMark(hit.choice, hit.point); tick(); } else choose(hit?.choice ?? null);
+  });
+
+  const chosenBody = (): number => (view.chosen?.kind === "body" ? view.chosen.index : -1);
+  const keys: Record<string, () => void> = {
+    " ": () => player.toggle(), ArrowRight: () => player.seek(m.time[Math.min(m.frames - 1, view.poses.frame + 1)]), ArrowLeft: () => player.seek(m.time[Math.max(0, view.poses.part > 0 ? view.poses.frame : view.poses.frame - 1)]),
+    Home: () => player.seek(player.begin), End: () => player.seek(player.end), "+": () => changeSpeed(1), "-": () => changeSpeed(-1), Escape: () => { view.measuring = false; view.clearMarks(); choose(null); tick(); },
+    f: () => view.setFollow(!view.follow), m: () => { view.measuring = !view.measuring; view.clearMarks(); tick(); }, t: () => view.setTrails(!view.trailsOn), a: () => view.showAll(), "?": () => help.showModal(), b: () => link(),
+    d: () => theme(document.documentElement.dataset.theme !== "dark"), p: () => { if (open.length === 0) openPlot(has("energy/kinetic") ? ["energy.kinetic", "energy.potential"] : [offered(scene)[0]]); else plots.hidden = !plots.hidden; },
+    "/": () => { app.classList.remove("wide"); tab(0); objects.focus(); }, o: () => view.stage.setParallel(view.stage.camera !== view.stage.parallel),
+    h: () => { if (chosenBody() >= 0) view.show(chosenBody(), "hidden"); }, g: () => { if (chosenBody() >= 0) view.show(chosenBody(), "ghost"); }, i: () => { if (chosenBody() >= 0) view.isolate(chosenBody()); },
+  };
+  [..."12340"].forEach((key, i) => { keys[key] = () => display.querySelectorAll<HTMLButtonElement>(".buttons button")[i].click(); });
+  const changeSpeed = (by: number): void => {
+    speed.selectedIndex = Math.min(speeds.length - 1, Math.max(0, speed.selectedIndex + by));
+    player.speed = Number(speed.value);
+  };
+  addEventListener("keydown", (e) => {
+    const target = e.target as HTMLElement;
+    if (e.ctrlKey || e.metaKey || e.altKey || help.open || target.matches("input:not([type=range]):not([type=checkbox]), select") || (e.key === " " && target.matches("button, input, pre"))) return;
+    if (target.matches("input[type=range]") && e.key.startsWith("Arrow")) return;
+    const act = keys[e.key];
+    if (!act) return;
+    e.preventDefault();
+    act();
+    view.stage.dirty = true;
+  });
+
+  theme(dark);
+  const bookmarked = follow(location.hash, view, player);
+  if (bookmarked && objectsOf(scene).some((o) => o.kind === bookmarked.kind && o.index === bookmarked.index)) choose(bookmarked);
+  addEventListener("hashchange", () => { const choice = follow(location.hash, view, player); if (choice) choose(choice); });
+  tick();
+  view.stage.draw();
+  document.documentElement.dataset.ready = String(Math.round(performance.now() - begun));
+
+  let last = performance.now(), frames = 0, slow = 0;
+  const loopFrame = (now: number): void => {
+    // Three pictures in a row that took long while it plays: the machine wants less to draw.
+    slow = player.playing && now - last > 120 ? slow + 1 : 0;
+    if (slow >= 3) { view.stage.lighten(); slow = 0; }
+    player.advance(Math.min(0.25, (now - last) / 1000));
+    last = now;
+    if (view.stage.dirty) { view.stage.draw(); document.documentElement.dataset.frames = String(++frames); }
+    requestAnimationFrame(loopFrame);
+  };
+  requestAnimationFrame(loopFrame);
+  if (scene.served) watchFile();
+}
+
+/** Loads the page again when the file it shows is saved. */
+function watchFile(): void {
+  let before = "";
+  const look = (): void => void fetch("stamp").then((r) => r.text()).then((stamp) => {
+    if (before && stamp !== before && stamp !== "gone") location.reload();
+    before = stamp;
+  }).catch(() => undefined);
+  look();
+  setInterval(look, 1000);
+}
+
+const app = document.getElementById("app") as HTMLElement;
+start(app).catch((error: unknown) => {
+  app.replaceChildren(h("pre", { class: "failed", role: "alert" }, error instanceof Error ? error.message : String(error)));
+  document.documentElement.dataset.failed = "yes";
+  if (location.protocol !== "file:") watchFile();
+});

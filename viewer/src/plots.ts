@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+import uPlot from "uplot";
+import type { Scene } from "./data";
+import { figure, h, save } from "./dom";
+import { seriesOf, spectrum, type Series } from "./series";
+
+const kColours = ["#3b7dc4", "#d1583a", "#3f9561", "#b98a1e", "#8163b8", "#2aa0a8", "#c2538f", "#7c8894"];
+export type Mode = "time" | "spectrum" | "phase" | "stacked";
+
+/** Units that people read more easily: factor from SI. */
+const kUnits: Record<string, [string, number]> = {
+  rad: ["deg", 180 / Math.PI], "rad/s": ["rpm", 30 / Math.PI], m: ["mm", 1e3], "m/s": ["mm/s", 1e3], N: ["kN", 1e-3], "N m": ["kN m", 1e-3], Pa: ["MPa", 1e-6], J: ["mJ", 1e3],
+};
+
+export interface Clock { time(): number; seek(t: number): void }
+
+/** One diagram: several series over time with the time cursor, their spectrum, or one over the other. */
+export class Plot {
+  readonly element: HTMLElement;
+  private plot: uPlot | null = null;
+  private series: Series[] = [];
+  private mode: Mode = "time";
+  private otherUnits = false;
+  private readonly field = h("div", { class: "field", role: "img" });
+  private readonly legend = h("ul", { class: "series", "aria-label": "Series of this plot" });
+
+  constructor(private readonly scene: Scene, private readonly clock: Clock, readonly names: string[], private readonly close: (plot: Plot) => void, mode: Mode = "time") {
+    this.mode = mode;
+    const modes = h("select", { "aria-label": "Kind of plot", onchange: () => { this.mode = modes.value as Mode; this.draw(); } },
+      ...(["time", "spectrum", "phase", "stacked"] as Mode[]).map((m) => h("option", { value: m, selected: m === mode }, m)));
+    const button = (label: string, title: string, act: () => void) => h("button", { type: "button", title, "aria-label": title, onclick: act }, label);
+    this.element = h("section", { class: "plot", "aria-label": `Plot of ${names.join(", ")}` },
+      h("div", { class: "plotbar" }, this.legend, modes, button("unit", "Other units", () => { this.otherUnits = !this.otherUnits; this.draw(); }),
+        button("1:1", "Whole range", () => this.draw()), button("CSV", "Save as CSV", () => save("plot.csv", this.csv(), "text/csv")),
+        button("SVG", "Save as SVG", () => save("plot.svg", this.svg(), "image/svg+xml")), button("PNG", "Save as PNG", () => this.png()),
+        button("✕", "Close this plot", () => this.close(this))), this.field);
+    new ResizeObserver(() => this.fit()).observe(this.field);
+    void this.load();
+  }
+
+  async add(name: string): Promise<boolean> {
+    const found = await seriesOf(this.scene, name);
+    if (found.length === 0) return false;
+    if (!this.names.includes(name)) this.names.push(name);
+    await this.load();
+    return true;
+  }
+
+  private async load(): Promise<void> {
+    const all = await Promise.all(this.names.map((name) => seriesOf(this.scene, name)));
+    this.series = all.flat().slice(0, 24);
+    this.element.setAttribute("aria-label", `Plot of ${this.names.join(", ")}`);
+    this.field.setAttribute("aria-label", `Curves of ${this.series.map((s) => s.name).join(", ") || "nothing"} over time`);
+    this.draw();
+  }
+
+  private scaled(): Series[] {
+    if (!this.otherUnits) return this.series;
+    return this.series.map((s) => {
+      const unit = kUnits[s.unit];
+      return unit ? { name: s.name, unit: unit[0], values: s.values.map((v) => v * unit[1]) } : s;
+    });
+  }
+
+  /** Abscissa, curves and the name of the abscissa for the present mode. */
+  private table(): { x: ArrayLike<number>; label: string; curves: Series[] } {
+    const time = this.scene.manifest.time, curves = this.scaled();
+    if (this.mode === "spectrum" && time.length > 3) {
+      const all = curves.map((s) => spectrum(time, s.values));
+      return { x: all[0]?.frequency ?? [], label: "frequency [Hz]", curves: curves.map((s, i) => ({ ...s, values: all[i].amplitude })) };
+    }
+    if (this.mode === "phase" && curves.length > 1) return { x: curves[0].values, label: `${curves[0].name} [${curves[0].unit}]`, curves: curves.slice(1) };
+    if (this.mode === "stacked") {
+      const sum = new Float64Array(time.length);
+      const stacked = curves.map((s) => {
+        let low = Infinity;
+        for (const v of s.values) if (v < low) low = v;
+        // What can be below zero, as a potential energy, is counted from its lowest value.
+        const values = s.values.map((v, i) => (sum[i] += v - Math.min(0, low)));
+        return { ...s, values: Float64Array.from(values) };
+      });
+      return { x: time, label: this.timeLabel, curves: stacked };
+    }
+    return { x: time, label: this.timeLabel, curves };
+  }
+  private get timeLabel(): string { return this.scene.manifest.statics ? "load factor [-]" : "t [s]"; }
+
+  private draw(): void {
+    this.plot?.destroy();
+    this.plot = null;
+    const { x, label, curves } = this.table();
+    this.legend.replaceChildren(...curves.map((s, i) => {
+      const dot = h("span", { class: "dot", "aria-hidden": "true" });
+      dot.style.background = kColours[i % kColours.length];
+      return h("li", {}, dot, `${s.name} [${s.unit}]`);
+    }));
+    const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink").trim() || "#22303c";
+    const faint = getComputedStyle(document.documentElement).getPropertyValue("--rule").trim() || "#ddd";
+    const phase = this.mode === "phase" && this.series.length > 1;
+    const axis = (label: string, size: number): uPlot.Axis => ({ stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, label, labelSize: 18, size,
+      font: "11px system-ui", labelFont: "11px system-ui" });
+    const units = [...new Set(curves.map((s) => s.unit))].join(", ");
+    const options: uPlot.Options = {
+      width: Math.max(120, this.field.clientWidth), height: Math.max(90, this.field.clientHeight), mode: phase ? 2 : 1, legend: { show: false },
+      cursor: { drag: { x: true, y: phase, uni: 20 }, y: false }, scales: { x: { time: false } },
+      axes: [{ ...axis(label, 26) }, { ...axis(`[${units}]`, 56), values: (_, ticks) => ticks.map((v) => (v === null ? "" : String(+v.toPrecision(6)))) }],
+      series: [phase ? null as unknown as uPlot.Series : {}, ...curves.map((s, i): uPlot.Series => ({ label: s.name, stroke: kColours[i % kColours.length], width: 1.4, points: { show: false },
+        ...(this.mode === "stacked" ? { fill: kColours[i % kColours.length] + "55" } : {}), ...(phase ? { facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path } : {}) }))],
+      hooks: { draw: [(u) => this.cursor(u)], ready: [(u) => this.listen(u)] },
+    };
+    const data = phase ? [null, ...curves.map((s) => [x, s.values])] : [x, ...curves.map((s) => s.values)];
+    if (curves.length > 0 && x.length > 0) this.plot = new uPlot(options, data as unknown as uPlot.AlignedData, this.field);
+  }
+
+  private listen(u: uPlot): void {
+    let down = 0;
+    u.over.addEventListener("pointerdown", (e) => { down = e.clientX; });
+    u.over.addEventListener("pointerup", (e) => {
+      if (Math.abs(e.clientX - down) < 4 && (this.mode === "time" || this.mode === "stacked"))
+        this.clock.seek(u.posToVal(e.clientX - u.over.getBoundingClientRect().left, "x"));
+    });
+  }
+
+  private cursor(u: uPlot): void {
+    if (this.mode === "spectrum") return;
+    const ctx = u.ctx, t = this.clock.time();
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = "#d1281e";
+    ctx.lineWidth = 1.5;
+    if (this.mode === "phase" && this.series.length > 1) {
+      const { x, curves } = this.table(), time = this.scene.manifest.time;
+      const f = Math.max(0, time.findIndex((s) => s >= t - 1e-12));
+      for (const s of curves) {
+        ctx.beginPath();
+        ctx.arc(u.valToPos(x[f], "x", true), u.valToPos(s.values[f], "y", true), 5, 0, 7);
+        ctx.fill();
+      }
+    } else {
+      const at = u.valToPos(t, "x", true);
+      if (at >= u.bbox.left && at <= u.bbox.left + u.bbox.width) {
+        ctx.beginPath();
+        ctx.moveTo(at, u.bbox.top);
+        ctx.lineTo(at, u.bbox.top + u.bbox.height);
+        ctx.stroke();
+      }
+    }
+    ctx.restore();
+  }
+
+  tick(): void { this.plot?.redraw(false); }
+  redraw(): void { this.draw(); }
+  private fit(): void {
+    const width = this.field.clientWidth, height = this.field.clientHeight;
+    if (this.plot && width > 60 && height > 60) this.plot.setSize({ width, height });
+  }
+
+  csv(): string {
+    const { x, label, curves } = this.table();
+    const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+    const rows = [[label, ...curves.map((s) => `${s.name} [${s.unit}]`)].map(quoted).join(",")];
+    for (let i = 0; i < x.length; i++) rows.push([x[i], ...curves.map((s) => s.values[i])].join(","));
+    return rows.join("\n") + "\n";
+  }
+
+  /** The plot as it stands, zoomed or not, as a vector picture. */
+  svg(): string {
+    const { x, label, curves } = this.table(), width = 640, height = 320, left = 70, top = 14 + 16 * curves.length, bottom = 44;
+    const u = this.plot;
+    const x0 = u?.scales.x.min ?? 0, x1 = u?.scales.x.max ?? 1, y0 = u?.scales.y.min ?? 0, y1 = u?.scales.y.max ?? 1;
+    const px = (v: number) => left + (v - x0) / (x1 - x0 || 1) * (width - left - 14), py = (v: number) => height - bottom - (v - y0) / (y1 - y0 || 1) * (height - top - bottom);
+    const text = (a: number, b: number, s: string, more = "") => `<text x="${a.toFixed(1)}" y="${b.toFixed(1)}" ${more}>${s.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`)}</text>`;
+    let out = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" font-family="sans-serif" font-size="12" fill="#22303c">` +
+      `<rect width="100%" height="100%" fill="#fff"/><clipPath id="f"><rect x="${left}" y="${top}" width="${width - left - 14}" height="${height - top - bottom}"/></clipPath>`;
+    for (let k = 0; k <= 4; k++) {
+      const vx = x0 + k / 4 * (x1 - x0), vy = y0 + k / 4 * (y1 - y0);
+      out += `<path d="M${px(vx).toFixed(1)} ${top}V${height - bottom}M${left} ${py(vy).toFixed(1)}H${width - 14}" stroke="#e3e8ec"/>` +
+        text(px(vx), height - bottom + 16, figure(vx), 'text-anchor="middle"') + text(left - 6, py(vy) + 4, figure(vy), 'text-anchor="end"');
+    }
+    curves.forEach((s, i) => {
+      let d = "", pen = "M";
+      for (let k = 0; k < x.length; k++) {
+        if (!Number.isFinite(s.values[k])) { pen = "M"; continue; }
+        d += `${pen}${px(x[k]).toFixed(2)} ${py(s.values[k]).toFixed(2)}`;
+        pen = "L";
+      }
+      out += `<path clip-path="url(#f)" fill="none" stroke="${kColours[i % kColours.length]}" stroke-width="1.4" d="${d}"/>` +
+        `<rect x="${left}" y="${6 + 16 * i}" width="12" height="3" fill="${kColours[i % kColours.length]}"/>` + text(left + 18, 12 + 16 * i, `${s.name} [${s.unit}]`);
+    });
+    return out + text((left + width) / 2, height - 8, label, 'text-anchor="middle"') + "</svg>\n";
+  }
+
+  private png(): void { this.plot?.ctx.canvas.toBlob((blob) => { if (blob) save("plot.png", blob); }); }
+}
+
+/** Path builder of phase plots: points in the order of time, joined. */
+const path: uPlot.Series.PathBuilder = (u, index) => {
+  const [xs, ys] = u.data[index] as unknown as [ArrayLike<number>, ArrayLike<number>];
+  const stroke = new Path2D();
+  for (let i = 0; i < xs.length; i++) {
+    const x = u.valToPos(xs[i], "x", true), y = u.valToPos(ys[i], "y", true);
+    if (i === 0) stroke.moveTo(x, y); else stroke.lineTo(x, y);
+  }
+  return { stroke, fill: null, clip: null, band: null, gaps: null, flags: 0 } as unknown as uPlot.Series.Paths;
+};

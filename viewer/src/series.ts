@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Channels by the names that people use: bodies.crank.position.x, joints.A.force, energy.kinetic.
+import type { Scene } from "./data";
+
+export interface Series { name: string; unit: string; values: Float64Array }
+
+const kComponents: Record<number, string[]> = { 3: ["x", "y", "z"], 4: ["w", "x", "y", "z"], 6: ["xx", "yy", "zz", "xy", "yz", "xz"] };
+const kBody = ["position", "velocity", "angular_velocity", "orientation"];
+const kJoint = ["force", "moment", "coordinates", "rates"];
+const kContact = ["gap", "normal_force", "force", "friction", "point", "points", "status", "impulse", "energy_lost"];
+
+function column(data: Float32Array, width: number, frames: number, at: number): Float64Array {
+  const values = new Float64Array(frames);
+  for (let f = 0; f < frames; f++) values[f] = data[f * width + at];
+  return values;
+}
+
+function magnitude(data: Float32Array, width: number, frames: number, at: number, size: number): Float64Array {
+  const values = new Float64Array(frames);
+  for (let f = 0; f < frames; f++) {
+    let sum = 0;
+    for (let k = 0; k < size; k++) sum += data[f * width + at + k] ** 2;
+    values[f] = Math.sqrt(sum);
+  }
+  return values;
+}
+
+interface Found { path: string; at: number; size: number; unit: string; labels?: string[] }
+
+/** Place of a quantity in its packed channel. `rest` is the component, if one is named. */
+function find(scene: Scene, name: string): { found: Found; rest: string; head: string } | null {
+  const m = scene.manifest;
+  const split = (group: string, names: string[], quantities: string[]): { index: number; quantity: string; rest: string } | null => {
+    if (!name.startsWith(group + ".")) return null;
+    const tail = name.slice(group.length + 1);
+    // Names may hold dots: the longest one that fits.
+    let best = -1;
+    names.forEach((n, i) => { if (tail.startsWith(n + ".") && (best < 0 || n.length > names[best].length)) best = i; });
+    if (best < 0) return null;
+    const words = tail.slice(names[best].length + 1).split(".");
+    return quantities.includes(words[0]) ? { index: best, quantity: words[0], rest: words.slice(1).join(".") } : null;
+  };
+  const packed = (group: string, index: number, count: number, quantity: string, rest: string) => {
+    const entry = scene.entry(`packed/${group}/${quantity}`);
+    if (!entry) return null;
+    const size = entry.data.w / count;
+    return { found: { path: entry.path, at: index * size, size, unit: entry.unit }, rest,
+      head: name.slice(0, rest ? name.length - rest.length - 1 : undefined) };
+  };
+  const body = split("bodies", m.bodies.map((b) => b.name), kBody);
+  if (body) return packed("bodies", body.index, m.bodies.length, body.quantity, body.rest);
+  const joint = split("joints", m.joints.map((j) => j.name), kJoint);
+  if (joint) {
+    if (joint.quantity === "force" || joint.quantity === "moment")
+      return packed("joints", joint.index, m.joints.length, joint.quantity, joint.rest);
+    const entry = scene.entry(`packed/joints/${joint.quantity}`), own = m.joints[joint.index];
+    if (!entry || !own.count) return null;
+    const unit = joint.quantity === "coordinates" ? "rad or m" : "rad/s or m/s";
+    return { found: { path: entry.path, at: own.first ?? 0, size: own.count, unit, labels: Array.from({ length: own.count }, (_, i) => `${i}`) },
+      rest: joint.rest, head: `joints.${own.name}.${joint.quantity}` };
+  }
+  const contact = split("contacts", m.contacts, kContact);
+  if (contact) return packed("contacts", contact.index, m.contacts.length, contact.quantity, contact.rest);
+  for (const load of m.loads) {
+    if (!name.startsWith(`loads.${load.name}.`)) continue;
+    const words = name.slice(load.name.length + 7).split(".");
+    let at = load.first;
+    for (const c of load.columns) {
+      if (c.name === words[0])
+        return { found: { path: "packed/loads/values", at, size: c.size, unit: c.unit }, rest: words.slice(1).join("."), head: `loads.${load.name}.${c.name}` };
+      at += c.size;
+    }
+  }
+  // Any other channel by its path, with components behind it.
+  const words = name.split(".");
+  for (let k = words.length; k > 0; k--) {
+    const entry = scene.entry(words.slice(0, k).join("/"));
+    if (!entry || entry.path.startsWith("packed/")) continue;
+    const size = entry.data.w;
+    const labels = entry.dims.length === 1 && kComponents[size] ? undefined : Array.from({ length: size }, (_, i) => `${i}`);
+    return { found: { path: entry.path, at: 0, size, unit: entry.unit, labels }, rest: words.slice(k).join("."), head: words.slice(0, k).join(".") };
+  }
+  return null;
+}
+
+/** Series of a name. Without a component: all of them, of long lists the first eight. */
+export async function seriesOf(scene: Scene, name: string): Promise<Series[]> {
+  const place = find(scene, name.trim());
+  if (!place) return [];
+  const { found, rest, head } = place;
+  const data = await scene.channel(found.path);
+  const entry = scene.entry(found.path);
+  if (!data || !entry) return [];
+  const frames = scene.manifest.frames, width = entry.data.w;
+  if (found.size === 1) return [{ name: head, unit: found.unit, values: column(data, width, frames, found.at) }];
+  const labels = found.labels ?? kComponents[found.size] ?? Array.from({ length: found.size }, (_, i) => `${i}`);
+  if (rest === "size") return [{ name: `${head}.size`, unit: found.unit, values: magnitude(data, width, frames, found.at, found.size) }];
+  const wanted = rest ? [labels.indexOf(rest)] : labels.map((_, i) => i).slice(0, 8);
+  return wanted.filter((k) => k >= 0).map((k) => ({ name: `${head}.${labels[k]}`, unit: found.unit, values: column(data, width, frames, found.at + k) }));
+}
+
+/** Quantities of one object, for its list of values. */
+export function quantitiesOf(scene: Scene, kind: string, name: string): string[] {
+  if (kind === "body") return kBody.map((q) => `bodies.${name}.${q}`);
+  if (kind === "joint") {
+    const joint = scene.manifest.joints.find((j) => j.name === name);
+    return kJoint.filter((q) => joint?.count || q === "force" || q === "moment").map((q) => `joints.${name}.${q}`);
+  }
+  if (kind === "load") return (scene.manifest.loads.find((l) => l.name === name)?.columns ?? []).map((c) => `loads.${name}.${c.name}`);
+  if (kind === "contact") return kContact.filter((q) => scene.entry(`packed/contacts/${q}`)).map((q) => `contacts.${name}.${q}`);
+  const prefix = `${kind}s/${name}/`;
+  return scene.manifest.channels.filter((c) => c.path.startsWith(prefix)).map((c) => c.path.replaceAll("/", "."));
+}
+
+/** Names to offer; of many objects only a part. */
+export function offered(scene: Scene): string[] {
+  const m = scene.manifest, most = 60;
+  const plain = m.channels.filter((c) => !c.path.startsWith("packed/") && c.data.w <= 12).map((c) => c.path.replaceAll("/", "."));
+  const of = (kind: string, names: string[]) => names.slice(0, most).flatMap((n) => quantitiesOf(scene, kind, n));
+  return [...plain, ...of("body", m.bodies.filter((b) => !b.fixed && !b.node).map((b) => b.name)), ...of("joint", m.joints.map((j) => j.name)),
+    ...of("load", m.loads.map((l) => l.name)), ...of("contact", m.contacts)];
+}
+
+/** Amplitude spectrum of evenly resampled values, mean removed, with a Hann window. */
+export function spectrum(time: number[], values: Float64Array): { frequency: Float64Array; amplitude: Float64Array } {
+  let n = 1;
+  while (2 * n <= time.length && n < 16384) n *= 2;
+  const re = new Float64Array(n), im = new Float64Array(n);
+  const begin = time[0], span = time[time.length - 1] - begin;
+  let k = 0, mean = 0;
+  for (let i = 0; i < n; i++) {
+    const t = begin + span * i / n;
+    while (k + 2 < time.length && time[k + 1] <= t) k++;
+    const part = time.length > 1 ? (t - time[k]) / (time[k + 1] - time[k] || 1) : 0;
+    re[i] = values[k] + part * ((values[k + 1] ?? values[k]) - values[k]);
+    mean += re[i] / n;
+  }
+  for (let i = 0; i < n; i++) re[i] = (re[i] - mean) * (1 - Math.cos(2 * Math.PI * i / n));
+  fft(re, im);
+  const half = Math.max(1, n / 2);
+  const frequency = new Float64Array(half), amplitude = new Float64Array(half);
+  for (let i = 0; i < half; i++) {
+    frequency[i] = span > 0 ? i / span : 0;
+    amplitude[i] = 2 * Math.hypot(re[i], im[i]) / n;
+  }
+  return { frequency, amplitude };
+}
+
+/** Radix-2 fast Fourier transform in place (Cooley and Tukey, Math. Comp. 19, 1965). */
+function fft(re: Float64Array, im: Float64Array): void {
+  const n = re.length;
+  for (let i = 1, j = 0; i < n; i++) {
+    let bit = n >> 1;
+    for (; j & bit; bit >>= 1) j ^= bit;
+    j ^= bit;
+    if (i < j) { [re[i], re[j]] = [re[j], re[i]]; [im[i], im[j]] = [im[j], im[i]]; }
+  }
+  for (let size = 2; size <= n; size *= 2) {
+    const angle = -2 * Math.PI / size;
+    for (let i = 0; i < n; i += size)
+      for (let k = 0; k < size / 2; k++) {
+        const c = Math.cos(angle * k), s = Math.sin(angle * k), a = i + k, b = a + size / 2;
+        const x = re[b] * c - im[b] * s, y = re[b] * s + im[b] * c;
+        re[b] = re[a] - x; im[b] = im[a] - y; re[a] += x; im[a] += y;
+      }
+  }
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+import {
+  AmbientLight, ArrowHelper, Box3, Color, DirectionalLight, GridHelper, Group, HemisphereLight, OrthographicCamera, PCFShadowMap, PerspectiveCamera,
+  Plane, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+export const kDark = { background: "#14191f", grid: "#34404b", line: "#e6ebef" };
+export const kLight = { background: "#f2f5f7", grid: "#c3ccd4", line: "#22303c" };
+
+/** Renderer, lights, ground grid, axes and cameras. */
+export class Stage {
+  readonly world = new World();
+  readonly renderer: WebGLRenderer;
+  readonly perspective = new PerspectiveCamera(35, 1, 0.01, 1000);
+  readonly parallel = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
+  camera: PerspectiveCamera | OrthographicCamera = this.perspective;
+  readonly controls: OrbitControls;
+  readonly grid = new Group();
+  readonly axes = new Group();
+  readonly section = new Plane(new Vector3(-1, 0, 0), 0);
+  private readonly sun = new DirectionalLight(0xffffff, 2.6);
+  private readonly box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+  /** Direction of the present look, until somebody moves the camera: then a resize changes nothing. */
+  looking: Vector3 | null = null;
+  size = 1;
+  dirty = true;
+
+  constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = shadows;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    holder.prepend(this.renderer.domElement);
+    for (const camera of [this.perspective, this.parallel]) camera.up.copy(up);
+    this.world.add(new HemisphereLight(0xffffff, 0xa8b2bb, 1.9), new AmbientLight(0xffffff, 0.5), this.sun, this.sun.target, this.grid, this.axes);
+    this.sun.castShadow = shadows;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.controls = new OrbitControls(this.perspective, this.renderer.domElement);
+    this.controls.addEventListener("start", () => { this.looking = null; });
+    this.controls.addEventListener("change", () => { this.dirty = true; });
+    new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
+  }
+
+  /** Fits light, grid and cameras to what the scene fills. */
+  fit(box: Box3): void {
+    this.box.copy(box);
+    const middle = box.getCenter(new Vector3());
+    this.size = Math.max(box.getSize(new Vector3()).length(), 1e-9);
+    const [e1, e2] = this.sides();
+    this.sun.position.copy(middle).addScaledVector(this.up, this.size).addScaledVector(e1, 0.45 * this.size).addScaledVector(e2, -0.7 * this.size);
+    this.sun.target.position.copy(middle);
+    const shadow = this.sun.shadow.camera, half = 0.62 * this.size;
+    Object.assign(shadow, { left: -half, right: half, top: half, bottom: -half, near: 0.1 * this.size, far: 2.6 * this.size });
+    shadow.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.002 * this.size;
+    this.makeGrid(box, middle);
+    this.makeAxes();
+    for (const camera of [this.perspective, this.parallel]) {
+      camera.near = 1e-3 * this.size;
+      camera.far = 60 * this.size;
+    }
+    this.controls.target.copy(middle);
+    this.resize();
+    this.view(this.firstLook());
+  }
+
+  /** A flat mechanism is seen from the front, others obliquely. */
+  firstLook(): Vector3 {
+    const [e1, e2] = this.sides(), size = this.box.getSize(new Vector3()), all = [size.x, size.y, size.z], k = all.indexOf(Math.min(...all));
+    const normal = new Vector3().setComponent(k, 1), right = new Vector3().crossVectors(this.up, normal);
+    if (all[k] > 0.15 * Math.max(...all) || right.lengthSq() < 0.5) return e1.multiplyScalar(0.45).addScaledVector(e2, -0.85).addScaledVector(this.up, 0.42);
+    if (right.dot(e1) + 0.1 * right.dot(e2) < 0) { normal.negate(); right.negate(); }
+    return normal.addScaledVector(this.up, 0.16).addScaledVector(right, 0.12);
+  }
+
+  /** Two horizontal directions; the first is x of the world where x is horizontal. */
+  sides(): [Vector3, Vector3] {
+    const first = Math.abs(this.up.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
+    first.addScaledVector(this.up, -first.dot(this.up)).normalize();
+    return [first, new Vector3().crossVectors(this.up, first).normalize()];
+  }
+
+  private makeGrid(box: Box3, middle: Vector3): void {
+    this.grid.clear();
+    const step = niceStep(this.size / 12), cells = 2 * Math.ceil(1.3 * this.size / step);
+    const grid = new GridHelper(cells * step, cells, this.gridColour, this.gridColour);
+    grid.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), this.up);
+    const low = this.lowest(box);
+    const snapped = middle.clone().divideScalar(step).round().multiplyScalar(step);
+    grid.position.copy(snapped).addScaledVector(this.up, low - snapped.dot(this.up) - 2e-3 * this.size);
+    this.grid.add(grid);
+    this.grid.userData.step = step;
+  }
+
+  private lowest(box: Box3): number {
+    let low = Infinity;
+    for (let i = 0; i < 8; i++)
+      low = Math.min(low, new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).dot(this.up));
+    return low;
+  }
+
+  private makeAxes(): void {
+    this.axes.clear();
+    const length = 0.1 * this.size;
+    const colours = [0xd0402b, 0x2d8a4e, 0x2f6db3];
+    [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)].forEach((e, i) =>
+      this.axes.add(new ArrowHelper(e, new Vector3(), length, colours[i], 0.2 * length, 0.1 * length)));
+  }
+
+  private gridColour = kLight.grid;
+  theme(dark: boolean): void {
+    const colours = dark ? kDark : kLight;
+    this.world.background = new Color(colours.background);
+    this.gridColour = colours.grid;
+    this.makeGrid(this.box, this.box.getCenter(new Vector3()));
+    this.dirty = true;
+  }
+
+  /** Looks at the middle of the scene from a direction, as near as shows all of it. */
+  view(direction: Vector3): void {
+    this.resize();
+    const to = direction.clone().normalize(), middle = this.box.getCenter(new Vector3());
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(to, this.size);
+    this.camera.lookAt(middle);
+    this.camera.updateMatrixWorld();
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), above = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    const slope = Math.tan(this.perspective.fov * Math.PI / 360), aspect = this.perspective.aspect;
+    let distance = 0, half = 0;
+    for (let i = 0; i < 8; i++) {
+      const c = new Vector3(i & 1 ? this.box.max.x : this.box.min.x, i & 2 ? this.box.max.y : this.box.min.y, i & 4 ? this.box.max.z : this.box.min.z).sub(middle);
+      const high = Math.max(Math.abs(c.dot(above)), Math.abs(c.dot(right)) / aspect);
+      distance = Math.max(distance, high / slope + c.dot(to));
+      half = Math.max(half, high);
+    }
+    this.camera.position.copy(middle).addScaledVector(to, Math.max(1.12 * distance, 0.05 * this.size));
+    this.parallel.zoom = 0.6 * this.size / (1.12 * half || 1);
+    this.resize();
+    this.controls.update();
+    this.looking = to;
+    this.dirty = true;
+  }
+
+  setParallel(on: boolean): void {
+    const from = this.camera, to = on ? this.parallel : this.perspective;
+    if (from === to) return;
+    to.position.copy(from.position);
+    to.quaternion.copy(from.quaternion);
+    this.camera = to;
+    this.controls.object = to;
+    this.resize();
+    this.controls.update();
+  }
+
+  resize(): void {
+    const width = Math.max(1, this.holder.clientWidth), height = Math.max(1, this.holder.clientHeight);
+    this.renderer.setSize(width, height);
+    this.perspective.aspect = width / height;
+    this.perspective.updateProjectionMatrix();
+    const half = 0.6 * this.size, wide = half * width / height;
+    Object.assign(this.parallel, { left: -wide, right: wide, top: half, bottom: -half });
+    this.parallel.updateProjectionMatrix();
+    this.dirty = true;
+  }
+
+  /** Makes drawing cheaper, where a machine is too slow: first without shadows, then with fewer pixels. */
+  lighten(): void {
+    if (this.sun.castShadow) this.sun.castShadow = false;
+    else if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
+    this.resize();
+  }
+
+  ray(x: number, y: number): Raycaster {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
+    caster.params.Line = { threshold: 0.004 * this.size };
+    return caster;
+  }
+
+  draw(): void {
+    this.renderer.render(this.world, this.camera);
+    this.dirty = false;
+  }
+}
+
+/** 1, 2 or 5 times a power of ten, at least x. */
+export function niceStep(x: number): number {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return power * ([1, 2, 5, 10].find((k) => k * power >= x) ?? 10);
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The moving picture: what stands in the scene, what is chosen, hidden, measured and followed.
+import { Box3, BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, Vector3 } from "three";
+import { Bodies, type Showing } from "./bodies";
+import type { Scene } from "./data";
+import { Forces, Joints, Loads } from "./glyphs";
+import { Lines } from "./lines";
+import { Poses } from "./poses";
+import { Solids } from "./solids";
+import { Stage } from "./stage";
+
+export interface Choice { kind: "body" | "joint" | "load" | "contact" | "solid" | "beam" | "cable"; index: number }
+interface Mark { body: number; local: Vector3; world: Vector3 }
+
+export class View {
+  readonly forces: { contacts: Forces | null; reactions: Forces | null; loads: Forces | null } = { contacts: null, reactions: null, loads: null };
+  readonly trails = new Group();
+  readonly centres = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xd1281e, size: 7, sizeAttenuation: false, depthTest: false }));
+  readonly frames = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }));
+  chosen: Choice | null = null;
+  follow = false;
+  trailsOn = false;
+  measuring = false;
+  readonly marks: Mark[] = [];
+  private readonly markGroup = new Group();
+  private readonly followed = new Vector3();
+
+  private constructor(readonly scene: Scene, readonly stage: Stage, readonly poses: Poses, readonly bodies: Bodies, readonly joints: Joints,
+    readonly loads: Loads, readonly solids: Solids, readonly lines: Lines) {}
+
+  static async of(scene: Scene, holder: HTMLElement): Promise<View> {
+    const m = scene.manifest, g = m.gravity ?? [0, 0, -1];
+    const up = new Vector3(-g[0], -g[1], -g[2]);
+    const axis = up.lengthSq() === 0 ? 2 : [Math.abs(up.x), Math.abs(up.y), Math.abs(up.z)].indexOf(Math.max(Math.abs(up.x), Math.abs(up.y), Math.abs(up.z)));
+    const sign = up.getComponent(axis) < 0 ? -1 : 1;
+    up.set(0, 0, 0).setComponent(axis, sign);
+    const stage = new Stage(holder, up, m.bodies.length <= 500);
+    const poses = await Poses.of(scene);
+    const bodies = await Bodies.of(scene, poses), solids = await Solids.of(scene, poses);
+    const joints = new Joints(m.joints, poses), lines = await Lines.of(scene, poses, () => bodies.box().getSize(new Vector3()).length() || 1);
+    const view = new View(scene, stage, poses, bodies, joints, new Loads(m.loads, m.joints, joints, poses), solids, lines);
+    for (const [key, made] of [["contacts", await Forces.contacts(scene)], ["reactions", await Forces.reactions(scene, joints)],
+      ["loads", await Forces.loads(scene, poses)]] as const) {
+      view.forces[key] = made;
+      if (made) stage.world.add(made.group);
+    }
+    if (view.forces.reactions) view.forces.reactions.group.visible = false;
+    stage.world.add(bodies.group, joints.group, view.loads.group, solids.group, lines.group, view.trails, view.centres, view.frames, view.markGroup);
+    view.centres.visible = view.frames.visible = false;
+    for (const object of [view.centres, view.frames]) object.frustumCulled = false;
+    view.centres.renderOrder = 5;
+    // Boxes that stand for mass and inertia would hide what has a shape.
+    const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
+    if (shapes) m.bodies.forEach((body, i) => { if (body.parts?.[0]?.mesh !== undefined && m.meshes[body.parts[0].mesh].type === "inertia") bodies.showing[i] = "ghost"; });
+    stage.fit(view.box());
+    bodies.sizePlanes(stage.size);
+    view.update();
+    return view;
+  }
+
+  /** Box around the scene at times spread over the recording; solids, which take longer, at three of them. */
+  private box(): Box3 {
+    const time = this.scene.manifest.time, all = new Box3(), before = time[0], samples = 24;
+    for (let k = 0; k <= samples; k++) {
+      this.poses.set(time[Math.round(k / samples * (time.length - 1))]);
+      all.union(this.bodies.box());
+      if (k % (samples / 2) !== 0) continue;
+      this.solids.update();
+      this.solids.box(all);
+    }
+    this.lines.box(all);
+    this.poses.set(before);
+    for (let j = 0; j < this.scene.manifest.joints.length; j++) all.expandByPoint(this.joints.point(j, new Vector3()));
+    if (all.isEmpty()) all.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+    return all;
+  }
+
+  set(t: number): void {
+    this.poses.set(t);
+    this.update();
+  }
+
+  update(): void {
+    const { poses, stage } = this, size = stage.size;
+    this.bodies.update();
+    if (this.joints.group.visible) this.joints.update(size);
+    if (this.loads.group.visible) this.loads.update(size);
+    this.solids.update();
+    this.lines.update();
+    for (const forces of Object.values(this.forces)) if (forces?.group.visible) forces.update(size, poses.frame, poses.part);
+    if (this.centres.visible) this.updateCentres();
+    if (this.frames.visible) this.updateFrames();
+    if (this.trailsOn) this.updateTrails();
+    if (this.marks.length > 0) this.updateMarks();
+    if (this.follow && this.chosen) {
+      const at = this.placeOf(this.chosen);
+      if (at) {
+        const step = at.clone().sub(this.followed);
+        stage.controls.target.add(step);
+        stage.camera.position.add(step);
+        this.followed.copy(at);
+        stage.controls.update();
+      }
+    }
+    stage.dirty = true;
+  }
+
+  setFollow(on: boolean): void {
+    this.follow = on;
+    const at = this.chosen && this.placeOf(this.chosen);
+    if (!on || !at) return;
+    this.followed.copy(at);
+    this.stage.looking = null;
+    const step = at.clone().sub(this.stage.controls.target);
+    this.stage.controls.target.copy(at);
+    this.stage.camera.position.add(step);
+    this.stage.controls.update();
+  }
+
+  placeOf(choice: Choice): Vector3 | null {
+    if (choice.kind === "body") return this.poses.r_of(choice.index, new Vector3());
+    if (choice.kind === "joint") return this.joints.point(choice.index, new Vector3());
+    return null;
+  }
+
+  choose(choice: Choice | null): void {
+    this.chosen = choice;
+    this.bodies.chosen = choice?.kind === "body" ? choice.index : -1;
+    this.joints.chosen = choice?.kind === "joint" ? choice.index : -1;
+    this.bodies.colours();
+    this.joints.colours();
+    if (this.follow) this.setFollow(true);
+    this.update();
+  }
+
+  show(body: number, showing: Showing): void { this.bodies.showing[body] = showing; this.update(); }
+  showAll(): void {
+    this.bodies.showing.fill("shown");
+    this.solids.hidden.fill(false);
+    this.update();
+  }
+  isolate(body: number): void {
+    this.bodies.showing.forEach((_, i) => { this.bodies.showing[i] = i === body ? "shown" : "ghost"; });
+    this.update();
+  }
+
+  pick(x: number, y: number): { choice: Choice; point: Vector3 } | null {
+    const hits = this.stage.ray(x, y).intersectObjects([this.bodies.group, this.joints.group, this.loads.group, this.solids.group, this.lines.group,
+      ...Object.values(this.forces).filter((f) => f?.group.visible).map((f) => f!.group)], true);
+    let plane: { choice: Choice; point: Vector3 } | null = null;
+    for (const hit of hits) {
+      const pick = hit.object.userData.pick as ((instance: number) => Choice) | undefined;
+      if (!pick || !hit.object.visible || !hit.object.parent?.visible) continue;
+      const found = { choice: pick(hit.instanceId ?? 0), point: hit.point };
+      if (hit.object instanceof Mesh && (hit.object.material as { opacity: number }).opacity < 0.3) { plane ??= found; continue; }  // seen through
+      return found;
+    }
+    return plane;
+  }
+
+  addMark(choice: Choice, point: Vector3): void {
+    if (this.marks.length >= 3) this.marks.length = 0;
+    const body = choice.kind === "body" ? choice.index : -1;
+    const local = point.clone().sub(this.poses.r_of(body, new Vector3())).applyQuaternion(this.poses.q_of(body, this.stage.camera.quaternion.clone()).invert());
+    this.marks.push({ body, local, world: point.clone() });
+    this.update();
+  }
+  clearMarks(): void { this.marks.length = 0; this.updateMarks(); this.stage.dirty = true; }
+
+  private updateMarks(): void {
+    this.markGroup.clear();
+    const colour = 0xd1281e, dot = new SphereGeometry(0.006 * this.stage.size, 10, 8);
+    for (const mark of this.marks) {
+      this.poses.point(mark.body, mark.local.toArray(), mark.world);
+      const ball = new Mesh(dot, new MeshBasicMaterial({ color: colour, depthTest: false }));
+      ball.position.copy(mark.world);
+      this.markGroup.add(ball);
+    }
+    if (this.marks.length > 1)
+      this.markGroup.add(new Line(new BufferGeometry().setFromPoints(this.marks.map((m) => m.world)), new LineBasicMaterial({ color: colour, depthTest: false })));
+  }
+
+  /** Distance of two marked points [m], and the angle at the second of three [rad]. */
+  measured(): { distance: number; angle: number } | null {
+    if (this.marks.length < 2) return null;
+    const [a, b, c] = this.marks.map((m) => m.world);
+    return { distance: a.distanceTo(b), angle: c ? a.clone().sub(b).angleTo(c.clone().sub(b)) : NaN };
+  }
+
+  private moving(): number[] {
+    const list = this.scene.manifest.bodies;
+    return list.map((_, i) => i).filter((i) => !list[i].fixed && !list[i].node && this.bodies.showing[i] !== "hidden");
+  }
+  private updateCentres(): void {
+    const points = new Float32Array(this.moving().flatMap((i) => [...this.poses.position.subarray(3 * i, 3 * i + 3)]));
+    this.centres.geometry.dispose();
+    this.centres.geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(points, 3));
+  }
+  private updateFrames(): void {
+    const points: number[] = [], colours: number[] = [], tip = new Vector3(), at = new Vector3(), length = 0.045 * this.stage.size;
+    const inks = [[0.82, 0.25, 0.17], [0.18, 0.54, 0.31], [0.18, 0.43, 0.7]];
+    for (const i of this.moving().slice(0, 1000))
+      inks.forEach((ink, k) => {
+        this.poses.r_of(i, at);
+        this.poses.point(i, [0, 1, 2].map((n) => (n === k ? length : 0)), tip);
+        points.push(...at.toArray(), ...tip.toArray());
+        colours.push(...ink, ...ink);
+      });
+    this.frames.geometry.dispose();
+    this.frames.geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(points), 3))
+      .setAttribute("color", new BufferAttribute(new Float32Array(colours), 3));
+  }
+
+  /** Paths of the centres of mass up to now: of the chosen body, else of up to 40 bodies. */
+  private updateTrails(): void {
+    const wanted = this.chosen?.kind === "body" ? [this.chosen.index] : this.moving().slice(0, 40), key = wanted.join(" ");
+    if (this.trails.userData.key !== key) {
+      this.trails.clear();
+      this.trails.userData.key = key;
+      for (const body of wanted) {
+        const line = new Line(new BufferGeometry().setAttribute("position", new BufferAttribute(this.poses.path(body), 3)), new LineBasicMaterial({ color: new Color(this.bodies.colour(body)) }));
+        line.frustumCulled = false;
+        this.trails.add(line);
+      }
+    }
+    for (const line of this.trails.children) (line as Line).geometry.setDrawRange(0, this.poses.frame + 1);
+  }
+  setTrails(on: boolean): void { this.trailsOn = this.trails.visible = on; this.update(); }
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A headless Chromium without network, and what every test of the page wants.
+import { existsSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const program = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((p) => p && existsSync(p));
+
+export async function launch() {
+  if (!program) return null;
+  return chromium.launch({ executablePath: program, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"] });
+}
+
+/** A page that notes every message of the console, every fault and every request to a network. */
+export async function openPage(browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, offline: !address.startsWith("http"), ...options });
+  const page = await context.newPage();
+  const faults = [], requests = [];
+  // Chromium says so when a picture is read back from its software renderer; it is no fault of the page.
+  page.on("console", (m) => { if (["error", "warning"].includes(m.type()) && !/GL Driver Message|software WebGL/.test(m.text())) faults.push(m.text()); });
+  page.on("pageerror", (e) => faults.push(String(e)));
+  page.on("request", (r) => { if (/^(https?|wss?):/.test(r.url()) && !r.url().startsWith("http://127.0.0.1")) requests.push(r.url()); });
+  await page.goto(address.startsWith("http") ? address : pathToFileURL(address.split("#")[0]).href + (address.includes("#") ? "#" + address.split("#")[1] : ""), { timeout: 120000 });
+  await page.waitForFunction(() => document.documentElement.dataset.ready || document.documentElement.dataset.failed, null, { timeout: 120000 });
+  return { page, context, faults, requests };
+}

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests of the page in a headless Chromium without network. POLHODE names the program that makes the pages; without
+// Chromium or the packages of package.json the test is skipped (exit code 77). SCREENSHOTS names a folder for pictures.
+import { execFileSync, spawn } from "node:child_process";
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, statSync, truncateSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url)), root = join(here, "../..");
+const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
+let launch, openPage;
+try { ({ launch, openPage } = await import("./browser.mjs")); } catch { skip("the packages of viewer/package.json are not installed: run 'npm ci' in viewer/"); }
+const browser = await launch();
+if (!browser) skip("there is no Chromium: install the Debian package chromium, or name one with CHROMIUM");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const polhode = process.env.POLHODE ?? join(root, "build/release/apps/polhode/polhode");
+const folder = mkdtempSync(join(tmpdir(), "polhode-viewer-"));
+const run = (...words) => execFileSync(polhode, words, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] }).toString();
+
+const model = `format: 1
+title: Everything
+gravity: [0, 0, -9.81]
+bodies:
+  floor: {fixed: true, shape: {plane: z}}
+  ball: {shape: {sphere: 0.2}, density: 1000, position: [0.6, 0, 0.2]}
+  arm: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [0.5, 1, 1]}
+materials:
+  steel: {type: elastic, youngs_modulus: 200 GPa, poisson_ratio: 0.3, density: 8000}
+sections:
+  rod: {type: circle, diameter: 20 mm, material: steel}
+joints:
+  hinge: {type: revolute, bodies: [ground, arm], at: [0, 1, 1], axis: y}
+loads:
+  spring: {type: spring_damper, bodies: [ground, arm], at: [[1, 1, 2], [1, 1, 1]], stiffness: 200, damping: 2}
+beams:
+  mast: {points: [[-1, 0, 0], [-1, 0, 1]], elements: 4, section: rod, up: y, bonded: {ground: start}}
+cables:
+  stay: {through: [[ground, [-2, 0, 0]], [mast, end]], stiffness: 10 kN}
+contacts: {default: {restitution: 0.5}}
+analysis: {duration: 1 s, step: 2 ms}
+output: {every: 10 ms}
+`;
+writeFileSync(join(folder, "all.yaml"), model);
+run("run", "all.yaml", "--quiet");
+run("view", "all.results", "--html", "all.html", "--quiet");
+copyFileSync(join(root, "examples/tyre_on_kerb/model.yaml"), join(folder, "tyre.yaml"));
+run("run", "tyre.yaml", "--quiet", "--set", "analysis.duration=0.2 s");
+run("view", "tyre.results", "--html", "tyre.html", "--quiet");
+
+let failed = 0, passed = 0;
+const open = [];
+const page_of = async (name, options) => {
+  const opened = await openPage(browser, name.startsWith("http") ? name : join(folder, name), options);
+  open.push(opened);
+  return opened;
+};
+const expect = (condition, text) => { if (!condition) throw new Error(text); };
+async function test(name, body) {
+  if (process.argv[2] && !name.includes(process.argv[2])) return;
+  try {
+    await body();
+    // No test may leave a message on the console, nor ask a network for anything.
+    for (const { faults, requests } of open) expect(faults.length + requests.length === 0, `console or network: ${[...faults, ...requests].join(" | ")}`);
+    passed++;
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED  ${name}: ${error.message}`);
+  }
+  for (const { context } of open.splice(0)) await context.close();
+}
+const clock = (page) => page.locator("output.clock").textContent().then(parseFloat);
+const shot = (page, name) => (process.env.SCREENSHOTS ? page.screenshot({ path: join(process.env.SCREENSHOTS, `${name}.png`) }) : null);
+/** Different colours in the picture: an empty one has few. */
+const colours = (page) => page.evaluate(() => {
+  const from = document.querySelector(".view > canvas"), to = document.createElement("canvas");
+  to.width = 200; to.height = 150;
+  const ctx = to.getContext("2d");
+  ctx.drawImage(from, 0, 0, 200, 150);
+  const data = ctx.getImageData(0, 0, 200, 150).data, seen = new Set();
+  for (let i = 0; i < data.length; i += 4) seen.add((data[i] >> 3) << 10 | (data[i + 1] >> 3) << 5 | data[i + 2] >> 3);
+  return seen.size;
+});
+const violations = async (page) => {
+  await page.evaluate(axe);  // by the debugger: the page's own policy would refuse a script element
+  const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return found.violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 120)).join(" ; ")}`);
+};
+
+await test("the saved file opens without network and shows a picture", async () => {
+  const { page } = await page_of("all.html");
+  expect(!(await page.evaluate(() => document.documentElement.dataset.failed)), await page.locator("#app").textContent());
+  expect(await colours(page) > 40, "the picture is empty");
+  expect((await page.locator(".drift").textContent()).includes("energy drift"), "no energy drift in view");
+  await shot(page, "all");
+});
+
+await test("it plays, pauses, and starts again at the end", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await page.waitForFunction(() => parseFloat(document.querySelector("output.clock").textContent) > 0.02);
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
+  const t = await clock(page);
+  await page.waitForTimeout(200);
+  expect(await clock(page) === t, "time goes on while it is paused");
+  await page.keyboard.press("End");
+  expect(await clock(page) === 1, "End does not go to the end");
+  await page.keyboard.press("ArrowLeft");
+  expect(Math.abs(await clock(page) - 0.99) < 1e-6, `one frame back is ${await clock(page)}`);
+});
+
+await test("the slider moves the time, and the picture with it", async () => {
+  const { page } = await page_of("all.html");
+  const before = await page.evaluate(() => document.querySelector(".view > canvas").toDataURL());
+  await page.getByLabel("Time", { exact: true }).fill("50");
+  expect(Math.abs(await clock(page) - 0.5) < 1e-6, `time is ${await clock(page)}`);
+  await page.waitForTimeout(200);
+  expect(before !== await page.evaluate(() => document.querySelector(".view > canvas").toDataURL()), "the picture stands still");
+});
+
+await test("a name chooses an object with its values and its line of the model", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByLabel("Search objects by name").fill("hinge");
+  await page.getByRole("button", { name: /hinge/ }).first().click();
+  const details = page.locator(".details");
+  await details.locator("td.number").first().waitFor();
+  expect((await details.textContent()).includes("revolute joint"), "no kind");
+  expect((await details.locator("pre").textContent()).includes("hinge: {type: revolute"), "another line of the model");
+  const value = await details.locator("td.number").first().textContent();
+  await page.getByLabel("Time", { exact: true }).fill("30");
+  expect(value !== await details.locator("td.number").first().textContent(), "the values stand still");
+});
+
+await test("values are those of the results", async () => {
+  const { page } = await page_of("all.html");
+  const csv = readFileSync(join(folder, "all.yaml"), "utf8") && run("convert", "all.results", "out.csv", "--channels", "bodies.arm.position") + readFileSync(join(folder, "out.csv"), "utf8");
+  const row = csv.trim().split("\n")[31].split(",").map(Number);
+  await page.getByRole("button", { name: /^arm/ }).first().click();
+  await page.getByLabel("Time", { exact: true }).fill("30");
+  const shown = (await page.locator(".details td.number").first().textContent()).trim().split(/\s+/).map(Number);
+  for (let k = 0; k < 3; k++) expect(Math.abs(shown[k] - row[k + 1]) < 1e-3 * (1 + Math.abs(row[k + 1])), `${shown} is not ${row.slice(1)}`);
+});
+
+await test("a click in the picture chooses what is there", async () => {
+  const { page } = await page_of("all.html");
+  const box = await page.locator(".view > canvas").boundingBox();
+  let found = "";
+  for (let i = 2; i < 9 && !found; i++)
+    for (let j = 2; j < 9 && !found; j++) {
+      await page.mouse.click(box.x + box.width * i / 10, box.y + box.height * j / 10);
+      found = await page.locator(".details h2").textContent({ timeout: 50 }).catch(() => "");
+    }
+  expect(found !== "", "no click meets anything");
+  await page.keyboard.press("Escape");
+  expect(await page.locator(".details h2").count() === 0, "Escape keeps the choice");
+});
+
+await test("hidden, ghost and isolated bodies change the picture", async () => {
+  const { page } = await page_of("all.html");
+  const picture = async () => { await page.waitForTimeout(150); return page.evaluate(() => document.querySelector(".view > canvas").toDataURL()); };
+  await page.getByRole("button", { name: /^arm/ }).first().click();
+  const pictures = [await picture()];
+  for (const key of ["h", "a", "g", "i"]) { await page.keyboard.press(key); pictures.push(await picture()); }
+  expect(pictures[0] !== pictures[1] && pictures[1] !== pictures[3] && pictures[0] === pictures[2] && pictures[3] !== pictures[4], "pictures do not differ as they should");
+});
+
+await test("plots and time move one another; they save as CSV, SVG and PNG", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByRole("tab", { name: "Plot" }).click();
+  await page.getByLabel("Channel to plot").fill("bodies.arm.position");
+  await page.getByRole("button", { name: "New plot" }).click();
+  await page.locator(".plot .u-over").waitFor();
+  const over = await page.locator(".plot .u-over").boundingBox();
+  await page.mouse.click(over.x + over.width / 2, over.y + over.height / 2);
+  expect(Math.abs(await clock(page) - 0.5) < 0.02, `a click in the middle of the plot goes to ${await clock(page)}`);
+  await page.getByLabel("Channel to plot").fill("energy.kinetic");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await page.waitForFunction(() => document.querySelectorAll(".series li").length === 4);
+  for (const [button, head] of [["CSV", "t [s],bodies.arm.position.x [m]"], ["SVG", "<svg"], ["PNG", "\x89PNG"]]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: `Save as ${button}` }).click()]);
+    const text = readFileSync(await download.path(), "latin1");
+    expect(text.startsWith(head), `${button} begins with ${text.slice(0, 40)}`);
+    if (button === "CSV") expect(text.trim().split("\n").length === 102, "not a row for each frame");
+  }
+  for (const kind of ["spectrum", "phase", "stacked", "time"]) { await page.getByLabel("Kind of plot").selectOption(kind); await page.waitForTimeout(60); }
+  await page.getByLabel("Channel to plot").fill("bodies.nobody.position");
+  await page.getByRole("button", { name: "Add", exact: true }).click();
+  await page.getByText("There is no channel 'bodies.nobody.position'.").waitFor();
+  await shot(page, "plots");
+});
+
+await test("solids have colours, a legend and a choice of fields", async () => {
+  const { page } = await page_of("tyre.html");
+  expect((await page.locator(".legend").textContent()).includes("von mises [Pa]"), "no legend");
+  const before = await page.evaluate(() => document.querySelector(".view > canvas").toDataURL());
+  await page.getByRole("tab", { name: "Display" }).click();
+  await page.getByLabel("Field in colours").selectOption({ label: "displacement (size)" });
+  await page.waitForTimeout(300);
+  expect((await page.locator(".legend").textContent()).includes("displacement (size) [m]"), "the legend stays");
+  await page.keyboard.press("End");
+  await page.waitForTimeout(300);
+  expect(before !== await page.evaluate(() => document.querySelector(".view > canvas").toDataURL()), "the picture stays");
+  await page.getByLabel("Section plane").selectOption("y");
+  await page.waitForTimeout(200);
+  await shot(page, "tyre");
+});
+
+await test("a link keeps camera, time and choice", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByRole("button", { name: /^arm/ }).first().click();
+  await page.getByLabel("Time", { exact: true }).fill("25");
+  await page.keyboard.press("1");
+  await page.keyboard.press("b");
+  const hash = await page.evaluate(() => location.hash);
+  const again = await page_of("all.html" + hash);
+  expect(Math.abs(await clock(again.page) - 0.25) < 1e-6, "another time");
+  expect(await again.page.locator(".details h2").textContent() === "arm", "another choice");
+});
+
+await test("two clicks measure a distance", async () => {
+  const { page } = await page_of("all.html");
+  await page.keyboard.press("m");
+  expect(await page.locator(".measure").isVisible(), "no ruler");
+  const box = await page.locator(".view > canvas").boundingBox();
+  for (let i = 1; i < 10 && !/\d m/.test(await page.locator(".measure").textContent()); i++)
+    for (const y of [0.5, 0.65, 0.8]) await page.mouse.click(box.x + box.width * i / 10, box.y + box.height * y);
+  expect(/\d m/.test(await page.locator(".measure").textContent()), "no distance");
+});
+
+for (const [name, options] of [["wide and light", {}], ["dark", { colorScheme: "dark" }], ["on a phone", { viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true }]])
+  await test(`nothing stands in the way of anyone, ${name}`, async () => {
+    const { page } = await page_of("all.html", options);
+    expect(await colours(page) > 30, "the picture is empty");
+    if (options.isMobile) await page.getByRole("button", { name: "Panel" }).click();
+    for (const tab of ["Plot", "Display", "Objects"]) {
+      await page.getByRole("tab", { name: tab }).click();
+      const found = await violations(page);
+      expect(found.length === 0, found.join(" | "));
+    }
+    expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the window");
+    if (options.colorScheme) expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(20, 25, 31)", "not dark");
+    await shot(page, name.replaceAll(" ", "_"));
+  });
+
+await test("the picture follows the size of the window", async () => {
+  const { page } = await page_of("all.html");
+  await page.setViewportSize({ width: 1100, height: 500 });
+  await page.waitForFunction(() => document.querySelector(".view > canvas").clientWidth === 770);
+  expect(await colours(page) > 30, "the picture is empty");
+});
+
+await test("results that are cut short are shown up to the last whole frame", async () => {
+  const file = join(folder, "cut.h5");
+  run("run", "all.yaml", "--quiet", "-o", "long.results", "--set", "analysis.step=0.5 ms", "--set", "output.every=0.5 ms");
+  copyFileSync(join(folder, "long.results/results.h5"), file);
+  truncateSync(file, Math.floor(0.8 * statSync(file).size));
+  run("view", "cut.h5", "--html", "cut.html", "--quiet");
+  const { page } = await page_of("cut.html");
+  expect((await page.locator(".notes").textContent({ timeout: 2000 })).includes("cut short"), "no note");
+  await page.keyboard.press("End");
+  const end = await clock(page);
+  expect(end > 0.1 && end < 1, `the last frame is at ${end}`);
+});
+
+await test("a page that has lost its end says so", async () => {
+  const text = readFileSync(join(folder, "all.html"), "utf8"), last = text.lastIndexOf('<script type="application/octet-stream"');
+  writeFileSync(join(folder, "lost.html"), text.slice(0, text.indexOf('id="chunk-1"') - 40) + text.slice(text.indexOf("</script>", last) + 9));
+  const { page } = await page_of("lost.html");
+  expect((await page.locator("[role=alert]").textContent()).includes("incomplete"), "no message");
+});
+
+await test("an animated scene passes the validator of the Khronos Group", async () => {
+  const { default: validator } = await import("gltf-validator");
+  run("convert", "all.results", "all.glb");
+  const bytes = new Uint8Array(readFileSync(join(folder, "all.glb"))), report = await validator.validateBytes(bytes);
+  expect(report.issues.numErrors + report.issues.numWarnings === 0, JSON.stringify(report.issues.messages.slice(0, 3)));
+  expect(report.info.animationCount === 1 && report.info.totalVertexCount > 100, "no animation or no shapes");
+});
+
+await test("a model is served, and loaded again when it is saved", async () => {
+  writeFileSync(join(folder, "served.yaml"), model);
+  const server = spawn(polhode, ["view", "served.yaml", "--no-open"], { cwd: folder });
+  try {
+    const address = await new Promise((resolve) => server.stdout.once("data", (data) => resolve(data.toString().trim())));
+    const { page } = await page_of(address);
+    expect((await page.locator(".notes").textContent()).includes("mobility"), "no mobility");
+    await page.waitForTimeout(500);
+    writeFileSync(join(folder, "served.yaml"), model.replace("title: Everything", "title: Saved again"));
+    await page.getByRole("heading", { name: "Saved again" }).waitFor({ timeout: 10000 });
+  } finally { server.kill("SIGINT"); }
+});
+
+await browser.close();
+rmSync(folder, { recursive: true });
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed ? 1 : 0);
