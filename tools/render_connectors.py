@@ -50,3 +50,21 @@ def suspension_corner(tools):
     plot.legend(frameon=False)
     tools.label(plot, "heave [mm], 20 mm at 1.5 Hz")
     return figure
+
+
+def shaking_table(tools):
+    m = tools.Motion("shaking_table")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.9)
+    for k, alpha in tools.fades(tools.frames(m, 0.5, 0.75, 3)):
+        for body, (half, up), colour in (("table", (0.8, 0.05), tools.INK), ("slips", (0.15, 0.05), tools.RED), ("rides", (0.15, 0.05), tools.BLUE)):
+            if body == "rides":
+                continue
+            corners = m.points(body, [[-half, 0, -up], [half, 0, -up], [half, 0, up], [-half, 0, up], [-half, 0, -up]], k)
+            scene.plot(corners[:, 0], corners[:, 2], color=colour, lw=2, alpha=alpha)
+    tools.label(scene, "the table and the crate that slips, a quarter of a second", "x [m]", "z [m]")
+    for body, colour, name in (("table", tools.INK, "table, mu 0.9 on it"), ("slips", tools.RED, "mu 0.4")):
+        probe = m.probe(body)
+        plot.plot(probe["t"], probe["vx"], color=colour, label=name)
+    plot.legend(frameon=False)
+    tools.label(plot, "velocities", "t [s]", "[m/s]")
+    return figure

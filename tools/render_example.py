@@ -489,7 +489,7 @@ def main():
         if name in wanted or not sys.argv[1:]:
             picture = getattr(render_contact.Pictures(sys.modules[__name__]), name)()
             save(picture, ROOT / "examples" / name / "picture.png")
-    for name in ("planetary_gearbox", "suspension_corner"):
+    for name in ("planetary_gearbox", "suspension_corner", "shaking_table"):
         if name in wanted or not sys.argv[1:]:
             save(getattr(render_connectors, name)(sys.modules[__name__]), ROOT / "examples" / name / "picture.png")
     if "hero" in wanted:

@@ -92,6 +92,30 @@ TEST(CrowdEngine, FindsTheEndOfAnImpactInFewIterations) {
   }
 }
 
+/// A layer of balls that falls on another without rebound, with the narrow band of the default and
+/// friction: impacts far longer than the band, and points between floor and neighbours that slide.
+/// @tests{contact-slide-damping}
+TEST(CrowdEngine, NeedsFewIterationsForImpactsWithoutRebound) {
+  Scene s;
+  s.crowd_residual = 1e-6;
+  constexpr int kRow = 5;
+  for (int i = 0; i < 3 * kRow * kRow; ++i)
+    s.add_ball("ball " + std::to_string(i), 0.1, 1.0,
+               at({0.22 * (i % kRow) + 0.005 * std::sin(13.0 * i),
+                   0.22 * ((i / kRow) % kRow) + 0.005 * std::sin(78.0 * i),
+                   0.12 + 0.22 * (i / (kRow * kRow)) + 0.005 * std::sin(38.0 * i)}));
+  s.add_floor();
+  s.law(0.5, 0.0);
+  s.begin(2e-3);
+  int steps = 0, iterations = 0;
+  for (; steps < 200; ++steps) {
+    ASSERT_TRUE(s.step()) << s.last.text();
+    iterations += s.last.iterations;
+  }
+  EXPECT_LE(s.cuts, 2);
+  EXPECT_LT(iterations, 8 * steps);
+}
+
 TEST(CrowdEngine, GoesOnBitForBitFromAnArchive) {
   Heap s(1e-6);
   ASSERT_TRUE(s.run(0.2));

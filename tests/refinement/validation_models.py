@@ -37,6 +37,16 @@ def free_top():
     return case("free_top", "A body with three moments of inertia about its middle axis: Jacobi's functions.", made, 2e-2, 1.0, orders(known, 2, 8, longer=10))
 
 
+def turned_antenna():
+    made = model("A free satellite that turns its antenna", {"hull": {"mass": 20, "inertia": [3, 4, 5], "angular_velocity": [0.1, 0.3, 0.2]},
+                 "antenna": {"mass": 4, "inertia": [0.3, 0.2, 0.1], "position": [0.8, 0, 0]}, "bob": {"mass": 1, "inertia": [0.01, 0.01, 0.01], "position": [1.4, 0, 0], "velocity": [0, 0.5, 0.2]}},
+                 gravity=(0, 0, 0), probes={"hull": {"body": "hull"}, "bob": {"body": "bob"}, "drive": {"joint": "drive"}, "string": {"joint": "string"}},
+                 joints={"drive": {"type": "fixed", "bodies": ["hull", "antenna"], "at": [0.5, 0, 0],
+                                   "motion": {"x": "0.1*sin(2*t)", "euler": {"sequence": "zyx", "angles": ["0.4*sin(3*t)", "0.3*(1-cos(3*t))", "t"]}}},
+                         "string": {"type": "spherical", "bodies": ["antenna", "bob"], "at": [1.1, 0, 0]}})
+    return case("turned_antenna", "Prescribed motion between two free bodies.", made, 1e-2, 0.4, orders(lambda order: (), 2, 6, longer=4))
+
+
 def general(EA, GA, GJ, EI, mass, inertia):
     return {"type": "general", "EA": EA, "GA_y": GA, "GA_z": GA, "GJ": GJ, "EI_y": EI, "EI_z": EI, "mass_per_length": mass, "inertia_per_length": inertia}
 
@@ -152,4 +162,4 @@ def spring_chain():
     return case("spring_chain", "Bodies on ball, cross and hinge with springs, dampers and a force in time.", made, 5e-3, 0.15, orders(lambda order: (), 2))
 
 
-CASES = [pendulum(), free_top(), *flying_beam(), right_angle(), spin_up(), flexible_pendulum(), cantilever(), arc(), *elements(), solid_orders(), spring_chain()]
+CASES = [pendulum(), free_top(), turned_antenna(), *flying_beam(), right_angle(), spin_up(), flexible_pendulum(), cantilever(), arc(), *elements(), solid_orders(), spring_chain()]

@@ -94,8 +94,8 @@ void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers) {
   vectors(frame.force);
   vectors(frame.moment);
   for (double x : frame.coordinates) scalar(x);
-  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power, &frame.work,
-                           &frame.loads})
+  for (const auto* list : {&frame.rates, &frame.friction, &frame.slips, &frame.stops, &frame.power,
+                           &frame.work, &frame.loads})
     for (double x : *list) scalar(x);
   const Balance& b = frame.balance;
   for (double x : {b.kinetic, b.potential, b.put_in, b.dissipated, b.kinetic + b.potential})

@@ -55,10 +55,9 @@ class Planner {
 
   void find_coordinate(std::size_t i) {
     if (joints_[i].joint->frame_moves())
-      throw InputError(
-          where_ + ".joints",
-          format("the frame of '{}' has a prescribed motion", joints_[i].joint->name),
-          "Let a body of its own carry the motion, and act in a joint to that");
+      throw InputError(where_ + ".joints",
+                       format("the frame of '{}' has a prescribed motion", joints_[i].joint->name),
+                       "Let a body of its own carry the motion, and act in a joint to that");
     const auto angle = joints_[i].joint->free_angle(joints_[i].coordinate);
     const auto displacement = joints_[i].joint->free_displacement(joints_[i].coordinate);
     if (angle.has_value() == displacement.has_value()) {
