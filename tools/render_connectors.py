@@ -65,6 +65,6 @@ def shaking_table(tools):
     for body, colour, name in (("table", tools.INK, "table, mu 0.9 on it"), ("slips", tools.RED, "mu 0.4")):
         probe = m.probe(body)
         plot.plot(probe["t"], probe["vx"], color=colour, label=name)
-    plot.legend(frameon=False)
+    plot.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.6, 1), ncol=2)
     tools.label(plot, "velocities", "t [s]", "[m/s]")
     return figure

@@ -147,7 +147,8 @@ TEST(FrameMotion, PutsInWhatTheBodiesGet) {
     const double put_in = lambda.head(n).dot(rows.increment.head(n));
     EXPECT_NEAR(lambda.head(n).dot(t.g.head(n) - g_n.head(n)) + put_in,
                 wrenches(t).dot(step_motion(m)), 1e-12);
-    if (m.a_moves) EXPECT_LT((t.wrench_a.head<3>() + t.wrench_b.head<3>()).norm(), 1e-13);
+    if (!m.a_moves) return;  // nobody asks for the ground's wrench
+    EXPECT_LT((t.wrench_a.head<3>() + t.wrench_b.head<3>()).norm(), 1e-13);
   });
 }
 
