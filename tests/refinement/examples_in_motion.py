@@ -159,6 +159,8 @@ def roll_up():
 
 CASES = [example("tumbling_body", 1e-2, 0.4, "A T-handle turns over in free fall.", orders=(2, 8)),
          example("double_pendulum", 1e-2, 0.4, "Two bars let go sideways.", orders=(2, 6)), example("gyroscope", 1e-3, 0.04, "Precession and nodding.", orders=(2, 6)),
-         heavy_top(), slider_crank(), example("crank_rocker", 1e-3, 0.2, "A motor starts a crank-rocker."), example("planetary_gearbox", 1e-3, 0.1, "Gears, redundant planets, a motor."),
+         heavy_top(), slider_crank(), example("crank_rocker", 1e-3, 0.2, "A motor starts a crank-rocker."), example("planetary_gearbox", 1e-3, 0.1, "Gears, redundant planets, a motor.",
+                 skip=("output.[N]", "teeth_1.[N or N m]", "teeth_1.[W]", "teeth_2.[N or N m]", "teeth_2.[W]"),
+                 because="The bearings carry nothing, and redundant planets share their load to 1e-7 only."),
          example("suspension_corner", 1e-3, 0.1, "Bushings, strut and tyre on a shaker."), four_bar(), squeezer(), bricard(), governor(), door(), beam_four_bar(), beam_four_bar_resolved(), solid_four_bar(), spinning_bar(), spinning_bar_resolved(), panel(), panel_reaction(),
          bushing(), bushing_at_rest(), knee(), roll_up()]
