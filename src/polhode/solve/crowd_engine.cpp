@@ -19,6 +19,8 @@ constexpr int kCoarseIterations = 2, kMostInner = 400;
 /// directions that it is sought in: farther away sliding points change too much.
 constexpr double kRubbing = 1.0;
 constexpr int kDirections = 3;
+/// An increment that leaves more than this part of the residual lacks that friction.
+constexpr double kSlow = 0.2;
 constexpr int kMostCuts = 2;
 /// Bodies are moved on while their residual is above this part of what counts as solved; others
 /// within so many contacts of them go with them. Where these are most, all are.
@@ -126,6 +128,7 @@ void CrowdEngine::begin_step(const State& state, Trial& trial) {
   for (int b = 0; b < system_->body_count(); ++b)
     move(b, part * x_[b].head<3>(), part * x_[b].tail<3>());
   searches_ = 0;
+  slow_ = false;
   move_all();
   evaluated_ = false;
 }
@@ -222,11 +225,12 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   }
   cg_.set_springs(acting_, moving_);
   inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner,
-                      residual_ < kRubbing ? kDirections : 0);
+                      slow_ && residual_ < kRubbing ? kDirections : 0);
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
   double part = std::min(damping, contacts_->filter(steps_, x_));
-  const double before = merit_, per_length = 1.0 / system_->length_scale();
+  const double before = merit_, residual_before = residual_,
+               per_length = 1.0 / system_->length_scale();
   double at_stake = 0.0;
   for (const int b : moving_) {
     at_stake += sizes_[b];
@@ -250,6 +254,8 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
     part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
   }
   done.applied = part;
+  if (part == 1.0 && residual_before < kRubbing)
+    slow_ = slow_ || residual_ > kSlow * residual_before;
   // What the residual says is final: the increment is no measure of the next one.
   if (residual_ < enough_) {
     done.increment = 0.0;

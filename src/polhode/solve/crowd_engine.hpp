@@ -57,6 +57,7 @@ class CrowdEngine final : public NewtonEngine {
   InteractionSweep loads_;
   double tolerance_, enough_ = 0.0;
   BlockCg cg_;
+  bool slow_ = false;  ///< An increment of this step left much of the residual.
   /// The parts of a body's momentum rates and velocities at t_{n+1} that t_n determines.
   struct Inertia {
     Vec3 force, moment;  ///< Gravity and what the rates have of t_n [N, N m].
