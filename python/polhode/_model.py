@@ -222,7 +222,7 @@ class Model(Section):
                 for f in error.faults
             ]) from None
 
-    # What all objects can do
+    # Shared by all objects
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Model) and self._tree() == other._tree()

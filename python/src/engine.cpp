@@ -33,7 +33,7 @@ const char* end_name(RunEnd end) {
   return "interrupted";
 }
 
-/// What Python wants to do while a run goes on: it is looked after every 50 ms of wall time.
+/// Signals and progress of a run for Python, every 50 ms of wall time.
 class Attention {
  public:
   explicit Attention(const nb::object& progress) : progress_(progress) {}

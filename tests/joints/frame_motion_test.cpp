@@ -128,7 +128,7 @@ TEST(FrameMotion, KeepsTheTangentsOfItsJoint) {
   });
 }
 
-// What the bodies get and what the drive puts in is all that changes g; the wrenches are opposite
+// The bodies and the drive together account for all change of g; the wrenches are opposite
 // where the points meet. @tests{moving-frame}
 TEST(FrameMotion, PutsInWhatTheBodiesGet) {
   for_moving_joints([](const Joint& joint, const PairMotion& m) {
@@ -147,7 +147,7 @@ TEST(FrameMotion, PutsInWhatTheBodiesGet) {
     const double put_in = lambda.head(n).dot(rows.increment.head(n));
     EXPECT_NEAR(lambda.head(n).dot(t.g.head(n) - g_n.head(n)) + put_in,
                 wrenches(t).dot(step_motion(m)), 1e-12);
-    if (!m.a_moves) return;  // nobody asks for the ground's wrench
+    if (!m.a_moves) return;  // the wrench of the ground is not read
     EXPECT_LT((t.wrench_a.head<3>() + t.wrench_b.head<3>()).norm(), 1e-13);
   });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every connector keeps over one large step: its tangent is the derivative of its wrenches,
+// Properties of every connector over one large step: its tangent is the derivative of its wrenches,
 // and its wrenches do the work that it books.
 #include <cmath>
 #include <vector>

@@ -571,7 +571,7 @@ output: {hdf5: false}
   EXPECT_NEAR(o.load[3], 2.5 / 60.0, 1e-9);
 }
 
-// What cannot be is told with its place.
+// Impossible connectors are refused with their place.
 TEST(Connectors, RefuseWhatTheyCannotDo) {
   const auto message = [](const std::string& text) -> std::string {
     try {

@@ -75,7 +75,7 @@ export class Plot {
       const stacked = curves.map((s) => {
         let low = Infinity;
         for (const v of s.values) if (v < low) low = v;
-        // What can be below zero, as a potential energy, is counted from its lowest value.
+        // Quantities that can be below zero, as potential energies, count from their lowest value.
         const values = s.values.map((v, i) => (sum[i] += v - Math.min(0, low)));
         return { ...s, values: Float64Array.from(values) };
       });

@@ -156,7 +156,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double impact_loss = 0.0;    ///< In impulses, along the normal [J].
     double friction_loss = 0.0;  ///< Likewise, across it [J].
   };
-  /// How a point slid at the last iterate.
+  /// Slide of a point at the last iterate.
   struct Slide {
     Vec3 stretch = Vec3::Zero();  ///< Of its bristle [m]; zero: it stuck.
     double share = 0.0;           ///< Of the lagged stiffness that it got.

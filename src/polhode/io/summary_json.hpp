@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// How a run ended for the one who started it, and where its results are.
+/// End of a run as its user sees it, and the place of its results.
 struct RunPlace {
   std::string end = "finished";  ///< finished, not_converged, interrupted or limit.
   int exit_code = 0;             ///< Of the command line.

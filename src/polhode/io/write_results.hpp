@@ -71,7 +71,7 @@ struct ResultsFrame {
       angular_velocity;           ///< Centre of mass, world [m, m/s, rad/s].
   std::vector<Quat> orientation;  ///< Body to world.
   std::vector<double> coordinates, rates, loads;
-  /// Of joints that have them, see JointReport.
+  /// Numbers of the joints that have them, see JointReport.
   std::vector<double> friction, slips, stops, power, work;
   std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
   std::vector<SolidReport> solids;

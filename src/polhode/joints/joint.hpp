@@ -132,7 +132,7 @@ class Joint : public InteractionItem {
   [[nodiscard]] Vec6 acceleration_terms(const PairStep& step, TimeSide side) const;
   /// Work of the prescribed motion over the step by unit multipliers.
   [[nodiscard]] Vec6 drive_increments(const PairStep& step) const;
-  /// What with(a, b) gives for the sides in the user's order, a moving frame at rest on its side.
+  /// Result of with(a, b) for the sides in the user's order; a moving frame is at rest on its side.
   template <class With>
   auto with_sides(const PairStep& step, With&& with) const;
   /// Calls what(view) with what the resistance wants to know.

@@ -29,7 +29,7 @@ struct GearCoordinate {
   FreeDisplacement displacement{};
 };
 
-/// What a gear keeps in ratio: x_0 = ratio·x_1 + constant.
+/// Ratio that a gear keeps: x_0 = ratio·x_1 + constant.
 struct GearPair {
   std::array<GearCoordinate, 2> coordinate;
 };

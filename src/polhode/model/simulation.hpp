@@ -40,7 +40,7 @@ struct JointReport {
   /// slipped in the last step, force of the stops by limited coordinate [N or N m].
   std::vector<double> friction, stops;
   bool slips = false;
-  /// Of a joint whose frame moves as prescribed: power [W] and work since the start [J].
+  /// Drive of a joint whose frame moves as prescribed: power [W] and work since the start [J].
   std::vector<double> power, work;
 };
 

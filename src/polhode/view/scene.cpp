@@ -17,7 +17,7 @@ namespace polhode {
 
 namespace {
 
-/// Where a page takes its data: viewer/build.mjs writes it.
+/// Place of the data in a page, written by viewer/build.mjs.
 constexpr const char* kPlace = "<!--POLHODE-DATA-->";
 
 bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }

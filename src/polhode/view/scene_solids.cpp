@@ -57,7 +57,7 @@ std::vector<std::array<int, 2>> edges_of(const CellShape& shape) {
   return list;
 }
 
-/// What is seen of a mesh, in numbers of the nodes that are seen.
+/// Visible part of a mesh, in numbers of the nodes that are seen.
 struct Outside {
   std::vector<int> nodes;  ///< Of the mesh, by number here.
   std::vector<std::uint32_t> triangles, edges;
