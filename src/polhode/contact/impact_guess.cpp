@@ -29,8 +29,8 @@ struct Meeting {
   [[nodiscard]] double shares() const { return share_a + share_b; }
 };
 
-/// The gap at which the two bodies end the step if only their own contact acts on what the others
-/// make of it: root of K(g − free) = λ(g_0, g) − held, whose two sides fall and grow with g.
+/// The gap at the end of the step under this contact alone, all other forces as they are: root of
+/// K(g − free) = λ(g_0, g) − held, whose two sides fall and grow with g.
 /// @param free  Without this contact's push [m].  @param K  Of both masses [N/m].
 double gap_with(const Meeting& m, double free, double K, double dt) {
   const double reach = m.balls->reach, least = m.balls->least_gap, gap_n = m.balls->gap_n;
@@ -53,8 +53,8 @@ double gap_with(const Meeting& m, double free, double K, double dt) {
 }  // namespace
 
 /// One point after the other, each as if the others held still, until they agree: without friction
-/// and turns, which impacts of balls have little of. Without it the whole crowd would be held back
-/// by its fastest pair. @eq{contact-impact-guess}
+/// and turns, which matter little to impacts of balls. Without it the fastest pair would hold back
+/// the whole crowd. @eq{contact-impact-guess}
 void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContext& context,
                                std::span<Vec6> increments) const {
   const double K = context.ga.alpha_m / (context.ga.beta * context.dt * context.dt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts as solvers of crowds see them: forces and springs point by point.
+// Forces and springs of contacts point by point, for the solvers of crowds.
 #include <cmath>
 #include <limits>
 
@@ -15,9 +15,9 @@ constexpr double kTurnedBack = 0.5, kFades = 0.25;
 
 }  // namespace
 
-/// Along a slide the force does not change, so Newton goes on until the point slides back and would
-/// then return. With the stiffness force over stretch, which bounds the force from above, it stops
-/// in between. @eq{contact-slide-damping}
+/// Damping of slides that turn back. Along a slide the force does not change, so Newton moves the
+/// point on until it slides the other way; the lagged stiffness, force over stretch, bounds the
+/// force from above and stops it in between. @eq{contact-slide-damping}
 void ContactSet::damp_slide(Slide& before, PointForce& f) {
   if (f.lag == 0.0) {
     before = {Vec3::Zero(), 0.0, true};

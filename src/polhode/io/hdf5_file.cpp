@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/hdf5_file.hpp>
+#include <polhode/io/hdf5_id.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,26 +37,7 @@ constexpr std::size_t kNamesBytes = 4096;
 /// Frames held back take at most this much memory.
 constexpr std::size_t kHoldBytes = std::size_t{8} << 20;
 
-/// Closes what HDF5 opened.
-class Id {
- public:
-  Id() = default;
-  Id(hid_t id, herr_t (*closer)(hid_t)) : id_(id), closer_(closer) {}
-  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), closer_(other.closer_) {}
-  Id& operator=(Id&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(closer_, other.closer_);
-    return *this;
-  }
-  ~Id() { close(); }
-  herr_t close() { return id_ < 0 ? 0 : closer_(std::exchange(id_, -1)); }
-  [[nodiscard]] hid_t get() const { return id_; }
-  [[nodiscard]] bool valid() const { return id_ >= 0; }
-
- private:
-  hid_t id_ = -1;
-  herr_t (*closer_)(hid_t) = nullptr;
-};
+using hdf5::Id;
 
 /// HDF5 prints its own error stack unless told not to; ours is one sentence.
 void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }

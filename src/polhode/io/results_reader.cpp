@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/hdf5_id.hpp>
 #include <polhode/io/results_reader.hpp>
 
 #include <algorithm>
@@ -22,27 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Owner of an HDF5 object.
-class Id {
- public:
-  Id() = default;
-  Id(hid_t id, herr_t (*closer)(hid_t)) : id_(id), closer_(closer) {}
-  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), closer_(other.closer_) {}
-  Id& operator=(Id&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(closer_, other.closer_);
-    return *this;
-  }
-  ~Id() {
-    if (id_ >= 0) closer_(id_);
-  }
-  [[nodiscard]] hid_t get() const { return id_; }
-  [[nodiscard]] bool valid() const { return id_ >= 0; }
-
- private:
-  hid_t id_ = -1;
-  herr_t (*closer_)(hid_t) = nullptr;
-};
+using hdf5::Id;
 
 constexpr const char* kHint = "Name the results.h5 that 'polhode run' wrote";
 

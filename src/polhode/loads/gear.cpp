@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include <polhode/assembly/angle_quotient.hpp>
 #include <polhode/loads/gear.hpp>
 
 namespace polhode {
@@ -10,22 +11,6 @@ namespace polhode {
 namespace {
 
 using Kind = GearCoordinate::Kind;
-
-/// x / sin x, and its derivative.
-std::pair<double, double> over_sine(double x) {
-  if (std::abs(x) < 0.02) {
-    const double y = x * x;
-    return {1.0 + y * (1.0 / 6.0 + y * (7.0 / 360.0 + y * 31.0 / 15120.0)),
-            x * (1.0 / 3.0 + y * (7.0 / 90.0 + y * 31.0 / 2520.0))};
-  }
-  const double s = std::sin(x);
-  return {x / s, (s - x * std::cos(x)) / (s * s)};
-}
-
-double nearest_turn(double angle, double near) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  return angle + kTurn * std::round((near - angle) / kTurn);
-}
 
 /// Components of the line of centres in the wheel's axes: C along E, S along F.
 FreeDisplacement along(const GearCoordinate& c, const Vec3& direction) {
