@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/assembly/lane_access.hpp>
 #include <polhode/assembly/state.hpp>
 
 namespace polhode {
-
-namespace {
-
-Vec3 get(const Lane3& x, int lane) { return {x[0][lane], x[1][lane], x[2][lane]}; }
-
-void put(Lane3& x, int lane, const Vec3& value) {
-  for (int i = 0; i < 3; ++i) x[i][lane] = value[i];
-}
-
-}  // namespace
 
 BodyMotion State::motion(int slot) const {
   const BodyBlock& b = blocks[static_cast<std::size_t>(slot / kLanes)];

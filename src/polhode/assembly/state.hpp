@@ -11,6 +11,14 @@
 
 namespace polhode {
 
+/// A node's vector in a field of three numbers a node.
+[[nodiscard]] inline Eigen::Map<const Vec3> at_node(const std::vector<double>& field, int node) {
+  return Eigen::Map<const Vec3>(field.data() + 3 * node);
+}
+[[nodiscard]] inline Eigen::Map<Vec3> at_node(std::vector<double>& field, int node) {
+  return Eigen::Map<Vec3>(field.data() + 3 * node);
+}
+
 /// A sum that keeps what rounding takes away (Neumaier).
 struct ExactSum {
   double sum = 0.0, rest = 0.0;

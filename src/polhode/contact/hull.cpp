@@ -11,7 +11,7 @@ namespace polhode::contact {
 
 namespace {
 
-constexpr double kFlat = 1e-10;  ///< Part of the size below which a point is on the hull.
+constexpr double kOnHull = 1e-10;  ///< Part of the size below which a point is on the hull.
 
 struct Face {
   std::array<int, 3> corners;
@@ -43,11 +43,11 @@ std::vector<Face> first_tetrahedron(std::string_view where, std::span<const Vec3
   const int b = farthest(p, [&](const Vec3& x) { return (x - p[a]).squaredNorm(); });
   const Vec3 line = (p[b] - p[a]).normalized();
   const int c = farthest(p, [&](const Vec3& x) { return (x - p[a]).cross(line).squaredNorm(); });
-  if ((p[c] - p[a]).cross(line).norm() < kFlat * size) refuse(where, "on a line");
+  if ((p[c] - p[a]).cross(line).norm() < kOnHull * size) refuse(where, "on a line");
   const Vec3 normal = (p[b] - p[a]).cross(p[c] - p[a]).normalized();
   const int d = farthest(p, [&](const Vec3& x) { return std::abs(normal.dot(x - p[a])); });
   const double height = normal.dot(p[d] - p[a]);
-  if (std::abs(height) < kFlat * size) refuse(where, "in a plane");
+  if (std::abs(height) < kOnHull * size) refuse(where, "in a plane");
   const int u = height > 0.0 ? c : b, v = height > 0.0 ? b : c;  // base faces away from d
   return {make_face(p, a, u, v), make_face(p, a, v, d), make_face(p, v, u, d),
           make_face(p, u, a, d)};
@@ -71,7 +71,7 @@ TriangleSurface convex_hull(std::string_view where, std::span<const Vec3> points
     std::vector<Face> kept;
     std::map<std::pair<int, int>, int> border;  // directed edges of the faces that see the point
     for (const Face& f : faces) {
-      if (f.normal.dot(points[i]) - f.offset <= kFlat * size) {
+      if (f.normal.dot(points[i]) - f.offset <= kOnHull * size) {
         kept.push_back(f);
         continue;
       }

@@ -11,7 +11,7 @@ namespace {
 
 /// Share of the lagged stiffness that a point gets which began to slide or turned back, and the
 /// part of it that is left at the next iterate.
-constexpr double kTurnedBack = 0.5, kFades = 0.25;
+constexpr double kTurnedBack = 0.5, kShareFades = 0.25;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void ContactSet::damp_slide(Slide& before, PointForce& f) {
     return;
   }
   const bool turned_back = before.known && !(before.stretch.dot(f.slide) > 0.0);
-  before.share = turned_back ? kTurnedBack : kFades * before.share;
+  before.share = turned_back ? kTurnedBack : kShareFades * before.share;
   before.stretch = f.slide;
   before.known = true;
   f.C += (before.share * f.lag / f.slide.squaredNorm()) * f.slide * f.slide.transpose();

@@ -14,7 +14,7 @@ namespace {
 
 /// Two faces whose normals differ by less (in sine) lie in one plane: between them an edge stands
 /// out by less than a tenth of the rounding of a mesh. Files with single precision have such.
-constexpr double kFlat = 1e-4;
+constexpr double kFlatEdge = 1e-4;
 
 Vec3 normal_of(const TriangleSurface& s, const std::array<int, 3>& t) {
   return (s.points[t[1]] - s.points[t[0]]).cross(s.points[t[2]] - s.points[t[0]]).normalized();
@@ -84,7 +84,7 @@ void take_triangles(Shape& shape, const TriangleSurface& surface) {
       Vec3 inside_2 = Vec3::Zero();
       for (int k : surface.triangles[s.second]) inside_2 += surface.points[k] / 3.0;
       const double height = n_1.dot(inside_2 - surface.points[e.i]);
-      e.flat = n_1.cross(n_2).norm() < kFlat && n_1.dot(n_2) > 0.0;
+      e.flat = n_1.cross(n_2).norm() < kFlatEdge && n_1.dot(n_2) > 0.0;
       e.convex = !e.flat && height < 0.0;
     }
     for (int t : {s.first, s.second}) {

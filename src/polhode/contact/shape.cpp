@@ -65,7 +65,7 @@ constexpr double kLeastSize = 1e-15, kLargestSize = 1e15;
 constexpr double kNoArea = 1e-10;
 
 /// Thickness of a hull over its extent, below which it is flat.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatShape = 1e-9;
 
 /// Refuses points of which no shape can be made. @returns their extent [m].
 double check_extent(std::string_view where, std::span<const Vec3> points) {
@@ -244,7 +244,7 @@ Shape hull(std::string_view where, std::span<const Vec3> points, const ShapePlac
   const double extent = check_extent(where, points);
   const TriangleSurface outside = placed(convex_hull(where, points), place);
   const double size = inner_size(outside);
-  if (!(size > kFlat * extent))
+  if (!(size > kFlatShape * extent))
     throw InputError(where, "the points lie almost in a plane, so their hull has no volume",
                      "Give points that do not lie in one plane");
   check_rounding(where, rounding, 0.5 * size);

@@ -10,7 +10,7 @@ namespace polhode::contact {
 namespace {
 
 /// Fixed points on a rim, for standing on it, as a cylinder has.
-constexpr int kRimPoints = 12;
+constexpr int kTubeRimPoints = 12;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Shape tube(std::string_view where, double outer, double inner, double length,
   s.points.clear();
   for (int i = 0; i < static_cast<int>(s.corners.size()); ++i) {
     const Vec3 x = s.axes.transpose() * (s.corners[i] - s.centre);
-    const double step = 2.0 * std::numbers::pi / kRimPoints, angle = std::atan2(x.y(), x.x());
+    const double step = 2.0 * std::numbers::pi / kTubeRimPoints, angle = std::atan2(x.y(), x.x());
     if (std::hypot(x.x(), x.y()) > 0.5 * (R + r) && std::abs(std::remainder(angle, step)) < 1e-6)
       s.points.push_back(i);
   }

@@ -63,33 +63,33 @@ enum class FunctionRule : unsigned char {
 };
 
 /// A function by name.
-struct ExpressionFunction {
+struct NamedFunction {
   const char* name;
   ExpressionOp op;
   int arguments;
   FunctionRule rule;
 };
 inline constexpr std::array kExpressionFunctions = {
-    ExpressionFunction{"sin", ExpressionOp::kSin, 1, FunctionRule::kAngleToNumber},
-    ExpressionFunction{"cos", ExpressionOp::kCos, 1, FunctionRule::kAngleToNumber},
-    ExpressionFunction{"tan", ExpressionOp::kTan, 1, FunctionRule::kAngleToNumber},
-    ExpressionFunction{"asin", ExpressionOp::kAsin, 1, FunctionRule::kNumberToAngle},
-    ExpressionFunction{"acos", ExpressionOp::kAcos, 1, FunctionRule::kNumberToAngle},
-    ExpressionFunction{"atan", ExpressionOp::kAtan, 1, FunctionRule::kNumberToAngle},
-    ExpressionFunction{"atan2", ExpressionOp::kAtan2, 2, FunctionRule::kQuotientToAngle},
-    ExpressionFunction{"sinh", ExpressionOp::kSinh, 1, FunctionRule::kNumber},
-    ExpressionFunction{"cosh", ExpressionOp::kCosh, 1, FunctionRule::kNumber},
-    ExpressionFunction{"tanh", ExpressionOp::kTanh, 1, FunctionRule::kNumber},
-    ExpressionFunction{"exp", ExpressionOp::kExp, 1, FunctionRule::kNumber},
-    ExpressionFunction{"log", ExpressionOp::kLog, 1, FunctionRule::kNumber},
-    ExpressionFunction{"log10", ExpressionOp::kLog10, 1, FunctionRule::kNumber},
-    ExpressionFunction{"sqrt", ExpressionOp::kSqrt, 1, FunctionRule::kRoot},
-    ExpressionFunction{"abs", ExpressionOp::kAbs, 1, FunctionRule::kKeep},
-    ExpressionFunction{"sign", ExpressionOp::kSign, 1, FunctionRule::kToNumber},
-    ExpressionFunction{"floor", ExpressionOp::kFloor, 1, FunctionRule::kNumber},
-    ExpressionFunction{"min", ExpressionOp::kMin, 2, FunctionRule::kKeepTwo},
-    ExpressionFunction{"max", ExpressionOp::kMax, 2, FunctionRule::kKeepTwo},
-    ExpressionFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
+    NamedFunction{"sin", ExpressionOp::kSin, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"cos", ExpressionOp::kCos, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"tan", ExpressionOp::kTan, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"asin", ExpressionOp::kAsin, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"acos", ExpressionOp::kAcos, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"atan", ExpressionOp::kAtan, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"atan2", ExpressionOp::kAtan2, 2, FunctionRule::kQuotientToAngle},
+    NamedFunction{"sinh", ExpressionOp::kSinh, 1, FunctionRule::kNumber},
+    NamedFunction{"cosh", ExpressionOp::kCosh, 1, FunctionRule::kNumber},
+    NamedFunction{"tanh", ExpressionOp::kTanh, 1, FunctionRule::kNumber},
+    NamedFunction{"exp", ExpressionOp::kExp, 1, FunctionRule::kNumber},
+    NamedFunction{"log", ExpressionOp::kLog, 1, FunctionRule::kNumber},
+    NamedFunction{"log10", ExpressionOp::kLog10, 1, FunctionRule::kNumber},
+    NamedFunction{"sqrt", ExpressionOp::kSqrt, 1, FunctionRule::kRoot},
+    NamedFunction{"abs", ExpressionOp::kAbs, 1, FunctionRule::kKeep},
+    NamedFunction{"sign", ExpressionOp::kSign, 1, FunctionRule::kToNumber},
+    NamedFunction{"floor", ExpressionOp::kFloor, 1, FunctionRule::kNumber},
+    NamedFunction{"min", ExpressionOp::kMin, 2, FunctionRule::kKeepTwo},
+    NamedFunction{"max", ExpressionOp::kMax, 2, FunctionRule::kKeepTwo},
+    NamedFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
 };
 
 /// Number of values that an operation takes from the stack.

@@ -281,7 +281,7 @@ class ExpressionParser {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view word = text_.substr(offset, at_ - offset);
     const std::size_t start = result_.program_.size();
-    for (const ExpressionFunction& f : kExpressionFunctions)
+    for (const NamedFunction& f : kExpressionFunctions)
       if (word == f.name) return call(f, offset);
     if (word == "pi") {
       push({Op::kPush, std::numbers::pi});
@@ -310,7 +310,7 @@ class ExpressionParser {
     stop(offset, word.size(), "unknown name " + quote(word), did_you_mean(word, all) + known);
   }
 
-  Part call(const ExpressionFunction& f, std::size_t offset) {
+  Part call(const NamedFunction& f, std::size_t offset) {
     const std::size_t start = result_.program_.size();
     expect("(");
     Part a = choice();
@@ -411,7 +411,7 @@ class ExpressionParser {
     return std::isfinite(value) && std::abs(value) <= 99 ? std::optional(value) : std::nullopt;
   }
 
-  Quantity result_type(const ExpressionFunction& f, Part& a, Part& b) {
+  Quantity result_type(const NamedFunction& f, Part& a, Part& b) {
     const auto want_number = [&](const char* wanted) {
       if (is_known(a) && !a.type.dimension.matches({}))
         stop(a.offset, at_ - a.offset, format("{}() is given {}", f.name, a.type.dimension.name()),

@@ -8,8 +8,9 @@ using enum FieldKind;
 
 namespace {
 
-Field number(const std::string& name, const Dimension& dimension, const std::string& meaning,
-             const std::string& standard, const Range& range = kNotNegative) {
+Field friction_number(const std::string& name, const Dimension& dimension,
+                      const std::string& meaning, const std::string& standard,
+                      const Range& range = kNotNegative) {
   return {.name = name,
           .kind = kNumber,
           .dimension = dimension,
@@ -18,58 +19,60 @@ Field number(const std::string& name, const Dimension& dimension, const std::str
           .range = range};
 }
 
-const Field kMu = number("mu", kNone, "Coefficient of friction.", "0");
+const Field kMu = friction_number("mu", kNone, "Coefficient of friction.", "0");
 const Field kMoment0 =
-    number("moment", kMoment, "Moment at which it slips without load, as of a seal.", "0");
+    friction_number("moment", kMoment, "Moment at which it slips without load, as of a seal.", "0");
 const Field kForce0 =
-    number("force", kForce, "Force at which it slips without load, as of a seal.", "0");
-const Field kBearing = number(
+    friction_number("force", kForce, "Force at which it slips without load, as of a seal.", "0");
+const Field kBearing = friction_number(
     "length", kLength, "Length of the bearing; 0: moments across the axis press nothing.", "0");
 
 void add_bristle(std::vector<Field>& fields, bool turns) {
-  fields.push_back(number("stiffness", turns ? kAngularStiffness : kStiffness,
-                          "Of the bristle that holds before it slips.",
-                          turns ? "gives way by 1e-5 rad at the bodies' weight"
-                                : "gives way by 1e-5 of the bodies' size at their weight",
-                          kPositive));
-  fields.push_back(number("damping", turns ? kAngularDamping : kDamping,
-                          "Of the bristle while it holds.", "0.7 of critical damping"));
+  fields.push_back(friction_number("stiffness", turns ? kAngularStiffness : kStiffness,
+                                   "Of the bristle that holds before it slips.",
+                                   turns ? "gives way by 1e-5 rad at the bodies' weight"
+                                         : "gives way by 1e-5 of the bodies' size at their weight",
+                                   kPositive));
+  fields.push_back(friction_number("damping", turns ? kAngularDamping : kDamping,
+                                   "Of the bristle while it holds.", "0.7 of critical damping"));
 }
 
 FieldTable revolute() {
-  FieldTable t{"friction revolute",
-               "Friction of a pin in its bearing. It slips at mu (radius F + 2 radius/length M + "
-               "face_radius F_z) + moment, with the reaction's force F and moment M across the "
-               "axis and its force F_z along it.",
-               {kMu, number("radius", kLength, "Radius of the pin.", "0"),
-                number("face_radius", kLength, "Mean radius of the faces that take F_z.", "0"),
-                kBearing, kMoment0}};
+  FieldTable t{
+      "friction revolute",
+      "Friction of a pin in its bearing. It slips at mu (radius F + 2 radius/length M + "
+      "face_radius F_z) + moment, with the reaction's force F and moment M across the "
+      "axis and its force F_z along it.",
+      {kMu, friction_number("radius", kLength, "Radius of the pin.", "0"),
+       friction_number("face_radius", kLength, "Mean radius of the faces that take F_z.", "0"),
+       kBearing, kMoment0}};
   add_bristle(t.fields, true);
   return t;
 }
 
 FieldTable prismatic() {
-  FieldTable t{
-      "friction prismatic",
-      "Friction of a slider in its guide. It slips at mu (F + 2/length M + M_z/radius) + "
-      "force, with the reaction's force F and moment M across the axis and its moment "
-      "M_z about it.",
-      {kMu,
-       number("radius", kLength, "Arm at which the guide takes M_z; 0: M_z presses nothing.", "0"),
-       kBearing, kForce0}};
+  FieldTable t{"friction prismatic",
+               "Friction of a slider in its guide. It slips at mu (F + 2/length M + M_z/radius) + "
+               "force, with the reaction's force F and moment M across the axis and its moment "
+               "M_z about it.",
+               {kMu,
+                friction_number("radius", kLength,
+                                "Arm at which the guide takes M_z; 0: M_z presses nothing.", "0"),
+                kBearing, kForce0}};
   add_bristle(t.fields, false);
   return t;
 }
 
 FieldTable cylindrical() {
-  FieldTable t{
-      "friction cylindrical",
-      "Friction of a sleeve on its shaft, one cone for both motions: it slips where the "
-      "force along the axis and the moment about it over radius together reach "
-      "mu (F + 2/length M) + force, with the reaction's force F and moment M across the "
-      "axis.",
-      {kMu, number("radius", kLength, "Radius of the shaft; 0: it turns without friction.", "0"),
-       kBearing, kForce0}};
+  FieldTable t{"friction cylindrical",
+               "Friction of a sleeve on its shaft, one cone for both motions: it slips where the "
+               "force along the axis and the moment about it over radius together reach "
+               "mu (F + 2/length M) + force, with the reaction's force F and moment M across the "
+               "axis.",
+               {kMu,
+                friction_number("radius", kLength,
+                                "Radius of the shaft; 0: it turns without friction.", "0"),
+                kBearing, kForce0}};
   add_bristle(t.fields, false);
   return t;
 }
@@ -79,7 +82,7 @@ FieldTable spherical() {
       "friction spherical",
       "Friction of a ball in its socket. It slips at the moment mu radius F + moment, with "
       "the reaction's force F.",
-      {kMu, number("radius", kLength, "Radius of the ball.", "0"), kMoment0}};
+      {kMu, friction_number("radius", kLength, "Radius of the ball.", "0"), kMoment0}};
   add_bristle(t.fields, true);
   return t;
 }
@@ -90,27 +93,29 @@ FieldTable universal() {
       "Friction of the two pins of the cross, x of the first body and y of the second. Each "
       "slips at mu (radius F + 2 radius/length M + face_radius F_p) + moment, with the "
       "reaction's force F across the pin and F_p along it, and its moment M across both.",
-      {kMu, number("radius", kLength, "Radius of the pins.", "0"),
-       number("face_radius", kLength, "Mean radius of the faces that take F_p.", "0"), kBearing,
-       kMoment0}};
+      {kMu, friction_number("radius", kLength, "Radius of the pins.", "0"),
+       friction_number("face_radius", kLength, "Mean radius of the faces that take F_p.", "0"),
+       kBearing, kMoment0}};
   add_bristle(t.fields, true);
   return t;
 }
 
 FieldTable limits(const std::string& title, const std::string& what, bool turns) {
   const Dimension& x = turns ? kAngle : kLength;
-  return {title,
-          "Stops of the joint's " + what + ". Give one of them or both.",
-          {number("lower", x, "Lower end.", "no stop", kAnyNumber),
-           number("upper", x, "Upper end.", "no stop", kAnyNumber),
-           number("restitution", kNone, "Speed after an impact over that before it.", "0",
-                  {.least = 0.0, .most = 1.0}),
-           number("band", x,
-                  "The stop acts from half of this in front of the end to half of it behind.",
-                  turns ? "1e-3 rad" : "1e-3 of the bodies' size", kPositive),
-           number("stiffness", turns ? kAngularStiffness : kStiffness,
-                  "k of the barrier k band²/3 (1/s - 3 + 3s - s²) over the part s of the band.",
-                  "bears the bodies' weight in its middle and stops them in a step", kPositive)}};
+  return {
+      title,
+      "Stops of the joint's " + what + ". Give one of them or both.",
+      {friction_number("lower", x, "Lower end.", "no stop", kAnyNumber),
+       friction_number("upper", x, "Upper end.", "no stop", kAnyNumber),
+       friction_number("restitution", kNone, "Speed after an impact over that before it.", "0",
+                       {.least = 0.0, .most = 1.0}),
+       friction_number("band", x,
+                       "The stop acts from half of this in front of the end to half of it behind.",
+                       turns ? "1e-3 rad" : "1e-3 of the bodies' size", kPositive),
+       friction_number(
+           "stiffness", turns ? kAngularStiffness : kStiffness,
+           "k of the barrier k band²/3 (1/s - 3 + 3s - s²) over the part s of the band.",
+           "bears the bodies' weight in its middle and stops them in a step", kPositive)}};
 }
 
 }  // namespace

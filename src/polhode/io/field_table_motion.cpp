@@ -8,8 +8,8 @@ using enum FieldKind;
 
 namespace {
 
-Field number(const std::string& name, const Dimension& dimension, const std::string& meaning,
-             const std::string& standard = "") {
+Field moving_number(const std::string& name, const Dimension& dimension, const std::string& meaning,
+                    const std::string& standard = "") {
   return {.name = name,
           .kind = kTimeNumber,
           .dimension = dimension,
@@ -44,7 +44,7 @@ const FieldTable& motion_fields() {
                  "statics they follow the load factor.",
                  {}};
     for (const char* axis : {"x", "y", "z"})
-      t.fields.push_back(number(
+      t.fields.push_back(moving_number(
           axis, kLength, std::string("Displacement along the joint's ") + axis + " at rest.", "0"));
     add_rotation(t.fields, "the joint's axes at rest");
     return t;
@@ -59,9 +59,9 @@ const FieldTable& body_motion_fields() {
                  "rotation prescribes all three turns: to prescribe one or two, use a joint.",
                  {}};
     for (const char* axis : {"x", "y", "z"}) {
-      t.fields.push_back(
-          number(axis, kLength,
-                 std::string("Of the centre of mass, along the world's ") + axis + ".", "free"));
+      t.fields.push_back(moving_number(
+          axis, kLength, std::string("Of the centre of mass, along the world's ") + axis + ".",
+          "free"));
     }
     add_rotation(t.fields, "the world's axes");
     t.fields.push_back({.name = "measured_from",
@@ -96,8 +96,8 @@ const FieldTable& moving_quaternion_fields() {
   static const FieldTable table{
       "moving quaternion",
       "A quaternion as four functions of time, of any length but zero.",
-      {number("w", kNone, "Scalar part."), number("x", kNone, "Vector part, x."),
-       number("y", kNone, "Vector part, y."), number("z", kNone, "Vector part, z.")}};
+      {moving_number("w", kNone, "Scalar part."), moving_number("x", kNone, "Vector part, x."),
+       moving_number("y", kNone, "Vector part, y."), moving_number("z", kNone, "Vector part, z.")}};
   return table;
 }
 

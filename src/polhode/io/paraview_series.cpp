@@ -2,11 +2,11 @@
 #include <polhode/io/paraview_series.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include <polhode/base/clock.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/base/xml_text.hpp>
 #include <polhode/io/earlier_results.hpp>
@@ -18,10 +18,6 @@ namespace {
 
 /// The list of times is written again at most this often, but at every frame of a slow run [s].
 constexpr double kListEvery = 0.2;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Times of a list written earlier, up to t.
 std::vector<double> listed_times(const std::string& path, double t) {
@@ -62,7 +58,7 @@ void ParaviewSeries::append(double t, const std::string& bytes) {
   stream.close();
   if (!stream) throw FileError::from_errno(path, "cannot be written");
   times_.push_back(t);
-  if (now() >= next_listing_) write_list();
+  if (wall_clock() >= next_listing_) write_list();
 }
 
 void ParaviewSeries::write_list() {
@@ -73,10 +69,10 @@ void ParaviewSeries::write_list() {
   for (std::size_t i = 0; i < times_.size(); ++i)
     text += format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_[i], file(i));
   text += "</Collection>\n</VTKFile>\n";
-  const double begin = now();
+  const double begin = wall_clock();
   write_file_atomically(format("{}/{}.pvd", folder_, name_), text, false);
   // Long lists are written less often, so that all lists together stay a small part of the run.
-  next_listing_ = now() + std::max(kListEvery, 20.0 * (now() - begin));
+  next_listing_ = wall_clock() + std::max(kListEvery, 20.0 * (wall_clock() - begin));
 }
 
 void VtkFile::entry(const char* type, const char* name, int components) {

@@ -20,7 +20,7 @@ void add_vectors(std::vector<float>& list, const std::vector<Vec3>& vectors) {
 }
 
 /// Stress and energy at points or in cells.
-struct Values {
+struct FrameValues {
   std::vector<float> cauchy, von_mises, energy;
 
   void add(const Mat3& stress, double mises, double density) {
@@ -62,7 +62,7 @@ struct Cells {
 
 void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
   std::vector<float> points, displacements, velocities, stretches, errors;
-  Values at_nodes, in_cells;
+  FrameValues at_nodes, in_cells;
   Cells cells;
   for (std::size_t s = 0; s < reports.size(); ++s) {
     const SolidReport& report = reports[s];

@@ -6,39 +6,41 @@ namespace polhode {
 
 namespace {
 
-constexpr Quantity kBodyQuantities[] = {{"position", 3, "m"},
-                                        {"orientation", 4, "-"},
-                                        {"velocity", 3, "m/s"},
-                                        {"angular_velocity", 3, "rad/s"}};
-constexpr Quantity kReactions[] = {{"force", 3, "N"}, {"moment", 3, "N m"}};
-constexpr Quantity kCoordinates[] = {{"coordinates", 1, "rad or m"}, {"rates", 1, "rad/s or m/s"}};
-constexpr Quantity kEnergies[] = {{"kinetic", 1, "J"},
-                                  {"potential", 1, "J"},
-                                  {"put_in", 1, "J"},
-                                  {"dissipated", 1, "J"},
-                                  {"total", 1, "J"}};
+constexpr StoredQuantity kBodyQuantities[] = {{"position", 3, "m"},
+                                              {"orientation", 4, "-"},
+                                              {"velocity", 3, "m/s"},
+                                              {"angular_velocity", 3, "rad/s"}};
+constexpr StoredQuantity kReactions[] = {{"force", 3, "N"}, {"moment", 3, "N m"}};
+constexpr StoredQuantity kCoordinates[] = {{"coordinates", 1, "rad or m"},
+                                           {"rates", 1, "rad/s or m/s"}};
+constexpr StoredQuantity kEnergies[] = {{"kinetic", 1, "J"},
+                                        {"potential", 1, "J"},
+                                        {"put_in", 1, "J"},
+                                        {"dissipated", 1, "J"},
+                                        {"total", 1, "J"}};
 
-constexpr Quantity kContactNumbers[] = {
+constexpr StoredQuantity kContactNumbers[] = {
     {"gap", 1, "m"}, {"normal_force", 1, "N"}, {"impulse", 1, "N s"}, {"energy_lost", 1, "J"}};
-constexpr Quantity kContactCounts[] = {{"points", 1, "-"}, {"status", 1, "-"}};
-constexpr Quantity kContactVectors[] = {{"force", 3, "N"}, {"friction", 3, "N"}, {"point", 3, "m"}};
+constexpr StoredQuantity kContactCounts[] = {{"points", 1, "-"}, {"status", 1, "-"}};
+constexpr StoredQuantity kContactVectors[] = {
+    {"force", 3, "N"}, {"friction", 3, "N"}, {"point", 3, "m"}};
 
-constexpr Quantity kNodeQuantities[] = {{"displacement", 3, "m"},
-                                        {"velocity", 3, "m/s"},
-                                        {"cauchy", 6, "Pa"},
-                                        {"von_mises", 1, "Pa"},
-                                        {"strain_energy_density", 1, "J/m^3"}};
-constexpr Quantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
-                                           {"von_mises", 1, "Pa"},
-                                           {"principal_stretches", 3, "-"},
-                                           {"strain_energy_density", 1, "J/m^3"},
-                                           {"stress_error", 1, "Pa"}};
+constexpr StoredQuantity kNodeQuantities[] = {{"displacement", 3, "m"},
+                                              {"velocity", 3, "m/s"},
+                                              {"cauchy", 6, "Pa"},
+                                              {"von_mises", 1, "Pa"},
+                                              {"strain_energy_density", 1, "J/m^3"}};
+constexpr StoredQuantity kElementQuantities[] = {{"cauchy", 6, "Pa"},
+                                                 {"von_mises", 1, "Pa"},
+                                                 {"principal_stretches", 3, "-"},
+                                                 {"strain_energy_density", 1, "J/m^3"},
+                                                 {"stress_error", 1, "Pa"}};
 
-constexpr Quantity kBeamNodeQuantities[] = {
+constexpr StoredQuantity kBeamNodeQuantities[] = {
     {"position", 3, "m"}, {"orientation", 4, "-"}, {"velocity", 3, "m/s"}};
-constexpr Quantity kBeamElementQuantities[] = {
+constexpr StoredQuantity kBeamElementQuantities[] = {
     {"force", 3, "N"}, {"moment", 3, "N m"}, {"strain", 3, "-"}, {"curvature", 3, "1/m"}};
-constexpr Quantity kPieceQuantities[] = {{"tension", 1, "N"}, {"length", 1, "m"}};
+constexpr StoredQuantity kPieceQuantities[] = {{"tension", 1, "N"}, {"length", 1, "m"}};
 
 /// All numbers of all loads in one channel, with a view of each under the load's name.
 void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
@@ -61,7 +63,7 @@ void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
 /// Friction, stops and drives of joints, in the order of results_frame().
 void plan_resistance(const ResultsLayout& layout, FilePlan& p, bool named) {
   namespace r = results;
-  const auto add = [&](const Quantity& q, auto&& count_of, bool integer) {
+  const auto add = [&](const StoredQuantity& q, auto&& count_of, bool integer) {
     std::size_t numbers = 0;
     for (const auto& joint : layout.joints) numbers += static_cast<std::size_t>(count_of(joint));
     if (numbers == 0) return;
@@ -93,14 +95,14 @@ void plan_contacts(const ResultsLayout& layout, FilePlan& p) {
   p.add(r::kEnergy, {"lost_by_friction", 1, "J"}, {});
   const std::size_t pairs = layout.contacts.size();
   if (pairs == 0) return;
-  const auto add = [&](const Quantity& q, std::vector<std::size_t> dims, bool integer) {
+  const auto add = [&](const StoredQuantity& q, std::vector<std::size_t> dims, bool integer) {
     p.add(r::kPackedContacts, q, std::move(dims), integer);
     for (std::size_t i = 0; i < pairs && pairs <= static_cast<std::size_t>(r::kMostNamed); ++i)
       p.view(r::kContacts, layout.contacts[i], q, i, 1, true);
   };
-  for (const Quantity& q : kContactNumbers) add(q, {pairs}, false);
-  for (const Quantity& q : kContactCounts) add(q, {pairs}, true);
-  for (const Quantity& q : kContactVectors) add(q, {pairs, q.size}, false);
+  for (const StoredQuantity& q : kContactNumbers) add(q, {pairs}, false);
+  for (const StoredQuantity& q : kContactCounts) add(q, {pairs}, true);
+  for (const StoredQuantity& q : kContactVectors) add(q, {pairs, q.size}, false);
 }
 
 void plan_solids(const ResultsLayout& layout, FilePlan& p) {
@@ -109,7 +111,7 @@ void plan_solids(const ResultsLayout& layout, FilePlan& p) {
     p.add_all(part(solid.name, "elements"), kElementQuantities,
               static_cast<std::size_t>(solid.mesh->element_count()));
     for (const std::string& interface : solid.interfaces)
-      for (const Quantity& q : kReactions)
+      for (const StoredQuantity& q : kReactions)
         p.add(part(solid.name, "interfaces/" + interface), q, {q.size});
   }
 }
@@ -172,20 +174,20 @@ FilePlan plan_results(const ResultsLayout& layout) {
   for (std::size_t i = 0; i < bodies; ++i) own_views += layout.is_node(i) ? 0 : 1;
   const bool named = own_views <= r::kMostNamed;
   p.channels.push_back({r::kTime, {}, "s", false});
-  for (const Quantity& q : kBodyQuantities) {
+  for (const StoredQuantity& q : kBodyQuantities) {
     if (bodies == 0) break;
     p.add(r::kPackedBodies, q, {bodies, q.size});
     for (std::size_t i = 0; named && i < bodies; ++i)
       if (!layout.is_node(i)) p.view(r::kBodies, layout.bodies[i], q, i, 1, true);
   }
-  for (const Quantity& q : kReactions) {
+  for (const StoredQuantity& q : kReactions) {
     if (joints == 0) break;
     p.add(r::kPackedJoints, q, {joints, q.size});
     for (std::size_t i = 0; named && i < joints; ++i)
       p.view(r::kJoints, layout.joints[i].name, q, i, 1, true);
   }
   const auto coordinates = static_cast<std::size_t>(layout.coordinates());
-  for (const Quantity& q : kCoordinates) {
+  for (const StoredQuantity& q : kCoordinates) {
     if (coordinates == 0) break;
     p.add(r::kPackedJoints, q, {coordinates});
     std::size_t first = 0;
@@ -197,7 +199,7 @@ FilePlan plan_results(const ResultsLayout& layout) {
   }
   plan_resistance(layout, p, named);
   add_loads(p, layout, named);
-  for (const Quantity& q : kEnergies) p.add(r::kEnergy, q, {});
+  for (const StoredQuantity& q : kEnergies) p.add(r::kEnergy, q, {});
   p.add(r::kMomentum, {"linear", 3, "kg m/s"}, {3});
   p.add(r::kMomentum, {"angular", 3, "kg m^2/s"}, {3});
   p.add(r::kSolver, {"dt", 1, "s"}, {});

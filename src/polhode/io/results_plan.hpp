@@ -18,7 +18,7 @@ namespace polhode {
 }
 
 /// A per-body or per-joint quantity: its name in the file, entries of one body, unit.
-struct Quantity {
+struct StoredQuantity {
   const char* name;
   std::size_t size;
   const char* unit;
@@ -28,19 +28,20 @@ struct FilePlan {
   std::vector<Channel> channels;
   std::vector<ChannelView> views;
 
-  void add(const std::string& group, const Quantity& q, std::vector<std::size_t> dims,
+  void add(const std::string& group, const StoredQuantity& q, std::vector<std::size_t> dims,
            bool integer = false) {
     channels.push_back({join(group, q.name), std::move(dims), q.unit, integer});
   }
   /// Quantities of `rows` things each.
-  void add_all(const std::string& group, std::span<const Quantity> quantities, std::size_t rows) {
-    for (const Quantity& q : quantities) {
+  void add_all(const std::string& group, std::span<const StoredQuantity> quantities,
+               std::size_t rows) {
+    for (const StoredQuantity& q : quantities) {
       std::vector<std::size_t> dims{rows};
       if (q.size > 1) dims.push_back(q.size);
       add(group, q, std::move(dims));
     }
   }
-  void view(const char* group, const std::string& owner, const Quantity& q, std::size_t first,
+  void view(const char* group, const std::string& owner, const StoredQuantity& q, std::size_t first,
             std::size_t count, bool squeeze) {
     views.push_back(
         {format("{}/{}/{}", group, owner, q.name), channels.size() - 1, first, count, squeeze});

@@ -18,7 +18,7 @@ constexpr const char* kNoAliases = "aliases (*name) are not allowed";
 constexpr const char* kWriteOut = "Write the value out, or use a variable.";
 
 /// Stops the parser at the first thing that cannot be read on from.
-struct Stop {
+struct SourceStop {
   int line, column;
   std::string what, mend;
 };
@@ -76,7 +76,7 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   [[noreturn]] static void refuse(const YAML::Mark& mark, std::string what, std::string mend) {
-    throw Stop{mark.line + 1, mark.column + 1, std::move(what), std::move(mend)};
+    throw SourceStop{mark.line + 1, mark.column + 1, std::move(what), std::move(mend)};
   }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
@@ -151,7 +151,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   static void add_key(Level& level, const SourceNode& node) {
     const auto stop = [&](std::string what, std::string mend) {
-      throw Stop{node.line, node.column, std::move(what), std::move(mend)};
+      throw SourceStop{node.line, node.column, std::move(what), std::move(mend)};
     };
     if (node.kind != SourceNode::Kind::kText)
       stop("a key must be a name, but is " + node.description(), "Write 'name: value'.");
@@ -187,14 +187,14 @@ void check_characters(const SourceText& source) {
   int line = 1, column = 1;
   for (std::size_t k = 0; k < text.size();) {
     const std::size_t n = utf8_length(text.substr(k));
-    if (n == 0) throw Stop{line, column, "the text is not UTF-8", "Save the file as UTF-8."};
+    if (n == 0) throw SourceStop{line, column, "the text is not UTF-8", "Save the file as UTF-8."};
     const auto c = static_cast<unsigned char>(text[k]);
     if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7F)
-      throw Stop{line, column, format("the character with code {} is not allowed", c),
+      throw SourceStop{line, column, format("the character with code {} is not allowed", c),
                  "Remove it; a model file is plain text."};
     // YAML's two more line ends, which editors do not count as such.
     if (n == 3 && (text.substr(k, 3) == "\xE2\x80\xA8" || text.substr(k, 3) == "\xE2\x80\xA9"))
-      throw Stop{line, column, "a Unicode line separator is not allowed", "End lines as usual."};
+      throw SourceStop{line, column, "a Unicode line separator is not allowed", "End lines as usual."};
     if (c == '\n') {
       ++line;
       column = 1;
@@ -206,7 +206,7 @@ void check_characters(const SourceText& source) {
 }
 
 /// A sentence from the parser's message.
-Stop parser_complaint(const SourceText& source, const YAML::Exception& error) {
+SourceStop parser_complaint(const SourceText& source, const YAML::Exception& error) {
   const int line = error.mark.line + 1, column = error.mark.column + 1;
   const std::string_view text = source.line(line);
   const std::size_t indent = text.find_first_not_of(" \t");
@@ -227,7 +227,7 @@ void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode
     struct Refuser : TreeBuilder {
       using TreeBuilder::TreeBuilder;
       void OnDocumentStart(const YAML::Mark& mark) override {
-        throw Stop{mark.line + 1, mark.column + 1, "a second document starts here",
+        throw SourceStop{mark.line + 1, mark.column + 1, "a second document starts here",
                    "Keep one document in a file."};
       }
     };
@@ -281,7 +281,7 @@ SourceTree SourceTree::parse(std::string text, std::string filename, const Sourc
            "Build a model of this size in code.");
   try {
     parse_into(*tree.source_, limits, tree.root_);
-  } catch (const Stop& stop) {
+  } catch (const SourceStop& stop) {
     refuse(stop.line, stop.column, stop.what, stop.mend);
   }
   return tree;
@@ -335,7 +335,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
   try {
     const SourceText text("", value);
     parse_into(text, {}, replacement);
-  } catch (const Stop& stop) {
+  } catch (const SourceStop& stop) {
     diagnostics.add(place, path, stop.what, stop.mend);
     return;
   }

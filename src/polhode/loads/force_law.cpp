@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
+#include <polhode/base/gauss_rule.hpp>
 #include <polhode/loads/force_law.hpp>
 
 namespace polhode {
 
 namespace {
 
-/// Gauss-Legendre points and weights on (0, 1): exact for polynomials of degree 9.
-constexpr std::array<std::pair<double, double>, 5> kGauss{
-    {{0.046910077030668004, 0.118463442528094544},
-     {0.230765344947158454, 0.239314335249683234},
-     {0.5, 0.284444444444444444},
-     {0.769234655052841546, 0.239314335249683234},
-     {0.953089922969331996, 0.118463442528094544}}};
 /// Halvings that leave nothing of an interval but round-off.
 constexpr int kMostHalvings = 44;
 /// Part of the largest value below which two estimates agree.

@@ -1,21 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <utility>
-
+#include <polhode/base/gauss_rule.hpp>
 #include <polhode/loads/motor.hpp>
 
 namespace polhode {
-
-namespace {
-
-/// Gauss-Legendre points and weights on (0, 1): exact for polynomials of degree 9.
-constexpr std::array<std::pair<double, double>, 5> kGauss{{{0.046910077030668, 0.118463442528095},
-                                                           {0.230765344947158, 0.239314335249683},
-                                                           {0.5, 0.284444444444444},
-                                                           {0.769234655052842, 0.239314335249683},
-                                                           {0.953089922969332, 0.118463442528095}}};
-
-}  // namespace
 
 Motor::Motor(const LoadDescription& load)
     : coordinate_(load.coordinate()), function_(load.function) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kStraight = 1e-6;
 /// Parts of a beam that are nearer than so many radii along it do not meet: half a turn around a
 /// bar of the same radius brings them together without contact.
-constexpr double kNear = std::numbers::pi;
+constexpr double kNearAlongBeam = std::numbers::pi;
 
 double radius_of(const BeamSpec& beam) {
   if (beam.contact->radius > 0.0) return beam.contact->radius;
@@ -78,7 +78,7 @@ std::vector<std::pair<int, int>> beam_neighbours(const Model& model) {
     if (!beam.contact) continue;
     const std::vector<double> s = arc_lengths(beam);
     const auto half = [&](std::size_t element) { return 0.5 * beam.mesh[element].length; };
-    const double near = kNear * radius_of(beam);
+    const double near = kNearAlongBeam * radius_of(beam);
     const std::size_t count = s.size();
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = i + 1; j < count; ++j) {

@@ -12,7 +12,7 @@ namespace {
 /// What is nearer to an attachment than so many radii along the cable does not meet what holds it.
 constexpr double kNear = std::numbers::pi;
 /// Parts of a spacing that are rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kRoundedPart = 1e-9;
 /// Points may come apart to so many times the spacing that is asked for: below four nothing passes,
 /// as every place is then nearer to one of them than what they keep away.
 constexpr double kMostStretch = 3.2;
@@ -62,7 +62,7 @@ CablePoints cable_points(const CableLine& line, double spacing) {
   double before = 0.0;  // half of the distance to the point before
   for (std::size_t k = 0; k + 1 < line.nodes.size(); ++k) {
     const double length = line.arc[k + 1] - line.arc[k];
-    const int parts = std::max(1, static_cast<int>(std::ceil(length / spacing - kRounding)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(length / spacing - kRoundedPart)));
     const double half = 0.5 * length / parts;
     for (int i = 0; i < parts; ++i)
       add(k, static_cast<double>(i) / parts, 1.0 / parts, i == 0 ? before + half : 2.0 * half);

@@ -10,7 +10,7 @@ namespace polhode {
 namespace {
 
 /// What is nearer along a cable than so many radii is its own bend.
-constexpr double kNear = std::numbers::pi;
+constexpr double kNearOnItself = std::numbers::pi;
 /// In tolerances: how far behind the points are, so that edges that cross do not feel them, and how
 /// far edges retreat that lie along each other, so that these do not feel one another: points end
 /// three tolerances below the sum of the radii, and straight pieces sag between them by one.
@@ -94,7 +94,7 @@ class Sides {
       while (last + 1 < count) {
         const double between =
             arc[static_cast<std::size_t>(last + 1)] - arc[static_cast<std::size_t>(e + 1)];
-        if (between >= kNear * a_.line.radius && !overlap(e, last + 1)) break;
+        if (between >= kNearOnItself * a_.line.radius && !overlap(e, last + 1)) break;
         ++last;
       }
       left_out_[static_cast<std::size_t>(e)].push_back({e, last});
@@ -104,7 +104,7 @@ class Sides {
   /// Pieces that begin nearer to a node of the line than half a turn.
   [[nodiscard]] static Range around(const CableLine& line, std::size_t node) {
     Range r{static_cast<int>(node), static_cast<int>(node) - 1};
-    const double near = kNear * line.radius, at = line.arc[node];
+    const double near = kNearOnItself * line.radius, at = line.arc[node];
     while (r[1] + 1 < pieces(line) && line.arc[static_cast<std::size_t>(r[1] + 1)] - at < near)
       ++r[1];
     while (r[0] > 0 && at - line.arc[static_cast<std::size_t>(r[0])] < near) --r[0];

@@ -15,7 +15,7 @@ namespace {
 /// before those of pairs, and for each
 /// pair: impulse, energy lost, whether its sensor overlaps. With impulses, last: sweeps, and steps
 /// that did not converge.
-constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kLeastGap = 2, kUnresolved = 3;
+constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kLeastGap = 2, kUnresolvedTime = 3;
 /// No gap was small yet: totals are compared, which NaN would not stand.
 constexpr double kNoGap = std::numeric_limits<double>::infinity();
 
@@ -69,7 +69,7 @@ void ContactKeeper::look(State& state, bool sum) {
     if (sum) {
       totals[0] += r.impact_loss;
       totals[1] += r.dissipated - r.impact_loss;
-      totals[kUnresolved] += r.unresolved;
+      totals[kUnresolvedTime] += r.unresolved;
     }
     const auto found = place.find(std::minmax(a, b));
     if (found == place.end()) continue;
@@ -116,7 +116,7 @@ ContactReport ContactKeeper::report(int pair) const {
 }
 
 double ContactKeeper::unresolved() const {
-  return totals_.size() > kUnresolved ? totals_[kUnresolved] : 0.0;
+  return totals_.size() > kUnresolvedTime ? totals_[kUnresolvedTime] : 0.0;
 }
 
 ImpulseFigures ContactKeeper::impulse_figures() const {

@@ -15,10 +15,10 @@ using Kind = GearCoordinate::Kind;
 /// Sine of the angle between axes below which they are parallel.
 constexpr double kParallel = 1e-6;
 
-class Planner {
+class GearPlanner {
  public:
-  Planner(const std::string& where, const std::array<GearJoint, 2>& joints,
-          const std::vector<GearPose>& poses)
+  GearPlanner(const std::string& where, const std::array<GearJoint, 2>& joints,
+              const std::vector<GearPose>& poses)
       : where_(where), joints_(joints), poses_(poses) {
     for (std::size_t i = 0; i < 2; ++i) find_coordinate(i);
   }
@@ -194,7 +194,7 @@ class Planner {
 
 GearGeometry gear_geometry(const std::string& where, const std::array<GearJoint, 2>& joints,
                            const std::vector<GearPose>& poses) {
-  return Planner(where, joints, poses).plan();
+  return GearPlanner(where, joints, poses).plan();
 }
 
 }  // namespace polhode

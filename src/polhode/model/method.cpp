@@ -18,7 +18,7 @@ namespace {
 
 /// Newton tolerances. The higher orders resolve smaller errors; in solids what is left of a step
 /// goes into many vibrations.
-constexpr double kTolerance = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
+constexpr double kToleranceBodies = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
 /// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
 /// Surfaces of solids in contact: forces follow from tiny ways.
@@ -187,7 +187,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
                        : c.order > 4             ? kToleranceHighOrder
                        : !system.nodes().empty() ? kToleranceSolids
-                                                 : kTolerance;
+                                                 : kToleranceBodies;
   c.newton.max_iterations =
       a.max_iterations.value_or(system.nodes().empty() ? kIterations : kIterationsSolids);
   c.newton.jacobian = policy;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 
+#include <polhode/base/clock.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/model/modal.hpp>
@@ -17,13 +16,6 @@ constexpr double kUnbalanced = 1e-6;
 /// A velocity of a centre of mass below this part of the size of the model times its angular
 /// velocity is rounding.
 constexpr double kStays = 1e-9;
-
-double wall_clock() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
-double cpu_clock() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Angular velocities of the bodies of the system at the start, in body axes; empty if nothing
 /// turns. @throws InputError if anything moves but about its own centre of mass.

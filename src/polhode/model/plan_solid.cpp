@@ -19,9 +19,9 @@ namespace {
 /// A node that no selection holds so far.
 constexpr int kNobody = -1;
 
-class Planner {
+class SolidPlanner {
  public:
-  Planner(const Model& model, int solid, std::vector<InputError>* faults)
+  SolidPlanner(const Model& model, int solid, std::vector<InputError>* faults)
       : model_(model),
         solid_(model.solids.at(static_cast<std::size_t>(solid))),
         where_(format("solids.{}", solid_.name)),
@@ -276,7 +276,7 @@ class Planner {
 }  // namespace
 
 SolidPlan plan_solid(const Model& model, int solid, std::vector<InputError>* faults) {
-  return Planner(model, solid, faults).plan();
+  return SolidPlanner(model, solid, faults).plan();
 }
 
 }  // namespace polhode

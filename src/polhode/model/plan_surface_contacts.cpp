@@ -25,9 +25,9 @@ std::string strange_key(const ContactLawSpec& law) {
 
 bool touches_itself(const CableLineSpec& cable) { return cable.contact && cable.contact->self; }
 
-class Planner {
+class SurfacePlanner {
  public:
-  Planner(const Model& model, std::vector<InputError>* faults)
+  SurfacePlanner(const Model& model, std::vector<InputError>* faults)
       : model_(model), faults_(faults), groups_(model) {
     for (const auto& [a, b] : model.contacts.excluded) excluded_.insert(std::minmax(a, b));
     for (const ContactPairSpec& pair : model.contacts.pairs)
@@ -230,7 +230,7 @@ class Planner {
 std::vector<SurfacePair> plan_surface_contacts(const Model& model,
                                                std::vector<InputError>* faults) {
   if (!model.contacts.present) return {};
-  return Planner(model, faults).plan();
+  return SurfacePlanner(model, faults).plan();
 }
 
 }  // namespace polhode

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include <polhode/assembly/state_archive.hpp>
+#include <polhode/base/clock.hpp>
 #include <polhode/model/simulation_impl.hpp>
 
 namespace polhode {
 
 namespace {
-
-double cpu_clock() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Two times closer than this part of the distance between outputs are the same.
 constexpr double kSameTime = 1e-9;

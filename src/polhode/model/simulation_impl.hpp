@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/base/clock.hpp>
 #include <polhode/base/error.hpp>
 #include <polhode/base/format.hpp>
 #include <polhode/base/names.hpp>
@@ -24,12 +24,6 @@
 #include <polhode/solve/node_motion.hpp>
 
 namespace polhode {
-
-/// [s]
-inline double wall_clock() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
 
 /// Above this many bodies the start does not solve for multipliers that the method does not need.
 inline constexpr int kSmallSystem = 2000;

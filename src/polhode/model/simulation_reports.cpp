@@ -85,13 +85,7 @@ Balance Simulation::balance() const { return impl_->stepper->balance(impl_->stat
 
 const std::vector<SolidMap>& Simulation::solids() const { return impl_->map.solids; }
 
-namespace {
-
-Vec3 at_node(const std::vector<double>& field, int node) {
-  return Eigen::Map<const Vec3>(field.data() + 3 * node);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 /// Velocity of a node: a bonded one has its body's, without what Newmark's adds of order Δt².
 Vec3 Simulation::node_velocity(int node) const {

@@ -17,7 +17,7 @@ namespace {
 /// How far outside of an element a point may lie, of the element's extent.
 constexpr double kOutside = 1e-6;
 /// Iterations of the inverse map; it converges quadratically from the middle of sound elements.
-constexpr int kIterations = 30;
+constexpr int kPointIterations = 30;
 
 /// How far reference coordinates lie outside of a cell; negative inside.
 double outside(const CellShape& shape, const Vec3& xi) {
@@ -33,7 +33,7 @@ std::optional<Vec3> inverse_map(const CellShape& shape, const std::vector<Vec3>&
                                 const Vec3& X, double size) {
   Vec3 xi = Vec3::Zero();
   for (const Vec3& node : shape.nodes) xi += node / static_cast<double>(shape.nodes.size());
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  for (int iteration = 0; iteration < kPointIterations; ++iteration) {
     const Vec N = shape_functions(shape, xi);
     const Mat dN = shape_gradients(shape, xi);
     Vec3 rest = X;

@@ -9,12 +9,12 @@ namespace polhode {
 namespace {
 
 /// Inertias and arms that differ by less than this part are those of balls.
-constexpr double kRoundOff = 1e-12;
+constexpr double kSweepsRoundOff = 1e-12;
 /// What stands still is there so many times, lest points wait for it.
 constexpr int kGrounds = 16;
 
 bool is_round(const Mat3& m) {
-  return (m - m(0, 0) * Mat3::Identity()).lpNorm<Eigen::Infinity>() <= kRoundOff * m(0, 0);
+  return (m - m(0, 0) * Mat3::Identity()).lpNorm<Eigen::Infinity>() <= kSweepsRoundOff * m(0, 0);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ bool BallSweeps::suit(const ImpulseSweeps& from) {
     if (!is_round(b.inverse_inertia)) return false;
   for (const ImpulseSweeps::Point& p : from.points)
     for (const Vec3& arm : {p.arm_a, p.arm_b})
-      if (arm.cross(p.normal).squaredNorm() > kRoundOff * kRoundOff * arm.squaredNorm())
+      if (arm.cross(p.normal).squaredNorm() > kSweepsRoundOff * kSweepsRoundOff * arm.squaredNorm())
         return false;
   return true;
 }

@@ -13,8 +13,8 @@ namespace {
 /// What is left in front of a barrier after an iteration, of what there was before it.
 constexpr double kLeave = 0.1;
 /// Parts are taken a little smaller, as the way to a barrier is not straight.
-constexpr double kShorter = 0.98;
-constexpr int kMostRepeats = 20;
+constexpr double kShorterWay = 0.98;
+constexpr int kGuardRepeats = 20;
 
 double smallest(const std::vector<double>& clearances) {
   double least = std::numeric_limits<double>::infinity();
@@ -57,7 +57,7 @@ double BarrierGuard::part() const {
     const double leave = kLeave * std::min(from_[i], 1.0);
     if (to_[i] >= leave) continue;
     const double way = from_[i] - to_[i];
-    most = std::min(most, way > 0.0 ? kShorter * (from_[i] - leave) / way : 0.0);
+    most = std::min(most, way > 0.0 ? kShorterWay * (from_[i] - leave) / way : 0.0);
   }
   if (points_.empty()) return most;
   const NodeStep to = node_step(state_, trial_);
@@ -65,7 +65,7 @@ double BarrierGuard::part() const {
   from.x_n1 = from_x_.data();
   for (const Watched& w : points_) {
     const double free = w.points->free_part(from, to, w.history);
-    if (free < 1.0) most = std::min(most, kShorter * free);
+    if (free < 1.0) most = std::min(most, kShorterWay * free);
   }
   return most;
 }
@@ -86,10 +86,10 @@ void BarrierGuard::hold_prediction() {
   measure_start();
   go(1.0);
   double taken = 1.0;
-  for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
+  for (int repeat = 0; repeat < kGuardRepeats; ++repeat) {
     const double fits = part();
     if (fits >= 1.0) break;
-    taken = repeat + 1 < kMostRepeats ? taken * fits : 0.0;
+    taken = repeat + 1 < kGuardRepeats ? taken * fits : 0.0;
     go(taken);
     measure(to_);
   }
@@ -105,7 +105,7 @@ void BarrierGuard::before() {
 Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
   if (idle_) return done;
   double applied = 1.0;
-  for (int repeat = 0; done.solved && repeat < kMostRepeats; ++repeat) {
+  for (int repeat = 0; done.solved && repeat < kGuardRepeats; ++repeat) {
     measure(to_);
     const double fits = part();
     if (fits >= 1.0) break;

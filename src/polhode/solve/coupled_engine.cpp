@@ -17,16 +17,16 @@ constexpr int kFactorAlways = 3000;
 /// A kept factorisation is given up when an iteration contracts worse than this, after this many
 /// iterations of a step, or when Δt² is off by this part.
 constexpr double kWorstContraction = 0.5;
-constexpr int kPatience = 8;
+constexpr int kCoupledPatience = 8;
 constexpr double kStepChange = 0.2;
 /// An iterate that turns elements inside out is gone back from this often, half the way each time.
-constexpr int kHalvings = 8;
+constexpr int kCoupledHalvings = 8;
 /// Increments below this do not turn an element inside out: no iterate is kept to go back to.
 constexpr double kHarmless = 1e-3;
 /// Bodies that may touch are looked up so often for one iteration.
 constexpr int kMostPairChanges = 4;
 /// Round-off of a merit, as part of ℓ² m.
-constexpr double kNothing = 1e-28;
+constexpr double kNoForce = 1e-28;
 
 }  // namespace
 
@@ -72,12 +72,12 @@ bool CoupledEngine::must_factor(const Trial& trial, bool refactor) const {
   if (!reuse_) return refactor;
   const double dt = trial.context.dt, ratio = dt * dt / (factored_dt_ * factored_dt_);
   return std::abs(ratio - 1.0) > kStepChange || contraction_ > kWorstContraction ||
-         (step_iterations_ > 0 && step_iterations_ % kPatience == 0);
+         (step_iterations_ > 0 && step_iterations_ % kCoupledPatience == 0);
 }
 
 bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor, Iteration& done) {
   ElementReport elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
-  for (int i = 0; i < kHalvings && before_.kept() && !(elements.least_volume > 0.0); ++i) {
+  for (int i = 0; i < kCoupledHalvings && before_.kept() && !(elements.least_volume > 0.0); ++i) {
     retreat(state, trial, 0.5);
     elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
   }
@@ -183,7 +183,7 @@ void CoupledEngine::search(const State& state, Trial& trial, double before, Iter
     const ElementReport elements = nodes_.assemble(state, trial, false, condensation_.turns(trial));
     const double after =
         elements.least_volume > 0.0 ? merit(state, trial) : std::numeric_limits<double>::infinity();
-    if (after < kNothing * std::pow(system_->length_scale(), 2) * system_->mean_mass()) return;
+    if (after < kNoForce * std::pow(system_->length_scale(), 2) * system_->mean_mass()) return;
     if (search.accepts(after)) return;
     retreat(state, trial, search.part() / part_);
   }

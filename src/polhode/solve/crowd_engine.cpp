@@ -18,22 +18,22 @@ constexpr int kCoarseIterations = 2, kMostInner = 400;
 /// Residual, in weights, below which friction follows the normal forces within an increment, and
 /// directions that it is sought in: farther away sliding points change too much.
 constexpr double kRubbing = 1.0;
-constexpr int kDirections = 3;
+constexpr int kCrowdDirections = 3;
 /// An increment that leaves more than this part of the residual lacks that friction.
 constexpr double kSlow = 0.2;
 constexpr int kMostCuts = 2;
 /// Bodies are moved on while their residual is above this part of what counts as solved; others
 /// within so many contacts of them go with them. Where these are most, all are.
-constexpr double kLate = 0.02, kMost = 0.7;
+constexpr double kLate = 0.02, kMostCrowd = 0.7;
 constexpr int kRings = 2;
 /// Part of the merit that an increment shall take away. An increment that takes hardly anything
 /// flips between sticking and sliding: half of it takes nearly all.
 constexpr double kDecrease = 0.25;
-constexpr double kRoundOff = 4.4e-16;
+constexpr double kCrowdRoundOff = 4.4e-16;
 /// In shorter steps less residual is left, in proportion [s].
 constexpr double kWholeStep = 1e-3;
 /// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
-constexpr double kPartOfSpeed = 1e-3;
+constexpr double kPartOfApproach = 1e-3;
 
 }  // namespace
 
@@ -119,7 +119,7 @@ void CrowdEngine::begin_step(const State& state, Trial& trial) {
   }
   start_inertia(state, trial.context);
   weight_ = system_->gravity().norm();
-  if (weight_ == 0.0) weight_ = kPartOfSpeed * std::sqrt(fastest) / std::abs(trial.context.dt);
+  if (weight_ == 0.0) weight_ = kPartOfApproach * std::sqrt(fastest) / std::abs(trial.context.dt);
   weight_ = std::max(weight_, std::numeric_limits<double>::min());
   contacts_->begin_step(state, steps_, trial.context);
   contacts_->cover(steps_, trial.context, x_);
@@ -154,7 +154,7 @@ void CrowdEngine::move_late() {
   moving_.clear();
   for (std::size_t b = 0; b < n; ++b)
     if (moves_[b]) moving_.push_back(static_cast<int>(b));
-  if (static_cast<double>(moving_.size()) > kMost * static_cast<double>(n)) move_all();
+  if (static_cast<double>(moving_.size()) > kMostCrowd * static_cast<double>(n)) move_all();
 }
 
 /// Forces of bodies, loads and contacts at the trial, whose steps are up to date.
@@ -209,7 +209,7 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
   residual_ = std::sqrt(worst) / weight_;
   // Residuals push in every step: the shorter the steps, the more of them.
   const double asked = tolerance_ * std::min(1.0, std::abs(context.dt) / kWholeStep);
-  enough_ = std::max(asked, kRoundOff * noise / weight_);  // no residual can be smaller
+  enough_ = std::max(asked, kCrowdRoundOff * noise / weight_);  // no residual can be smaller
   evaluated_ = true;
 }
 
@@ -225,7 +225,7 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   }
   cg_.set_springs(acting_, moving_);
   inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner,
-                      slow_ && residual_ < kRubbing ? kDirections : 0);
+                      slow_ && residual_ < kRubbing ? kCrowdDirections : 0);
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
   double part = std::min(damping, contacts_->filter(steps_, x_));

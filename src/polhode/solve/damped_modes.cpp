@@ -17,9 +17,9 @@ namespace polhode {
 namespace {
 
 /// Up to so many freedoms all eigenvalues are found at once.
-constexpr int kDense = 240;
+constexpr int kDampedDense = 240;
 /// Shift, as part of the frequency below which there are as many modes as wanted.
-constexpr double kShift = 0.3;
+constexpr double kDampedShift = 0.3;
 /// Free motions are looked for next to this part of the shift, by so many inverse iterations; their
 /// energy is below the last number, as part of what it is the sum of.
 constexpr double kNearZero = 1e-4, kFree = 1e-13;
@@ -38,7 +38,7 @@ constexpr int kMostFree = 60;
 /// real and free motions do no harm.
 double shift_of(ModalMatrices& m, int wanted) {
   const double range = range_of(m, wanted);
-  return kShift * std::sqrt(range > 0.0 && std::isfinite(range) ? range : 1.0);
+  return kDampedShift * std::sqrt(range > 0.0 && std::isfinite(range) ? range : 1.0);
 }
 
 Complex from_inverse(Complex nu, double sigma) {
@@ -237,7 +237,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
 
 std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms) {
   std::vector<EigenPair> all;
-  if (m.n() <= kDense || 3 * wanted > m.n()) {
+  if (m.n() <= kDampedDense || 3 * wanted > m.n()) {
     const ModalMatrices::Dense d = m.dense();
     const Mat N = allowed_motions(m, d.Gt);
     freedoms = static_cast<int>(N.cols());

@@ -17,7 +17,7 @@ namespace polhode {
 namespace {
 
 /// A stiffness is symmetric up to this part of its entries.
-constexpr double kSymmetric = 1e-7;
+constexpr double kSymmetricPencil = 1e-7;
 constexpr double kResidual = 1e-6;  ///< Above it a mode is said to be inaccurate.
 /// Growth or decay below this part of |λ| is rounding.
 constexpr double kSteady = 1e-9;
@@ -265,7 +265,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   report.unbalanced =
       balance_of_forces.force > 0.0 ? balance_of_forces.residual / balance_of_forces.force : 0.0;
   report.asymmetry = m.asymmetry();
-  report.symmetric = !m.damped() && report.asymmetry <= kSymmetric;
+  report.symmetric = !m.damped() && report.asymmetry <= kSymmetricPencil;
   if (!options.spin.empty()) check_steady(system, equilibrium, options, m, report);
   std::vector<Mode> modes =
       report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);

@@ -36,7 +36,7 @@ constexpr int kMoreWhenClose = 3;
 /// Room made for increments at once.
 constexpr std::size_t kUsualIterations = 8;
 /// An increment above this is no Newton iteration any more.
-constexpr double kDiverged = 1e3;
+constexpr double kNewtonDiverged = 1e3;
 /// With a factorisation kept from earlier steps: what later increments would add up to, as part of
 /// the tolerance.
 constexpr double kLeftByKeptFactor = 1e-4;
@@ -44,7 +44,7 @@ constexpr double kLeftByKeptFactor = 1e-4;
 constexpr double kLarge = 0.05;
 /// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.
 constexpr double kEnergyLeak = 1e-14;
-constexpr double kRoundOff = 4.4e-16;
+constexpr double kNewtonRoundOff = 4.4e-16;
 
 /// Damping: goes back to the iterate before a step that made things worse, and takes less of it.
 class LineSearch {
@@ -144,7 +144,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       slow = 0;
       continue;
     }
-    if (e > kDiverged) return fail("diverges"), report;
+    if (e > kNewtonDiverged) return fail("diverges"), report;
     slow = last > 0.0 && !close && !engine.may_grow() && !guard.near() && e > 0.9 * last &&
                    e > options.tolerance
                ? slow + 1
@@ -180,7 +180,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     report.constraints = engine.check(state, trial);
     const ConstraintCheck& c = report.constraints;
     if (!std::isfinite(c.residual)) return fail("a value is not finite"), report;
-    const double allowed = kEnergyLeak * options.energy_scale + kRoundOff * c.work_scale;
+    const double allowed = kEnergyLeak * options.energy_scale + kNewtonRoundOff * c.work_scale;
     const bool stagnates = polished && it > 2 && c.work_defect > 0.5 * defect_before;
     defect_before = c.work_defect;
     if (c.work_defect <= allowed || system.rows() == 0 || stagnates) {

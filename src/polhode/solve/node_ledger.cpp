@@ -5,14 +5,6 @@
 
 namespace polhode {
 
-namespace {
-
-Eigen::Map<const Vec3> at(const std::vector<double>& field, int node) {
-  return Eigen::Map<const Vec3>(field.data() + 3 * node);
-}
-
-}  // namespace
-
 NodeLedger::NodeLedger(const System& system) : system_(&system), nodes_(system) {
   const Nodes& nodes = system.nodes();
   for (int i = 0; i < nodes.count(); ++i)
@@ -30,8 +22,8 @@ void NodeLedger::add_sums(const State& state, BodySums& s) const {
   for (int i = 0; i < nodes.count(); ++i) {
     Vec3 p = Vec3::Zero();
     for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
-      p += nodes.mass()[b] * at(state.node_v, nodes.column()[b]);
-    const Vec3 x = at(state.node_x, i), v = at(state.node_v, i), l = x.cross(p);
+      p += nodes.mass()[b] * at_node(state.node_v, nodes.column()[b]);
+    const Vec3 x = at_node(state.node_x, i), v = at_node(state.node_v, i), l = x.cross(p);
     const double m = nodes.node_mass(i);
     s.kinetic += 0.5 * v.dot(p);
     s.gravity_potential -= m * g.dot(x);
@@ -74,13 +66,14 @@ void NodeLedger::add_lag(Ledger& ledger, const State& state, const Trial& trial,
     Vec3 lag = Vec3::Zero();  // [m/s]
     for (int c = 0; c < 3; ++c)
       if (nodes.unknown(i, c) < 0)
-        lag[c] = 0.5 * (at(state.node_v, i)[c] + at(v, i)[c]) - at(trial.node_u, i)[c] / dt;
+        lag[c] = 0.5 * (at_node(state.node_v, i)[c] + at_node(v, i)[c]) -
+                 at_node(trial.node_u, i)[c] / dt;
     if (lag.isZero(0.0)) continue;
     Vec3 force = Vec3::Zero(), momentum = Vec3::Zero();
     for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b) {
       const int j = nodes.column()[b];
-      force += nodes.mass()[b] * at(a, j);
-      momentum += 0.5 * nodes.mass()[b] * (at(state.node_v, j) + at(v, j));
+      force += nodes.mass()[b] * at_node(a, j);
+      momentum += 0.5 * nodes.mass()[b] * (at_node(state.node_v, j) + at_node(v, j));
     }
     ledger.put_in.add(dt * lag.dot(force));
     moment -= lag.cross(momentum);
@@ -111,7 +104,7 @@ double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3&
       Vec3 f = Vec3::Zero();
       for (int c = 0; c < 3; ++c)
         if (all || nodes.unknown(i, c) < 0) f[c] = nodes_.residual()[3 * i + c];
-      ledger.put_in.add(f.dot(at(trial.node_u, i)));
+      ledger.put_in.add(f.dot(at_node(trial.node_u, i)));
       add(i, f);
     }
     add_lag(ledger, state, trial, moment);
@@ -124,7 +117,7 @@ double NodeLedger::close(Ledger& ledger, const State& state, Trial& trial, Vec3&
                             sink);
     for (int e = 0; e < nodes.group(g).size(); ++e)
       for (int i : nodes.group(g).nodes(e)) {
-        const Vec3 f = at(forces_, i);
+        const Vec3 f = at_node(forces_, i);
         if (f.isZero(0.0)) continue;
         add(i, f);
         Eigen::Map<Vec3>(forces_.data() + 3 * i).setZero();  // nodes are shared by elements

@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/assembly/lane_access.hpp>
 #include <polhode/solve/node_motion.hpp>
 
 namespace polhode {
 
 namespace {
-
-Eigen::Map<Vec3> at(std::vector<double>& field, int node) {
-  return Eigen::Map<Vec3>(field.data() + 3 * node);
-}
-Eigen::Map<const Vec3> at(const std::vector<double>& field, int node) {
-  return Eigen::Map<const Vec3>(field.data() + 3 * node);
-}
-
-Vec3 lane(const Lane3& x, int l) { return {x[0][l], x[1][l], x[2][l]}; }
-Mat3 lane(const double (&x)[9][kLanes], int l) {
-  Mat3 M;
-  for (int i = 0; i < 9; ++i) M(i / 3, i % 3) = x[i][l];
-  return M;
-}
 
 /// Place of a prescribed component among those of all nodes.
 std::size_t place(const PrescribedComponent& p) {
@@ -69,16 +56,16 @@ void follow_bodies(const System& system, const State& state, Trial& trial) {
     const NodeData& node = nodes[i];
     if (node.body == kFreeNode) continue;
     if (node.body == kGround) {
-      at(trial.node_x, i) = at(state.node_x, i);
-      at(trial.node_u, i).setZero();
+      at_node(trial.node_x, i) = at_node(state.node_x, i);
+      at_node(trial.node_u, i).setZero();
       continue;
     }
     const int slot = system.slot(node.body), l = slot % kLanes;
     const TrialBlock& t = trial.blocks[slot / kLanes];
-    const Vec3 z_n = lane(t.Lambda_n, l) * node.Z, z_n1 = lane(t.Lambda, l) * node.Z;
+    const Vec3 z_n = get(t.Lambda_n, l) * node.Z, z_n1 = get(t.Lambda, l) * node.Z;
     // Λ_{n+1} = cay[θ] Λ_n: the increment by the averaged arm, without cancellation.
-    at(trial.node_u, i) = lane(t.u, l) + lane(t.theta, l).cross(0.5 * (z_n + z_n1));
-    at(trial.node_x, i) = lane(t.r, l) + z_n1;
+    at_node(trial.node_u, i) = get(t.u, l) + get(t.theta, l).cross(0.5 * (z_n + z_n1));
+    at_node(trial.node_x, i) = get(t.r, l) + z_n1;
   }
 }
 
@@ -104,7 +91,7 @@ void shorten_motion(const System& system, const State& state, double part, Trial
   for (int slot = 0; slot < system.tree().slots; ++slot) {
     const TrialBlock& t = trial.blocks[static_cast<std::size_t>(slot / kLanes)];
     const int l = slot % kLanes;
-    move_body(state, trial, slot, part * lane(t.u, l), part * lane(t.theta, l));
+    move_body(state, trial, slot, part * get(t.u, l), part * get(t.theta, l));
   }
   if (system.nodes().empty()) return;
   std::vector<double> given;
@@ -198,13 +185,13 @@ void bond_nodes(const System& system, State& state) {
   for (int i = 0; i < nodes.count(); ++i) {
     if (nodes[i].body == kFreeNode) continue;
     if (nodes[i].body == kGround) {
-      at(state.node_v, i).setZero();
+      at_node(state.node_v, i).setZero();
       continue;
     }
     const BodyMotion m = system.motion(state, nodes[i].body);
     const Vec3 z = m.q * nodes[i].Z;
-    at(state.node_x, i) = m.r + z;
-    at(state.node_v, i) = m.v + m.omega().cross(z);
+    at_node(state.node_x, i) = m.r + z;
+    at_node(state.node_v, i) = m.v + m.omega().cross(z);
   }
 }
 

@@ -17,7 +17,7 @@ namespace polhode {
 namespace {
 
 /// A motion of a part counts as free if it is one of those given up to this part of itself.
-constexpr double kSame = 1e-6;
+constexpr double kEqual = 1e-6;
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
@@ -134,7 +134,7 @@ RigidMotions rigid_motions(const System& system, const State& state, const Saddl
 Mat null_space(const Mat& A) {
   const Eigen::JacobiSVD<Mat> svd(A, Eigen::ComputeFullV);
   Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSame) ++rank;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kEqual) ++rank;
   return svd.matrixV().rightCols(A.cols() - rank);
 }
 
@@ -144,12 +144,12 @@ std::vector<Vec3> directions_of(const Mat& D, const Mat3& axes) {
   if (D.cols() == 0) return list;
   const Eigen::JacobiSVD<Mat> svd(D, Eigen::ComputeFullU);
   Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSame) ++rank;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kEqual) ++rank;
   const Mat U = svd.matrixU().leftCols(rank);
   for (int pass = 0; pass < 2; ++pass)  // axes within the space first, then what is left of others
     for (int c = 0; c < 3 && static_cast<Eigen::Index>(list.size()) < rank; ++c) {
       Vec3 d = U * (U.transpose() * axes.col(c));
-      if (pass == 0 && (d - axes.col(c)).norm() > kSame) continue;
+      if (pass == 0 && (d - axes.col(c)).norm() > kEqual) continue;
       for (const Vec3& other : list) d -= other.dot(d) * other;
       if (d.norm() < (pass == 0 ? 0.5 : 1e-3)) continue;
       list.push_back(d.normalized());
@@ -162,7 +162,7 @@ Mat3 axes_of(const Mat3& inertia) {
   const double size = inertia.trace();
   Mat3 off = inertia;
   off.diagonal().setZero();
-  if (!(size > 0.0) || off.cwiseAbs().maxCoeff() <= kSame * size) return Mat3::Identity();
+  if (!(size > 0.0) || off.cwiseAbs().maxCoeff() <= kEqual * size) return Mat3::Identity();
   return Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvectors();
 }
 
@@ -217,7 +217,8 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
       y.tail<3>() /= length;
       y.head<3>() -= along * (along.transpose() * y.head<3>());
       const Vec x = rigid.R * y;
-      if (weight.cwiseProduct(x).norm() > kSame * size * y.norm() * length) take(x, text(true, d));
+      if (weight.cwiseProduct(x).norm() > kEqual * size * y.norm() * length)
+        take(x, text(true, d));
     }
   }
   for (Eigen::Index i = 0; i < left.cols(); ++i) {

@@ -13,15 +13,15 @@ namespace polhode {
 
 namespace {
 
-constexpr double kRoundOff = std::numeric_limits<double>::epsilon();
+constexpr double kStaticRoundOff = std::numeric_limits<double>::epsilon();
 /// Rounding of a residual, in units of the products of stiffness and position it is made of.
 constexpr double kFloor = 16.0;
 /// Most a body may turn in one iteration: Cayley vector [-].
 constexpr double kRotationCap = 1.9;
 /// An increment above this, in sizes of the model, is no Newton iteration any more.
-constexpr double kDiverged = 1e6;
+constexpr double kStaticDiverged = 1e6;
 /// An iterate that turns elements inside out is gone back from this often, half the way each time.
-constexpr int kHalvings = 8;
+constexpr int kStaticHalvings = 8;
 /// Increments below this that do not fall any more are rounding if the residual is.
 constexpr double kClose = 1e-5;
 /// Residual of a constraint that counts as satisfied [m or -].
@@ -117,7 +117,7 @@ ElementReport StaticNewton::assemble() {
       if (const int u = matrix_.unknown(i, c); u >= 0) x_[u] = work_.node_x[3 * i + c];
   for (int row = 0; row < system_->rows(); ++row) x_[n + row] = s * work_.lambda[row];
   matrix_.magnitudes(x_, noise_);
-  noise_ *= kFloor * kRoundOff;
+  noise_ *= kFloor * kStaticRoundOff;
   force_ = 0.0;
   for (int b = 0; b < system_->body_count(); ++b) {
     const Vec6& f = newton_.body_residual_scale(b);
@@ -285,7 +285,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     const ElementReport elements = assemble();
     if (!(elements.least_volume > 0.0)) {
       step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
-      if (step.iterations == 0 || ++halvings > kHalvings)
+      if (step.iterations == 0 || ++halvings > kStaticHalvings)
         return fail(format("an element turns inside out (det F = {:.2g})", elements.least_volume));
       const std::vector<double> inside =
           part_way(unknowns_before, element_unknowns(*system_, trial_), 0.5);
@@ -325,7 +325,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     }
     const double e = apply(part, step);
     step.increments.push_back(e);
-    if (!(e < kDiverged)) return fail("diverges");
+    if (!(e < kStaticDiverged)) return fail("diverges");
   }
   if (const std::string refusal = refused(step); !refusal.empty()) return fail(refusal);
   step.converged = true;

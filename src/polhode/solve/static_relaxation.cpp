@@ -16,7 +16,7 @@ constexpr double kMove = 0.02, kMostMove = 0.1;
 /// Change of the resistance allowed from one step to the next.
 constexpr double kEase = 0.5, kBrake = 1.5;
 /// Newton's method is tried when steps are below this part of the size, and every so many steps.
-constexpr double kSmall = 1e-3;
+constexpr double kSmallSpeed = 1e-3;
 constexpr int kTries = 50;
 
 }  // namespace
@@ -77,7 +77,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
         std::min(move > kMostMove ? kMostMove / move : 1.0, free_part_of_increment());
     step.increments.push_back(apply(part, step));
     resistance *= std::clamp(move / kMove, kEase, kBrake);
-    if ((move < kSmall && k % 5 == 4) || k % kTries == kTries - 1) {
+    if ((move < kSmallSpeed && k % 5 == 4) || k % kTries == kTries - 1) {
       const State here = work_;
       State near = here;
       mixed_ = mixed;

@@ -14,7 +14,7 @@ namespace {
 /// Up to this asymmetry a matrix counts as symmetric: what is neglected slows nothing down.
 constexpr double kSymmetric = 1e-7;
 /// Added to stiffnesses where a motion meets none, as part of the largest.
-constexpr double kShift = 1e-6;
+constexpr double kTangentShift = 1e-6;
 /// A solution that grows to this, out of a right-hand side of size one, may tell of a free motion.
 constexpr double kNearlySingular = 1e10;
 /// Most free motions that are sought and supported; the first of them are named.
@@ -71,7 +71,7 @@ bool StaticNewton::factor(bool symmetric, StaticStep& step) {
   }
   shifted_ = true;
   std::vector<double> shift(matrix_.movable());
-  for (int i = 0; i < matrix_.movable(); ++i) shift[i] = kShift * weight(i);
+  for (int i = 0; i < matrix_.movable(); ++i) shift[i] = kTangentShift * weight(i);
   return solver_.factor(matrix_, symmetric, shift);
 }
 

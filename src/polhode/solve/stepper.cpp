@@ -29,7 +29,7 @@ constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMost
 constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
 /// Round-off of an error estimate, for places at the origin and as part of how far others are:
 /// nothing below can be asked of a step.
-constexpr double kLeastError = 1e-15, kRoundOff = 2.2e-16;
+constexpr double kLeastError = 1e-15, kStepRoundOff = 2.2e-16;
 constexpr double kRoundOffComposed = 30.0;  ///< At higher orders stages and companions add to it.
 /// A refused step's error falls with this power of its length at least, or it is noise; and noise
 /// is small.
@@ -45,7 +45,7 @@ constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
 constexpr double kSamplesComposed = 3.0;
 /// Steps of the search for a first length, and what it may be lengthened by at once. Of so many
 /// fixed steps of higher order one is measured.
-constexpr int kProbes = 40, kSampled = 64;
+constexpr int kStepProbes = 40, kSampled = 64;
 constexpr double kWorthLonger = 3.0, kLonger = 10.0;
 /// Steps in a row with few iterations after which a halved step grows again.
 constexpr int kEasySteps = 3, kFewIterations = 4;
@@ -83,7 +83,7 @@ struct Stepper::Impl {
     for (int b = 0; b < s.body_count(); ++b)
       far = std::max(far, s.motion(s.initial_state(), b).r.norm());
     for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
-    least_error = std::max(kLeastError, kRoundOff * far / s.length_scale()) *
+    least_error = std::max(kLeastError, kStepRoundOff * far / s.length_scale()) *
                   (c.order > 2 ? kRoundOffComposed : 1.0);
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
@@ -256,7 +256,7 @@ struct Stepper::Impl {
     const double most = sampled(state, std::min(first_step(state), way / 3.0));
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most) : most, good = 0.0;
     before = state;
-    for (int attempt = 0; attempt < kProbes && (dt > least_step() || attempt == 0); ++attempt) {
+    for (int attempt = 0; attempt < kStepProbes && (dt > least_step() || attempt == 0); ++attempt) {
       companion = before;
       single.ledger().forget();
       bool fine = true;

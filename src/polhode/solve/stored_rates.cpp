@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/assembly/lane_access.hpp>
 #include <polhode/solve/stored_rates.hpp>
 
 namespace polhode {
@@ -25,10 +26,6 @@ void for_each_number(State& state, const Visit& visit) {
   const std::size_t nodes = state.node_rates.size() / 2;
   for (std::size_t k = 0; k < nodes; ++k)
     visit(state.node_a[k], state.node_rates[k], state.node_rates[nodes + k]);
-}
-
-void put(Lane3& x, int lane, const Vec3& value) {
-  for (int i = 0; i < 3; ++i) x[i][lane] = value[i];
 }
 
 }  // namespace

@@ -1,29 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/assembly/lane_access.hpp>
 #include <polhode/solve/trial.hpp>
 
 namespace polhode {
-
-namespace {
-
-Vec3 get(const Lane3& x, int lane) { return {x[0][lane], x[1][lane], x[2][lane]}; }
-
-void put(Lane3& x, int lane, const Vec3& value) {
-  for (int i = 0; i < 3; ++i) x[i][lane] = value[i];
-}
-
-Mat3 get(const double (&x)[9][kLanes], int lane) {
-  Mat3 M;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) M(i, j) = x[3 * i + j][lane];
-  return M;
-}
-
-void put(double (&x)[9][kLanes], int lane, const Mat3& M) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) x[3 * i + j][lane] = M(i, j);
-}
-
-}  // namespace
 
 void size_blocks(const State& state, Trial& trial) {
   trial.blocks.assign(state.blocks.size() + 1, TrialBlock{});

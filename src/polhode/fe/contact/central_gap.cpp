@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kLengths = NearestFour::kLengths;
 /// Changes of squared lengths below this part of them have no direction.
-constexpr double kNoDirection = 1e-14;
+constexpr double kNoCentralChange = 1e-14;
 
 template <int kMostSets>
 typename CentralGapOf<kMostSets>::Over between(const FourMoves& from, const NearestFour& at_n,
@@ -71,7 +71,7 @@ CentralGapOf<kMostSets>::CentralGapOf(const Over& over, double alpha_f, bool con
   change_squared_ = mean_.cwiseAbs().dot(change_.cwiseAbs2());
   // Off the middle of the step ḡ is not the mean that tangential moves drop out of.
   if (!conserving || alpha_ != 0.5 ||
-      !(change_squared_ > kNoDirection * kNoDirection * size * size)) {
+      !(change_squared_ > kNoCentralChange * kNoCentralChange * size * size)) {
     change_squared_ = 0.0;
     return;
   }

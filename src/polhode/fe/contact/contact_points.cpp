@@ -19,7 +19,7 @@ using Polygon = std::vector<Point2>;
 /// A face is flat if no corner is farther from its plane, of its size.
 constexpr double kFlat = 1e-9;
 /// Parallel: sine of the angle between normals.
-constexpr double kParallel = 1e-6;
+constexpr double kParallelNormals = 1e-6;
 /// Opposite: distance, of the face's size.
 constexpr double kNear = 0.1;
 /// Overlaps smaller than this part of the face are rounding.
@@ -176,7 +176,7 @@ class PointMaker {
       const double h = face.height(corner(0));
       if (std::abs(h) > kNear * face.size) continue;
       const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-      if (n.dot(face.normal) > 0.0 || n.cross(face.normal).norm() > kParallel) continue;
+      if (n.dot(face.normal) > 0.0 || n.cross(face.normal).norm() > kParallelNormals) continue;
       Polygon cell = face.outline;
       // Seen along the face's own normal the triangle runs the other way round.
       for (int k = 3; k > 0 && !cell.empty(); --k)

@@ -52,8 +52,8 @@ struct Rolling {
 /// so that what turns as a whole does not slide, and the forces conjugate to that leave no moment.
 /// @eq{edge-friction}
 template <class T>
-EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
-                       const T& pressure, const Vec3& kept, bool round, bool seeded) {
+EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
+                            const T& pressure, const Vec3& kept, bool round, bool seeded) {
   const FourPoints<T> at(moves, alpha, seeded);
   Vec3 middle[4];
   moves.at(alpha, middle);
@@ -96,7 +96,7 @@ EdgeOnEdge<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
 FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
   if (round() && !(pressure_ > 0.0)) return {};
   const auto rub = [&](const auto& p, bool seeded) {
-    return friction(moves_, alpha_, law_, p, kept, round(), seeded);
+    return edge_friction(moves_, alpha_, law_, p, kept, round(), seeded);
   };
   const auto& x = moves_.x_n1;
   return FourSlide(rub, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),

@@ -14,7 +14,7 @@ namespace polhode {
 namespace {
 
 /// Clearances beyond this many bands are all alike.
-constexpr double kFar = 10.0;
+constexpr double kFarEdge = 10.0;
 /// As two edges of lengths a and b go against each other by a way, the part of its retreat that
 /// their potential comes forward is less than that way times so many times 1/a + 1/b.
 constexpr double kTurn = 25.0;
@@ -143,7 +143,7 @@ double EdgeContact::least_gap(const double* x, const double* history) const {
 void EdgeContact::clearances(const NodeStep& step, const double* history,
                              std::vector<double>& list) const {
   const std::size_t first = list.size();
-  list.resize(first + sides_.first.edges.size(), kFar);
+  list.resize(first + sides_.first.edges.size(), kFarEdge);
   for (const auto& [e, f] : search(history).pairs) {
     Vec3 x[4];
     four_ends(e, f, step.x_n1, x);

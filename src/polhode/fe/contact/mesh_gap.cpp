@@ -7,7 +7,7 @@ namespace {
 
 /// Nearer to the end of the barrier than this part of its band, which only iterates get, the
 /// nearest feature is all that counts.
-constexpr double kDeep = 1e-9;
+constexpr double kDeepInMesh = 1e-9;
 
 /// Corners of the surface that a feature has, ascending; −1 where it has none.
 using Corners = std::array<int, 3>;
@@ -101,7 +101,7 @@ MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& 
     return a.four.distance != b.four.distance ? a.four.distance < b.four.distance
                                               : a.corners < b.corners;
   });
-  const double deep = law.floor() + kDeep * 2.0 * law.tolerance;
+  const double deep = law.floor() + kDeepInMesh * 2.0 * law.tolerance;
   if (list.size() == 1 || list.front().four.distance - centre < deep)
     return MeshGap::of(list.front().triangle, list.front().four);
   MeshGap gap;

@@ -9,7 +9,7 @@ namespace polhode {
 namespace {
 
 /// Edges with a smaller squared sine between them have no unique nearest points.
-constexpr double kParallel = 1e-8;
+constexpr double kParallelEdges = 1e-8;
 
 void measure(const Vec3 (&x)[4], NearestFour& n) {
   Vec3 y = Vec3::Zero();
@@ -128,7 +128,7 @@ NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place)
     a = r.s, b = r.t;
     a_free = r.s_free, b_free = r.t_free;
     if (a_free && b_free)
-      a_free = e.cross(f).squaredNorm() > kParallel * e.squaredNorm() * f.squaredNorm();
+      a_free = e.cross(f).squaredNorm() > kParallelEdges * e.squaredNorm() * f.squaredNorm();
   } else if (e_place < 0.0) {
     a_free = project(on(x[2], x[3], f_place), x[0], e, a);
   } else if (f_place < 0.0) {

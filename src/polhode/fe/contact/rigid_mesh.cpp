@@ -15,7 +15,7 @@ using contact::TriangleTree;
 
 /// Nearer to the end of the barrier than this part of its band, which only iterates get, the
 /// nearest feature is all that counts.
-constexpr double kDeep = 1e-9;
+constexpr double kDeepInRigid = 1e-9;
 /// By this part of the rounding a point is looked at beside itself, to find out which features are
 /// nearest. Where it stands over an edge or corner exactly, as points of meshes like to do,
 /// neighbours agree on it all the same; a gap is off by the square of it.
@@ -221,7 +221,7 @@ SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuestion& question) const {
     return g;
   }
   const contact::NormalLaw& law = question.law;
-  const double deep = law.floor() + kDeep * 2.0 * law.tolerance;
+  const double deep = law.floor() + kDeepInRigid * 2.0 * law.tolerance;
   if (!(g.value < law.reach()) || g.value < deep) return g;
   return sum(y, g, question);
 }

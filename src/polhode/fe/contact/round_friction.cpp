@@ -44,20 +44,20 @@ struct RoundPoint {
 };
 
 template <class T>
-Sides<T> sides(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
+Sides<T> sides_at(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
   return {b - a, c - a};
 }
 
 /// What turns with the triangle does not slide: ω is its rotation, exact if it turns as a whole.
 template <class T>
-RoundPoint<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
-                       const T& pressure, const Vec3& kept, bool seeded) {
+RoundPoint<T> round_point_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
+                                   const T& pressure, const Vec3& kept, bool seeded) {
   const FourPoints<T> at(moves, alpha, seeded);
   Vec3 middle[4];
   moves.at(alpha, middle);
   T c[4];
   nearest_weights(nearest_of_triangle(middle), at.x, c);
-  const Sides<T> here = sides(at.x[1], at.x[2], at.x[3]);
+  const Sides<T> here = sides_at(at.x[1], at.x[2], at.x[3]);
   const V3<T> du_e = at.u[2] - at.u[1], du_f = at.u[3] - at.u[1];
   V3<T> y = c[0] * (at.x[0] - at.x[3]), way = c[0] * at.u[0];
   for (int k = 1; k < 4; ++k) {
@@ -72,7 +72,7 @@ RoundPoint<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
   RoundPoint<T> r;
   r.slid = way - dot(n, way) * n;
   const Sides<double> before =
-      sides(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
+      sides_at(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
   const V3<double> s = contact::v3(kept);
   const double told[3] = {dot(before.grad_e, s), dot(before.grad_f, s), dot(before.normal, s)};
   V3<T> turned = here.along(told, kept.norm());
@@ -104,10 +104,10 @@ RoundPoint<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& l
 FourSlide round_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                          double pressure, const Vec3& kept, bool tangent) {
   const auto rub = [&](const auto& p, bool seeded) {
-    return friction(moves, alpha, law, p, kept, seeded);
+    return round_point_friction(moves, alpha, law, p, kept, seeded);
   };
   const auto& x = moves.x_n1;
-  const Sides<double> end = sides(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
+  const Sides<double> end = sides_at(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
   return {rub, end, pressure, tangent};
 }
 

@@ -24,17 +24,17 @@ struct PointOnTriangle {
 };
 
 template <class T>
-SlidePlane<T> sides(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
+SlidePlane<T> slide_plane(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
   return {b - a, c - a};
 }
 
 /// @param seeded  Derivatives by x_{n+1}; else those of the pressure.
 /// @eq{mesh-friction}
 template <class T>
-PointOnTriangle<T> friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
-                            const T& pressure, const Vec3& kept, bool seeded) {
+PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
+                                     const T& pressure, const Vec3& kept, bool seeded) {
   const FourPoints<T> at(moves, alpha, seeded);
-  const SlidePlane<T> here = sides(at.x[1], at.x[2], at.x[3]);
+  const SlidePlane<T> here = slide_plane(at.x[1], at.x[2], at.x[3]);
   const V3<T> n = unit(cross(here.e, here.f)), p = at.x[0] - at.x[1];
   const T d = dot(n, p), w_e = dot(here.grad_e, p), w_f = dot(here.grad_f, p);
   const T w[3] = {1.0 - w_e - w_f, w_e, w_f};
@@ -44,7 +44,7 @@ PointOnTriangle<T> friction(const FourMoves& moves, double alpha, const SurfaceL
     way = way - w[k] * at.u[k + 1] + (d * dot(n, at.u[k + 1])) * gradient[k];
   const V3<T> slid = way - dot(n, way) * n;
   const SlidePlane<double> before =
-      sides(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
+      slide_plane(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
   PointOnTriangle<T> r{{}, slid, {here, before, law, pressure, kept, slid, alpha}};
   const V3<T>& f = r.rub.friction;
   r.force[0] = f;
@@ -77,10 +77,11 @@ SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1,
     return slide;
   }
   const auto rub = [&](const auto& p, bool seeded) {
-    return friction(moves, step.alpha_f, law_, p, kept, seeded);
+    return triangle_friction(moves, step.alpha_f, law_, p, kept, seeded);
   };
   const auto& x = moves.x_n1;
-  const SlidePlane<double> end = sides(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
+  const SlidePlane<double> end =
+      slide_plane(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
   static_cast<FourSlide&>(slide) = FourSlide(rub, end, pressure, tangent);
   return slide;
 }

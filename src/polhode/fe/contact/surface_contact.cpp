@@ -121,12 +121,12 @@ namespace {
 
 /// Weights of forces this close to the end of the barrier, as part of its band, are those there:
 /// only iterates get nearer.
-constexpr double kDeep = 1e-9;
+constexpr double kDeepInSurface = 1e-9;
 
 /// The force at the end of a step as a weight for its direction.
 template <class T>
 T weight(const contact::NormalLaw& law, double gap, const Vec3& normal) {
-  const double least = law.floor() + 2.0 * kDeep * law.tolerance;
+  const double least = law.floor() + 2.0 * kDeepInSurface * law.tolerance;
   const auto f = law.force_and_slope(std::max(gap, least));
   return with_derivative<T>(f.value, gap < least ? Vec3(Vec3::Zero()) : Vec3(f.slope * normal));
 }

@@ -13,9 +13,9 @@ namespace polhode {
 namespace {
 
 /// Clearances beyond this many bands are all alike.
-constexpr double kFar = 10.0;
+constexpr double kFarReport = 10.0;
 /// A way shorter than so many times the depth that counts as through does not get so deep.
-constexpr double kThrough = 2.0;
+constexpr double kThroughBeam = 2.0;
 constexpr int kHalvings = 6;
 
 }  // namespace
@@ -25,7 +25,7 @@ void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
   if (law_.normal.potential != contact::NormalPotential::barrier) return;
   const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i)
-    list.push_back((distance(local(step.x_n1, i), floor + kFar * band) - floor) / band);
+    list.push_back((distance(local(step.x_n1, i), floor + kFarReport * band) - floor) / band);
 }
 
 /// Pieces of a cable that an iterate draws out would let the shape pass between points.
@@ -45,7 +45,7 @@ double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to)
 bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
   const Vec3 way = to - from;
   const double length = way.norm();
-  if (length < kThrough * points_.through) return false;
+  if (length < kThroughBeam * points_.through) return false;
   double part = 0.0;
   for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
     const double room = distance(from + part * way) + points_.through;

@@ -10,7 +10,7 @@
 namespace polhode {
 namespace {
 
-using Kind = MeshFault::Kind;
+using FaultKind = MeshFault::Kind;
 
 constexpr double kCoincident = 1e-9;  // of the mesh's extent
 
@@ -54,7 +54,7 @@ void find_inverted(const Mesh& mesh, std::vector<MeshFault>& faults) {
   if (bad.empty()) return;
   const bool all = static_cast<int>(bad.size()) == mesh.element_count();
   faults.push_back(
-      {Kind::kInverted, true,
+      {FaultKind::kInverted, true,
        format("{} inverted or collapsed: {}; {}", counted(bad.size(), "element is", "elements are"),
               numbers(bad), worst),
        all ? "The order of nodes is not that of this file format; export the mesh again"
@@ -73,7 +73,7 @@ void find_duplicates(const Mesh& mesh, std::vector<MeshFault>& faults) {
   }
   if (twice.empty()) return;
   faults.push_back(
-      {Kind::kDuplicateNodes, false,
+      {FaultKind::kDuplicateNodes, false,
        format("{} on others, so that parts may not hang together: {}; {}",
               counted(twice.size(), "node lies", "nodes lie"), numbers(twice), example),
        "Have duplicate nodes merged if the parts are one"});
@@ -123,7 +123,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
                      counted(static_cast<std::size_t>(pieces[i].elements), "element", "elements"),
                      mesh.element_label(pieces[i].first_element));
     if (pieces.size() > 5) list += format(" and {} more", pieces.size() - 5);
-    faults.push_back({Kind::kPieces, false,
+    faults.push_back({FaultKind::kPieces, false,
                       format("the mesh has {} pieces that share no node: {}", pieces.size(), list),
                       "Merge duplicate nodes if they are one, or hold every piece by itself"});
   }
@@ -131,7 +131,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
   for (int i = 0; i < static_cast<int>(used.size()); ++i)
     if (!used[i]) loose.push_back(mesh.node_label(i));
   if (!loose.empty())
-    faults.push_back({Kind::kLooseNodes, false,
+    faults.push_back({FaultKind::kLooseNodes, false,
                       format("{} to no element: {}",
                              counted(loose.size(), "node belongs", "nodes belong"), numbers(loose)),
                       "They are left out; nothing has to be done"});

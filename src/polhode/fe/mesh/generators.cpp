@@ -19,7 +19,7 @@ constexpr double kCore = 0.45;
 constexpr double kBulge = 0.15;
 constexpr double kMostNodes = 2e7;
 
-using Kind = MeshParameter::Kind;
+using ParameterKind = MeshParameter::Kind;
 const std::vector<std::string> kSolids = {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6"};
 const std::vector<std::string> kSolidsWithoutWedge = {"hex8", "hex20", "hex27", "tet4", "tet10"};
 
@@ -224,13 +224,14 @@ void check_values(std::string_view where, const MeshParameter& parameter,
   for (double value : values) {
     if (!std::isfinite(value))
       throw InputError(path, format("{} is no finite number", value), "Give a finite one");
-    if (parameter.kind == Kind::kPoint) continue;
+    if (parameter.kind == ParameterKind::kPoint) continue;
     if (!(value > 0.0))
       throw InputError(path, format("{} is not positive", value), "Give a positive number");
-    if (parameter.kind == Kind::kCount && (value != std::floor(value) || value > kMostNodes))
+    if (parameter.kind == ParameterKind::kCount &&
+        (value != std::floor(value) || value > kMostNodes))
       throw InputError(path, format("{} is not a count of cells", value),
                        "Give a whole number of reasonable size");
-    if (parameter.kind == Kind::kRatio && (value < 1e-4 || value > 1e4))
+    if (parameter.kind == ParameterKind::kRatio && (value < 1e-4 || value > 1e4))
       throw InputError(path, format("a ratio of {} is too far from 1", value),
                        "Stay between 1e-4 and 1e4");
   }
@@ -239,7 +240,7 @@ void check_values(std::string_view where, const MeshParameter& parameter,
 }  // namespace
 
 std::size_t MeshParameter::size() const {
-  if (kind == Kind::kPoint) return 0;
+  if (kind == ParameterKind::kPoint) return 0;
   return 1 + static_cast<std::size_t>(std::count(values.begin(), values.end(), ','));
 }
 
@@ -247,50 +248,50 @@ const std::vector<MeshGenerator>& mesh_generators() {
   static const std::vector<MeshGenerator> generators{
       {"block",
        "a block, centred at the origin",
-       {{"size", Kind::kLength, "x, y, z", {}, "lengths of its sides"},
-        {"cells", Kind::kCount, "x, y, z", {}, "cells along each side"},
-        {"grading", Kind::kRatio, "x, y, z", {1, 1, 1}, "last cell over first cell"}},
+       {{"size", ParameterKind::kLength, "x, y, z", {}, "lengths of its sides"},
+        {"cells", ParameterKind::kCount, "x, y, z", {}, "cells along each side"},
+        {"grading", ParameterKind::kRatio, "x, y, z", {1, 1, 1}, "last cell over first cell"}},
        kSolids,
        "xmin, xmax, ymin, ymax, zmin, zmax",
        block},
       {"cylinder",
        "a round bar along z",
-       {{"diameter", Kind::kLength, "diameter", {}, "over all"},
-        {"length", Kind::kLength, "length", {}, "along z"},
+       {{"diameter", ParameterKind::kLength, "diameter", {}, "over all"},
+        {"length", ParameterKind::kLength, "length", {}, "along z"},
         {"cells",
-         Kind::kCount,
+         ParameterKind::kCount,
          "radial, around, along",
          {},
          "radial ones lie between a core and the rim; 4 divides those around"},
-        {"grading", Kind::kRatio, "radial, along", {1, 1}, "last cell over first cell"}},
+        {"grading", ParameterKind::kRatio, "radial, along", {1, 1}, "last cell over first cell"}},
        kSolids,
        "outer, start, end",
        cylinder},
       {"tube",
        "a hollow round bar along z",
-       {{"outer", Kind::kLength, "diameter", {}, "outer diameter"},
-        {"inner", Kind::kLength, "diameter", {}, "inner diameter"},
-        {"length", Kind::kLength, "length", {}, "along z"},
-        {"cells", Kind::kCount, "radial, around, along", {}, "cells; at least 3 around"},
-        {"grading", Kind::kRatio, "radial, along", {1, 1}, "last cell over first cell"}},
+       {{"outer", ParameterKind::kLength, "diameter", {}, "outer diameter"},
+        {"inner", ParameterKind::kLength, "diameter", {}, "inner diameter"},
+        {"length", ParameterKind::kLength, "length", {}, "along z"},
+        {"cells", ParameterKind::kCount, "radial, around, along", {}, "cells; at least 3 around"},
+        {"grading", ParameterKind::kRatio, "radial, along", {1, 1}, "last cell over first cell"}},
        kSolids,
        "inner, outer, start, end",
        tube},
       {"sphere",
        "a ball, or the part of it in some octants",
-       {{"diameter", Kind::kLength, "diameter", {}, "over all"},
+       {{"diameter", ParameterKind::kLength, "diameter", {}, "over all"},
         {"cells",
-         Kind::kCount,
+         ParameterKind::kCount,
          "octant, radial",
          {},
          "cells along an edge of an octant's core, and from the core to the surface"},
         {"grading",
-         Kind::kRatio,
+         ParameterKind::kRatio,
          "radial, pole",
          {1, 1},
          "last cell over first cell, from the core to the surface, and away from the z axis"},
         {"octants",
-         Kind::kCount,
+         ParameterKind::kCount,
          "octants",
          {8},
          "8: the ball; 4: z ≥ 0; 2: y, z ≥ 0; 1: x, y, z ≥ 0"}},
@@ -299,8 +300,12 @@ const std::vector<MeshGenerator>& mesh_generators() {
        sphere},
       {"line",
        "straight lines from point to point, for beams and cables",
-       {{"points", Kind::kPoint, "x, y, z of each point", {}, "where the lines begin and end"},
-        {"cells", Kind::kCount, "cells", {}, "cells of each line"}},
+       {{"points",
+         ParameterKind::kPoint,
+         "x, y, z of each point",
+         {},
+         "where the lines begin and end"},
+        {"cells", ParameterKind::kCount, "cells", {}, "cells of each line"}},
        {"line2", "line3"},
        "start, end (nodes)",
        line},

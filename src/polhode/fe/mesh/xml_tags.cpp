@@ -9,7 +9,7 @@
 namespace polhode {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kXmlBlanks = " \t\r\n";
 constexpr std::string_view kEndOfName = " \t\r\n/>=<\"'";
 
 std::string decoded(std::string_view text) {
@@ -69,7 +69,7 @@ XmlTag XmlTags::next() {
   tag.name = all.substr(in_.at(), end - in_.at());
   in_.go_to(end);
   while (true) {
-    const std::size_t begin = all.find_first_not_of(kBlanks, in_.at());
+    const std::size_t begin = all.find_first_not_of(kXmlBlanks, in_.at());
     if (begin == std::string_view::npos) in_.refuse_end("the end of a tag", false);
     in_.go_to(begin);
     if (all[begin] == '>') {
@@ -92,9 +92,9 @@ XmlTag XmlTags::next() {
 
 std::string XmlTags::attribute_value() {
   const std::string_view all = in_.bytes();
-  std::size_t at = all.find_first_not_of(kBlanks, in_.at());
+  std::size_t at = all.find_first_not_of(kXmlBlanks, in_.at());
   if (at != std::string_view::npos && all[at] == '=') {
-    at = all.find_first_not_of(kBlanks, at + 1);
+    at = all.find_first_not_of(kXmlBlanks, at + 1);
     if (at != std::string_view::npos && (all[at] == '"' || all[at] == '\'')) {
       const std::size_t end = all.find(all[at], at + 1);
       if (end == std::string_view::npos) in_.refuse_end("a quote", false);
