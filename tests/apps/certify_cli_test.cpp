@@ -8,7 +8,7 @@
 
 #include "command_line.hpp"
 
-namespace polhode {
+namespace polhode::certify_cli_tests {
 namespace {
 
 using test::CommandLine;
@@ -154,4 +154,4 @@ TEST_F(CommandLine, ContinuesTheFilesOfARunThatIsRestarted) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::certify_cli_tests

@@ -7,7 +7,7 @@
 
 #include "command_line.hpp"
 
-namespace polhode {
+namespace polhode::cli_ends_tests {
 namespace {
 
 using test::CommandLine;
@@ -203,4 +203,4 @@ TEST_F(CommandLine, WarnsWhenEnhancedElementsWereCompressedTooFar) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::cli_ends_tests

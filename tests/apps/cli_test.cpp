@@ -9,7 +9,7 @@
 
 #include "command_line.hpp"
 
-namespace polhode {
+namespace polhode::cli_tests {
 namespace {
 
 using test::CommandLine;
@@ -280,4 +280,4 @@ TEST_F(CommandLine, StartsWithin50Milliseconds) {
 #endif
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::cli_tests

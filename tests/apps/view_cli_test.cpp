@@ -12,7 +12,7 @@
 
 #include "command_line.hpp"
 
-namespace polhode {
+namespace polhode::view_cli_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::view_cli_tests

@@ -4,7 +4,7 @@
 #include <support/derivative.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::free_coordinate_tests {
 namespace {
 
 /// Angle about z on frames R_a, R_b, measured either way round.
@@ -95,4 +95,4 @@ TEST(FreeAngle, ChoosesTheTurnNearestToWhatItIsGiven) {
   EXPECT_NEAR(angle.at_n1(a, b, -turn), 0.5 - turn, 1e-14);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::free_coordinate_tests

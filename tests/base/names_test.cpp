@@ -3,7 +3,7 @@
 
 #include <polhode/base/names.hpp>
 
-namespace polhode {
+namespace polhode::names_tests {
 namespace {
 
 TEST(Names, FindTheWordThatWasMeant) {
@@ -28,4 +28,4 @@ TEST(Names, AreQuotedInOneShortLine) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::names_tests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode {
+namespace polhode::sha256_tests {
 namespace {
 
 TEST(Sha256, GivesThePublishedDigests) {
@@ -21,4 +21,4 @@ TEST(Sha256, DoesNotDependOnHowTheBytesArrive) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::sha256_tests

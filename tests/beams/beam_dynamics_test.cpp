@@ -12,7 +12,7 @@
 #include <polhode/solve/tangent_check.hpp>
 #include <support/beam_models.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_dynamics_tests {
 namespace {
 
 RunSummary run(Model model, double step, double duration) {
@@ -294,4 +294,4 @@ TEST(BeamSystem, GoesWithJointsSpringsAndCables) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_dynamics_tests

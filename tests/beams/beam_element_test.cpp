@@ -4,7 +4,7 @@
 #include <beams/beam_samples.hpp>
 #include <polhode/base/error.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_element_tests {
 namespace {
 
 /// Largest stored energy in reach of these tests [J]: round-off is some 1e-15 of it.
@@ -261,4 +261,4 @@ TEST(BeamElement, AsksForAFinerMeshWhereItBendsTooMuch) {
   EXPECT_NE(std::string(beam.refusal()).find("more elements"), std::string::npos);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_element_tests

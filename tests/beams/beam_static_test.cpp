@@ -15,7 +15,7 @@
 #include <polhode/solve/start.hpp>
 #include <support/beam_models.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_static_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -194,4 +194,4 @@ TEST(BeamStatics, BendsTheThickCantilever) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_static_tests

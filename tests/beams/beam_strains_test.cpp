@@ -8,7 +8,7 @@
 #include <support/derivative.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_strains_tests {
 namespace {
 
 /// Invariants of frames that need be no rotations, as averages are.
@@ -105,4 +105,4 @@ TEST(BeamStrains, HaveTheirDerivatives) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_strains_tests

@@ -3,7 +3,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/beams/cable.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_tests {
 namespace {
 
 /// Two bodies and a bar between points of them, at the middle of whose step it is about as long as
@@ -152,4 +152,4 @@ TEST(Cable, RefusesWhatIsNoCable) {
   refused([](CableSpec& s) { s.coupled_mass = 1.0, s.Z_a = Vec3::UnitX(); });
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_tests

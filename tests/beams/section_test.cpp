@@ -7,7 +7,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/beams/section.hpp>
 
-namespace polhode::test {
+namespace polhode::test::section_tests {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -80,4 +80,4 @@ TEST(Section, RefusesWhatHasNoArea) {
   EXPECT_THROW((void)elastic_section(circle_section(1.0, 0.3), 1.0, 0.3, -1.0), InputError);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::section_tests

@@ -10,7 +10,7 @@
 #include <polhode/body/shapes.hpp>
 #include <polhode/so3/exp_map.hpp>
 
-namespace polhode {
+namespace polhode::mass_properties_tests {
 namespace {
 
 const Mat3 kSomeTurn = exp_map(Vec3(0.4, -1.1, 0.7));
@@ -163,4 +163,4 @@ TEST(Composed, TakesAPartOfNegativeMassForAHole) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::mass_properties_tests

@@ -6,7 +6,7 @@
 #include <polhode/body/mass_properties.hpp>
 #include <polhode/body/momentum.hpp>
 
-namespace polhode {
+namespace polhode::momentum_tests {
 namespace {
 
 constexpr double kStep = 1e-5;       // central difference: truncation h² = 1e-10, rounding 1e-11
@@ -84,4 +84,4 @@ TEST_P(Momentum, RatesDoTheWorkThatTheKineticEnergyTakesUp) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::momentum_tests

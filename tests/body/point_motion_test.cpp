@@ -4,7 +4,7 @@
 #include <body/known_motion.hpp>
 #include <polhode/body/point_motion.hpp>
 
-namespace polhode {
+namespace polhode::point_motion_tests {
 namespace {
 
 constexpr double kStep = 1e-5;       // central difference: truncation h² = 1e-10, rounding 1e-11
@@ -87,4 +87,4 @@ TEST_P(PointMotion, HasTheMaterialAngularAccelerationThatIsTheRateOfTheMaterialV
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::point_motion_tests

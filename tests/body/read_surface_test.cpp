@@ -13,7 +13,7 @@
 #include <polhode/body/read_surface.hpp>
 #include <polhode/body/shapes.hpp>
 
-namespace polhode {
+namespace polhode::read_surface_tests {
 namespace {
 
 TriangleSurface box() {
@@ -225,4 +225,4 @@ TEST(ReadSurface, NeverFailsOtherThanByAMessage) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_surface_tests

@@ -10,7 +10,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/body/shapes.hpp>
 
-namespace polhode {
+namespace polhode::shapes_tests {
 namespace {
 
 /// Sizes that fit each kind, all different so that no two can be mistaken for each other.
@@ -147,4 +147,4 @@ TEST(Shapes, AreFoundByName) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::shapes_tests

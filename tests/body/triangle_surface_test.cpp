@@ -9,7 +9,7 @@
 #include <polhode/body/triangle_surface.hpp>
 #include <polhode/so3/exp_map.hpp>
 
-namespace polhode {
+namespace polhode::triangle_surface_tests {
 namespace {
 
 TriangleSurface tetrahedron() {
@@ -138,4 +138,4 @@ TEST(JoinEqualPoints, MakesOnePointOfEqualsAndDropsWhatCollapses) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::triangle_surface_tests

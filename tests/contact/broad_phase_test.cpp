@@ -6,7 +6,7 @@
 
 #include "support/random_steps.hpp"
 
-namespace polhode {
+namespace polhode::broad_phase_tests {
 namespace {
 
 using contact::Bounds;
@@ -71,4 +71,4 @@ TEST(BroadPhase, GivesTheSameOrderAgain) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::broad_phase_tests

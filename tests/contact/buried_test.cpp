@@ -8,7 +8,7 @@
 #include "scene.hpp"
 #include "shapes_for_tests.hpp"
 
-namespace polhode::contact {
+namespace polhode::contact::buried_tests {
 namespace {
 
 using polhode::test::Scene;
@@ -76,4 +76,4 @@ TEST(Buried, IsAnOverlapAtTheStartWhereNoFeatureIsNear) {
 }
 
 }  // namespace
-}  // namespace polhode::contact
+}  // namespace polhode::contact::buried_tests

@@ -6,7 +6,7 @@
 #include "scene.hpp"
 #include "shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::contact_engine_tests {
 namespace {
 
 using namespace test;
@@ -187,4 +187,4 @@ TEST(Contacts, GoOnBitForBitFromAnArchive) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_engine_tests

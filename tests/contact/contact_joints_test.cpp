@@ -3,7 +3,7 @@
 
 #include "scene.hpp"
 
-namespace polhode {
+namespace polhode::contact_joints_tests {
 namespace {
 
 using namespace test;
@@ -82,4 +82,4 @@ TEST(ContactJoints, FallingChainComesToRestAndImpactsDoNotTearItsJoints) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_joints_tests

@@ -7,7 +7,7 @@
 #include "shapes_for_tests.hpp"
 #include "support/derivative.hpp"
 
-namespace polhode {
+namespace polhode::contact_point_tests {
 namespace {
 
 using namespace contact;
@@ -237,4 +237,4 @@ INSTANTIATE_TEST_SUITE_P(Tubes, EveryPairOfShapes,
                          testing::Combine(testing::Values(10), testing::Range(0, 11)), pair_name);
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_point_tests

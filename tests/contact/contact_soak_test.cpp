@@ -8,7 +8,7 @@
 #include "scene.hpp"
 #include "shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::contact_soak_tests {
 namespace {
 
 using namespace test;
@@ -139,4 +139,4 @@ TEST(ContactSoak, ScenesThatOnceFailed) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_soak_tests

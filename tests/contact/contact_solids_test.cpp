@@ -7,7 +7,7 @@
 
 #include "scene.hpp"
 
-namespace polhode {
+namespace polhode::contact_solids_tests {
 namespace {
 
 using namespace test;
@@ -212,4 +212,4 @@ TEST(ContactSolids, NamesTheContactThatCannotBeSolved) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_solids_tests

@@ -9,7 +9,7 @@
 
 #include "scene.hpp"
 
-namespace polhode {
+namespace polhode::crowd_engine_tests {
 namespace {
 
 using namespace test;
@@ -202,4 +202,4 @@ TEST(CrowdEngine, RefusesJoints) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::crowd_engine_tests

@@ -6,7 +6,7 @@
 #include <polhode/contact/nearest.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::contact {
+namespace polhode::contact::nearest_tests {
 namespace {
 
 using polhode::test::Random;
@@ -55,4 +55,4 @@ TEST(NearestOnEllipsoid, OfAThinDiscIsOnIt) {
 }
 
 }  // namespace
-}  // namespace polhode::contact
+}  // namespace polhode::contact::nearest_tests

@@ -7,7 +7,7 @@
 
 #include "scene.hpp"
 
-namespace polhode {
+namespace polhode::nonsmooth_engine_tests {
 namespace {
 
 using namespace test;
@@ -257,4 +257,4 @@ TEST(NonsmoothEngine, RefusesJoints) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::nonsmooth_engine_tests

@@ -3,7 +3,7 @@
 
 #include <polhode/contact/normal_law.hpp>
 
-namespace polhode::contact {
+namespace polhode::contact::normal_law_tests {
 namespace {
 
 /// A band that is given another stiffness and the reach for it stores what it is to store, to the
@@ -28,4 +28,4 @@ TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
 }
 
 }  // namespace
-}  // namespace polhode::contact
+}  // namespace polhode::contact::normal_law_tests

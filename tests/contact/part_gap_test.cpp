@@ -7,7 +7,7 @@
 
 #include "shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::part_gap_tests {
 namespace {
 
 using namespace contact;
@@ -151,4 +151,4 @@ TEST(PartGap, HasOneGapOverTrianglesOfAPlane) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::part_gap_tests

@@ -7,7 +7,7 @@
 
 #include "support/random_steps.hpp"
 
-namespace polhode {
+namespace polhode::plain_point_tests {
 namespace {
 
 using namespace contact;
@@ -140,4 +140,4 @@ TEST(PlainPoint, SpringIsLikeTheTangentOfAStickingContact) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::plain_point_tests

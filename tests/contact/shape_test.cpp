@@ -12,7 +12,7 @@
 #include <polhode/contact/shape.hpp>
 #include <support/paths.hpp>
 
-namespace polhode::contact {
+namespace polhode::contact::shape_tests {
 namespace {
 
 const std::string kCube =
@@ -97,4 +97,4 @@ TEST(SurfaceFiles, ThatBrokeShapesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace polhode::contact
+}  // namespace polhode::contact::shape_tests

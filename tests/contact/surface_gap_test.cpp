@@ -8,7 +8,7 @@
 
 #include "scene.hpp"
 
-namespace polhode {
+namespace polhode::surface_gap_tests {
 namespace {
 
 using namespace contact;
@@ -95,4 +95,4 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::surface_gap_tests

@@ -8,7 +8,7 @@
 
 #include "shapes_for_tests.hpp"
 
-namespace polhode::test {
+namespace polhode::test::triangle_tree_tests {
 namespace {
 
 using contact::TriangleTree;
@@ -69,4 +69,4 @@ TEST(TriangleTree, KnowsHowOftenASurfaceWindsAroundAPoint) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::triangle_tree_tests

@@ -10,7 +10,7 @@
 
 #include "shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::tube_tests {
 namespace {
 
 using namespace contact;
@@ -78,4 +78,4 @@ TEST(Tube, IsRoundToTheEndsOfRodsWithinIt) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::tube_tests

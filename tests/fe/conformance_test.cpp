@@ -8,7 +8,7 @@
 
 #include <polhode/base/error.hpp>
 
-namespace polhode::test {
+namespace polhode::test::conformance_tests {
 namespace {
 
 enum class Stress { kConserving, kMidpoint, kViscous };
@@ -307,4 +307,4 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryElementKind, testing::ValuesIn([] {
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::conformance_tests

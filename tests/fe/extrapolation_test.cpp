@@ -6,7 +6,7 @@
 
 #include <polhode/fe/elements/extrapolation.hpp>
 
-namespace polhode {
+namespace polhode::extrapolation_tests {
 namespace {
 
 /// Fields that the polynomial of an element has are taken to its nodes exactly.
@@ -37,4 +37,4 @@ TEST(Extrapolation, IsExactForThePolynomialsOfEveryKindOfElement) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::extrapolation_tests

@@ -7,7 +7,7 @@
 
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::nodal_recovery_tests {
 namespace {
 
 constexpr LinearModuli kModuli{2.0, 1.0};  // bulk modulus 8/3
@@ -94,4 +94,4 @@ TEST(NodalFields, OfPatchesAreExactForLinearFieldsUpToTheBoundary) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::nodal_recovery_tests

@@ -10,7 +10,7 @@
 #include <polhode/fe/loads/solid_loads.hpp>
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode::test {
+namespace polhode::test::patch_tests {
 namespace {
 
 struct Constant : TimeFunction {
@@ -191,4 +191,4 @@ TEST(Cantilever, BendsAsItShouldWithQuadraticElements) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::patch_tests

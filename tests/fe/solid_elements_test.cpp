@@ -8,7 +8,7 @@
 
 #include <polhode/base/error.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solid_elements_tests {
 namespace {
 
 using testing::AllOf;
@@ -191,4 +191,4 @@ TEST(EnhancedStrains, ConvergeTogetherWithTheNodes) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solid_elements_tests

@@ -8,7 +8,7 @@
 
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::stress_patches_tests {
 namespace {
 
 /// A value at X in the first column.
@@ -175,4 +175,4 @@ TEST(StressPatches, AreForQuadraticCellsAndTet4) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::stress_patches_tests

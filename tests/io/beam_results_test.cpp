@@ -20,7 +20,7 @@
 #include <polhode/io/recorder.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::beam_results_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -227,4 +227,4 @@ TEST(BeamResults, WrongProbesAreTold) {
   EXPECT_THROW(Recorder(s, scratch / "out", {}), InputError);
 }
 
-}  // namespace polhode
+}  // namespace polhode::beam_results_tests

@@ -12,7 +12,7 @@
 #include <polhode/model/build_system.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::checkpoint_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -162,4 +162,4 @@ TEST(Checkpoint, ReplacesAnOldOneAtOnce) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::checkpoint_tests

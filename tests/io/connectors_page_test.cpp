@@ -9,7 +9,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/paths.hpp>
 
-namespace polhode::test {
+namespace polhode::test::connectors_page_tests {
 
 TEST(ConnectorsPage, EveryExampleRuns) {
   std::ifstream file(source_dir() + "/docs/reference/connectors.md");
@@ -33,4 +33,4 @@ TEST(ConnectorsPage, EveryExampleRuns) {
   EXPECT_EQ(count, 6);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::connectors_page_tests

@@ -13,7 +13,7 @@
 #include <support/recorded_run.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::contact_output_tests {
 namespace {
 
 using test::csv_rows, test::recorded_run;
@@ -126,4 +126,4 @@ TEST(ContactOutput, NumericalDampingIsAcceptedWithAWarning) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_output_tests

@@ -11,7 +11,7 @@
 #include <polhode/io/read_model.hpp>
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::corpus_tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST(Corpus, DamagedModelsAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::corpus_tests

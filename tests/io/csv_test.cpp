@@ -9,7 +9,7 @@
 #include <polhode/io/file_error.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::csv_tests {
 namespace {
 
 const std::vector<std::string> kHeader{"t [s]", "x [m]"};
@@ -59,4 +59,4 @@ TEST(CsvTable, SaysWhichFileItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::csv_tests

@@ -8,7 +8,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/io/read_model.hpp>
 
-namespace polhode {
+namespace polhode::example_models_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -88,4 +88,4 @@ TEST(ModelGenerators, RefuseWhatTheyDoNotKnow) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::example_models_tests

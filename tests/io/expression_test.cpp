@@ -6,7 +6,7 @@
 
 #include <polhode/io/expression.hpp>
 
-namespace polhode {
+namespace polhode::expression_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -135,4 +135,4 @@ TEST(Expression, RefusesWhatIsTooDeepOrTooLong) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::expression_tests

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::model_fingerprint_tests {
 namespace {
 
 struct Wave final : TimeFunction {
@@ -142,4 +142,4 @@ TEST(ModelFingerprint, ReadsMeshFiles) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::model_fingerprint_tests

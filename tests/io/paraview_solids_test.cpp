@@ -11,7 +11,7 @@
 #include <polhode/io/file_error.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::paraview_solids_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(SolidsWriter, TurnsWedgesAsVtkWantsThem) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::paraview_solids_tests

@@ -11,7 +11,7 @@
 #include <polhode/io/file_error.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::paraview_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -163,4 +163,4 @@ TEST(BodyPictures, DrawABodyWithoutShapesAsTheBoxOfItsInertia) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::paraview_tests

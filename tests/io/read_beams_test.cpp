@@ -8,7 +8,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::read_beams_tests {
 namespace {
 
 constexpr const char* kModel = R"(
@@ -131,4 +131,4 @@ TEST(ReadBeams, StartAsTheBodyThatHoldsThem) {
   }
 }
 
-}  // namespace polhode
+}  // namespace polhode::read_beams_tests

@@ -8,7 +8,7 @@
 #include <polhode/io/file_error.hpp>
 #include <polhode/io/read_model.hpp>
 
-namespace polhode {
+namespace polhode::read_model_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -231,4 +231,4 @@ TEST(Model, FindsBodiesAndJointsByName) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_model_tests

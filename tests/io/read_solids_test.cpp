@@ -7,7 +7,7 @@
 #include <polhode/io/read_model.hpp>
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::read_solids_tests {
 namespace {
 
 /// Rounding of a few operations on numbers of size 1.
@@ -101,4 +101,4 @@ TEST(ReadSolids, ReadsProbesOfPointsNodesAndInterfaces) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_solids_tests

@@ -10,7 +10,7 @@
 #include <polhode/io/write_results.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::results_reader_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -112,4 +112,4 @@ TEST(ResultsReader, SaysWhatIsWrongWithAFile) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::results_reader_tests

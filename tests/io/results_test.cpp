@@ -16,7 +16,7 @@
 #include <polhode/io/file_error.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::results_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -272,4 +272,4 @@ print(good and (f["energy/potential"][:n] == 2 * k).all() and (f["solver/steps"]
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::results_tests

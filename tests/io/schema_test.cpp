@@ -10,7 +10,7 @@
 #include <polhode/io/schema.hpp>
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::schema_tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST(Schema, ReferencePageIsUpToDate) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::schema_tests

@@ -3,7 +3,7 @@
 
 #include <polhode/io/source_tree.hpp>
 
-namespace polhode {
+namespace polhode::source_tree_tests {
 namespace {
 
 std::string fault_of(const std::string& text) {
@@ -107,4 +107,4 @@ TEST(Diagnostics, CutLongLines) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::source_tree_tests

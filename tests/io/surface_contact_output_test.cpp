@@ -12,7 +12,7 @@
 #include <support/recorded_run.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::surface_contact_output_tests {
 namespace {
 
 using test::csv_rows, test::recorded_run;
@@ -107,4 +107,4 @@ TEST(SurfaceContactOutput, ARunGoesOnFromACheckpointBitForBit) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::surface_contact_output_tests

@@ -10,7 +10,7 @@
 #include <polhode/io/expression.hpp>
 #include <polhode/io/time_function.hpp>
 
-namespace polhode {
+namespace polhode::time_breaks_tests {
 namespace {
 
 std::shared_ptr<const Expression> expression(const std::string& text) {
@@ -164,4 +164,4 @@ TEST(TableBounds, HoldBetweenThePointsAndInLaterPeriods) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::time_breaks_tests

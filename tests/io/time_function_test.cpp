@@ -6,7 +6,7 @@
 
 #include <polhode/io/time_function.hpp>
 
-namespace polhode {
+namespace polhode::time_function_tests {
 namespace {
 
 const std::vector<double> kTimes = {0.0, 1.0, 3.0, 4.0};
@@ -71,4 +71,4 @@ TEST(TableFunction, PeriodicCubicTakesOneOrTwoIntervals) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::time_function_tests

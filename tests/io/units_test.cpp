@@ -5,7 +5,7 @@
 
 #include <polhode/io/units.hpp>
 
-namespace polhode {
+namespace polhode::units_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -74,4 +74,4 @@ TEST(Dimension, IsNamedForMessages) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::units_tests

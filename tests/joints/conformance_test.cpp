@@ -6,7 +6,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <support/derivative.hpp>
 
-namespace polhode::test {
+namespace polhode::test::conformance_tests {
 namespace {
 
 constexpr int kSamples = 3;
@@ -409,4 +409,4 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryJoint, testing::ValuesIn(kinds()),
                          [](const auto& kind) { return kind.param; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::conformance_tests

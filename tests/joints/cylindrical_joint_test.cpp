@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::cylindrical_joint_tests {
 
 TEST(CylindricalJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("cylindrical"), "Tz Rz"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::cylindrical_joint_tests

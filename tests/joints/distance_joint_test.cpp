@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::distance_joint_tests {
 namespace {
 
 BodyStep point_at(const Vec3& r) {
@@ -33,4 +33,4 @@ TEST(DistanceJoint, LeavesAllRotationsFree) {
   EXPECT_EQ(free_motions("distance", p, Vec3::UnitX()), "Rx Ry Rz");  // About the point itself.
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::distance_joint_tests

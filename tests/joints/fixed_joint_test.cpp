@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::fixed_joint_tests {
 
 TEST(FixedJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("fixed"), ""); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::fixed_joint_tests

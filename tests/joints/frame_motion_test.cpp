@@ -7,7 +7,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <support/derivative.hpp>
 
-namespace polhode::test {
+namespace polhode::test::frame_motion_tests {
 namespace {
 
 /// a + b sin(c t), whose derivatives are known.
@@ -159,4 +159,4 @@ TEST(FrameMotion, IsRefusedByADistance) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::frame_motion_tests

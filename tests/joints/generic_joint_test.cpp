@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <polhode/base/error.hpp>
 
-namespace polhode::test {
+namespace polhode::test::generic_joint_tests {
 namespace {
 
 JointParameters free_list(std::vector<std::string> free) {
@@ -57,4 +57,4 @@ TEST(GenericJoint, RefusesWhatIsNoChoice) {
             "lock a freedom.");
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::generic_joint_tests

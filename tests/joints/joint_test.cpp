@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <polhode/so3/exp_map.hpp>
 
-namespace polhode::test {
+namespace polhode::test::joint_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(Joint, OffersTheTreeWhatHoldsThreeRowsOrMore) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::joint_tests

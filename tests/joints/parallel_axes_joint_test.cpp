@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::parallel_axes_joint_tests {
 
 TEST(ParallelAxesJoint, LeavesItsMotionsFree) {
   EXPECT_EQ(free_motions("parallel_axes"), "Tx Ty Tz Rz");
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::parallel_axes_joint_tests

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::planar_joint_tests {
 
 TEST(PlanarJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("planar"), "Tx Ty Rz"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::planar_joint_tests

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::point_in_plane_joint_tests {
 
 TEST(PointInPlaneJoint, LeavesItsMotionsFree) {
   EXPECT_EQ(free_motions("point_in_plane"), "Tx Ty Rx Ry Rz");
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::point_in_plane_joint_tests

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::prismatic_joint_tests {
 
 TEST(PrismaticJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("prismatic"), "Tz"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::prismatic_joint_tests

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <polhode/base/error.hpp>
 
-namespace polhode::test {
+namespace polhode::test::registry_tests {
 
 TEST(JointRegistry, SaysWhatEachKindLeavesFree) {
   for (const JointKind& kind : joint_kinds()) {
@@ -32,4 +32,4 @@ TEST(JointRegistry, ListsTheNamesWhenOneIsUnknown) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::registry_tests

@@ -5,7 +5,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <support/derivative.hpp>
 
-namespace polhode::test {
+namespace polhode::test::resistance_tests {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -253,4 +253,4 @@ TEST(JointFriction, IsRefusedWhereItHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::resistance_tests

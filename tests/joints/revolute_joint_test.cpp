@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::revolute_joint_tests {
 
 TEST(RevoluteJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("revolute"), "Rz"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::revolute_joint_tests

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::spherical_joint_tests {
 
 TEST(SphericalJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("spherical"), "Rx Ry Rz"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::spherical_joint_tests

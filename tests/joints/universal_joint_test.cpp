@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode::test {
+namespace polhode::test::universal_joint_tests {
 
 TEST(UniversalJoint, LeavesItsMotionsFree) { EXPECT_EQ(free_motions("universal"), "Rx Ry"); }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::universal_joint_tests

@@ -13,7 +13,7 @@
 #include <polhode/loads/servo.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
-namespace polhode::test {
+namespace polhode::test::connectors_tests {
 namespace {
 
 TimeFunctionPtr law(std::function<double(double)> f) {
@@ -350,4 +350,4 @@ TEST(ForceLaw, MeansOfFunctionsWithKinksAreExact) {
   EXPECT_NEAR(mean_value(smooth, -2.0, 2.0), (std::exp(6.0) - std::exp(-6.0)) / 12.0, 1e-12);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::connectors_tests

@@ -2,7 +2,7 @@
 #include <loads/load_samples.hpp>
 #include <polhode/loads/joint_spring.hpp>
 
-namespace polhode::test {
+namespace polhode::test::joint_spring_tests {
 namespace {
 
 struct Sample {
@@ -85,4 +85,4 @@ TEST(TorsionalSpring, RemembersTheAngle) {
   EXPECT_NEAR(history, m.history[0] - 2.0 * 3.14159265358979324, 1e-14);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::joint_spring_tests

@@ -6,6 +6,7 @@
 #include <polhode/loads/load_description.hpp>
 #include <polhode/so3/exp_map.hpp>
 #include <support/derivative.hpp>
+#include <support/model_builder.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {
@@ -18,16 +19,6 @@ class Function : public TimeFunction {
 
  private:
   std::function<double(double)> f_;
-};
-
-class Constant : public TimeFunction {
- public:
-  explicit Constant(double value) : value_(value) {}
-  double operator()(double) const override { return value_; }
-  [[nodiscard]] bool is_constant() const override { return true; }
-
- private:
-  double value_;
 };
 
 [[nodiscard]] inline TimeVector constant(const Vec3& v) {

@@ -2,7 +2,7 @@
 #include <loads/load_samples.hpp>
 #include <polhode/loads/moment.hpp>
 
-namespace polhode::test {
+namespace polhode::test::moment_tests {
 namespace {
 
 LoadDescription description(Random& random, bool body_fixed) {
@@ -50,4 +50,4 @@ TEST(Moment, IsTheSameInBothAxesWhenTheBodyTurnsAboutIt) {
   EXPECT_LT((world.wrench_b - evaluate(Moment(d), m).wrench_b).norm(), 1e-15);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::moment_tests

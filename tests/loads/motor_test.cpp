@@ -4,7 +4,7 @@
 #include <loads/load_samples.hpp>
 #include <polhode/loads/motor.hpp>
 
-namespace polhode::test {
+namespace polhode::test::motor_tests {
 namespace {
 
 /// 2 + sin 3t, whose derivatives are known.
@@ -98,4 +98,4 @@ TEST(Motor, FollowsTheIntegralOfItsSpeed) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::motor_tests

@@ -4,7 +4,7 @@
 #include <loads/load_samples.hpp>
 #include <polhode/loads/point_force.hpp>
 
-namespace polhode::test {
+namespace polhode::test::point_force_tests {
 namespace {
 
 LoadDescription description(Random& random, bool body_fixed) {
@@ -82,4 +82,4 @@ TEST(PointForce, PutsInItsWorkOtherwise) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::point_force_tests

@@ -5,7 +5,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/loads/registry.hpp>
 
-namespace polhode::test {
+namespace polhode::test::registry_tests {
 
 // The ledger and the reports find a load's items by its kind.
 TEST(LoadRegistry, AddsItemsOfTheKindItNames) {
@@ -37,4 +37,4 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::registry_tests

@@ -2,7 +2,7 @@
 #include <loads/load_samples.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
-namespace polhode::test {
+namespace polhode::test::spring_damper_tests {
 namespace {
 
 LoadDescription description(Random& random, double stiffness, double damping, double free_length) {
@@ -138,4 +138,4 @@ TEST(SpringDamper, PullsWithStiffnessTimesElongation) {
   EXPECT_LT((t.wrench_b.head<3>() - Vec3(0.0, -50.0, 0.0)).norm(), 1e-13);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::spring_damper_tests

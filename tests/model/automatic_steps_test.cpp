@@ -9,7 +9,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::automatic_steps_tests {
 namespace {
 
 Model with(const std::string& text, int order, double tolerance) {
@@ -181,4 +181,4 @@ analysis: {{duration: 0.1 s}}
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::automatic_steps_tests

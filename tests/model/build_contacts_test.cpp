@@ -9,7 +9,7 @@
 #include <polhode/model/build_system.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::build_contacts_tests {
 namespace {
 
 const char* kBodies = R"(
@@ -189,4 +189,4 @@ TEST(BuildContacts, MovesOverlappingBodiesApartTheLighterFarther) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::build_contacts_tests

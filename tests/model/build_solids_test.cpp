@@ -6,7 +6,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/model_builder.hpp>
 
-namespace polhode::test {
+namespace polhode::test::build_solids_tests {
 namespace {
 
 /// Sums of some hundred terms of size 1.
@@ -253,4 +253,4 @@ TEST(SolidReports, ShowNoStressInASolidThatHasNotDeformed) {
         0.0, kRounding);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::build_solids_tests

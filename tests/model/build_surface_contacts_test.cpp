@@ -12,7 +12,7 @@
 #include <polhode/model/build_surface_contacts.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::build_surface_contacts_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -228,4 +228,4 @@ TEST(BuildSurfaceContacts, ACableIsAsStiffAsAFullRoundBar) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::build_surface_contacts_tests

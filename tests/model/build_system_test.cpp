@@ -5,7 +5,7 @@
 #include <polhode/model/build_system.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::build_system_tests {
 namespace {
 
 BodySpec body(const std::string& name, const Vec3& position = Vec3::Zero()) {
@@ -210,4 +210,4 @@ TEST(BuildSystem, SaysWhichJointHasWrongFreedoms) {
       "apart, or use a spherical joint.");
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::build_system_tests

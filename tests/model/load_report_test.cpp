@@ -9,7 +9,7 @@
 #include <support/model_builder.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode::test {
+namespace polhode::test::load_report_tests {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -110,4 +110,4 @@ TEST(LoadReport, IsRecordedByProbes) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::load_report_tests

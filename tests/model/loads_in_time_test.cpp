@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::loads_in_time_tests {
 namespace {
 
 /// A free ball of 2 kg on which a force along x acts.
@@ -214,4 +214,4 @@ TEST(LoadsInTime, RunsThatAreContinuedAreTheSame) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::loads_in_time_tests

@@ -6,7 +6,7 @@
 #include <polhode/model/nonsmooth_contacts.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::nonsmooth_contacts_tests {
 namespace {
 
 Model model_of(const std::string& more) {
@@ -128,4 +128,4 @@ analysis: {duration: 1 s, step: 5 ms}
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::nonsmooth_contacts_tests

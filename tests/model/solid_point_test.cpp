@@ -5,7 +5,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::solid_point_tests {
 namespace {
 
 /// The inverse map stops at 1e-12 of an element's size.
@@ -48,4 +48,4 @@ TEST(SolidPoint, OutsideIsRefusedWithTheNearestNode) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::solid_point_tests

@@ -7,7 +7,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::surface_overlaps_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -227,4 +227,4 @@ TEST(SurfaceOverlaps, AreRefusedWhereNothingMayMove) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::surface_overlaps_tests

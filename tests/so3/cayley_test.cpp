@@ -10,7 +10,7 @@
 #include <so3/sample_rotations.hpp>
 #include <support/derivative.hpp>
 
-namespace polhode {
+namespace polhode::cayley_tests {
 namespace {
 
 using test::distance;
@@ -115,4 +115,4 @@ TEST(CayleyVector, ReachesCloseToAHalfTurn) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::cayley_tests

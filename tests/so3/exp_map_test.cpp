@@ -8,7 +8,7 @@
 #include <polhode/so3/hat.hpp>
 #include <so3/sample_rotations.hpp>
 
-namespace polhode {
+namespace polhode::exp_map_tests {
 namespace {
 
 using std::numbers::pi;
@@ -79,4 +79,4 @@ TEST(ExpMap, IsSmoothWhereTheSeriesTakesOver) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::exp_map_tests

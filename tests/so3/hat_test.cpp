@@ -3,7 +3,7 @@
 
 #include <polhode/so3/hat.hpp>
 
-namespace polhode {
+namespace polhode::hat_tests {
 namespace {
 
 const Vec3 kChi(0.3, -0.7, 0.5);
@@ -45,4 +45,4 @@ TEST(HatHat, IsTheProductOfTwoHats) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::hat_tests

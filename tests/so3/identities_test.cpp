@@ -7,7 +7,7 @@
 #include <polhode/so3/hat.hpp>
 #include <so3/sample_rotations.hpp>
 
-namespace polhode {
+namespace polhode::identities_tests {
 namespace {
 
 using test::distance;
@@ -54,4 +54,4 @@ TEST_P(Identities, ThreeFormsOfTheRotationTensorAgree) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::identities_tests

@@ -5,7 +5,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <so3/sample_rotations.hpp>
 
-namespace polhode {
+namespace polhode::increments_tests {
 namespace {
 
 using test::distance;
@@ -54,4 +54,4 @@ TEST_P(Increments, OfNewtonAreComposedFromTheLeft) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::increments_tests

@@ -5,7 +5,7 @@
 #include <polhode/so3/exp_map.hpp>
 #include <so3/sample_rotations.hpp>
 
-namespace polhode {
+namespace polhode::linearization_tests {
 namespace {
 
 using test::distance;
@@ -51,4 +51,4 @@ TEST_P(Linearization, OfTheStepsRotationMovesItsCayleyVectorByT) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::linearization_tests

@@ -9,7 +9,7 @@
 #include <polhode/so3/quaternion.hpp>
 #include <so3/sample_rotations.hpp>
 
-namespace polhode {
+namespace polhode::quaternion_tests {
 namespace {
 
 using test::distance;
@@ -62,4 +62,4 @@ TEST(Quaternion, StaysAccurateOverAMillionCompositions) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::quaternion_tests

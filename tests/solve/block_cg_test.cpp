@@ -10,7 +10,7 @@
 
 #include "random_kkt.hpp"
 
-namespace polhode {
+namespace polhode::block_cg_tests {
 namespace {
 
 using test::Numbers;
@@ -218,4 +218,4 @@ TEST(BlockCg, RefusesABlockThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::block_cg_tests

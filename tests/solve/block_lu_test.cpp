@@ -6,7 +6,7 @@
 
 #include "random_kkt.hpp"
 
-namespace polhode {
+namespace polhode::block_lu_tests {
 namespace {
 
 using test::add_pair;
@@ -53,4 +53,4 @@ TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::block_lu_tests

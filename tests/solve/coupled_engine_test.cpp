@@ -12,7 +12,7 @@
 #include <polhode/solve/stepper.hpp>
 #include <support/bar_elements.hpp>
 
-namespace polhode {
+namespace polhode::coupled_engine_tests {
 namespace {
 
 using test::lattice;
@@ -219,4 +219,4 @@ TEST(CoupledEngine, IsOfSecondOrder) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::coupled_engine_tests

@@ -3,7 +3,7 @@
 
 #include <polhode/solve/impulse_newton.hpp>
 
-namespace polhode {
+namespace polhode::impulse_newton_tests {
 namespace {
 
 constexpr double kFall = 9.81e-3;  ///< What gravity adds in a step [m/s].
@@ -63,4 +63,4 @@ TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::impulse_newton_tests

@@ -4,7 +4,7 @@
 #include <polhode/so3/hat.hpp>
 #include <polhode/solve/ball_sweeps.hpp>
 
-namespace polhode {
+namespace polhode::impulse_sweeps_tests {
 namespace {
 
 /// A pile of five balls on the ground, falling, or of bodies that turn differently about each axis.
@@ -88,4 +88,4 @@ TEST(BallSweeps, DoWhatTheGeneralOnesDo) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::impulse_sweeps_tests

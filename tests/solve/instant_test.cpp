@@ -7,7 +7,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::instant_tests {
 namespace {
 
 using namespace test;
@@ -30,7 +30,8 @@ void displace(const System& system, State& state, double size) {
 }
 
 TEST(AssemblePositions, LeavesAnAssembledStateAlone) {
-  for (const Mechanism& m : {double_pendulum(), bricard(), four_bars(2, 0.0), door()}) {
+  for (const Mechanism& m :
+       {double_pendulum(), bricard_system(), four_bars(2, 0.0), door_system()}) {
     const System system = m.system();
     State state = system.initial_state();
     const PositionReport report = assemble_positions(system, state);
@@ -43,7 +44,8 @@ TEST(AssemblePositions, LeavesAnAssembledStateAlone) {
 
 TEST(AssemblePositions, BringsADisplacedMechanismTogether) {
   for (const double size : {0.01, 0.1})
-    for (const Mechanism& m : {double_pendulum(), bricard(), four_bars(3, 1.2), door()}) {
+    for (const Mechanism& m :
+         {double_pendulum(), bricard_system(), four_bars(3, 1.2), door_system()}) {
       const System system = m.system();
       State state = system.initial_state();
       displace(system, state, size);
@@ -105,7 +107,7 @@ TEST(ProjectVelocities, KeepsTheMomentumAboutAHinge) {
 }
 
 TEST(ProjectVelocities, WorksWithRedundantRowsAndInSingularPositions) {
-  for (const Mechanism& plain : {bricard(), four_bars(3, 0.0), door()}) {
+  for (const Mechanism& plain : {bricard_system(), four_bars(3, 0.0), door_system()}) {
     Mechanism m = plain;
     for (int b = 0; b < static_cast<int>(m.model.bodies.size()); ++b)
       m.velocity(b, {0.3 * b, 1.0, -0.2}, {0.1, 0.2, 1.0 + 0.1 * b});
@@ -138,7 +140,7 @@ TEST(InstantSolution, MatchesThePhysicalPendulum) {
 }
 
 TEST(InstantSolution, SharesTheLoadOfADoorEvenly) {
-  const System system = door().system();
+  const System system = door_system().system();
   const InstantSolution s = instant_solution(system, system.initial_state());
   EXPECT_TRUE(s.solved && s.consistent);
   // Weight m g in equal parts: the smallest multipliers. Rounding 1e-16 over ε = 1e-8.
@@ -191,4 +193,4 @@ TEST(InstantSolution, IsTheSameWithEachLinearSolver) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::instant_tests

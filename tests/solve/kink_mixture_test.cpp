@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <polhode/solve/kink_mixture.hpp>
 
-namespace polhode {
+namespace polhode::kink_mixture_tests {
 namespace {
 
 Vec vec(std::initializer_list<double> numbers) {
@@ -67,4 +67,4 @@ TEST(KinkMixture, StandsEqualResiduals) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::kink_mixture_tests

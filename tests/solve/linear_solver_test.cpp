@@ -9,7 +9,7 @@
 
 #include "random_kkt.hpp"
 
-namespace polhode {
+namespace polhode::linear_solver_tests {
 namespace {
 
 using test::add_pair;
@@ -201,4 +201,4 @@ TEST(MakeLinearSolver, SaysWhichNamesItKnows) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::linear_solver_tests

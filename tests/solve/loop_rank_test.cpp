@@ -9,7 +9,7 @@
 #include <polhode/solve/rank_report.hpp>
 #include <support/models.hpp>
 
-namespace polhode {
+namespace polhode::loop_rank_tests {
 namespace {
 
 /// All rows in one dense matrix.
@@ -97,4 +97,4 @@ TEST(LoopRank, IsLinearAlongARowOfLoops) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::loop_rank_tests

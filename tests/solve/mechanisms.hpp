@@ -100,7 +100,7 @@ inline Mechanism four_bars(int n, double crank_angle = 1.5707963267948966) {
 
 /// Bricard's trihedral linkage: six bars along edges of a cube, the last one fixed, each hinge
 /// normal to both its bars.
-inline Mechanism bricard() {
+inline Mechanism bricard_system() {
   Mechanism m;
   m.model.gravity = kGravity;
   const Vec3 vertex[6] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {1, 0, 1}};
@@ -118,7 +118,7 @@ inline Mechanism bricard() {
 }
 
 /// A door on two hinges of one axis: five rows too many.
-inline Mechanism door() {
+inline Mechanism door_system() {
   Mechanism m;
   m.model.gravity = kGravity;
   const int leaf = m.body("leaf", {0.5, 0.0, 1.0}, 20.0, {7.0, 8.0, 1.7});

@@ -9,7 +9,7 @@
 #include <solve/static_models.hpp>
 #include <support/bar_elements.hpp>
 
-namespace polhode {
+namespace polhode::modes_tests {
 namespace {
 
 using test::add_body, test::add_joint, test::add_load;
@@ -144,4 +144,4 @@ TEST(Modes, ShapesOfNodesFollowTheBodiesTheyAreBondedTo) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::modes_tests

@@ -6,7 +6,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::rank_report_tests {
 namespace {
 
 using namespace test;
@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 TEST(RankReport, FindsTheOneRedundantRowOfBricardsLinkage) {
-  const System system = bricard().system();
+  const System system = bricard_system().system();
   const RankReport report = rank_report(system, system.initial_state());
   EXPECT_EQ(report.rows, 30);
   EXPECT_EQ(report.rank, 29);
@@ -23,7 +23,7 @@ TEST(RankReport, FindsTheOneRedundantRowOfBricardsLinkage) {
 }
 
 TEST(RankReport, NamesTheHingesOfADoor) {
-  const System system = door().system();
+  const System system = door_system().system();
   const RankReport report = rank_report(system, system.initial_state());
   EXPECT_EQ(report.redundant, 5);
   EXPECT_EQ(report.mobility, 1);
@@ -68,7 +68,7 @@ TEST(RankReport, FindsNothingRedundantInATree) {
 }
 
 TEST(RankReport, LeavesJointsOutThatHaveNoPartInARedundancy) {
-  Mechanism m = door();
+  Mechanism m = door_system();
   const int handle = m.body("handle", {1.0, 0.2, 1.0});
   m.joint("spindle", "revolute", 0, handle, {1.0, 0.0, 1.0}, Vec3::UnitY());
   const System system = m.system();
@@ -85,4 +85,4 @@ TEST(RankReport, GivesAFreeBodySixMotions) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::rank_report_tests

@@ -15,7 +15,7 @@
 #include <polhode/solve/stepper.hpp>
 #include <solve/static_models.hpp>
 
-namespace polhode {
+namespace polhode::retreat_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(KeptIterate, RestoresWhatIterationsMoveAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::retreat_tests

@@ -7,7 +7,7 @@
 #include "contact/scene.hpp"
 #include "support/random_steps.hpp"
 
-namespace polhode {
+namespace polhode::settle_impacts_tests {
 namespace {
 
 using namespace test;
@@ -188,4 +188,4 @@ TEST(SettleImpacts, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::settle_impacts_tests

@@ -9,7 +9,7 @@
 
 #include "support/random_steps.hpp"
 
-namespace polhode {
+namespace polhode::single_impact_tests {
 namespace {
 
 using test::Random;
@@ -177,4 +177,4 @@ TEST(SingleImpact, GoesOnFromWhatIsStored) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::single_impact_tests

@@ -9,7 +9,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::sparse_engine_tests {
 namespace {
 
 using namespace test;
@@ -63,7 +63,7 @@ TEST_P(SparseEngines, LeaveNoResidualAndHoldConstraints) {
 }
 
 TEST_P(SparseEngines, ConserveEnergyOfLoopsWithRedundantRows) {
-  for (const Mechanism& m : {four_bars(3, 1.3), bricard()}) {
+  for (const Mechanism& m : {four_bars(3, 1.3), bricard_system()}) {
     const System system = m.system();
     State state = consistent(system);
     SparseEngine engine(system, GetParam());
@@ -151,4 +151,4 @@ TEST(SparseEngine, IteratesTheSameWithEachLinearSolver) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::sparse_engine_tests

@@ -10,7 +10,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::start_tests {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST(Start, InAFlatFourBarGoesOnAlongItsBranch) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::start_tests

@@ -7,7 +7,7 @@
 #include <solve/static_models.hpp>
 #include <support/bar_elements.hpp>
 
-namespace polhode {
+namespace polhode::statics_tests {
 namespace {
 
 using test::add_body, test::add_joint, test::add_load, test::constant;
@@ -161,4 +161,4 @@ TEST(Statics, TheTangentOfASystemWithPotentialIsItsHessian) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::statics_tests

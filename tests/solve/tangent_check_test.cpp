@@ -5,7 +5,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::tangent_check_tests {
 namespace {
 
 using namespace test;
@@ -13,7 +13,7 @@ using namespace test;
 // @tests{ga-inertia-tangent} @tests{ga-moment-tangent}
 TEST(CheckTangents, AgreesWithDifferencesForWholeMechanisms) {
   for (const Mechanism& m : {double_pendulum("universal"), double_pendulum("prismatic"),
-                             double_pendulum("fixed"), four_bars(1, 0.8), bricard()})
+                             double_pendulum("fixed"), four_bars(1, 0.8), bricard_system()})
     for (const double rho : {1.0, 0.5, 0.0})
       for (const MomentumRate form : {MomentumRate::momentum, MomentumRate::kinematic_corrected}) {
         const System system = m.system();
@@ -50,4 +50,4 @@ TEST(CheckTangents, NamesAWrongEntry) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::tangent_check_tests

@@ -13,7 +13,7 @@
 #include <polhode/solve/start.hpp>
 #include <polhode/solve/tree_engine.hpp>
 
-namespace polhode {
+namespace polhode::tree_engine_tests {
 namespace {
 
 /// Mechanisms made up at random, reproducibly; frames of a joint coincide at the start.
@@ -273,4 +273,4 @@ TEST(TreeEngine, RepeatsItself) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::tree_engine_tests

@@ -5,7 +5,7 @@
 
 #include "mechanisms.hpp"
 
-namespace polhode {
+namespace polhode::trial_tests {
 namespace {
 
 using namespace test;
@@ -42,4 +42,4 @@ TEST(BodyStepOfATrial, IsTheNewmarkStepOfThatBody) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::trial_tests

@@ -10,7 +10,7 @@
 #include <polhode/study/certificate_picture.hpp>
 #include <support/models.hpp>
 
-namespace polhode {
+namespace polhode::certify_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -220,4 +220,4 @@ TEST(CertificatePicture, IsAWholePictureOfEveryQuantity) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::certify_tests

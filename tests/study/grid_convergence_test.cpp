@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode {
+namespace polhode::grid_convergence_tests {
 namespace {
 
 constexpr std::array<double, 3> kHalves = {0.1, 0.05, 0.025};
@@ -199,4 +199,4 @@ TEST(EstimateError, RefusesRunsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::grid_convergence_tests

@@ -5,7 +5,7 @@
 #include <support/derivative.hpp>
 #include <time/sample_step.hpp>
 
-namespace polhode {
+namespace polhode::body_step_tests {
 namespace {
 
 const Vec3 kZ(0.3, -1.1, 0.7);
@@ -99,4 +99,4 @@ TEST(BodyStep, AtAnInstantHasOneConfigurationThroughout) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::body_step_tests

@@ -10,7 +10,7 @@
 #include <polhode/time/momentum_step.hpp>
 #include <support/convergence.hpp>
 
-namespace polhode {
+namespace polhode::free_top_tests {
 namespace {
 
 constexpr double kAcross = 2.0;  // principal moments [kg m²]
@@ -108,4 +108,4 @@ TEST(FreeTop, HasAClosedFormThatObeysItsEquations) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::free_top_tests

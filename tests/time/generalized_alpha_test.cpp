@@ -8,7 +8,7 @@
 #include <polhode/base/types.hpp>
 #include <polhode/time/generalized_alpha.hpp>
 
-namespace polhode {
+namespace polhode::generalized_alpha_tests {
 namespace {
 
 class Alpha : public testing::TestWithParam<double> {
@@ -75,4 +75,4 @@ TEST(GeneralizedAlpha, RefusesASpectralRadiusOutsideOfZeroToOne) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::generalized_alpha_tests

@@ -4,7 +4,7 @@
 #include <polhode/so3/cayley.hpp>
 #include <polhode/time/mean_turn.hpp>
 
-namespace polhode {
+namespace polhode::mean_turn_tests {
 namespace {
 
 /// @tests{nonsmooth-step}
@@ -35,4 +35,4 @@ TEST(MeanTurn, OfABallHasAClosedForm) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::mean_turn_tests

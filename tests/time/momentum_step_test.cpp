@@ -13,7 +13,7 @@
 #include <support/derivative.hpp>
 #include <time/sample_step.hpp>
 
-namespace polhode {
+namespace polhode::momentum_step_tests {
 namespace {
 
 constexpr double kMass = 2.5;
@@ -106,4 +106,4 @@ TEST(MomentumRateWord, IsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::momentum_step_tests

@@ -3,7 +3,7 @@
 
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::momentum_work_tests {
 namespace {
 
 constexpr double kMass = 1.7;
@@ -45,4 +45,4 @@ TEST(MomentumStep, GainsExactlyTheWorkOfForceAndMoment) {
   }
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::momentum_work_tests

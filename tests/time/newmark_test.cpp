@@ -7,7 +7,7 @@
 #include <polhode/time/newmark_translation.hpp>
 #include <support/derivative.hpp>
 
-namespace polhode {
+namespace polhode::newmark_tests {
 namespace {
 
 constexpr double kDt = 0.1;
@@ -91,4 +91,4 @@ TEST(NewmarkWithoutDamping, TakesNothingFromTheStoredAcceleration) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::newmark_tests

@@ -10,7 +10,7 @@
 #include <support/derivative.hpp>
 #include <time/sample_step.hpp>
 
-namespace polhode {
+namespace polhode::theory_forms_tests {
 namespace {
 
 const Vec3 kZ(0.3, -1.1, 0.7);
@@ -92,4 +92,4 @@ TEST_P(TheoryForms, OfTheTangentOfTheKinematicRate) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::theory_forms_tests

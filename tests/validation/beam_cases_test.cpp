@@ -10,7 +10,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/beam_models.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_cases_tests {
 namespace {
 
 Simulation simulate(Model model, double step, double duration) {
@@ -114,4 +114,4 @@ TEST(BeamCases, FlexiblePendulumFollowsThePeers) {
   EXPECT_LT(s.summary().energy_drift, 1e-11);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_cases_tests

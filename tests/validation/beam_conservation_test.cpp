@@ -5,7 +5,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/beam_models.hpp>
 
-namespace polhode::test {
+namespace polhode::test::beam_conservation_tests {
 namespace {
 
 struct Scene {
@@ -100,4 +100,4 @@ TEST(BeamConservation, ViscosityTakesWhatTheLedgerSays) {
   EXPECT_LE(r.angular_momentum_drift, 1e-11);
 }
 
-}  // namespace polhode::test
+}  // namespace polhode::test::beam_conservation_tests

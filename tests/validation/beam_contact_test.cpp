@@ -9,7 +9,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::beam_contact_tests {
 namespace {
 
 // A viscous bar falls by a hair on two pegs, 1 m apart and 0.1 m from its ends, and comes to rest.
@@ -109,4 +109,4 @@ TEST(BeamContact, RodsOfConsistentMassReboundWithoutGainingEnergyOrMomentum) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::beam_contact_tests

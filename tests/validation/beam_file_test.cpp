@@ -8,7 +8,7 @@
 #include <polhode/model/modal.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::beam_file_tests {
 namespace {
 
 Vec3 tip_of(const std::string& text, const Overrides& overrides = {}) {
@@ -98,4 +98,4 @@ TEST(BeamFile, AFreeBarSwingsAsTimoshenkoSays) {
     EXPECT_NEAR(100.0 * (modes[6 + k].frequency / exact[k / 2] - 1.0), percent[k / 2], 0.015) << k;
 }
 
-}  // namespace polhode
+}  // namespace polhode::beam_file_tests

@@ -13,7 +13,7 @@
 #include <polhode/model/simulation.hpp>
 #include <validation/rope_over_drum.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_contact_tests {
 namespace {
 
 using std::numbers::pi;
@@ -201,4 +201,4 @@ analysis: {duration: 0.25 s, step: 0.5 ms}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_contact_tests

@@ -11,7 +11,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_on_solid_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -176,4 +176,4 @@ analysis: {{type: statics, load_steps: 4}}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_on_solid_tests

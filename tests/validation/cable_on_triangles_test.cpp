@@ -15,7 +15,7 @@
 #include <support/scratch.hpp>
 #include <validation/rope_over_drum.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_on_triangles_tests {
 namespace {
 
 using std::numbers::pi;
@@ -196,4 +196,4 @@ analysis: {{duration: 1 ms, step: 1 ms}}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_on_triangles_tests

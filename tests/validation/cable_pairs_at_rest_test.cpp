@@ -12,7 +12,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_pairs_at_rest_tests {
 namespace {
 
 constexpr double g = 9.81;
@@ -164,4 +164,4 @@ analysis: {{step: 0.5 ms, duration: 0.25}}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_pairs_at_rest_tests

@@ -14,7 +14,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_pairs_tests {
 namespace {
 
 using std::numbers::pi;
@@ -309,4 +309,4 @@ analysis: {duration: 0.05, step: 0.5 ms}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_pairs_tests

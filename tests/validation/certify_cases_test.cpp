@@ -18,7 +18,7 @@
 #include <support/known_solutions/free_symmetric_top.hpp>
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::certify_cases_tests {
 namespace {
 
 /// What a quantity is at a time; an empty vector where it is not known.
@@ -240,4 +240,4 @@ INSTANTIATE_TEST_SUITE_P(OtherOrders, Certified, testing::ValuesIn(other_orders(
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::certify_cases_tests

@@ -12,7 +12,7 @@
 #include <polhode/solve/statics.hpp>
 #include <support/model_builder.hpp>
 
-namespace polhode {
+namespace polhode::compressed_block_tests {
 namespace {
 
 struct Compression {
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, CompressedBlock,
                          });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::compressed_block_tests

@@ -10,7 +10,7 @@
 #include <polhode/base/format.hpp>
 #include <validation/connector_runs.hpp>
 
-namespace polhode {
+namespace polhode::connectors_tests {
 
 using namespace connectors;
 
@@ -389,4 +389,4 @@ TEST(Connectors, RefuseWhatTheyCannotDo) {
       "Give ratio alone");
 }
 
-}  // namespace polhode
+}  // namespace polhode::connectors_tests

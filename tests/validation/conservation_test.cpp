@@ -14,7 +14,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/models.hpp>
 
-namespace polhode::test {
+namespace polhode::test::conservation_tests {
 namespace {
 
 RunSummary run_steps(Model model, double step, std::int64_t steps) {
@@ -148,4 +148,4 @@ TEST(Dampers, NeverCreateEnergyInTheFlyballGovernor) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::conservation_tests

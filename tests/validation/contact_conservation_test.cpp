@@ -7,7 +7,7 @@
 #include "contact/scene.hpp"
 #include "contact/shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::contact_conservation_tests {
 namespace {
 
 using namespace test;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, TiedWithSolids,
                          });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_conservation_tests

@@ -8,7 +8,7 @@
 #include "contact/scene.hpp"
 #include "support/paths.hpp"
 
-namespace polhode {
+namespace polhode::contact_friction_tests {
 namespace {
 
 using namespace test;
@@ -163,4 +163,4 @@ TEST(ContactFriction, MovesTheSameInMillimetres) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_friction_tests

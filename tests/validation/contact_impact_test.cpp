@@ -3,7 +3,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode {
+namespace polhode::contact_impact_tests {
 namespace {
 
 using namespace test;
@@ -92,4 +92,4 @@ TEST(ContactImpact, DampedReboundByAResolvedForce) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_impact_tests

@@ -8,7 +8,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::contact_laws_tests {
 namespace {
 
 constexpr double kG = 9.81;
@@ -330,4 +330,4 @@ TEST(NonsmoothLaw, SaysWhatWouldOverlap) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_laws_tests

@@ -8,7 +8,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/paths.hpp>
 
-namespace polhode::test {
+namespace polhode::test::contact_solids_models_tests {
 namespace {
 
 /// Bodies, joints with stops, surfaces of solids: what one step settles together.
@@ -42,4 +42,4 @@ TEST(ContactSolidsModel, TrolleyLosesEnergyOnlyAndItsBalancesClose) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::contact_solids_models_tests

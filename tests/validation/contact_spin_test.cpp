@@ -5,7 +5,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode {
+namespace polhode::contact_spin_tests {
 namespace {
 
 using namespace test;
@@ -133,4 +133,4 @@ TEST(ContactSpin, PainleveRodIsArrested) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_spin_tests

@@ -5,7 +5,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode {
+namespace polhode::contact_stack_tests {
 namespace {
 
 using namespace test;
@@ -66,4 +66,4 @@ TEST(ContactStack, CardHouseOfTwoPlatesStandsByItsFriction) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::contact_stack_tests

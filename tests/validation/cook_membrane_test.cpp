@@ -15,7 +15,7 @@
 #include <polhode/solve/statics.hpp>
 #include <solve/static_models.hpp>
 
-namespace polhode {
+namespace polhode::cook_membrane_tests {
 namespace {
 
 constexpr double kShear = 80.1938;
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.element + "_" + std::to_string(test.param.n); });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::cook_membrane_tests

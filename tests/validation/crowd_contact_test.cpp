@@ -4,7 +4,7 @@
 
 #include <contact/scene.hpp>
 
-namespace polhode::test {
+namespace polhode::test::crowd_contact_tests {
 namespace {
 
 /// SPHERES_IN_A_BIN: the first second, in which nearly all of the energy is lost in impacts.
@@ -31,4 +31,4 @@ TEST(CrowdContact, AThousandSpheresInABinNeverGainEnergyNorPenetrate) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::crowd_contact_tests

@@ -14,7 +14,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/modal.hpp>
 
-namespace polhode {
+namespace polhode::damped_modes_tests {
 namespace {
 
 using Complex = std::complex<double>;
@@ -169,4 +169,4 @@ analysis: {type: modes, count: 3}
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::damped_modes_tests

@@ -12,7 +12,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode {
+namespace polhode::flat_surfaces_tests {
 namespace {
 
 using namespace contact;
@@ -165,4 +165,4 @@ INSTANTIATE_TEST_SUITE_P(Steps, SwingOnTriangles,
                          });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::flat_surfaces_tests

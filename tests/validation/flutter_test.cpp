@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/modal.hpp>
 
-namespace polhode {
+namespace polhode::flutter_tests {
 namespace {
 
 ModesReport modes_of(const std::string& text, const Overrides& overrides = {}) {
@@ -181,4 +181,4 @@ TEST(Flutter, LeipholzColumnFluttersAtItsLoad) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::flutter_tests

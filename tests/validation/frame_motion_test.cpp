@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::frame_motion_tests {
 namespace {
 
 constexpr double kG = 9.81;
@@ -247,4 +247,4 @@ TEST(PrescribedMotion, SaysWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::frame_motion_tests

@@ -10,7 +10,7 @@
 #include <polhode/base/format.hpp>
 #include <validation/connector_runs.hpp>
 
-namespace polhode {
+namespace polhode::gears_tests {
 
 using namespace connectors;
 
@@ -147,4 +147,4 @@ output: {hdf5: false}
     }
 }
 
-}  // namespace polhode
+}  // namespace polhode::gears_tests

@@ -11,7 +11,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/model_builder.hpp>
 
-namespace polhode::test {
+namespace polhode::test::joint_friction_tests {
 namespace {
 
 constexpr double kG = 9.81;
@@ -350,4 +350,4 @@ TEST(JointLimits, RefuseAStartOutside) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::joint_friction_tests

@@ -14,7 +14,7 @@
 #include <polhode/solve/statics.hpp>
 #include <solve/static_models.hpp>
 
-namespace polhode {
+namespace polhode::limit_load_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -111,4 +111,4 @@ TEST(LimitLoad, OfASolidOfSaintVenantsMaterialIsThatOfItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::limit_load_tests

@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::locking_tests {
 namespace {
 
 struct Solved {
@@ -90,4 +90,4 @@ TEST(Locking, IsSaidBeforeARunWhereItIsMeasured) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::locking_tests

@@ -11,7 +11,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::motor_tests {
 namespace {
 
 constexpr double kG = 9.81;
@@ -255,4 +255,4 @@ TEST(Motor, RefusesWhatItCannotFollow) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::motor_tests

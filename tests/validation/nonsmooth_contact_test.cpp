@@ -6,7 +6,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode {
+namespace polhode::nonsmooth_contact_tests {
 namespace {
 
 using namespace test;
@@ -162,4 +162,4 @@ TEST(NonsmoothContact, AHundredSpheresComeToRestInABin) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::nonsmooth_contact_tests

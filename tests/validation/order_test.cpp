@@ -13,7 +13,7 @@
 #include <support/known_solutions/heavy_top_reaction.hpp>
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::order_tests {
 namespace {
 
 Simulation run_to(Model model, double t_end, int n, int order = 2) {
@@ -225,4 +225,4 @@ INSTANTIATE_TEST_SUITE_P(Of, HigherOrder,
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::order_tests

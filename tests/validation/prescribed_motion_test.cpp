@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::prescribed_motion_tests {
 namespace {
 
 // 1 m long, 0.1 m square, pushed at its end along its axis. No lateral contraction, so that its
@@ -133,4 +133,4 @@ TEST(PrescribedMotion, HeldNodesStandWithNumericalDamping) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::prescribed_motion_tests

@@ -10,7 +10,7 @@
 
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::published_cases_tests {
 namespace {
 
 struct PeerStep {
@@ -89,4 +89,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, Published, testing::ValuesIn(steps()),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::published_cases_tests

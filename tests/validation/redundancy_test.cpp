@@ -12,7 +12,7 @@
 #include <polhode/solve/rank_report.hpp>
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::redundancy_tests {
 namespace {
 
 struct Overconstrained {
@@ -117,4 +117,4 @@ TEST_P(FlatStart, RunsInTheDirectionOfItsVelocities) {
 INSTANTIATE_TEST_SUITE_P(Of, FlatStart, testing::Values(1, 2, 3));
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::redundancy_tests

@@ -13,7 +13,7 @@
 #include <support/known_solutions/free_symmetric_top.hpp>
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::refusal_tests {
 namespace {
 
 TEST(StepRefusal, HalvesAStepThatTurnsABodyTooFar) {
@@ -189,4 +189,4 @@ TEST(StepRefusal, KeepsTheLastGoodStateWhenALoadHasNoValue) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::refusal_tests

@@ -11,7 +11,7 @@
 #include <support/published_cases.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode::test {
+namespace polhode::test::restart_tests {
 namespace {
 
 struct RestartCase {
@@ -146,4 +146,4 @@ INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(cases()),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::restart_tests

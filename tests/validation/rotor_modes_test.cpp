@@ -15,7 +15,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/modal.hpp>
 
-namespace polhode {
+namespace polhode::rotor_modes_tests {
 namespace {
 
 using Complex = std::complex<double>;
@@ -173,4 +173,4 @@ TEST(RotorModes, GrowAboveTheSpeedAtWhichInnerDampingDrivesThem) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::rotor_modes_tests

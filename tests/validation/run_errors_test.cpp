@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::run_errors_tests {
 namespace {
 
 RunSummary run(const std::string& text, const Overrides& overrides = {}) {
@@ -120,4 +120,4 @@ output: {hdf5: false}
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::run_errors_tests

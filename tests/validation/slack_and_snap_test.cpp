@@ -11,7 +11,7 @@
 #include <polhode/model/modal.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::slack_and_snap_tests {
 namespace {
 
 using ::testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(Held, ASolidWithoutAFreeNodeRunsInStaticsAndModes) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::slack_and_snap_tests

@@ -9,7 +9,7 @@
 #include <polhode/base/format.hpp>
 #include <support/flexible_scene.hpp>
 
-namespace polhode {
+namespace polhode::solid_conservation_tests {
 namespace {
 
 using test::FlexibleScene;
@@ -149,4 +149,4 @@ TEST(SolidConservation, CompositionsRaiseTheOrder) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::solid_conservation_tests

@@ -14,7 +14,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solid_contact_models_tests {
 namespace {
 
 Model two_cubes(const std::string& law, const std::string& analysis) {
@@ -320,4 +320,4 @@ analysis: {duration: 1 ms, step: 1 ms}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solid_contact_models_tests

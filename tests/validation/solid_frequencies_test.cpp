@@ -10,7 +10,7 @@
 #include <polhode/fe/solid_elements.hpp>
 #include <polhode/solve/modes.hpp>
 
-namespace polhode {
+namespace polhode::solid_frequencies_tests {
 namespace {
 
 struct Bar {
@@ -122,4 +122,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, SolidBarOnABody,
                          });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::solid_frequencies_tests

@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solids_in_statics_tests {
 namespace {
 
 /// Three by three elements below, four by four above, which nothing but the contact holds.
@@ -117,4 +117,4 @@ analysis: {{type: statics, load_steps: 8}}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solids_in_statics_tests

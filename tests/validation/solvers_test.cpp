@@ -10,7 +10,7 @@
 #include <polhode/model/simulation.hpp>
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solvers_tests {
 namespace {
 
 struct SolverCase {
@@ -82,4 +82,4 @@ INSTANTIATE_TEST_SUITE_P(Of, EverySolver, testing::ValuesIn(cases()),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solvers_tests

@@ -11,7 +11,7 @@
 #include <polhode/model/modal.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::stability_tests {
 namespace {
 
 StaticReport statics_of(const std::string& text, const Overrides& overrides) {
@@ -210,4 +210,4 @@ TEST(Stability, OfLeesFrameIsLostAtItsLimitLoadWhateverTheMesh) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::stability_tests

@@ -17,7 +17,7 @@
 #include <solve/static_models.hpp>
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::static_beams_tests {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -207,4 +207,4 @@ TEST(StaticBeams, TheArcOf45DegreesBendsOutOfItsPlane) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::static_beams_tests

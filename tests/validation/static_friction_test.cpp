@@ -6,7 +6,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode {
+namespace polhode::static_friction_tests {
 namespace {
 
 /// Speed of what is pulled with half its weight a second, so long after the start [m/s].
@@ -46,4 +46,4 @@ TEST(StaticFriction, IsThatOfThePatch) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::static_friction_tests

@@ -14,7 +14,7 @@
 #include <polhode/model/simulation.hpp>
 #include <polhode/model/solid_report.hpp>
 
-namespace polhode {
+namespace polhode::stress_tests {
 namespace {
 
 struct Solved {
@@ -240,4 +240,4 @@ TEST(StressError, IsToldInWordsWhereItIsLarge) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::stress_tests

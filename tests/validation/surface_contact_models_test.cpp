@@ -10,7 +10,7 @@
 #include <polhode/io/read_model.hpp>
 #include <polhode/model/simulation.hpp>
 
-namespace polhode::test {
+namespace polhode::test::surface_contact_models_tests {
 namespace {
 
 /// A block of hexahedra as nodes and elements of a model file.
@@ -302,4 +302,4 @@ analysis: {duration: 40 ms, step: 5 ms}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::surface_contact_models_tests

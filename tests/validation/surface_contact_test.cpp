@@ -16,7 +16,7 @@
 #include <polhode/solve/statics.hpp>
 #include <polhode/solve/stepper.hpp>
 
-namespace polhode::test {
+namespace polhode::test::surface_contact_tests {
 namespace {
 
 /// A block of solid elements whose faces towards −z may touch a rigid surface.
@@ -264,4 +264,4 @@ TEST(SurfaceContact, PassesThePatchTest) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::surface_contact_tests

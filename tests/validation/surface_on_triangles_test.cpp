@@ -13,7 +13,7 @@
 #include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode::test {
+namespace polhode::test::surface_on_triangles_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -247,4 +247,4 @@ analysis: {duration: 1 ms, step: 1 ms}
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::surface_on_triangles_tests

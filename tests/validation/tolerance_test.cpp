@@ -12,7 +12,7 @@
 
 #include <support/published_cases.hpp>
 
-namespace polhode::test {
+namespace polhode::test::tolerance_tests {
 namespace {
 
 struct ToleranceCase {
@@ -86,4 +86,4 @@ INSTANTIATE_TEST_SUITE_P(Of, Tolerance,
                          });
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::tolerance_tests

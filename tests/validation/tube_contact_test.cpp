@@ -12,7 +12,7 @@
 #include "contact/scene.hpp"
 #include "contact/shapes_for_tests.hpp"
 
-namespace polhode {
+namespace polhode::tube_contact_tests {
 namespace {
 
 using namespace contact;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAPlane, testing::Values(5e-3, 1e-3, 1e-4),
                          });
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::tube_contact_tests

@@ -15,7 +15,7 @@
 #include <polhode/view/glb.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::channels_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -150,4 +150,4 @@ TEST_F(ChannelsTest, AnAnimatedSceneHoldsTheMotion) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::channels_tests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace polhode {
+namespace polhode::chunk_tests {
 namespace {
 
 TEST(Chunk, GivesBackEveryBitOfSinglePrecision) {
@@ -51,4 +51,4 @@ TEST(Base64, IsThatOfTheStandard) {  // RFC 4648, section 10
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::chunk_tests

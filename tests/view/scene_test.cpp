@@ -15,7 +15,7 @@
 #include <polhode/view/chunk.hpp>
 #include <support/scratch.hpp>
 
-namespace polhode {
+namespace polhode::scene_tests {
 namespace {
 
 using nlohmann::json;
@@ -179,4 +179,4 @@ TEST_F(SceneTest, ShowsBodiesOfAModelThatIsLost) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::scene_tests

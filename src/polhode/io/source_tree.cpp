@@ -191,10 +191,11 @@ void check_characters(const SourceText& source) {
     const auto c = static_cast<unsigned char>(text[k]);
     if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7F)
       throw SourceStop{line, column, format("the character with code {} is not allowed", c),
-                 "Remove it; a model file is plain text."};
+                       "Remove it; a model file is plain text."};
     // YAML's two more line ends, which editors do not count as such.
     if (n == 3 && (text.substr(k, 3) == "\xE2\x80\xA8" || text.substr(k, 3) == "\xE2\x80\xA9"))
-      throw SourceStop{line, column, "a Unicode line separator is not allowed", "End lines as usual."};
+      throw SourceStop{line, column, "a Unicode line separator is not allowed",
+                       "End lines as usual."};
     if (c == '\n') {
       ++line;
       column = 1;
@@ -228,7 +229,7 @@ void parse_into(const SourceText& source, const SourceLimits& limits, SourceNode
       using TreeBuilder::TreeBuilder;
       void OnDocumentStart(const YAML::Mark& mark) override {
         throw SourceStop{mark.line + 1, mark.column + 1, "a second document starts here",
-                   "Keep one document in a file."};
+                         "Keep one document in a file."};
       }
     };
     SourceNode ignored;

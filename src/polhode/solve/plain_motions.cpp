@@ -217,8 +217,7 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
       y.tail<3>() /= length;
       y.head<3>() -= along * (along.transpose() * y.head<3>());
       const Vec x = rigid.R * y;
-      if (weight.cwiseProduct(x).norm() > kEqual * size * y.norm() * length)
-        take(x, text(true, d));
+      if (weight.cwiseProduct(x).norm() > kEqual * size * y.norm() * length) take(x, text(true, d));
     }
   }
   for (Eigen::Index i = 0; i < left.cols(); ++i) {

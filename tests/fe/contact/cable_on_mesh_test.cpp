@@ -12,7 +12,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::cable_on_mesh_tests {
 namespace {
 
 constexpr double kTolerance = 0.2, kRadius = 0.6;
@@ -147,4 +147,4 @@ TEST(CableOnMesh, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::cable_on_mesh_tests

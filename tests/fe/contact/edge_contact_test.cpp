@@ -10,7 +10,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::edge_contact_tests {
 namespace {
 
 constexpr double kTolerance = 0.1;
@@ -234,4 +234,4 @@ TEST(EdgeLines, AreTheSharpOnesOfACubeAndTheBorderOfAPlate) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::edge_contact_tests

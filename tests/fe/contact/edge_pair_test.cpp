@@ -9,7 +9,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::edge_pair_tests {
 namespace {
 
 constexpr double kTolerance = 0.2;
@@ -180,4 +180,4 @@ TEST(EdgePair, DoesNotSlideWhenItTurnsAsAWhole) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::edge_pair_tests

@@ -10,7 +10,7 @@
 #include <support/derivative.hpp>
 #include <support/obj_file.hpp>
 
-namespace polhode::test {
+namespace polhode::test::rigid_mesh_tests {
 namespace {
 
 contact::NormalLaw band(double tolerance) {
@@ -261,4 +261,4 @@ TEST(RigidMesh, KnowsItsInside) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::rigid_mesh_tests

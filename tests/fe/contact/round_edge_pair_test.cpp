@@ -9,7 +9,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::round_edge_pair_tests {
 namespace {
 
 constexpr double kRadii = 0.2, kTolerance = 0.04;
@@ -288,4 +288,4 @@ TEST(RoundEdgePair, SlidesByWhatIsDrawnAlongAndRollsFreely) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::round_edge_pair_tests

@@ -10,7 +10,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solid_contact_tests {
 namespace {
 
 constexpr double kTolerance = 0.3;
@@ -218,4 +218,4 @@ TEST(SolidContact, TellsWhatOverlaps) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solid_contact_tests

@@ -4,7 +4,7 @@
 #include <polhode/fe/contact/solid_inside.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solid_inside_tests {
 namespace {
 
 /// Cubes of 1 m about these centres, each face one quadrilateral.
@@ -61,4 +61,4 @@ TEST(SolidInside, TellsWhetherPartsOfASolidOverlap) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solid_inside_tests

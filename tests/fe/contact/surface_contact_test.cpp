@@ -13,7 +13,7 @@
 #include <support/meeting_forces.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::surface_contact_tests {
 namespace {
 
 constexpr double kTolerance = 0.6;  ///< Of the gap: steps of this size stay in the band.
@@ -393,4 +393,4 @@ TEST(ConvexSurface, HasTheGapOfTheShapeThatItIs) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::surface_contact_tests

@@ -11,7 +11,7 @@
 #include <polhode/fe/elements/reference_data.hpp>
 #include <polhode/fe/loads/solid_loads.hpp>
 
-namespace polhode::test {
+namespace polhode::test::solid_loads_tests {
 namespace {
 
 struct Value : TimeFunction {
@@ -192,4 +192,4 @@ TEST(SolidLoads, AreRefusedWithoutAnythingToLoad) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::solid_loads_tests

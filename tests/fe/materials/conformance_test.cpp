@@ -9,7 +9,7 @@
 #include <support/derivative.hpp>
 #include <support/random_steps.hpp>
 
-namespace polhode::test {
+namespace polhode::test::conformance_tests {
 namespace {
 
 Vec6 voigt(const Mat3& E) {
@@ -217,4 +217,4 @@ TEST(ToeFibre, HasTheForceOfItsLaw) {
 }
 
 }  // namespace
-}  // namespace polhode::test
+}  // namespace polhode::test::conformance_tests

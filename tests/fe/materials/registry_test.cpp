@@ -5,7 +5,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/fe/materials/registry.hpp>
 
-namespace polhode {
+namespace polhode::registry_tests {
 namespace {
 
 using testing::AllOf;
@@ -87,4 +87,4 @@ TEST(MaterialRegistry, TakesViscosityAsATimeOrAsModuli) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::registry_tests

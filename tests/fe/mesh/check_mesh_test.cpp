@@ -6,7 +6,7 @@
 #include <polhode/fe/mesh/check_mesh.hpp>
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::check_mesh_tests {
 namespace {
 
 Mesh block(int cells, double at = 0.0) {
@@ -111,4 +111,4 @@ TEST(PartOf, KeepsTheElementsOfAGroupWithItsSets) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::check_mesh_tests

@@ -10,7 +10,7 @@
 #include <polhode/fe/mesh/check_mesh.hpp>
 #include <polhode/fe/mesh/generators.hpp>
 
-namespace polhode {
+namespace polhode::generators_tests {
 namespace {
 
 const MeshParameters kBlock{
@@ -211,4 +211,4 @@ TEST(InlineMesh, TakesTheTypeFromTheCountOfNodes) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::generators_tests

@@ -6,7 +6,7 @@
 #include <polhode/fe/mesh/check_mesh.hpp>
 #include <polhode/fe/mesh/read_mesh.hpp>
 
-namespace polhode {
+namespace polhode::read_abaqus_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -166,4 +166,4 @@ TEST(ReadAbaqus, KeepsSetsOfSetsSmall) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_abaqus_tests

@@ -5,7 +5,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/fe/mesh/read_mesh.hpp>
 
-namespace polhode {
+namespace polhode::read_errors_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(VtuErrors, AreLocated) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_errors_tests

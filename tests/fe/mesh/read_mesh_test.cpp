@@ -13,7 +13,7 @@
 
 #include <support/paths.hpp>
 
-namespace polhode {
+namespace polhode::read_mesh_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -214,4 +214,4 @@ TEST(ReadMesh, SaysWhichFilesItReads) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::read_mesh_tests

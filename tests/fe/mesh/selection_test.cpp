@@ -6,7 +6,7 @@
 #include <polhode/fe/mesh/generators.hpp>
 #include <polhode/fe/mesh/selection.hpp>
 
-namespace polhode {
+namespace polhode::selection_tests {
 namespace {
 
 using Kind = Selection::Kind;
@@ -125,4 +125,4 @@ TEST(Selection, ThatHoldsNothingTellsTheExtentOfTheMesh) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::selection_tests

@@ -4,7 +4,7 @@
 #include <polhode/base/error.hpp>
 #include <polhode/fe/mesh/shapes.hpp>
 
-namespace polhode {
+namespace polhode::shapes_tests {
 namespace {
 
 // A point inside each shape, no symmetric one.
@@ -88,4 +88,4 @@ TEST(CellShapes, ListTheTypesWhenAskedForAnotherOne) {
 }
 
 }  // namespace
-}  // namespace polhode
+}  // namespace polhode::shapes_tests
