@@ -15,7 +15,7 @@ using namespace test;
 /// Impacts that are stated.
 class Stated final : public MovingContacts {
  public:
-  std::vector<PairImpact> list;
+  std::vector<PairImpact> list, lasting;
   std::vector<SettledImpact> done;
 
   void prepare(const System&) override {}
@@ -34,6 +34,12 @@ class Stated final : public MovingContacts {
   Work impacts(State&, std::vector<PairImpact>& rows) override {
     rows.insert(rows.end(), list.begin(), list.end());
     return {};
+  }
+  void resting(const State&, std::span<const int> bodies, std::vector<PairImpact>& rows) override {
+    for (; !lasting.empty() && std::binary_search(bodies.begin(), bodies.end(),
+                                                  lasting.front().bodies.a);
+         lasting.erase(lasting.begin()))
+      rows.push_back(lasting.front());
   }
   void settled(std::span<const SettledImpact> impacts) override {
     done.assign(impacts.begin(), impacts.end());
@@ -185,6 +191,44 @@ TEST(SettleImpacts, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
   EXPECT_NEAR(s.motion(a).v.x(), 0.25, 1e-14);
   for (int i = 0; i < s.system.nodes().count(); ++i)
     EXPECT_NEAR(s.state.node_v[3 * static_cast<std::size_t>(i)], 0.25, 1e-14);
+}
+
+/// A body falls without rebound on the top one of a stack that rests: all are at rest afterwards,
+/// and the impulse goes through to the ground. @tests{impact-carried}
+TEST(SettleImpacts, AreCarriedOnByWhatRests) {
+  constexpr int kStack = 4;
+  constexpr double kFall = -2.0, kMass = 3.0;
+  Scene s(Vec3::Zero());
+  std::vector<int> stack;
+  for (int k = 0; k <= kStack; ++k)
+    stack.push_back(s.add_box("box " + std::to_string(k), {1.0, 1.0, 1.0}, kMass,
+                              at({0.0, 0.0, 0.5 + k}, {0.0, 0.0, k == kStack ? kFall : 0.0})));
+  s.begin(1e-2);
+  const auto between = [&](int upper, int lower) {
+    PairImpact r;
+    r.bodies = {upper, lower};
+    r.impact.on_a << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+    r.impact.on_b << 0.0, 0.0, -1.0, 0.0, 0.0, 0.0;
+    return r;
+  };
+  Stated contacts;
+  contacts.list = {between(stack[kStack], stack[kStack - 1])};
+  contacts.list.front().impact.wanted = 0.0;
+  for (int k = kStack - 1; k >= 0; --k) {
+    contacts.lasting.push_back(between(stack[k], k > 0 ? stack[k - 1] : kGround));
+    contacts.lasting.back().slow = 1e-3;
+  }
+  SettleImpacts settle(s.system);
+  settle.find(s.state, contacts);
+  settle.settle(s.state);
+  ASSERT_EQ(contacts.done.size(), static_cast<std::size_t>(kStack + 1));
+  double lost = 0.0;
+  for (const SettledImpact& done : contacts.done) {
+    EXPECT_NEAR(done.normal, -kMass * kFall, 1e-9);
+    lost += done.normal_loss;
+  }
+  EXPECT_NEAR(lost, 0.5 * kMass * kFall * kFall, 1e-9);
+  for (int body : stack) EXPECT_LT(s.motion(body).v.norm(), 1e-9);
 }
 
 }  // namespace

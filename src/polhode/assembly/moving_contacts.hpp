@@ -28,6 +28,7 @@ struct PairImpact {
   Participants bodies;
   Impact impact;
   std::optional<ImpactCourse> course;
+  double slow = 0.0;  ///< Of lasting contact: it answers what presses it faster than that [m/s].
 };
 
 /// Impulse of an impact, with its losses.
@@ -72,6 +73,10 @@ class MovingContacts {
   /// t_{n+1}. Their memory goes into the state.
   /// @returns the change of the stored energy, and what was dissipated by it.
   virtual Work impacts(State& state, std::vector<PairImpact>& list) = 0;
+  /// Lasting contacts of these bodies, appended to the list, to answer what impacts elsewhere do:
+  /// they want the speed that they have. None that was listed since impacts(). @eq{impact-carried}
+  virtual void resting(const State& /*state*/, std::span<const int> /*bodies*/,
+                       std::vector<PairImpact>& /*list*/) {}
   /// Their impulses, in the order of the list.
   virtual void settled(std::span<const SettledImpact> impacts) = 0;
   /// Where a step that cannot be solved is tightest: "box 'a' on 'floor'"; may be empty.

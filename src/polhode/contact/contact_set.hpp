@@ -112,6 +112,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
   bool touched() const override { return touched_; }
   Work impacts(State& state, std::vector<PairImpact>& list) override;
+  void resting(const State& state, std::span<const int> bodies,
+               std::vector<PairImpact>& list) override;
   void settled(std::span<const SettledImpact> impacts) override;
   std::string tightest() const override;
 
@@ -146,6 +148,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
     double bristle_stiffness = 0.0;  ///< k_T, if the law leaves it open [N/m].
     double rest_damping = 0.0;       ///< c of lasting contact that takes energy [s/m].
     bool open_stiffness = false;     ///< The law states no stiffness.
+    double force_n = 0.0;            ///< λ of the step before, of a point closed at t_n [N].
     bool unresolved = false;         ///< Closes in an impact too short for its law and the step.
     double gap_n = 0.0;
     Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
@@ -183,6 +186,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] static double contact_time(const Point& p, double stiffness, double speed);
   [[nodiscard]] double impact_stiffness(const Point& p, double speed) const;
   void begin_phase(Point& p, double speed, double dt) const;
+  [[nodiscard]] PairImpact row_at(const Point& p, const State& state) const;
+  [[nodiscard]] double weight_now(const Point& p, const State& state) const;
   [[nodiscard]] std::optional<PairImpact> impact_of(Point& p, const State& state, Work& work);
   struct Followed;
   [[nodiscard]] Gap<double> gap_along(const Point& p, const FeaturePair& pair,

@@ -26,6 +26,8 @@ constexpr double kHertzTime = 2.9432;
 constexpr double kResolved = 20.0;
 /// Least part of the tolerance between a gap and the floor of its barrier.
 constexpr double kLeastBand = 0.1;
+/// Part of the speed that lasting contact may have, at which it answers impacts elsewhere.
+constexpr double kPressed = 0.1;
 
 /// Features of a surface of triangles, whose potentials cancel in part: their bands are equal.
 bool of_surface(GapKind kind) {
@@ -125,6 +127,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
   p.unresolved = false;
+  p.force_n = h.closed ? h.force : 0.0;
   const double gravity = system_->gravity().norm();
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
@@ -203,12 +206,8 @@ double ContactSet::fallen(const Point& p, const Vec3& n) const {
 }
 
 /// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
-/// are exact.
-std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
-  PointHistory& h = p.data.history;
-  if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
-    return {};
-  if (h.phase == ContactPhase::rest || !(p.report.normal_force > 0.0)) return {};
+/// are exact. It wants the speed that it has.
+PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
   const auto motion = [&](int body) {
@@ -233,7 +232,45 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   if (r.bodies.b != kGround) v -= b.v + b.omega().cross(impact.arm_b);
   const double speed = n.dot(v);
   impact.wanted = speed;
+  const FrictionLaw& f = p.data.friction;
+  if (!(f.mu > 0.0)) return r;
+  impact.mu = f.mu;
+  impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
+  const Vec3 slip = v - speed * n;
+  Vec3 along = Lambda_a * f.direction;
+  along -= n.dot(along) * n;
+  if (impact.mu == impact.mu_across) along = slip;
+  if (along.squaredNorm() < 1e-24 * std::max(1e-300, v.squaredNorm()))
+    along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
+  impact.along = along.normalized();
+  impact.across = n.cross(impact.along);
+  return r;
+}
+
+double ContactSet::weight_now(const Point& p, const State& state) const {
+  const auto motion = [&](int body) {
+    return body == kGround ? BodyMotion{} : system_->motion(state, body);
+  };
+  const BodyMotion a = motion(shapes_[p.a].body), b = motion(shapes_[p.b].body);
+  const Mat3 Lambda_a = a.Lambda(), Lambda_b = b.Lambda();
+  return weight_at(p.data, Placement<double>(a.r, Lambda_a, 0),
+                   Placement<double>(b.r, Lambda_b, 6));
+}
+
+/// What the point's phase makes of it at t_{n+1}, in an accepted step. @eq{turn-law}
+std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
+  PointHistory& h = p.data.history;
+  if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
+    return {};
+  if (!(p.report.normal_force > 0.0)) return {};
+  const bool lasts = !h.in_impact();
+  if (h.phase == ContactPhase::rest) return {};
+  PairImpact r = row_at(p, state);
+  Impact& impact = r.impact;
+  const Vec3 n = impact.on_a.head<3>();
+  const double speed = impact.wanted;
   impact.given = step_length_ * p.report.normal_force;
+  if (lasts) impact.rubbed = step_length_ * p.report.friction_force;
   const bool turns = speed >= 0.0;  // friction may have turned it at t_n
   const auto rests = [&] {
     if (!h.closed) return;
@@ -246,7 +283,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   };
   // Features that fade out, as they come to lie along each other, store a part.
   const double plain = h.closed ? p.data.normal.energy(h.gap) : 0.0;
-  const double weight = weight_at(p.data, at_a, at_b);
+  const double weight = weight_now(p, state);
   const double stored_n = p.data.normal.energy(p.report.gap_n);
   ImpactCourse course;
   course.turns = turns;
@@ -260,13 +297,11 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     work.dissipated += released;
     p.impact_loss += released;
   };
-  const bool lasts = h.phase == ContactPhase::landing;
   const bool barrier = p.data.normal.potential == NormalPotential::barrier;
   switch (h.phase) {
     case ContactPhase::landing:
       if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
       impact.wanted = 0.0;  // the midpoint rule would throw it back
-      impact.rubbed = step_length_ * p.report.friction_force;
       set_phase(p, ContactPhase::rest);
       break;
     case ContactPhase::compression:
@@ -289,19 +324,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     case ContactPhase::rest:
       return {};
   }
-  const FrictionLaw& f = p.data.friction;
-  if (!(f.mu > 0.0)) return r;
-  impact.mu = f.mu;
-  impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
-  const Vec3 slip = v - speed * n;
-  Vec3 along = a.Lambda() * f.direction;
-  along -= n.dot(along) * n;
-  if (impact.mu == impact.mu_across) along = slip;
-  if (along.squaredNorm() < 1e-24 * std::max(1e-300, v.squaredNorm()))
-    along = n.cross(std::abs(n.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY());
-  impact.along = along.normalized();
-  impact.across = n.cross(impact.along);
-  if (!lasts) r.course = course;
+  if (!lasts && impact.mu > 0.0) r.course = course;
   return r;
 }
 
@@ -320,6 +343,28 @@ Work ContactSet::impacts(State& state, std::vector<PairImpact>& list) {
   }
   if (remembered) save(state);
   return work;
+}
+
+void ContactSet::resting(const State& state, std::span<const int> bodies,
+                         std::vector<PairImpact>& list) {
+  std::vector<char> listed(points_.size(), 0);
+  for (int i : settling_) listed[i] = 1;
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const Point& p = points_[i];
+    const PointHistory& h = p.data.history;
+    const int a = shapes_[p.a].body, b = shapes_[p.b].body;
+    if (!h.closed || h.in_impact() || p.sensor || p.data.pair.weight < 0.0) continue;
+    if (p.restitution == 1.0 || (p.damped && h.approach < 0.0)) continue;
+    const bool theirs = std::binary_search(bodies.begin(), bodies.end(), a) ||
+                        std::binary_search(bodies.begin(), bodies.end(), b);
+    if (!theirs || listed[i]) continue;
+    settling_.push_back(i);
+    PairImpact& r = list.emplace_back(row_at(p, state));
+    r.slow = kPressed * slow_speed(p, p.force_n, step_length_);
+    // By the midpoint rule it throws back what an impact in the step pressed on it.
+    r.impact.given = step_length_ * p.report.normal_force;
+    r.impact.rubbed = step_length_ * p.report.friction_force;
+  }
 }
 
 /// Reported forces of the step, with the impulses at its end.

@@ -14,6 +14,8 @@ namespace {
 /// largest one, or after so many.
 constexpr double kConverged = 1e-13;
 constexpr int kMostSweeps = 500;
+/// Lasting contacts that impulses press on join the rows in at most so many rounds.
+constexpr int kMostCarried = 30;
 /// A row that its own impulse moves by less than this part of what the most mobile one does, does
 /// not move.
 constexpr double kHeld = 1e-13;
@@ -73,7 +75,7 @@ Work SettleImpacts::find(State& state, MovingContacts& contacts) {
 
 std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
   std::vector<int> root = tie_;
-  for (const auto& [bodies, impact, course] : rows_)
+  for (const auto& [bodies, impact, course, slow] : rows_)
     if (bodies.a != kGround && bodies.b != kGround) join(root, bodies.a, bodies.b);
   std::map<int, Island> by_root;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
@@ -140,9 +142,70 @@ struct SettleImpacts::Row {
   }
 };
 
+/// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
+/// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
 void SettleImpacts::settle(State& state) {
   settled_.assign(rows_.size(), {});
-  const std::vector<Island> all = islands();
+  jumped_.clear();
+  resting_.clear();
+  numbers_.resize(rows_.size() - of_joints_);
+  std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(of_joints_));
+  std::vector<Vec6> before;
+  if (contacts_)
+    for (int body = 0; body < system_->body_count(); ++body)
+      before.push_back(velocity(state, body));
+  settle_from(state, 0);
+  if (!contacts_) return;
+  for (int round = 0; round < kMostCarried; ++round) {
+    const std::size_t first = rows_.size();
+    press_on(state, before);
+    if (rows_.size() == first) break;
+    settle_from(state, first);
+  }
+  std::vector<SettledImpact> of_contacts;
+  for (int k : numbers_) of_contacts.push_back(k < 0 ? SettledImpact{} : settled_[k]);
+  contacts_->settled(of_contacts);
+}
+
+double SettleImpacts::speed(const State& state, const PairImpact& row) const {
+  double sum = 0.0;
+  if (row.bodies.a != kGround) sum += row.impact.on_a.dot(velocity(state, row.bodies.a));
+  if (row.bodies.b != kGround) sum += row.impact.on_b.dot(velocity(state, row.bodies.b));
+  return sum;
+}
+
+void SettleImpacts::press_on(const State& state, const std::vector<Vec6>& before) {
+  std::sort(jumped_.begin(), jumped_.end());
+  jumped_.erase(std::unique(jumped_.begin(), jumped_.end()), jumped_.end());
+  const std::size_t known = resting_.size();
+  contacts_->resting(state, jumped_, resting_);
+  for (std::size_t i = known; i < resting_.size(); ++i) {
+    auto& [bodies, impact, course, slow] = resting_[i];
+    impact.wanted = 0.0;
+    if (bodies.a != kGround) impact.wanted += impact.on_a.dot(before[bodies.a]);
+    if (bodies.b != kGround) impact.wanted += impact.on_b.dot(before[bodies.b]);
+    numbers_.push_back(-1);
+  }
+  const std::size_t others = numbers_.size() - resting_.size();
+  for (std::size_t i = 0; i < resting_.size(); ++i) {
+    const PairImpact& row = resting_[i];
+    int& number = numbers_[others + i];
+    const double now = speed(state, row), wanted = row.impact.wanted;
+    const bool pressed = now < wanted - row.slow;
+    const bool thrown = row.impact.given > 0.0 && now > std::max(0.0, wanted) + row.slow;
+    if (number >= 0 || !(pressed || thrown)) continue;
+    number = static_cast<int>(rows_.size());
+    rows_.push_back(row);
+    if (thrown) rows_.back().impact.wanted = std::max(0.0, wanted);
+    settled_.emplace_back();
+  }
+}
+
+void SettleImpacts::settle_from(State& state, std::size_t first) {
+  std::vector<Island> all = islands();
+  std::erase_if(all, [&](const Island& island) {
+    return static_cast<std::size_t>(island.rows.back()) < first;
+  });
   const bool tied = std::any_of(all.begin(), all.end(), [](const Island& i) { return i.tied; });
   std::vector<Vec6> to_admissible;
   if (tied) {
@@ -153,10 +216,8 @@ void SettleImpacts::settle(State& state) {
   const auto inert = [&](int k) {
     const Impact& impact = rows_[k].impact;
     if (impact.mu > 0.0) return false;
-    double speed = 0.0;
-    if (rows_[k].bodies.a != kGround) speed += impact.on_a.dot(velocity(state, rows_[k].bodies.a));
-    if (rows_[k].bodies.b != kGround) speed += impact.on_b.dot(velocity(state, rows_[k].bodies.b));
-    return std::abs(impact.wanted - speed) <= kSameSpeed * std::abs(speed);
+    const double now = speed(state, rows_[k]);
+    return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
   };
   for (const Island& island : all) {
     if (std::all_of(island.rows.begin(), island.rows.end(), inert)) continue;
@@ -168,8 +229,8 @@ void SettleImpacts::settle(State& state) {
       jump(state, island, jumps);
     }
     settle(state, island);
+    jumped_.insert(jumped_.end(), island.bodies.begin(), island.bodies.end());
   }
-  if (contacts_) contacts_->settled(std::span(settled_).subspan(of_joints_));
 }
 
 std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const Island& island) {
@@ -278,7 +339,7 @@ void SettleImpacts::sweep(std::vector<Row>& rows, double most, std::vector<Vec6>
 /// stored at t_n to the one at t_{n+1}. Without restitution a step takes energy itself: friction
 /// alone then acts until the normal velocity turns. @eq{routh}
 void SettleImpacts::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
-  const auto& [bodies, impact, course] = rows_[rows.front().impact];
+  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
   if (!course->turns && course->restitution == 0.0) {
     if (!(rows[1].mobility + rows[2].mobility > kHeld * rows[0].mobility)) return;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep)
@@ -330,10 +391,13 @@ void SettleImpacts::settle(State& state, const Island& island) {
     most = std::max(most, row.mobility);
   }
   if (!(most > 0.0)) return;
-  if (island.rows.size() == 1 && rows.size() == 3 && rows_[island.rows.front()].course)
+  if (PairImpact& only = rows_[island.rows.front()];
+      island.rows.size() == 1 && rows.size() == 3 && only.course) {
     follow(rows, v);
-  else
+    if (only.course->turns || only.course->restitution > 0.0) only.impact.wanted = rows[0].speed(v);
+  } else {
     sweep(rows, most, v);
+  }
   // ΔT = Σ p (J v before + J v after)/2: along the jump a parabola.
   double first = 0.0, second = 0.0;
   for (const Row& row : rows) {
@@ -349,16 +413,20 @@ void SettleImpacts::settle(State& state, const Island& island) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     SettledImpact& s = settled_[row.impact];
+    Impact& impact = rows_[row.impact].impact;
     const double p = part * row.impulse,
                  lost = -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
     if (i > 0 && rows[i - 1].rubs) {
-      s.friction += p * rows_[row.impact].impact.across;
+      s.friction += p * impact.across;
+      impact.rubbed += p * impact.across;
       s.friction_loss += lost;
     } else if (row.rubs) {
-      s.friction += p * rows_[row.impact].impact.along;
+      s.friction += p * impact.along;
+      impact.rubbed += p * impact.along;
       s.friction_loss += lost;
     } else {
-      s.normal = p;
+      s.normal += p;
+      impact.given += p;
       s.normal_loss += lost + more / static_cast<double>(island.rows.size());
     }
   }

@@ -39,6 +39,11 @@ class SettleImpacts {
   /// Rows of an island: one for each normal, two more for each that rubs.
   [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
   void settle(State& state, const Island& island);
+  /// Islands that hold a row from that one on.
+  void settle_from(State& state, std::size_t first);
+  /// Lasting contacts of bodies that jumped, pressed on by it, become rows.
+  void press_on(const State& state, const std::vector<Vec6>& before);
+  [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
   double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
@@ -54,7 +59,11 @@ class SettleImpacts {
   std::vector<PairImpact> rows_;
   MovingContacts* contacts_ = nullptr;  ///< Whose impacts the last rows are.
   std::size_t of_joints_ = 0;           ///< Rows before those.
-  std::vector<SettledImpact> settled_;
+  std::vector<int> jumped_;             ///< Bodies of the islands so far, ascending.
+  std::vector<PairImpact> resting_;     ///< Their lasting contacts.
+  std::vector<SettledImpact> settled_;  ///< Of the rows.
+  std::vector<int>
+      numbers_;  ///< Rows of contacts, in the order in which these listed them; −1: none.
 };
 
 }  // namespace polhode
