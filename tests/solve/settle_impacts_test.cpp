@@ -36,8 +36,8 @@ class Stated final : public MovingContacts {
     return {};
   }
   void resting(const State&, std::span<const int> bodies, std::vector<PairImpact>& rows) override {
-    for (; !lasting.empty() && std::binary_search(bodies.begin(), bodies.end(),
-                                                  lasting.front().bodies.a);
+    for (; !lasting.empty() &&
+           std::binary_search(bodies.begin(), bodies.end(), lasting.front().bodies.a);
          lasting.erase(lasting.begin()))
       rows.push_back(lasting.front());
   }
