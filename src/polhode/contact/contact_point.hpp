@@ -2,6 +2,7 @@
 #pragma once
 
 #include <polhode/assembly/interaction.hpp>
+#include <polhode/contact/contact_phase.hpp>
 #include <polhode/contact/gap.hpp>
 #include <polhode/contact/normal_law.hpp>
 
@@ -22,14 +23,6 @@ struct FrictionLaw {
   double turning_damping = 0.0;    ///< c_R [N m s/rad].
 
   [[nodiscard]] bool acts() const { return mu > 0.0 || rolling > 0.0 || torsion > 0.0; }
-};
-
-/// Phases of a contact, from closing to opening.
-enum class ContactPhase : unsigned char {
-  rest,         ///< Lasting contact.
-  landing,      ///< Lasting contact that has closed slowly and has not turned yet.
-  compression,  ///< An impact before its turn.
-  restitution,  ///< An impact after its turn.
 };
 
 /// What a contact point remembers from step to step.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/contact/contact_point.hpp>
+#include <polhode/contact/contact_phase.hpp>
 #include <polhode/contact/normal_law.hpp>
 
 namespace polhode {

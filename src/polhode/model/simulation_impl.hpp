@@ -21,6 +21,7 @@
 #include <polhode/model/method.hpp>
 #include <polhode/model/separate_overlaps.hpp>
 #include <polhode/model/simulation.hpp>
+#include <polhode/model/surface_contact_report.hpp>
 #include <polhode/solve/node_motion.hpp>
 
 namespace polhode {

@@ -5,6 +5,7 @@
 
 #include <polhode/base/format.hpp>
 #include <polhode/model/build_surface_contacts.hpp>
+#include <polhode/model/surface_contact_report.hpp>
 
 namespace polhode {
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace polhode::contact {
+
+/// Phases of a contact, from closing to opening.
+enum class ContactPhase : unsigned char {
+  rest,         ///< Lasting contact.
+  landing,      ///< Lasting contact that has closed slowly and has not turned yet.
+  compression,  ///< An impact before its turn.
+  restitution,  ///< An impact after its turn.
+};
+
+}  // namespace polhode::contact
