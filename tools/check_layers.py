@@ -1,39 +1,59 @@
 #!/usr/bin/env python3
-"""Each folder of src/polhode includes only folders further down, never one on its own line."""
-LAYERS = [["base"], ["so3"], ["body"], ["time"], ["assembly"],
-          ["contact"], ["loads", "joints", "beams", "fe", "solve"], ["coupling"], ["model"], ["io"], ["study", "view"]]
-# Of the line below it, a folder named here may include only these.
-ONLY = {"coupling": ["fe"]}
+"""Each folder of src/polhode includes only folders further down, never one on its own line.
+
+    tools/check_layers.py                checks
+    tools/check_layers.py --picture FILE draws the layers and what includes what, as SVG
+"""
+# From the ground up; what stands on one line does not know each other.
+LAYERS = [
+    ["core"],
+    ["math", "geometry"],
+    ["dynamics", "contact_laws"],
+    ["system"],
+    ["joints", "loads", "beams", "solids", "contact", "linear", "kernels"],
+    ["surface_contact", "model", "equations"],
+    ["engines", "newton"],
+    ["stepping"],
+    ["statics"],
+    ["compile"],
+    ["simulation"],
+    ["io/text"],
+    ["io/schema"],
+    ["io/read"],
+    ["io/results"],
+    ["study", "view"],
+]
 
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOURCE = ROOT / "src/polhode"
 RANK = {folder: i for i, layer in enumerate(LAYERS) for folder in layer}
-INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/(\w+)/')
+INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/([\w/]+)/\w+\.\w+[>"]')
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 
-def allowed(here, there):
-    if here == there:
-        return True
-    if RANK[there] >= RANK[here]:
-        return False
-    return here not in ONLY or RANK[there] != RANK[here] - 1 or there in ONLY[here]
+def layer(folder):
+    """The name in LAYERS that holds a folder: itself, or the folder it lies in."""
+    parts = folder.split("/")
+    return next((name for n in (2, 1) if (name := "/".join(parts[:n])) in RANK), None)
 
 
-def main():
-    problems, includes = [], 0
-    source = ROOT / "src/polhode"
-    for path in sorted(source.rglob("*.[ch]pp")):
-        here = path.relative_to(source).parts[0]
+def survey():
+    """Problems, the number of includes, and how many lead from folder to folder."""
+    problems, includes, edges = [], 0, {}
+    for path in sorted(SOURCE.rglob("*.[ch]pp")):
         place = path.relative_to(ROOT)
-        if path.parent == source:
+        here = layer(path.parent.relative_to(SOURCE).as_posix())
+        if path == SOURCE / "polhode.hpp":
+            continue
+        if path.parent == SOURCE:
             problems.append(f"{place}: stands in no folder. Put it in one of LAYERS.")
             continue
-        if here not in RANK:
-            problems.append(f"{place}: folder {here}/ is not in LAYERS of tools/check_layers.py.")
+        if here is None:
+            problems.append(f"{place}: its folder is not in LAYERS of tools/check_layers.py.")
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if HEADERS_OF_OTHERS.match(line):
@@ -41,12 +61,50 @@ def main():
             if not (match := INCLUDE.match(line)):
                 continue
             includes += 1
-            there = match[1]
-            if there not in RANK:
-                problems.append(f"{place}:{number}: {there}/ is not in LAYERS of tools/check_layers.py.")
-            elif not allowed(here, there):
-                problems.append(f"{place}:{number}: {here}/ may not include {there}/ "
-                                "(see LAYERS in tools/check_layers.py).")
+            there = layer(match[1])
+            if there is None:
+                problems.append(f"{place}:{number}: {match[1]}/ is not in LAYERS of tools/check_layers.py.")
+            elif there != here:
+                edges[here, there] = edges.get((here, there), 0) + 1
+                if RANK[there] >= RANK[here]:
+                    problems.append(f"{place}:{number}: {here}/ may not include {there}/ "
+                                    "(see LAYERS in tools/check_layers.py).")
+    return problems, includes, edges
+
+
+def picture(edges):
+    """Layers from the ground up; an arrow is as thick as the logarithm of its includes."""
+    import math
+    width, row, room, tall = 1000, 62, 118, 34
+    height = row * len(LAYERS) + 20
+    place = {}
+    for i, folders in enumerate(LAYERS):
+        for k, name in enumerate(folders):
+            x = width / 2 + (k - (len(folders) - 1) / 2) * (room + 18) + (34 if i % 2 else -34) * (len(folders) == 1)
+            place[name] = (x, height - 20 - i * row - tall / 2)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" '
+           'font-size="13">', f'<rect width="{width}" height="{height}" fill="#fff"/>']
+    for (a, b), count in sorted(edges.items(), key=lambda e: e[1]):
+        (xa, ya), (xb, yb) = place[a], place[b]
+        thick = 0.5 + 0.5 * math.log2(count)
+        bend = (xb - xa) * 0.1 + (26 if xa >= width / 2 else -26) * (RANK[a] - RANK[b] > 1)
+        out.append(f'<path d="M{xa:.0f} {ya + tall / 2:.0f} C{xa + bend:.0f} {ya + 60:.0f} {xb + bend:.0f} {yb - 60:.0f} '
+                   f'{xb:.0f} {yb - tall / 2:.0f}" fill="none" stroke="#2a6f97" stroke-opacity=".28" '
+                   f'stroke-width="{thick:.1f}"/>')
+    for name, (x, y) in place.items():
+        files = sum(1 for p in (SOURCE / name).rglob("*.[ch]pp"))
+        out.append(f'<rect x="{x - room / 2:.0f}" y="{y - tall / 2:.0f}" width="{room}" height="{tall}" rx="5" '
+                   'fill="#eef4f8" stroke="#2a6f97"/>'
+                   f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="middle">{name}</text>'
+                   f'<text x="{x:.0f}" y="{y + 12:.0f}" text-anchor="middle" font-size="9" fill="#567">{files} files</text>')
+    return "\n".join([*out, "</svg>", ""])
+
+
+def main():
+    problems, includes, edges = survey()
+    if sys.argv[1:2] == ["--picture"]:
+        pathlib.Path(sys.argv[2]).write_text(picture(edges))
+        return 0
     print("\n".join(problems) if problems else f"{includes} includes, all pointing down.")
     return bool(problems)
 

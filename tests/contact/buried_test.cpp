@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <polhode/body/shapes.hpp>
 #include <polhode/contact/buried.hpp>
-#include <polhode/model/separate_overlaps.hpp>
+#include <polhode/geometry/shapes.hpp>
+#include <polhode/simulation/separate_overlaps.hpp>
 
 #include "scene.hpp"
 #include "shapes_for_tests.hpp"

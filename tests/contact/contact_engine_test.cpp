@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <polhode/assembly/state_archive.hpp>
+#include <polhode/system/state_archive.hpp>
 
 #include "scene.hpp"
 #include "shapes_for_tests.hpp"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <polhode/assembly/state_archive.hpp>
+#include <polhode/system/state_archive.hpp>
 
 #include "scene.hpp"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/contact/gap_parts.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 
 #include "shapes_for_tests.hpp"
 

@@ -9,7 +9,7 @@ seconds=${1:-600}
 build=${2:-$root/build/fuzz}
 reader=${3:-model}
 
-meshes=$root/tests/fe/mesh/data
+meshes=$root/tests/solids/mesh/data
 case $reader in
   model)
     corpus="$root/tests/corpus/good $root/tests/corpus/broken"
@@ -18,7 +18,7 @@ case $reader in
     corpus="$meshes $root/tests/fuzz/found_in_meshes"
     words=mesh.dict ;;
   stl | obj)
-    corpus="$root/tests/body/data $root/tests/fuzz/found_in_surfaces"
+    corpus="$root/tests/geometry/data $root/tests/fuzz/found_in_surfaces"
     words=surface.dict ;;
   *)
     echo "There is no reader '$reader': model, gmsh, vtu, abaqus, stl or obj." >&2

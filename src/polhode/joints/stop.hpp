@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/contact/contact_phase.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/contact_phase.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 
 namespace polhode {
 
