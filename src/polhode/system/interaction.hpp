@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <span>
@@ -156,6 +157,121 @@ struct InteractionItem {
   void reverse() {}
 };
 
+/// Which functions of InteractionItem a type has of its own.
+template <class Item>
+struct OwnFunctions {
+  using Base = InteractionItem;
+  static constexpr bool rows = !requires {
+    requires std::same_as<decltype(&Item::rows), decltype(&Base::rows)>;
+  };
+  static constexpr bool history_size = !requires {
+    requires std::same_as<decltype(&Item::history_size), decltype(&Base::history_size)>;
+  };
+  static constexpr bool initialize = !requires {
+    requires std::same_as<decltype(&Item::initialize), decltype(&Base::initialize)>;
+  };
+  static constexpr bool commit = !requires {
+    requires std::same_as<decltype(&Item::commit), decltype(&Base::commit)>;
+  };
+  static constexpr bool extrapolate = !requires {
+    requires std::same_as<decltype(&Item::extrapolate), decltype(&Base::extrapolate)>;
+  };
+  static constexpr bool lazy_history = !requires {
+    requires std::same_as<decltype(&Item::lazy_history), decltype(&Base::lazy_history)>;
+  };
+  static constexpr bool acceleration_terms = !requires {
+    requires std::same_as<decltype(&Item::acceleration_terms), decltype(&Base::acceleration_terms)>;
+  };
+  static constexpr bool dissipates = !requires {
+    requires std::same_as<decltype(&Item::dissipates), decltype(&Base::dissipates)>;
+  };
+  static constexpr bool works = !requires {
+    requires std::same_as<decltype(&Item::works), decltype(&Base::works)>;
+  };
+  static constexpr bool work = !requires {
+    requires std::same_as<decltype(&Item::work), decltype(&Base::work)>;
+  };
+  static constexpr bool prescribes = !requires {
+    requires std::same_as<decltype(&Item::prescribes), decltype(&Base::prescribes)>;
+  };
+  static constexpr bool prescribed = !requires {
+    requires std::same_as<decltype(&Item::prescribed), decltype(&Base::prescribed)>;
+  };
+  static constexpr bool time_functions = !requires {
+    requires std::same_as<decltype(&Item::time_functions), decltype(&Base::time_functions)>;
+  };
+  static constexpr bool time_order = !requires {
+    requires std::same_as<decltype(&Item::time_order), decltype(&Base::time_order)>;
+  };
+  static constexpr bool has_barrier = !requires {
+    requires std::same_as<decltype(&Item::has_barrier), decltype(&Base::has_barrier)>;
+  };
+  static constexpr bool clearance = !requires {
+    requires std::same_as<decltype(&Item::clearance), decltype(&Base::clearance)>;
+  };
+  static constexpr bool impacts = !requires {
+    requires std::same_as<decltype(&Item::impacts), decltype(&Base::impacts)>;
+  };
+  static constexpr bool acceptable = !requires {
+    requires std::same_as<decltype(&Item::acceptable), decltype(&Base::acceptable)>;
+  };
+  static constexpr bool always_asked = !requires {
+    requires std::same_as<decltype(&Item::always_asked), decltype(&Base::always_asked)>;
+  };
+  static constexpr bool refusal = !requires {
+    requires std::same_as<decltype(&Item::refusal), decltype(&Base::refusal)>;
+  };
+  static constexpr bool reversible = !requires {
+    requires std::same_as<decltype(&Item::reversible), decltype(&Base::reversible)>;
+  };
+  static constexpr bool reverse = !requires {
+    requires std::same_as<decltype(&Item::reverse), decltype(&Base::reverse)>;
+  };
+};
+
+/// An item whose functions have the signatures that the integrator calls.
+template <class Item>
+concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
+    requires(const Item item, const PairStep& step, PairTerms& terms, Vec6& gamma, double* history,
+             std::vector<Impact>& impacts, PrescribedRows& rows) {
+  { Item::kKind } -> std::convertible_to<const char*>;
+  { item.evaluate(step, terms) } -> std::same_as<void>;
+  { item.rows() } -> std::same_as<int>;
+  { item.history_size() } -> std::same_as<int>;
+  { item.acceleration_terms(step, gamma) } -> std::same_as<void>;
+  { item.work(step) } -> std::same_as<Work>;
+  { item.initialize(step, history) } -> std::same_as<void>;
+  { item.commit(step, history) } -> std::same_as<void>;
+  { item.prescribed(step, TimeSide::kBefore, rows) } -> std::same_as<void>;
+  { item.impacts(step, impacts) } -> std::same_as<void>;
+  { item.clearance(step) } -> std::same_as<double>;
+  { item.acceptable(step) } -> std::same_as<bool>;
+  { item.motion_basis() } -> std::same_as<std::optional<MotionBasis>>;
+};
+
+/// An item that has all of what belongs together. A misspelt function hides nothing and is never
+/// called: its partner gives it away here, when the item is compiled.
+template <class Item>
+concept Interaction = HasInteractionFunctions<Item> &&
+                      // What is remembered is begun and kept.
+                      (!OwnFunctions<Item>::history_size ||
+                       (OwnFunctions<Item>::initialize && OwnFunctions<Item>::commit)) &&
+                      (OwnFunctions<Item>::history_size ||
+                       !(OwnFunctions<Item>::initialize || OwnFunctions<Item>::commit ||
+                         OwnFunctions<Item>::lazy_history || OwnFunctions<Item>::extrapolate)) &&
+                      // Rows have accelerations.
+                      OwnFunctions<Item>::rows == OwnFunctions<Item>::acceleration_terms &&
+                      // What takes energy says how much.
+                      (!(OwnFunctions<Item>::dissipates || OwnFunctions<Item>::works) ||
+                       OwnFunctions<Item>::work) &&
+                      OwnFunctions<Item>::prescribes == OwnFunctions<Item>::prescribed &&
+                      (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
+                      OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance &&
+                      (!OwnFunctions<Item>::impacts || OwnFunctions<Item>::has_barrier) &&
+                      (!(OwnFunctions<Item>::always_asked || OwnFunctions<Item>::refusal) ||
+                       OwnFunctions<Item>::acceptable) &&
+                      (!OwnFunctions<Item>::reverse || OwnFunctions<Item>::reversible);
+
 /// All interactions of one type, in one contiguous array: the assembler makes one virtual call
 /// per group, never per item. `first` and `count` select items; pair(i) gives item i's step.
 class InteractionGroup {
@@ -205,6 +321,11 @@ class InteractionGroup {
 /// `static constexpr const char* kKind` and `void evaluate(const PairStep&, PairTerms&) const`.
 template <class Item>
 class Group final : public InteractionGroup {
+  static_assert(HasInteractionFunctions<Item>,
+                "a function of the item has another signature than InteractionItem's");
+  static_assert(Interaction<Item>,
+                "functions that belong together are not all there; is one misspelt?");
+
  public:
   std::vector<Item> items;
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <polhode/joints/joint.hpp>
+#include <polhode/loads/spring_damper.hpp>
+#include <polhode/system/interaction.hpp>
+
+namespace polhode::interaction_tests {
+namespace {
+
+struct Sample : InteractionItem {
+  static constexpr const char* kKind = "sample";
+  void evaluate(const PairStep&, PairTerms&) const {}
+};
+/// Remembers something and writes it nowhere: "comit" is no function of an interaction.
+struct Misspelt : Sample {
+  [[nodiscard]] int history_size() const { return 1; }
+  void initialize(const PairStep&, double*) const {}
+  void comit(const PairStep&, double*) const {}
+};
+struct Remembers : Misspelt {
+  void commit(const PairStep&, double*) const {}
+};
+/// Never asked how far its barrier is.
+struct HalfBarrier : Sample {
+  [[nodiscard]] double clearance(const PairStep&) const { return 0.5; }
+};
+/// A loss that no ledger sees.
+struct SilentLoss : Sample {
+  [[nodiscard]] bool dissipates() const { return true; }
+};
+/// Rows whose accelerations are missing.
+struct Rows : Sample {
+  [[nodiscard]] int rows() const { return 1; }
+};
+/// A change of type that a call would round away.
+struct WrongType : Sample {
+  [[nodiscard]] bool clearance(const PairStep&) const { return true; }
+  [[nodiscard]] bool has_barrier() const { return true; }
+};
+struct NoKind : InteractionItem {
+  void evaluate(const PairStep&, PairTerms&) const {}
+};
+
+static_assert(Interaction<Sample> && Interaction<Remembers>);
+static_assert(Interaction<Joint> && Interaction<SpringDamper>);
+static_assert(!Interaction<Misspelt>);
+static_assert(!Interaction<HalfBarrier>);
+static_assert(!Interaction<SilentLoss>);
+static_assert(!Interaction<Rows>);
+static_assert(!HasInteractionFunctions<WrongType>);
+static_assert(!HasInteractionFunctions<NoKind>);
+
+TEST(Interaction, HasAllOfWhatBelongsTogether) {
+  EXPECT_TRUE(OwnFunctions<Misspelt>::history_size);
+  EXPECT_FALSE(OwnFunctions<Misspelt>::commit);
+  EXPECT_TRUE(OwnFunctions<Remembers>::commit);
+  EXPECT_FALSE(OwnFunctions<Sample>::work);
+}
+
+}  // namespace
+}  // namespace polhode::interaction_tests
