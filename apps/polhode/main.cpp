@@ -95,6 +95,9 @@ int main(int argc, char** argv) {
   } catch (const FileError& error) {
     cli::say(error.what());
     return cli::kInputOutput;
+  } catch (const SolveError& error) {
+    cli::say(error.what());
+    return cli::kNotConverged;
   } catch (const std::bad_alloc&) {
     cli::say("polhode: the memory is exhausted. Run a smaller model, or on a larger machine.");
     return cli::kInternalError;

@@ -253,8 +253,8 @@ TEST(SurfaceContact, PassesThePatchTest) {
   EXPECT_NEAR(b.report().force[2] / (1.2 * p), 1.0, 1e-10);
   std::vector<ElementSample> samples(27);
   StepContext still;
-  b.system.nodes().group(0).sample(node_instant(b.state, still), b.state.element_history.data(),
-                                   samples);
+  b.system.nodes().group(0).sample(node_instant(b.system, b.state, still),
+                                   b.state.element_history.data(), samples);
   double area = 1.0;  // stretches across: dead pressure is per undeformed area
   for (const ElementSample& s : samples) {
     area = s.principal_stretches[0] * s.principal_stretches[1];

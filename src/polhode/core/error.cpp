@@ -10,4 +10,7 @@ InputError::InputError(std::string_view where, std::string_view what, std::strin
       what_(what),
       mend_(mend) {}
 
+SolveError::SolveError(std::string_view what, std::string_view hint)
+    : std::runtime_error(std::string(what) + ". " + std::string(hint) + ".") {}
+
 }  // namespace polhode

@@ -23,4 +23,12 @@ class InputError : public std::invalid_argument {
   std::string where_, what_, mend_;
 };
 
+/// Equations of a model that cannot be solved: a matrix that is too large or has no inverse, an
+/// eigenvalue problem that does not converge. Nobody's fault; the message says what to try.
+class SolveError : public std::runtime_error {
+ public:
+  /// Reads "what. hint."
+  SolveError(std::string_view what, std::string_view hint);
+};
+
 }  // namespace polhode

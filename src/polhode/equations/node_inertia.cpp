@@ -22,7 +22,7 @@ bool NodeInertia::take(const State& state) {
   start_trial(*system_, state, trial_);
   residual_.assign(state.node_x.size(), 0.0);
   tangent_.resize(mass_.size());
-  const NodeStep instant = node_instant(state, trial_.context);
+  const NodeStep instant = node_instant(*system_, state, trial_.context);
   for (int g = 0; g < nodes.group_count(); ++g) {
     const double* history = state.element_history.data() + nodes.first_history(g);
     double* scratch = trial_.element_scratch.data() + nodes.first_scratch(g);

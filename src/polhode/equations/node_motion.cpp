@@ -118,12 +118,10 @@ NodeStep node_step(const State& state, const Trial& trial) {
           .rate = c.ga.c / c.dt};
 }
 
-NodeStep node_instant(const State& state, const StepContext& context) {
-  static thread_local std::vector<double> none;
-  if (none.size() < state.node_x.size()) none.assign(state.node_x.size(), 0.0);
+NodeStep node_instant(const System& system, const State& state, const StepContext& context) {
   return {.x_n = state.node_x.data(),
           .x_n1 = state.node_x.data(),
-          .u = none.data(),
+          .u = system.nodes().no_displacement().data(),
           .v_n = state.node_v.data(),
           .v_n1 = state.node_v.data(),
           .context = context,

@@ -27,7 +27,8 @@ void shorten_motion(const System& system, const State& state, double part, Trial
 /// The trial's nodes as elements see them.
 [[nodiscard]] NodeStep node_step(const State& state, const Trial& trial);
 /// The nodes of a state at its instant, velocities included.
-[[nodiscard]] NodeStep node_instant(const State& state, const StepContext& context);
+[[nodiscard]] NodeStep node_instant(const System& system, const State& state,
+                                    const StepContext& context);
 /// Rate of the nodes' momentum at t_{n+αm} per mass: accelerations, three a node.
 /// @eq{eq:ga-momenta-Newmark}
 void node_accelerations(const System& system, const State& state, const Trial& trial,

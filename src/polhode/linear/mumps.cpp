@@ -3,7 +3,7 @@
 #include <dmumps_c.h>
 
 #include <cstring>
-#include <stdexcept>
+#include <mutex>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -26,7 +26,15 @@ Entry load() {
   return reinterpret_cast<Entry>(dlsym(library, "dmumps_c"));
 }
 
+/// MUMPS keeps tables in variables of its modules: one call at a time in a program.
+void call_alone(Entry entry, DMUMPS_STRUC_C* m) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> alone(one_at_a_time);
+  entry(m);
+}
+
 constexpr int kUseCommWorld = -987654;  // as MUMPS asks for without MPI
+constexpr const char* kTooLarge = "Run a coarser mesh, or on a machine with more memory";
 constexpr int kInitialise = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3;
 // Numbers of MUMPS' errors that more workspace mends, and those that say "singular".
 constexpr int kWorkspaceTooSmall = -9, kIntegersTooSmall = -8, kSingular = -10, kStructural = -6;
@@ -49,7 +57,7 @@ struct Mumps::Impl {
     m.par = 1;
     m.sym = symmetry == Symmetry::symmetric ? 2 : 0;
     m.job = kInitialise;
-    call(&m);
+    call_alone(call, &m);
     started = true;
     for (int k = 1; k <= 4; ++k) control(k) = k < 4 ? -1 : 0;  // silent
     control(14) = 30;                                          // workspace: 30 % more than planned
@@ -57,7 +65,7 @@ struct Mumps::Impl {
   ~Impl() {
     if (!started) return;
     m.job = kEnd;
-    call(&m);
+    call_alone(call, &m);
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -70,8 +78,10 @@ struct Mumps::Impl {
     m.nrhs = count;
     m.lrhs = m.n;
     m.job = kSolve;
-    call(&m);
-    if (m.infog[0] < 0) throw std::runtime_error(format("MUMPS: solve failed ({})", m.infog[0]));
+    call_alone(call, &m);
+    if (m.infog[0] < 0)
+      throw SolveError(format("The equations of nodes were not solved (MUMPS {})", m.infog[0]),
+                       kTooLarge);
   }
 };
 
@@ -94,12 +104,14 @@ void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>&
   s.m.jcn = s.columns.data();
   s.m.a = s.values.data();
   s.m.job = kAnalyse;
-  s.call(&s.m);
+  call_alone(s.call, &s.m);
+  if (s.m.infog[0] == kStructural)
+    throw SolveError("The equations of nodes are singular whatever their values are",
+                     "Look for nodes that nothing holds: polhode check names them");
   if (s.m.infog[0] < 0)
-    throw std::runtime_error(
-        s.m.infog[0] == kStructural
-            ? "MUMPS: the matrix is structurally singular"
-            : format("MUMPS: analysis failed ({}, {})", s.m.infog[0], s.m.infog[1]));
+    throw SolveError(format("The equations of nodes could not be planned (MUMPS {}, {})",
+                            s.m.infog[0], s.m.infog[1]),
+                     kTooLarge);
 }
 
 bool Mumps::factor(const double* values) {
@@ -107,13 +119,14 @@ bool Mumps::factor(const double* values) {
   std::copy(values, values + s.values.size(), s.values.begin());
   for (int attempt = 0; attempt < 5; ++attempt) {
     s.m.job = kFactor;
-    s.call(&s.m);
+    call_alone(s.call, &s.m);
     const int error = s.m.infog[0];
     if (error >= 0) return true;
     if (error == kSingular) return false;
     if (error != kWorkspaceTooSmall && error != kIntegersTooSmall)
-      throw std::runtime_error(format(
-          "MUMPS: factorisation failed ({}, {}); is there enough memory?", error, s.m.infog[1]));
+      throw SolveError(format("The equations of nodes could not be factored (MUMPS {}, {})", error,
+                              s.m.infog[1]),
+                       kTooLarge);
     s.control(14) *= 2;
   }
   return false;  // finds hardly a pivot, and puts off the others without end

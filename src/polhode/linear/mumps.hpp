@@ -21,7 +21,7 @@ class Mumps {
 
   /// Symbolic work. Entries are given by rows and columns counted from zero; entries of the same
   /// place are summed. Of a symmetric matrix one triangle.
-  /// @throws std::runtime_error if the matrix is structurally singular.
+  /// @throws SolveError if the matrix is structurally singular.
   void analyse(int n, const std::vector<int>& rows, const std::vector<int>& columns);
   /// Values in the order of the entries. @returns false if the matrix is singular.
   [[nodiscard]] bool factor(const double* values);

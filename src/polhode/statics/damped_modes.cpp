@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
+#include <polhode/core/error.hpp>
 #include <polhode/statics/modal_matrices.hpp>
 
 namespace polhode {
@@ -192,7 +192,8 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
   std::vector<EigenPair> pairs;
   for (Eigen::Index i = 0; i < V.cols(); ++i)
     pairs.push_back({Complex(0.0), V.col(i).cast<Complex>()});
-  if (!m.factor_quadratic(sigma)) throw std::runtime_error("modes: the shifted matrix is singular");
+  if (!m.factor_quadratic(sigma))
+    throw SolveError("modes: the shifted matrix is singular", kHoldModel);
   ShiftedInverse inverse(m, sigma, V);
   const auto n = static_cast<int>(inverse.rows());
   const int asked = std::min(m.damped() ? 2 * wanted : wanted, n / 4);
@@ -204,7 +205,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
   solver.init(first.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, kArnoldi, Spectra::SortRule::LargestMagn);
   if (solver.info() != Spectra::CompInfo::Successful)
-    throw std::runtime_error("modes: the Arnoldi iterations have not converged");
+    throw SolveError("modes: the Arnoldi iterations have not converged", kFewerModes);
   const Eigen::VectorXcd values = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();
   const auto add = [&](Complex lambda, CVec x) {

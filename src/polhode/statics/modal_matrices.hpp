@@ -9,6 +9,11 @@
 
 namespace polhode {
 
+/// What to try where eigenvalues are not found.
+inline constexpr const char* kFewerModes = "Ask for fewer modes (analysis.count)";
+inline constexpr const char* kHoldModel =
+    "Hold the model by joints or springs, or ask for modes about the start";
+
 using Complex = std::complex<double>;
 using CVec = Eigen::VectorXcd;
 

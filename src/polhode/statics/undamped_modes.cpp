@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/statics/undamped_modes.hpp>
 
@@ -90,7 +90,8 @@ Pairs dense_modes(ModalMatrices& m, int wanted) {
   const Mat K = N.transpose() * (0.5 * (d.K + d.K.transpose())) * N;
   const Mat M = N.transpose() * d.M * N;
   const Eigen::LLT<Mat> factor(M);
-  if (factor.info() != Eigen::Success) throw std::runtime_error("modes: a motion has no mass");
+  if (factor.info() != Eigen::Success)
+    throw SolveError("modes: a motion has no mass", "Give every body and node that moves a mass");
   const Mat L = factor.matrixL();
   Mat T = L.transpose() * Eigen::PartialPivLU<Mat>(K - sigma * M).solve(L);
   T = Mat(0.5 * (T + T.transpose()));
@@ -122,7 +123,7 @@ void lanczos(ModalMatrices& m, double sigma, int count, Pairs& pairs) {
   solver.init(first.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, kLanczos);
   if (solver.info() != Spectra::CompInfo::Successful)
-    throw std::runtime_error("modes: the Lanczos iterations have not converged");
+    throw SolveError("modes: the Lanczos iterations have not converged", kFewerModes);
   const Vec values = solver.eigenvalues();
   const Mat shapes = solver.eigenvectors();
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -155,7 +156,7 @@ Pairs lanczos_modes(ModalMatrices& m, int count, int wanted) {
   const double sigma = -kShift * pairs.range;
   int missing = wanted;
   for (int run = 0; run < kRuns && missing > 0; ++run) {
-    if (!m.factor(sigma)) throw std::runtime_error("modes: the shifted matrix is singular");
+    if (!m.factor(sigma)) throw SolveError("modes: the shifted matrix is singular", kHoldModel);
     lanczos(m, sigma, std::min(missing + (run > 0 ? kSpare : 0), wanted), pairs);
     const Gap gap = widest_gap(pairs.values, count);
     if (!m.factor(gap.shift)) break;

@@ -41,7 +41,7 @@ double NodeLedger::stored(const State& state) const {
   const Nodes& nodes = system_->nodes();
   StepContext still;
   still.t_n = state.t;
-  const NodeStep instant = node_instant(state, still);
+  const NodeStep instant = node_instant(*system_, state, still);
   double potential = 0.0;
   for (int g = 0; g < nodes.group_count(); ++g)
     potential += nodes.group(g)

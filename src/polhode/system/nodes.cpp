@@ -73,6 +73,7 @@ void Nodes::finish(int body_count) {
     if (node.body >= body_count)
       throw InputError("a node", format("is bonded to body {}, which is not there", node.body),
                        "Give a body of this system");
+  no_displacement_.assign(3 * data_.size(), 0.0);
   check();
   number();
   build_graph();

@@ -80,6 +80,8 @@ class Nodes {
   [[nodiscard]] int piece(int node) const { return piece_[node]; }  ///< Of a free node; else -1.
   /// The piece whose bodies or nodes a group of elements belongs to.
   [[nodiscard]] int piece_of_group(int group) const { return piece_of_group_[group]; }
+  /// Three zeros for each node: their displacements at an instant.
+  [[nodiscard]] const std::vector<double>& no_displacement() const { return no_displacement_; }
   [[nodiscard]] double element_size() const { return element_size_; }  ///< Mean extent [m].
   [[nodiscard]] bool conservative() const;
   [[nodiscard]] bool dissipates() const;
@@ -102,7 +104,7 @@ class Nodes {
   std::vector<std::size_t> first_history_, first_scratch_;
   std::vector<int> row_start_, column_;
   std::vector<std::vector<int>> slots_;
-  std::vector<double> mass_, node_mass_;
+  std::vector<double> mass_, node_mass_, no_displacement_;
   std::vector<NodePiece> pieces_;
   std::vector<int> piece_, piece_of_group_;
   double element_size_ = 1.0;
