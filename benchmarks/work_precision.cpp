@@ -21,7 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include <polhode/simulation/method.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/published_cases.hpp>
 
 #include "measure.hpp"

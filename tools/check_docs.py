@@ -4,6 +4,7 @@
 * Every kind in a registry has a row in its reference page, and every row has its kind.
 * Every path of the repository that a page names in `backticks` exists.
 * Every link from a page to a file of the repository leads somewhere.
+* The C++ program of the README is that of tests/consumer, which is built and run against the installed library.
 * No file under src/ has more than 500 lines; above 300 it is worth a thought.
 """
 import pathlib
@@ -98,8 +99,21 @@ def check_lengths(problems):
             print(f"{path.relative_to(ROOT)}: {lines} lines, worth a thought above {LINES_WARN}.")
 
 
+def check_program(problems):
+    """Line by line, but for blanks and the brace that closes it."""
+    def lines(text):
+        return [line.rstrip() for line in text.splitlines() if line.strip()]
+
+    shown = re.search(r"```cpp\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
+    built = lines((ROOT / "tests/consumer/main.cpp").read_text())
+    wanted = lines(shown[1])[:-1] if shown else []
+    if not wanted or not any(built[i:i + len(wanted)] == wanted for i in range(len(built))):
+        problems.append("README.md: its C++ program is not that of tests/consumer/main.cpp. Copy it from there.")
+
+
 def main():
     problems = []
+    check_program(problems)
     check_kinds(problems)
     check_pages(problems)
     check_lengths(problems)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/io/results/write_results.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 #include "parts.hpp"
 #include "recording.hpp"

@@ -9,7 +9,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/newton/tangent_check.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/beam_models.hpp>
 
 namespace polhode::test::beam_dynamics_tests {

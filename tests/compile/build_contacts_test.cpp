@@ -7,7 +7,7 @@
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::build_contacts_tests {
 namespace {

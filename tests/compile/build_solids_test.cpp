@@ -3,7 +3,7 @@
 
 #include <polhode/compile/build_system.hpp>
 #include <polhode/core/error.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/model_builder.hpp>
 
 namespace polhode::test::build_solids_tests {

@@ -10,7 +10,7 @@
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::build_surface_contacts_tests {
 namespace {

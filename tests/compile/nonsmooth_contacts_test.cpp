@@ -4,7 +4,7 @@
 #include <polhode/compile/nonsmooth_contacts.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::nonsmooth_contacts_tests {
 namespace {

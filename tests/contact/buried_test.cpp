@@ -5,8 +5,8 @@
 #include <polhode/geometry/shapes.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
 
-#include "scene.hpp"
-#include "shapes_for_tests.hpp"
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::contact::buried_tests {
 namespace {

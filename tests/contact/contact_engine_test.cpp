@@ -3,8 +3,8 @@
 
 #include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
-#include "shapes_for_tests.hpp"
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::contact_engine_tests {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::contact_solids_tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::crowd_engine_tests {
 namespace {

@@ -5,7 +5,7 @@
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::nonsmooth_engine_tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/stepping/instant.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::sparse_engine_tests {
 namespace {

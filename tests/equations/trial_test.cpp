@@ -3,7 +3,7 @@
 
 #include <polhode/equations/trial.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::trial_tests {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <polhode/geometry/triangle_tree.hpp>
 
-#include "shapes_for_tests.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::test::triangle_tree_tests {
 namespace {

@@ -8,7 +8,7 @@
 #include <polhode/linear/block_cg.hpp>
 #include <polhode/math/hat.hpp>
 
-#include "random_kkt.hpp"
+#include "linear/random_kkt.hpp"
 
 namespace polhode::block_cg_tests {
 namespace {

@@ -4,7 +4,7 @@
 #include <polhode/linear/block_lu.hpp>
 #include <polhode/linear/block_lu_order.hpp>
 
-#include "random_kkt.hpp"
+#include "linear/random_kkt.hpp"
 
 namespace polhode::block_lu_tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <polhode/linear/kkt.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
 
-#include "random_kkt.hpp"
+#include "linear/random_kkt.hpp"
 
 namespace polhode::linear_solver_tests {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <polhode/newton/rank_report.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/models.hpp>
 
 namespace polhode::loop_rank_tests {

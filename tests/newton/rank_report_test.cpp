@@ -4,7 +4,7 @@
 
 #include <polhode/newton/rank_report.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::rank_report_tests {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <polhode/newton/tangent_check.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::tangent_check_tests {
 namespace {

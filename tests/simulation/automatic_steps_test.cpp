@@ -7,7 +7,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::automatic_steps_tests {
 namespace {

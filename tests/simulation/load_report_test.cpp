@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <polhode/io/results/csv_probes.hpp>
 #include <polhode/io/text/file_error.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/model_builder.hpp>
 #include <support/scratch.hpp>
 

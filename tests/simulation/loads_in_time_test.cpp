@@ -8,7 +8,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::loads_in_time_tests {
 namespace {

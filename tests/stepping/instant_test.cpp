@@ -5,7 +5,7 @@
 #include <polhode/math/quaternion.hpp>
 #include <polhode/stepping/instant.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::instant_tests {
 namespace {

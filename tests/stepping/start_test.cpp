@@ -8,7 +8,7 @@
 #include <polhode/math/quaternion.hpp>
 #include <polhode/stepping/start.hpp>
 
-#include "mechanisms.hpp"
+#include "engines/mechanisms.hpp"
 
 namespace polhode::start_tests {
 namespace {

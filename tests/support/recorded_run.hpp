@@ -8,7 +8,7 @@
 
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/text/file_error.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::test {
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::beam_contact_tests {
 namespace {

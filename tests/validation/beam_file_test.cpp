@@ -6,7 +6,7 @@
 
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/modal.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::beam_file_tests {
 namespace {

@@ -10,7 +10,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <validation/rope_over_drum.hpp>
 
 namespace polhode::test::cable_contact_tests {

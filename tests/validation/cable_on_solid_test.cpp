@@ -8,7 +8,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/surface_contact/solid_contact.hpp>
 
 namespace polhode::test::cable_on_solid_tests {

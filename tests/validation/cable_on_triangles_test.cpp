@@ -10,7 +10,7 @@
 #include <contact/shapes_for_tests.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 #include <validation/rope_over_drum.hpp>

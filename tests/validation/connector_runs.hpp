@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::connectors {
 

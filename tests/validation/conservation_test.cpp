@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/joints/registry.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/models.hpp>
 
 namespace polhode::test::conservation_tests {

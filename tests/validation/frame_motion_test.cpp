@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::frame_motion_tests {
 namespace {

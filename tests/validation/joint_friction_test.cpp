@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/core/error.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/model_builder.hpp>
 
 namespace polhode::test::joint_friction_tests {

@@ -9,7 +9,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::motor_tests {
 namespace {

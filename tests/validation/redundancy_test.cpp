@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/newton/rank_report.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/published_cases.hpp>
 
 namespace polhode::test::redundancy_tests {

@@ -11,7 +11,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/results/checkpoint.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode::test::solid_contact_models_tests {

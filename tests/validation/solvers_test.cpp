@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/published_cases.hpp>
 
 namespace polhode::test::solvers_tests {

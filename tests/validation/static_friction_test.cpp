@@ -4,7 +4,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode::static_friction_tests {
 namespace {

@@ -10,7 +10,7 @@
 #include <polhode/compile/build_solids.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/solid_report.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 

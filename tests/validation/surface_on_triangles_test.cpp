@@ -9,7 +9,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/results/checkpoint.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 

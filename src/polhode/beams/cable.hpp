@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <polhode/beams/bar_strain.hpp>
 #include <polhode/system/interaction.hpp>
 
 namespace polhode {
-
-/// How a bar measures its strain.
-enum class BarStrain {
-  engineering,  ///< (l − L)/L
-  green         ///< (l² − L²)/(2L²)
-};
 
 /// What makes a straight elastic bar or a piece of cable between a point of a and a point of b.
 struct CableSpec {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include <polhode/beams/beam_element.hpp>
+#include <polhode/beams/cable.hpp>
 #include <polhode/compile/beam_mesh.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>

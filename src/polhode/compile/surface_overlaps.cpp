@@ -54,7 +54,7 @@ class Finder {
       : model_(model), system_(system), map_(map), state_(state) {}
 
   std::vector<SideOverlap> find() {
-    const NodeStep instant = node_instant(state_, still_);
+    const NodeStep instant = node_instant(system_, state_, still_);
     for (const ContactMap::Surface& surface : map_.contact.surfaces) {
       const ElementGroup& group = system_.nodes().group(surface.group);
       const auto& touching = dynamic_cast<const TouchingSurface&>(group);

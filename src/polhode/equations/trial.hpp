@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/equations/constraint_check.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -54,14 +55,6 @@ struct Iteration {
   double rotation = 0.0;   ///< Largest |θ| of the step after the update [-].
   int worst_body = -1;     ///< If not solved: whose pivot vanished, if known.
   std::string reason;      ///< If not solved: what else happened, and where.
-};
-
-/// How well the constraints hold at the current iterate.
-struct ConstraintCheck {
-  double residual = 0.0;  ///< Largest |g| [m or -].
-  int worst_row = -1;
-  double work_defect = 0.0;  ///< Σ |λ g|: the energy that the multipliers may leak [J].
-  double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the least that can be asked [J].
 };
 
 /// One way of doing the Newton iterations of a step: assemble, solve, update.

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include <polhode/core/time_jet.hpp>
-#include <polhode/joints/frame_motion.hpp>
+#include <polhode/joints/moving_frame.hpp>
 #include <polhode/math/exp_map.hpp>
 
 namespace polhode {

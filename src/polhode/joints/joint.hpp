@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/joints/frame_motion.hpp>
+#include <polhode/joints/moving_frame.hpp>
 #include <polhode/joints/recipe.hpp>
 #include <polhode/joints/resistance.hpp>
 #include <polhode/system/free_coordinate.hpp>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/beams/cable.hpp>
+#include <polhode/beams/bar_strain.hpp>
 #include <polhode/beams/section.hpp>
 #include <polhode/core/place.hpp>
 #include <polhode/core/types.hpp>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/equations/trial.hpp>
+#include <polhode/newton/newton_report.hpp>
 
 namespace polhode {
 
@@ -18,22 +19,6 @@ struct NewtonOptions {
   bool line_search = true;
   double max_rotation = 2.0;  ///< Largest |Θ| a body may turn in the step [-].
   double energy_scale = 0.0;  ///< Size of the energies of the run so far [J].
-};
-
-/// How a Newton solve went. Not to converge is an outcome, not an exception: the stepper may
-/// halve the step and try again.
-struct NewtonReport {
-  bool converged = false;
-  double t = 0.0;   ///< Start of the step [s].
-  double dt = 0.0;  ///< [s]
-  int iterations = 0;
-  std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
-  double rotation = 0.0;           ///< Largest |Θ| of the step [-].
-  bool hard = false;   ///< Converged, but slowly: it needed more iterations than it has.
-  std::string reason;  ///< If not converged: "contracts too slowly", "turns too far" ...
-  std::string worst;   ///< Largest increment: "body 'forearm'".
-  ConstraintCheck constraints;
-  [[nodiscard]] std::string text() const;  ///< One paragraph, with what to try next.
 };
 
 /// Newton on the predicted trial, with polish: round-off conservation is reached when the energy

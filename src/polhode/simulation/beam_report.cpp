@@ -2,8 +2,9 @@
 #include <utility>
 
 #include <polhode/beams/beam_element.hpp>
+#include <polhode/beams/cable.hpp>
 #include <polhode/simulation/beam_report.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polhode/compile/build_system.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/statics/modes.hpp>
 
 namespace polhode {

@@ -163,7 +163,7 @@ class Separation {
 
   void begin_surfaces() {
     const StepContext still;
-    const NodeStep instant = node_instant(state_, still);
+    const NodeStep instant = node_instant(system_, state_, still);
     for (const ContactMap::Surface& surface : map_.contact.surfaces) {
       const Nodes& nodes = system_.nodes();
       dynamic_cast<const TouchingSurface&>(nodes.group(surface.group))

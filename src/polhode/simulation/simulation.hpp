@@ -8,22 +8,33 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include <polhode/compile/build_solids.hpp>
-#include <polhode/compile/solid_point.hpp>
+#include <polhode/dynamics/body_motion.hpp>
 #include <polhode/model/model.hpp>
 #include <polhode/simulation/beam_report.hpp>
-#include <polhode/simulation/contact_keeper.hpp>
+#include <polhode/simulation/contact_report.hpp>
 #include <polhode/simulation/solid_report.hpp>
-#include <polhode/statics/statics.hpp>
-#include <polhode/stepping/ledger.hpp>
-#include <polhode/stepping/start.hpp>
-#include <polhode/stepping/stepper.hpp>
-#include <polhode/surface_contact/surface_contact.hpp>
-#include <polhode/system/system.hpp>
+#include <polhode/statics/static_report.hpp>
+#include <polhode/stepping/balance.hpp>
+#include <polhode/stepping/start_report.hpp>
+#include <polhode/stepping/step_report.hpp>
 
 namespace polhode {
+
+// What code that looks inside a simulation knows: <polhode/simulation/simulation_details.hpp>.
+class System;
+struct State;
+struct SolidMap;
+struct SolidPoint;
+struct ContactMap;
+struct SurfacePointReport;
+namespace contact {
+class ContactSet;
+struct TouchingPoint;
+}  // namespace contact
 
 /// Why a run ended.
 enum class RunEnd { finished, not_converged, interrupted, limit };
@@ -108,7 +119,7 @@ class Simulation {
   [[nodiscard]] const Model& model() const;
   [[nodiscard]] const System& system() const;
   [[nodiscard]] const State& state() const;
-  [[nodiscard]] double time() const { return state().t; }
+  [[nodiscard]] double time() const;
   [[nodiscard]] const StartReport& start_report() const;
 
   /// Takes one accepted step, not beyond t_limit. In statics time is the load factor, and a step
@@ -127,23 +138,34 @@ class Simulation {
   // bodies are of their centre of mass; fixed bodies stand still. Velocities are projected onto the
   // constraints: those of the state carry a part normal to them, of order Δt².
   [[nodiscard]] BodyMotion body(int body) const;
+  /// The same by name, as everything below that has a name. @throws InputError if the model has
+  /// none of that name; the message has the nearest ones.
+  [[nodiscard]] BodyMotion body(std::string_view name) const;
   /// Position, velocity and acceleration of a point of a body, Z from the centre of mass, body
   /// axes.
   struct PointMotion {
     Vec3 position, velocity, acceleration;
   };
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
+  [[nodiscard]] PointMotion point(std::string_view body, const Vec3& Z) const;
+  /// @param joint_axes  Force and moment along the joint's axes instead of the world's.
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
+  [[nodiscard]] JointReport joint(std::string_view name, bool joint_axes = false) const;
   /// The numbers of the channels of its kind, see LoadKind::channels.
   [[nodiscard]] std::vector<double> load(int load) const;
-  [[nodiscard]] BeamReport beam(int beam) const;     ///< By index in the Model.
+  [[nodiscard]] std::vector<double> load(std::string_view name) const;
+  [[nodiscard]] BeamReport beam(int beam) const;  ///< By index in the Model.
+  [[nodiscard]] BeamReport beam(std::string_view name) const;
   [[nodiscard]] CableReport cable(int cable) const;  ///< Likewise.
+  [[nodiscard]] CableReport cable(std::string_view name) const;
+  /// Energies and momenta, and what was put in and dissipated since the start.
   [[nodiscard]] Balance balance() const;
 
   // Deformable solids, by index in the Model.
   [[nodiscard]] const std::vector<SolidMap>& solids() const;
   /// Valid until the next step.
   [[nodiscard]] const SolidReport& solid(int solid) const;
+  [[nodiscard]] const SolidReport& solid(std::string_view name) const;
   /// Position, displacement since the start and velocity of a material point.
   [[nodiscard]] std::array<Vec3, 3> solid_point(int solid, const SolidPoint& point) const;
   /// Cauchy stress of a material point, world axes [Pa]: between the stresses at nodes.

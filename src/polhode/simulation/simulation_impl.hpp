@@ -20,7 +20,7 @@
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
 
@@ -237,8 +237,9 @@ struct Simulation::Impl {
     for (int g = 0; g < nodes.group_count(); ++g) {
       const auto* solid = dynamic_cast<const SolidElements*>(&nodes.group(g));
       if (!solid || solid->element().least_stretch == 0.0) continue;
-      const LeastStretch now = solid->least_stretch(
-          node_instant(state, still), state.element_history.data() + nodes.first_history(g));
+      const LeastStretch now =
+          solid->least_stretch(node_instant(system, state, still),
+                               state.element_history.data() + nodes.first_history(g));
       LeastStretch& least = least_stretches[g];
       if (now.value < least.value) least = now;
     }

@@ -127,7 +127,7 @@ const SolidReport& Simulation::solid(int solid) const {
   }
   StepContext still;
   still.t_n = state.t;
-  const NodeStep instant = node_instant(state, still);
+  const NodeStep instant = node_instant(impl_->system, state, still);
   for (const int g : map.groups) {
     const ElementGroup& group = nodes.group(g);
     std::vector<ElementSample> samples(static_cast<std::size_t>(group.size()));
@@ -223,7 +223,7 @@ std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
   StepContext still;
   still.t_n = impl_->state.t;
   return dynamic_cast<const TouchingSurface&>(nodes.group(group))
-      .point_reports(node_instant(impl_->state, still),
+      .point_reports(node_instant(impl_->system, impl_->state, still),
                      impl_->state.element_history.data() + nodes.first_history(group));
 }
 

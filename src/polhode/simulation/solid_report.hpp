@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include <polhode/solids/nodal_recovery.hpp>
-#include <polhode/system/element_group.hpp>
+#include <polhode/solids/nodal_fields.hpp>
+#include <polhode/system/element_sample.hpp>
 
 namespace polhode {
 

@@ -7,24 +7,13 @@
 
 #include <polhode/solids/materials/material_kind.hpp>
 #include <polhode/solids/mesh/mesh.hpp>
+#include <polhode/solids/nodal_fields.hpp>
 #include <polhode/system/element_group.hpp>
 
 namespace polhode {
 
 /// √(3/2 s:s) of the deviator s of a stress [Pa].
 [[nodiscard]] double von_mises(const Mat3& stress);
-
-/// Stresses and energies of a solid at its nodes, and how far its elements are from them.
-struct NodalFields {
-  std::vector<Mat3> cauchy;                   ///< World [Pa].
-  std::vector<double> von_mises;              ///< Of that stress [Pa].
-  std::vector<double> strain_energy_density;  ///< [J/m³]
-  /// By element: root mean square over its nodes of how far its own stress is from that of the
-  /// nodes, as a von Mises stress [Pa]. @eq{stress-error}
-  std::vector<double> stress_error;
-  double energy = 0.0;        ///< Complementary energy of the stress at nodes [J].
-  double error_energy = 0.0;  ///< That of the differences [J]. @eq{stress-error-energy}
-};
 
 /// Stresses at the nodes of a solid from those in its elements.
 ///

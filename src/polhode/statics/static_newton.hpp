@@ -7,6 +7,7 @@
 #include <polhode/engines/saddle_solver.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/statics/kink_mixture.hpp>
+#include <polhode/statics/static_report.hpp>
 #include <polhode/system/barrier_points.hpp>
 
 namespace polhode {
@@ -18,21 +19,6 @@ struct StaticOptions {
   double tolerance = 1e-10;  ///< What later increments would add up to, |Δr|/ℓ or |Δθ| [-].
   double residual = 1e-9;    ///< Part of the largest force that may stay unbalanced [-].
   bool mixed_point = true;   ///< Geometric stiffness by extrapolated stresses.
-};
-
-/// How the search at one load factor went.
-struct StaticStep {
-  bool converged = false;
-  double load_factor = 0.0;
-  int iterations = 0;
-  std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
-  double residual = 0.0;           ///< Largest unbalanced force [N], moments over ℓ.
-  double force = 0.0;              ///< Largest force it is compared with [N].
-  int unstable = -1;     ///< Directions in which the equilibrium is unstable; −1: not known.
-  bool relaxed = false;  ///< Found by relaxation.
-  std::string reason;    ///< If not converged: "diverges" ...
-  std::string worst;     ///< Largest increment or residual: "body 'forearm'".
-  std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
 };
 
 /// The motion that meets the least stiffness at an equilibrium.

@@ -6,16 +6,10 @@
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/equations/trial.hpp>
 #include <polhode/kernels/dispatch.hpp>
+#include <polhode/stepping/balance.hpp>
 #include <polhode/stepping/node_ledger.hpp>
 
 namespace polhode {
-
-/// Energies and momenta at an instant. SI units, world axes, angular momentum about the origin.
-struct Balance {
-  double kinetic = 0.0, potential = 0.0;  ///< [J]
-  double put_in = 0.0, dissipated = 0.0;  ///< Since the start [J].
-  Vec3 linear_momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
-};
 
 /// Largest drifts over the largest magnitudes reached, and these at least so large that rounding
 /// alone does not read as a drift [-]. @eq{drift-floor}

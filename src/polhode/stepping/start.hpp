@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/stepping/instant.hpp>
+#include <polhode/stepping/start_report.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -16,19 +17,6 @@ struct StartOptions {
   bool multipliers = true;
   /// Start on the smooth solution of the method: multipliers do not alternate from step to step.
   bool smooth_multipliers = false;
-};
-
-/// What the consistent start did.
-struct StartReport {
-  double largest_move = 0.0;  ///< Of any body, |Δr|/ℓ or angle [-]; 0 if it was assembled.
-  std::string moved_body;
-  double position_residual = 0.0;  ///< Largest |g| before assembly [m or -].
-  double velocity_residual = 0.0;  ///< Largest |G v| before projection [m/s or 1/s].
-  double velocity_change = 0.0;    ///< Largest change of a velocity by the projection.
-  int iterations = 0;
-  bool assembled = true;                 ///< False: the constraints contradict one another.
-  std::vector<std::string> unsatisfied;  ///< Interactions that do: "joint 'elbow'".
-  bool consistent = true;  ///< False: the velocities fit no motion of a singular position.
 };
 
 /// Makes a state consistent before its first step: positions on g = 0, velocities on G v = 0,

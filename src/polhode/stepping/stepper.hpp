@@ -8,6 +8,7 @@
 
 #include <polhode/newton/newton.hpp>
 #include <polhode/stepping/ledger.hpp>
+#include <polhode/stepping/step_report.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -22,16 +23,6 @@ struct StepControl {
   double max_step = 0.0;       ///< 0: none [s].
   NewtonOptions newton;
   bool conserving = true;  ///< Potentials in discrete-gradient form.
-};
-
-/// What became of one call of Stepper::advance.
-struct StepReport {
-  bool accepted = false;
-  double t = 0.0;       ///< Time reached [s].
-  double dt = 0.0;      ///< Length of the accepted step [s].
-  int rejected = 0;     ///< Trials that were refused on the way.
-  NewtonReport newton;  ///< Of the last trial.
-  std::string message;  ///< If not accepted: what happened, where, what to try.
 };
 
 /// Advances a state: predictor, Newton, acceptance, step control, compositions of higher order.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/study/grid_convergence.hpp>
 
 namespace polhode {

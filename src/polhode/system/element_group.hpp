@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/system/element_sample.hpp>
 #include <polhode/system/interaction.hpp>
 #include <polhode/system/node_step.hpp>
 
@@ -39,18 +40,6 @@ struct ElementReport {
   void take(double volume, int element) {
     if (!(volume >= least_volume)) least_volume = volume, worst_element = element;
   }
-};
-
-/// What stands in an element at an instant, averaged over its points.
-struct ElementSample {
-  Mat3 cauchy = Mat3::Zero();               ///< World [Pa].
-  Vec3 principal_stretches = Vec3::Ones();  ///< Largest first [-].
-  double strain_energy_density = 0.0;       ///< Per reference volume [J/m³].
-  double volume = 0.0;                      ///< Reference [m³].
-  /// Cauchy stress [Pa] and energy density [J/m³] at its nodes, extrapolated from the points of
-  /// integration; empty for elements without an extrapolation.
-  std::vector<Mat3> cauchy_at_nodes;
-  std::vector<double> energy_at_nodes;
 };
 
 /// Elements of one type, material and solid, or a load on nodes: what acts on nodes meets the

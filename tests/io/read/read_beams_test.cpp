@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/io/read/read_model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <support/paths.hpp>
 
 namespace polhode::read_beams_tests {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polhode/compile/solid_point.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
 

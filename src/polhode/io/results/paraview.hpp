@@ -8,7 +8,7 @@
 #include <polhode/geometry/triangle_surface.hpp>
 #include <polhode/io/results/paraview_series.hpp>
 #include <polhode/model/model.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
 namespace polhode {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include <polhode/io/results/write_results.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
 

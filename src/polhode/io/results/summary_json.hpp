@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 namespace polhode {
 

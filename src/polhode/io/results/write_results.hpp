@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polhode/io/results/hdf5_file.hpp>
-#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/solid_report.hpp>
 
 namespace polhode {

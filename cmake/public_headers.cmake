@@ -1,0 +1,22 @@
+# Public headers: <polhode/polhode.hpp> and what it includes. Only these are installed.
+
+# polhode_public_headers(VARIABLE FILE): the file and all headers of src/ that it includes, full paths.
+function(polhode_public_headers variable file)
+  set(found)
+  set(open ${file})
+  while(open)
+    list(POP_FRONT open header)
+    if(header IN_LIST found)
+      continue()
+    endif()
+    list(APPEND found ${header})
+    file(STRINGS ${PROJECT_SOURCE_DIR}/src/${header} lines REGEX "^#include <polhode/")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^#include <([^>]+)>.*" "\\1" included "${line}")
+      list(APPEND open ${included})
+    endforeach()
+  endwhile()
+  list(TRANSFORM found PREPEND ${PROJECT_SOURCE_DIR}/src/)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${found})
+  set(${variable} ${found} PARENT_SCOPE)
+endfunction()

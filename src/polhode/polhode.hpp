@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that a program needs that uses Polhode: describe a model or read one, run it, look at it.
+//
+//   polhode::Simulation simulation(polhode::read_model("pendulum.yaml"));
+//   while (simulation.time() < 1.0) simulation.step(1.0);
+//   std::cout << simulation.body("lower").r.transpose() << '\n';
+//
+// SI units everywhere; angles in radians; world axes unless a name or a comment says otherwise.
+#pragma once
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/types.hpp>
+#include <polhode/geometry/mass_properties.hpp>
+#include <polhode/geometry/shapes.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/model/model.hpp>
+#include <polhode/simulation/simulation.hpp>
