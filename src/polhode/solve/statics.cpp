@@ -94,13 +94,14 @@ struct LoadStepper::Impl {
   void look_between(const State& old, double from, const State& state, const StaticStep& step,
                     double expected) {
     const LoadInterval interval{old, state, from, step.load_factor};
+    // First a jump: on the other branch stability may change as well, at another load.
     std::optional<LimitPoint> point;
-    if (unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
-      point = locate_stability_change(*system, options, interval, unstable, step.unstable);
-    if (!point && suspicious(old, state, step, expected)) {
+    if (suspicious(old, state, step, expected)) {
       point = locate_jump(*system, options, interval);
       if (point) point->unstable = step.unstable;
     }
+    if (!point && unstable >= 0 && step.unstable >= 0 && step.unstable != unstable)
+      point = locate_stability_change(*system, options, interval, unstable, step.unstable);
     if (point) report.limit_points.push_back(*point);
   }
 
