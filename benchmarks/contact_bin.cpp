@@ -14,10 +14,10 @@
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
-#include <polhode/solve/crowd_engine.hpp>
-#include <polhode/solve/lanes/dispatch.hpp>
-#include <polhode/solve/nonsmooth_engine.hpp>
-#include <polhode/solve/single_step.hpp>
+#include <polhode/engines/crowd_engine.hpp>
+#include <polhode/engines/nonsmooth_engine.hpp>
+#include <polhode/kernels/dispatch.hpp>
+#include <polhode/stepping/single_step.hpp>
 
 using namespace polhode;
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <random>
 
-#include <polhode/contact/broad_phase.hpp>
+#include <polhode/geometry/broad_phase.hpp>
 
 using namespace polhode;
 

@@ -18,11 +18,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <polhode/model/build_system.hpp>
-#include <polhode/solve/sparse_engine.hpp>
-#include <polhode/solve/start.hpp>
-#include <polhode/solve/stepper.hpp>
-#include <polhode/solve/tree_engine.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/engines/sparse_engine.hpp>
+#include <polhode/engines/tree_engine.hpp>
+#include <polhode/stepping/start.hpp>
+#include <polhode/stepping/stepper.hpp>
 #include <support/models.hpp>
 
 #include "measure.hpp"

@@ -9,10 +9,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
 
 namespace polhode {
 namespace {

@@ -20,8 +20,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <polhode/model/method.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/published_cases.hpp>
 
 #include "measure.hpp"

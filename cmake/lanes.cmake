@@ -1,7 +1,7 @@
 # The vector kernels are compiled once for each instruction set and chosen at run time. They are
 # optimised in every build type: unoptimised vector code is too slow even for tests.
-set(polhode_lanes ${PROJECT_SOURCE_DIR}/src/polhode/solve/lanes ${PROJECT_SOURCE_DIR}/src/polhode/fe/materials
-  ${PROJECT_SOURCE_DIR}/src/polhode/fe/elements)
+set(polhode_lanes ${PROJECT_SOURCE_DIR}/src/polhode/kernels ${PROJECT_SOURCE_DIR}/src/polhode/solids/materials
+  ${PROJECT_SOURCE_DIR}/src/polhode/solids/elements)
 set(polhode_lane_options -O3 -Wno-psabi -Wno-attributes -Wno-conversion -Wno-ignored-attributes)
 if(POLHODE_SANITIZE)
   # With all checks at -O3 the compiler needs ten minutes a file. Addresses are checked all the same.

@@ -13,18 +13,18 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Registry of kinds, by the first string of each entry -> page with a table row for each.
 REGISTRIES = {
-    "src/polhode/body/shapes.cpp": "docs/reference/shapes.md",
+    "src/polhode/geometry/shapes.cpp": "docs/reference/shapes.md",
     "src/polhode/joints/registry.cpp": "docs/reference/joints.md",
     "src/polhode/loads/registry.cpp": "docs/reference/loads.md",
-    "src/polhode/fe/elements/registry.cpp": "docs/reference/elements.md",
-    "src/polhode/fe/mesh/generators.cpp": "docs/reference/meshes.md",
+    "src/polhode/solids/elements/registry.cpp": "docs/reference/elements.md",
+    "src/polhode/solids/mesh/generators.cpp": "docs/reference/meshes.md",
 }
 # Kinds that say their name in their own files, kKind = "name" -> page.
 KIND_FILES = {
-    "src/polhode/fe/materials": "docs/reference/materials.md",
+    "src/polhode/solids/materials": "docs/reference/materials.md",
 }
 # Loads on solids are kinds of the model file only: load("name", ...) in the field table.
-SOLID_LOADS = "src/polhode/io/field_table_kinds.cpp"
+SOLID_LOADS = "src/polhode/io/schema/field_table_kinds.cpp"
 SOLID_LOAD = re.compile(r'\bload\("(\w+)",')
 KIND = re.compile(r'^ {6}\{"(\w+)",', re.M)
 OWN_KIND = re.compile(r'\bkKind = "(\w+)"')

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/csv_probes.hpp>
-#include <polhode/io/file_error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/csv_probes.hpp>
+#include <polhode/io/text/file_error.hpp>
 #include <polhode/study/certificate_picture.hpp>
 
 #include "command.hpp"

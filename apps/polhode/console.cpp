@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/read_model.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 namespace polhode::cli {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polhode/model/model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::cli {
 

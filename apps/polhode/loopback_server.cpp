@@ -9,8 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 namespace polhode::cli {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <polhode/model/modal.hpp>
+#include <polhode/simulation/modal.hpp>
 
 #include "console.hpp"
 

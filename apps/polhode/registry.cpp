@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/field_table.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/schema/field_table.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/summary_json.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/summary_json.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include <polhode/io/write_results.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/results/write_results.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 #include "console.hpp"
 

@@ -2,8 +2,8 @@
 #include <charconv>
 #include <filesystem>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/diagnostics.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/text/diagnostics.hpp>
 
 #include "command.hpp"
 #include "loopback_server.hpp"

@@ -7,12 +7,12 @@
 
 #include <spawn.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/recorder.hpp>
-#include <polhode/io/results_format.hpp>
-#include <polhode/solve/rank_report.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/results/results_format.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/newton/rank_report.hpp>
 
 #include "command.hpp"
 #include "run_report.hpp"

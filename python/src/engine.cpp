@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <optional>
 
-#include <polhode/assembly/state_archive.hpp>
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/recorder.hpp>
-#include <polhode/io/summary_json.hpp>
-#include <polhode/model/method.hpp>
-#include <polhode/solve/start.hpp>
+#include <polhode/system/state_archive.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/results/summary_json.hpp>
+#include <polhode/simulation/method.hpp>
+#include <polhode/stepping/start.hpp>
 
 namespace polhode::python {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/io/write_results.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/results/write_results.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 #include "parts.hpp"
 #include "recording.hpp"

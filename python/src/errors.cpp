@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/base/error.hpp>
-#include <polhode/io/diagnostics.hpp>
-#include <polhode/io/file_error.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/text/diagnostics.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "parts.hpp"
 

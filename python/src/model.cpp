@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 
-#include <polhode/base/names.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/io/schema.hpp>
-#include <polhode/io/source_tree.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/schema/schema.hpp>
+#include <polhode/io/text/source_tree.hpp>
 
 #include <nanobind/stl/string_view.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/model/modal.hpp>
+#include <polhode/simulation/modal.hpp>
 
-#include <polhode/solve/modal_matrices.hpp>
+#include <polhode/statics/modal_matrices.hpp>
 
 #include "engine.hpp"
 #include "parts.hpp"

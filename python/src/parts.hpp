@@ -14,7 +14,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <polhode/base/types.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode::python {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/io/results_plan.hpp>
+#include <polhode/io/results/results_plan.hpp>
 
 #include "parts.hpp"
 

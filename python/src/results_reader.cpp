@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hdf5.h>
 
-#include <polhode/io/file_error.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "parts.hpp"
 

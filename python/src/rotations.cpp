@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include <polhode/base/error.hpp>
-#include <polhode/so3/cayley.hpp>
-#include <polhode/so3/exp_map.hpp>
-#include <polhode/so3/quaternion.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/math/cayley.hpp>
+#include <polhode/math/exp_map.hpp>
+#include <polhode/math/quaternion.hpp>
 
 #include "parts.hpp"
 

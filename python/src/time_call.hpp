@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include <polhode/base/time_function.hpp>
+#include <polhode/core/time_function.hpp>
 
 #include "parts.hpp"
 

@@ -4,7 +4,7 @@
 #include <regex>
 
 #include <gmock/gmock.h>
-#include <polhode/base/format.hpp>
+#include <polhode/core/format.hpp>
 
 #include "command_line.hpp"
 

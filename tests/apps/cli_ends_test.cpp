@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include <gmock/gmock.h>
-#include <polhode/base/format.hpp>
+#include <polhode/core/format.hpp>
 
 #include "command_line.hpp"
 

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <polhode/io/example_models.hpp>
+#include <polhode/io/text/example_models.hpp>
 
 #include "command_line.hpp"
 

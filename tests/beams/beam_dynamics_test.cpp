@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include <polhode/base/error.hpp>
 #include <polhode/beams/beam_element.hpp>
-#include <polhode/model/build_system.hpp>
-#include <polhode/model/simulation.hpp>
-#include <polhode/solve/newton_system.hpp>
-#include <polhode/solve/tangent_check.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/newton/tangent_check.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/beam_models.hpp>
 
 namespace polhode::test::beam_dynamics_tests {

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include <beams/beam_samples.hpp>
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 
 namespace polhode::test::beam_element_tests {
 namespace {

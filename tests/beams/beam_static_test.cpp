@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include <polhode/model/beam_mesh.hpp>
-#include <polhode/model/build_system.hpp>
-#include <polhode/so3/quaternion.hpp>
-#include <polhode/solve/newton_system.hpp>
-#include <polhode/solve/start.hpp>
+#include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/math/quaternion.hpp>
+#include <polhode/stepping/start.hpp>
 #include <support/beam_models.hpp>
 
 namespace polhode::test::beam_static_tests {

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include <polhode/beams/beam_strains.hpp>
-#include <polhode/so3/exp_map.hpp>
-#include <polhode/so3/hat.hpp>
+#include <polhode/math/exp_map.hpp>
+#include <polhode/math/hat.hpp>
 #include <support/derivative.hpp>
 #include <support/random_steps.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <loads/load_samples.hpp>
-#include <polhode/base/error.hpp>
 #include <polhode/beams/cable.hpp>
+#include <polhode/core/error.hpp>
 
 namespace polhode::test::cable_tests {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
 #include <polhode/beams/section.hpp>
+#include <polhode/core/error.hpp>
 
 namespace polhode::test::section_tests {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iostream>
 
-#include <polhode/base/error.hpp>
-#include <polhode/body/shapes.hpp>
-#include <polhode/so3/cayley.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/geometry/shapes.hpp>
+#include <polhode/math/cayley.hpp>
+#include <polhode/math/exp_map.hpp>
 
 int main() {
   using namespace polhode;

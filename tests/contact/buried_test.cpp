@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <polhode/body/shapes.hpp>
 #include <polhode/contact/buried.hpp>
-#include <polhode/model/separate_overlaps.hpp>
+#include <polhode/geometry/shapes.hpp>
+#include <polhode/simulation/separate_overlaps.hpp>
 
-#include "scene.hpp"
-#include "shapes_for_tests.hpp"
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::contact::buried_tests {
 namespace {

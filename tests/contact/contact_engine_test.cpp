@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <polhode/assembly/state_archive.hpp>
+#include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
-#include "shapes_for_tests.hpp"
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::contact_engine_tests {
 namespace {

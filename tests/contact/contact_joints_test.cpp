@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::contact_joints_tests {
 namespace {

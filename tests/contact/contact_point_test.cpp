@@ -4,7 +4,7 @@
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/feature_pairs.hpp>
 
-#include "shapes_for_tests.hpp"
+#include "contact/shapes_for_tests.hpp"
 #include "support/derivative.hpp"
 
 namespace polhode::contact_point_tests {

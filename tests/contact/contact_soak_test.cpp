@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene.hpp"
-#include "shapes_for_tests.hpp"
+#include "contact/scene.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::contact_soak_tests {
 namespace {

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <polhode/assembly/state_archive.hpp>
+#include <polhode/system/state_archive.hpp>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::contact_solids_tests {
 namespace {

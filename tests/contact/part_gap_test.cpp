@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <polhode/contact/gap_parts.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 
-#include "shapes_for_tests.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::part_gap_tests {
 namespace {

@@ -8,17 +8,17 @@
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
+#include <polhode/engines/contact_engine.hpp>
+#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/crowd_engine.hpp>
+#include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/solve/contact_engine.hpp>
-#include <polhode/solve/coupled_engine.hpp>
-#include <polhode/solve/crowd_engine.hpp>
-#include <polhode/solve/lanes/dispatch.hpp>
-#include <polhode/solve/nonsmooth_engine.hpp>
-#include <polhode/solve/single_step.hpp>
+#include <polhode/kernels/dispatch.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/stepping/single_step.hpp>
 
 namespace polhode::test {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <polhode/body/shapes.hpp>
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/geometry/shapes.hpp>
 
 #include "support/random_steps.hpp"
 

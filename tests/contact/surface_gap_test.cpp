@@ -6,7 +6,7 @@
 
 #include <polhode/contact/gap.hpp>
 
-#include "scene.hpp"
+#include "contact/scene.hpp"
 
 namespace polhode::surface_gap_tests {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <polhode/contact/gap.hpp>
 
-#include "shapes_for_tests.hpp"
+#include "contact/shapes_for_tests.hpp"
 
 namespace polhode::tube_tests {
 namespace {

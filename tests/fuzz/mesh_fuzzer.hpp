@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include <polhode/base/error.hpp>
-#include <polhode/fe/mesh/check_mesh.hpp>
-#include <polhode/fe/mesh/read_mesh.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/solids/mesh/check_mesh.hpp>
+#include <polhode/solids/mesh/read_mesh.hpp>
 
 namespace polhode::fuzz {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include <polhode/io/read_model.hpp>
+#include <polhode/io/read/read_model.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string text(reinterpret_cast<const char*>(data), size);

@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include <polhode/base/error.hpp>
-#include <polhode/body/read_surface.hpp>
-#include <polhode/contact/shape.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/geometry/read_surface.hpp>
+#include <polhode/geometry/shape.hpp>
 
 namespace polhode::fuzz {
 

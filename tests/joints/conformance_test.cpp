@@ -3,7 +3,7 @@
 #include <Eigen/SVD>
 
 #include <joints/joint_cases.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 #include <support/derivative.hpp>
 
 namespace polhode::test::conformance_tests {

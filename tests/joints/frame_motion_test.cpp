@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include <joints/joint_cases.hpp>
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 #include <polhode/joints/frame_motion.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 #include <support/derivative.hpp>
 
 namespace polhode::test::frame_motion_tests {

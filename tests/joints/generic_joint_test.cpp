@@ -2,7 +2,7 @@
 #include <joints/joint_cases.hpp>
 
 #include <gtest/gtest.h>
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 
 namespace polhode::test::generic_joint_tests {
 namespace {

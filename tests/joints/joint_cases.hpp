@@ -6,7 +6,7 @@
 
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/so3/cayley.hpp>
+#include <polhode/math/cayley.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {

@@ -4,7 +4,7 @@
 #include <joints/joint_cases.hpp>
 
 #include <gtest/gtest.h>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 
 namespace polhode::test::joint_tests {
 namespace {

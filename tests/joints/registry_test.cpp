@@ -4,7 +4,7 @@
 #include <joints/joint_cases.hpp>
 
 #include <gtest/gtest.h>
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 
 namespace polhode::test::registry_tests {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Friction and stops of joints over one step.
 #include <joints/joint_cases.hpp>
-#include <polhode/base/error.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/math/exp_map.hpp>
 #include <support/derivative.hpp>
 
 namespace polhode::test::resistance_tests {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include <polhode/loads/load_description.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 #include <support/derivative.hpp>
 #include <support/model_builder.hpp>
 #include <support/random_steps.hpp>

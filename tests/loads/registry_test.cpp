@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <loads/load_samples.hpp>
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 #include <polhode/loads/registry.hpp>
 
 namespace polhode::test::registry_tests {

@@ -5,8 +5,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <polhode/base/error.hpp>
-#include <polhode/io/read_model.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/read/read_model.hpp>
 #include <polhode/study/certificate_picture.hpp>
 #include <support/models.hpp>
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <polhode/assembly/element_group.hpp>
+#include <polhode/system/element_group.hpp>
 
 namespace polhode::test {
 

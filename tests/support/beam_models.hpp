@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include <polhode/model/beam_mesh.hpp>
+#include <polhode/compile/beam_mesh.hpp>
 #include <support/model_builder.hpp>
 
 /// Published beams in motion, as models.

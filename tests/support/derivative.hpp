@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/types.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode::test {
 

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
+#include <polhode/engines/coupled_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
-#include <polhode/solve/coupled_engine.hpp>
-#include <polhode/solve/start.hpp>
-#include <polhode/solve/stepper.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/stepping/start.hpp>
+#include <polhode/stepping/stepper.hpp>
 
 namespace polhode::test {
 

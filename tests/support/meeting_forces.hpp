@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include <polhode/assembly/moving_pattern.hpp>
-#include <polhode/assembly/nodes.hpp>
-#include <polhode/fe/contact/solid_contact.hpp>
-#include <polhode/fe/contact/surface_law.hpp>
+#include <polhode/surface_contact/solid_contact.hpp>
+#include <polhode/surface_contact/surface_law.hpp>
+#include <polhode/system/moving_pattern.hpp>
+#include <polhode/system/nodes.hpp>
 #include <support/random_steps.hpp>
 
 namespace polhode::test {

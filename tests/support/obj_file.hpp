@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include <polhode/base/format.hpp>
-#include <polhode/body/triangle_surface.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/geometry/triangle_surface.hpp>
 
 namespace polhode::test {
 

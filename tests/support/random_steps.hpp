@@ -4,9 +4,9 @@
 #include <array>
 #include <random>
 
-#include <polhode/assembly/interaction.hpp>
-#include <polhode/so3/quaternion.hpp>
-#include <polhode/time/momentum_step.hpp>
+#include <polhode/dynamics/momentum_step.hpp>
+#include <polhode/math/quaternion.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode::test {
 

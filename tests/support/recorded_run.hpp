@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/recorder.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::test {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/paths.hpp>
 
 namespace polhode::test {

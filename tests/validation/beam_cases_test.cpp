@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/beam_models.hpp>
 
 namespace polhode::test::beam_cases_tests {

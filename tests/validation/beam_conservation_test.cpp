@@ -2,7 +2,7 @@
 // What beams with bodies and joints keep over 1e4 steps (docs/validation.md).
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/beam_models.hpp>
 
 namespace polhode::test::beam_conservation_tests {

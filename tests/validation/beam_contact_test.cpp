@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::beam_contact_tests {
 namespace {

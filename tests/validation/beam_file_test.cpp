@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/modal.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/modal.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::beam_file_tests {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/base/format.hpp>
-#include <polhode/fe/contact/solid_contact.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
+#include <polhode/surface_contact/solid_contact.hpp>
 
 namespace polhode::test::cable_on_solid_tests {
 namespace {

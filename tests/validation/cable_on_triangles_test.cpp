@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include <contact/shapes_for_tests.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 #include <validation/rope_over_drum.hpp>

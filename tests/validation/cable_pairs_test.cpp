@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/checkpoint.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/checkpoint.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode::test::cable_pairs_tests {

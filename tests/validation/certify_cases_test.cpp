@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
 #include <polhode/study/certify.hpp>
 #include <support/known_solutions/free_symmetric_top.hpp>
 #include <support/published_cases.hpp>

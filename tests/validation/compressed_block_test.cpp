@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
-#include <polhode/solve/statics.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/statics/statics.hpp>
 #include <support/model_builder.hpp>
 
 namespace polhode::compressed_block_tests {

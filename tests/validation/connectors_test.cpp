@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <validation/connector_runs.hpp>
 
 namespace polhode::connectors_tests {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/joints/registry.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/models.hpp>
 
 namespace polhode::test::conservation_tests {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/loads/registry.hpp>
 
 #include "contact/scene.hpp"

@@ -3,10 +3,10 @@
 // impulses move bodies as forces do.
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::contact_laws_tests {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/paths.hpp>
 
 namespace polhode::test::contact_solids_models_tests {

@@ -7,13 +7,13 @@
 
 #include <cmath>
 
-#include <polhode/fe/loads/solid_loads.hpp>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/mesh/selection.hpp>
-#include <polhode/fe/solid_elements.hpp>
-#include <polhode/solve/statics.hpp>
-#include <solve/static_models.hpp>
+#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/mesh/selection.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/statics/statics.hpp>
+#include <statics/static_models.hpp>
 
 namespace polhode::cook_membrane_tests {
 namespace {

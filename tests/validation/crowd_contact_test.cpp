@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Crowds in contact by forces, see also tests/contact/crowd_engine_test.cpp.
+// Crowds in contact by forces, see also tests/engines/crowd_engine_test.cpp.
 #include <gtest/gtest.h>
 
 #include <contact/scene.hpp>

@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/modal.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/modal.hpp>
 
 namespace polhode::damped_modes_tests {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/modal.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/modal.hpp>
 
 namespace polhode::flutter_tests {
 namespace {

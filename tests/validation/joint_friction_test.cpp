@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/model_builder.hpp>
 
 namespace polhode::test::joint_friction_tests {

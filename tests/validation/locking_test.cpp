@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::locking_tests {
 namespace {

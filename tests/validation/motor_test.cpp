@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/error.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::motor_tests {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/convergence.hpp>
 #include <support/known_solutions/free_symmetric_top.hpp>
 #include <support/known_solutions/heavy_top_reaction.hpp>

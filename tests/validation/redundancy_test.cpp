@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
-#include <polhode/solve/rank_report.hpp>
+#include <polhode/newton/rank_report.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/published_cases.hpp>
 
 namespace polhode::test::redundancy_tests {

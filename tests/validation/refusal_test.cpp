@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/known_solutions/free_symmetric_top.hpp>
 #include <support/published_cases.hpp>
 

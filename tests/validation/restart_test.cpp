@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/io/checkpoint.hpp>
-#include <polhode/io/read_model.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/checkpoint.hpp>
 #include <support/paths.hpp>
 #include <support/published_cases.hpp>
 #include <support/scratch.hpp>

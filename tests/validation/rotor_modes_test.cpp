@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/modal.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/modal.hpp>
 
 namespace polhode::rotor_modes_tests {
 namespace {

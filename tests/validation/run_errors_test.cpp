@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::run_errors_tests {
 namespace {

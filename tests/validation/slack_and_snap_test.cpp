@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/modal.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/modal.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::slack_and_snap_tests {
 namespace {

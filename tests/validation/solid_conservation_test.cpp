@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <polhode/base/format.hpp>
+#include <polhode/core/format.hpp>
 #include <support/flexible_scene.hpp>
 
 namespace polhode::solid_conservation_tests {

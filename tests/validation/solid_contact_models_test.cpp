@@ -8,10 +8,10 @@
 #include <numeric>
 #include <string>
 
-#include <polhode/base/error.hpp>
-#include <polhode/io/checkpoint.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/checkpoint.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode::test::solid_contact_models_tests {

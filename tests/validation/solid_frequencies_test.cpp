@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
-#include <polhode/solve/modes.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/statics/modes.hpp>
 
 namespace polhode::solid_frequencies_tests {
 namespace {

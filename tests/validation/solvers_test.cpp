@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/published_cases.hpp>
 
 namespace polhode::test::solvers_tests {

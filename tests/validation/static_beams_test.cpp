@@ -12,9 +12,9 @@
 
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/beams/section.hpp>
-#include <polhode/so3/exp_map.hpp>
-#include <polhode/solve/statics.hpp>
-#include <solve/static_models.hpp>
+#include <polhode/math/exp_map.hpp>
+#include <polhode/statics/statics.hpp>
+#include <statics/static_models.hpp>
 #include <support/paths.hpp>
 
 namespace polhode::static_beams_tests {

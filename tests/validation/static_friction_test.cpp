@@ -2,9 +2,9 @@
 // Static friction above that of sliding: the bound of all points of two bodies together.
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
 
 namespace polhode::static_friction_tests {
 namespace {

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include <polhode/base/format.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/build_solids.hpp>
-#include <polhode/model/simulation.hpp>
-#include <polhode/model/solid_report.hpp>
+#include <polhode/compile/build_solids.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/solid_report.hpp>
+#include <polhode/solids/mesh/generators.hpp>
 
 namespace polhode::stress_tests {
 namespace {

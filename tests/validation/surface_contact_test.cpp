@@ -6,15 +6,15 @@
 #include <cmath>
 #include <map>
 
-#include <polhode/fe/contact/surface_contact.hpp>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/fe/solid_elements.hpp>
-#include <polhode/solve/coupled_engine.hpp>
-#include <polhode/solve/node_motion.hpp>
-#include <polhode/solve/start.hpp>
-#include <polhode/solve/statics.hpp>
-#include <polhode/solve/stepper.hpp>
+#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
+#include <polhode/solids/solid_elements.hpp>
+#include <polhode/statics/statics.hpp>
+#include <polhode/stepping/start.hpp>
+#include <polhode/stepping/stepper.hpp>
+#include <polhode/surface_contact/surface_contact.hpp>
 
 namespace polhode::test::surface_contact_tests {
 namespace {

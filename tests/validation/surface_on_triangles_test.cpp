@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include <contact/shapes_for_tests.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/checkpoint.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/model/simulation.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/checkpoint.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <support/obj_file.hpp>
 #include <support/scratch.hpp>
 

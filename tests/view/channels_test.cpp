@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <polhode/base/error.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/io/recorder.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/recorder.hpp>
 #include <polhode/view/glb.hpp>
 #include <support/scratch.hpp>
 

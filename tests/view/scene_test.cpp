@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/io/recorder.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/text/file_error.hpp>
 #include <polhode/view/chunk.hpp>
 #include <support/scratch.hpp>
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/recorder.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/recorder.hpp>
 
 #include "certify_report.hpp"
 #include "command.hpp"

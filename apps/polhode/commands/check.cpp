@@ -3,11 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
-#include <polhode/fe/contact/edge_contact.hpp>
-#include <polhode/solve/rank_report.hpp>
-#include <polhode/solve/tangent_check.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/newton/rank_report.hpp>
+#include <polhode/newton/tangent_check.hpp>
+#include <polhode/surface_contact/edge_contact.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

@@ -7,10 +7,10 @@
 #include <unistd.h>
 #include <Eigen/Core>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/recorder.hpp>
-#include <polhode/solve/lanes/dispatch.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/kernels/dispatch.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

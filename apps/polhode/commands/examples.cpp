@@ -3,11 +3,11 @@
 #include <map>
 #include <memory>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/diagnostics.hpp>
-#include <polhode/io/example_models.hpp>
-#include <polhode/io/file_error.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/text/diagnostics.hpp>
+#include <polhode/io/text/example_models.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

@@ -4,16 +4,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/body/shapes.hpp>
-#include <polhode/fe/elements/registry.hpp>
-#include <polhode/fe/materials/registry.hpp>
-#include <polhode/fe/mesh/generators.hpp>
-#include <polhode/io/field_table.hpp>
+#include <polhode/compile/beam_mesh.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/geometry/shapes.hpp>
+#include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
-#include <polhode/model/beam_mesh.hpp>
+#include <polhode/solids/elements/registry.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/solids/mesh/generators.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

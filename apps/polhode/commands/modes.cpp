@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/write_modes.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/write_modes.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <memory>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/file_error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/text/file_error.hpp>
 #include <polhode/view/channels.hpp>
 #include <polhode/view/glb.hpp>
 

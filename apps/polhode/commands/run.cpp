@@ -4,14 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
-#include <polhode/io/checkpoint.hpp>
-#include <polhode/io/field_table.hpp>
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/recorder.hpp>
-#include <polhode/model/build_system.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/results/checkpoint.hpp>
+#include <polhode/io/results/recorder.hpp>
+#include <polhode/io/schema/field_table.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "certify_report.hpp"
 #include "command.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
-#include <polhode/io/file_error.hpp>
-#include <polhode/io/schema.hpp>
+#include <polhode/io/schema/schema.hpp>
+#include <polhode/io/text/file_error.hpp>
 
 #include "command.hpp"
 #include "console.hpp"

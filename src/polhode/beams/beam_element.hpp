@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/assembly/interaction.hpp>
-#include <polhode/assembly/system.hpp>
 #include <polhode/beams/beam_strains.hpp>
+#include <polhode/system/interaction.hpp>
+#include <polhode/system/system.hpp>
 
 namespace polhode {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include <polhode/beams/beam_strains.hpp>
-#include <polhode/so3/hat.hpp>
+#include <polhode/math/hat.hpp>
 
 namespace polhode {
 

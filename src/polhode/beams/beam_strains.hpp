@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/base/types.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode {
 

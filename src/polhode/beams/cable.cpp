@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/assembly/mass_coupling.hpp>
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
 #include <polhode/beams/cable.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/system/mass_coupling.hpp>
 
 namespace polhode {
 

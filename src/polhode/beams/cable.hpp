@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/assembly/interaction.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode {
 

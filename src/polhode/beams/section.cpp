@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
 #include <polhode/beams/section.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 
 namespace polhode {
 

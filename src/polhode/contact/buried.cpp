@@ -3,8 +3,8 @@
 #include <limits>
 
 #include <polhode/contact/buried.hpp>
-#include <polhode/contact/nearest.hpp>
-#include <polhode/contact/ray.hpp>
+#include <polhode/geometry/nearest.hpp>
+#include <polhode/geometry/ray.hpp>
 
 namespace polhode::contact {
 

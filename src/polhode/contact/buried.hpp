@@ -4,7 +4,7 @@
 #include <optional>
 
 #include <polhode/contact/placement.hpp>
-#include <polhode/contact/shape.hpp>
+#include <polhode/geometry/shape.hpp>
 
 namespace polhode::contact {
 

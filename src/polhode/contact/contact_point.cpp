@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/contact/bristle.hpp>
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/plain_point.hpp>
 #include <polhode/contact/point_weight.hpp>
+#include <polhode/contact_laws/bristle.hpp>
 
 namespace polhode::contact {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/assembly/interaction.hpp>
 #include <polhode/contact/gap.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode::contact {
 

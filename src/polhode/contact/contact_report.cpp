@@ -4,9 +4,9 @@
 #include <limits>
 #include <tuple>
 
-#include <polhode/base/format.hpp>
 #include <polhode/contact/buried.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/core/format.hpp>
 
 namespace polhode::contact {
 

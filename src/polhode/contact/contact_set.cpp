@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
 #include <polhode/contact/contact_set.hpp>
 #include <polhode/contact/plain_point.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 
 namespace polhode::contact {
 

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include <polhode/assembly/contact_springs.hpp>
-#include <polhode/assembly/impulsive_contacts.hpp>
-#include <polhode/assembly/moving_contacts.hpp>
-#include <polhode/assembly/system.hpp>
-#include <polhode/contact/broad_phase.hpp>
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/contact_reports.hpp>
 #include <polhode/contact/feature_pairs.hpp>
 #include <polhode/contact/plain_point.hpp>
+#include <polhode/geometry/broad_phase.hpp>
+#include <polhode/system/contact_springs.hpp>
+#include <polhode/system/impulsive_contacts.hpp>
+#include <polhode/system/moving_contacts.hpp>
+#include <polhode/system/system.hpp>
 
 namespace polhode::contact {
 

@@ -9,9 +9,9 @@
 #include <Eigen/Geometry>
 
 #include <polhode/contact/feature_pairs.hpp>
-#include <polhode/contact/nearest.hpp>
-#include <polhode/contact/triangle_tree.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/geometry/nearest.hpp>
+#include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode::contact {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/contact/gap_parts.hpp>
-#include <polhode/contact/nearest.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/geometry/nearest.hpp>
 
 namespace polhode::contact {
 

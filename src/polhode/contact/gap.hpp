@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/contact/placement.hpp>
-#include <polhode/contact/shape.hpp>
+#include <polhode/geometry/shape.hpp>
 
 namespace polhode::contact {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <polhode/contact/gap.hpp>
-#include <polhode/contact/nearest.hpp>
+#include <polhode/geometry/nearest.hpp>
 
 namespace polhode::contact {
 

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include <polhode/contact/gap_parts.hpp>
-#include <polhode/contact/nearest.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
+#include <polhode/geometry/nearest.hpp>
 
 namespace polhode::contact {
 

@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
-#include <polhode/contact/dual.hpp>
-#include <polhode/time/body_step.hpp>
+#include <polhode/dynamics/body_step.hpp>
+#include <polhode/math/dual.hpp>
 
 namespace polhode::contact {
 

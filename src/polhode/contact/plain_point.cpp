@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/contact/bristle.hpp>
 #include <polhode/contact/plain_point.hpp>
+#include <polhode/contact_laws/bristle.hpp>
 
 namespace polhode::contact {
 

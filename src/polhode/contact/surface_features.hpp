@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <polhode/contact/gap.hpp>
-#include <polhode/contact/triangle_tree.hpp>
+#include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode::contact {
 

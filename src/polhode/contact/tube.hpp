@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <polhode/contact/shape.hpp>
+#include <polhode/geometry/shape.hpp>
 
 namespace polhode::contact {
 

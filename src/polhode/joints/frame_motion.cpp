@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include <polhode/base/time_jet.hpp>
+#include <polhode/core/time_jet.hpp>
 #include <polhode/joints/frame_motion.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 
 namespace polhode {
 

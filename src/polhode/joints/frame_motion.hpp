@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/base/time_function.hpp>
+#include <polhode/core/time_function.hpp>
 #include <polhode/joints/parts/configuration.hpp>
 #include <polhode/joints/recipe.hpp>
 

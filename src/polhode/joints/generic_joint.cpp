@@ -3,8 +3,8 @@
 #include <array>
 #include <string_view>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/joints/generic_joint.hpp>
 
 namespace polhode {

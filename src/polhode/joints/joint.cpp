@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/joints/joint.hpp>
-#include <polhode/so3/exp_map.hpp>
+#include <polhode/math/exp_map.hpp>
 
 namespace polhode {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <polhode/assembly/free_coordinate.hpp>
-#include <polhode/assembly/interaction.hpp>
 #include <polhode/joints/frame_motion.hpp>
 #include <polhode/joints/recipe.hpp>
 #include <polhode/joints/resistance.hpp>
+#include <polhode/system/free_coordinate.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode {
 

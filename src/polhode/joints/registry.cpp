@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/joints/cylindrical_joint.hpp>
 #include <polhode/joints/distance_joint.hpp>
 #include <polhode/joints/fixed_joint.hpp>

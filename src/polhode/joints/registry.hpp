@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include <polhode/assembly/parameter.hpp>
 #include <polhode/joints/recipe.hpp>
+#include <polhode/system/parameter.hpp>
 
 namespace polhode {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/contact/bristle.hpp>
-#include <polhode/contact/stop_force.hpp>
+#include <polhode/contact_laws/bristle.hpp>
+#include <polhode/contact_laws/stop_force.hpp>
 #include <polhode/joints/parts.hpp>
 #include <polhode/joints/resistance.hpp>
 

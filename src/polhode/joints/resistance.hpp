@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include <polhode/assembly/free_coordinate.hpp>
-#include <polhode/assembly/interaction.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/joints/parts/configuration.hpp>
 #include <polhode/joints/stop.hpp>
+#include <polhode/system/free_coordinate.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode {
 

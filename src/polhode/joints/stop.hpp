@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/contact/contact_point.hpp>
-#include <polhode/contact/normal_law.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 
 namespace polhode {
 

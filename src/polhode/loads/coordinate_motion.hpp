@@ -3,8 +3,8 @@
 
 #include <variant>
 
-#include <polhode/assembly/free_coordinate.hpp>
-#include <polhode/assembly/interaction.hpp>
+#include <polhode/system/free_coordinate.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode {
 

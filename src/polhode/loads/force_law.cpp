@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/base/gauss_rule.hpp>
 #include <polhode/loads/force_law.hpp>
+#include <polhode/math/gauss_rule.hpp>
 
 namespace polhode {
 

@@ -3,8 +3,8 @@
 #include <numbers>
 #include <utility>
 
-#include <polhode/assembly/angle_quotient.hpp>
 #include <polhode/loads/gear.hpp>
+#include <polhode/system/angle_quotient.hpp>
 
 namespace polhode {
 

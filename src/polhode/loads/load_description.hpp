@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include <polhode/assembly/free_coordinate.hpp>
-#include <polhode/assembly/system.hpp>
-#include <polhode/base/time_function.hpp>
+#include <polhode/core/time_function.hpp>
+#include <polhode/system/free_coordinate.hpp>
+#include <polhode/system/system.hpp>
 
 namespace polhode {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/base/gauss_rule.hpp>
 #include <polhode/loads/motor.hpp>
+#include <polhode/math/gauss_rule.hpp>
 
 namespace polhode {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/loads/point_on_surface.hpp>
 
 namespace polhode {

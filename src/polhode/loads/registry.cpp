@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/loads/bushing.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include <polhode/assembly/parameter.hpp>
 #include <polhode/loads/load_description.hpp>
+#include <polhode/system/parameter.hpp>
 
 namespace polhode {
 

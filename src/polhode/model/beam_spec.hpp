@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <polhode/base/types.hpp>
 #include <polhode/beams/cable.hpp>
 #include <polhode/beams/section.hpp>
+#include <polhode/core/place.hpp>
+#include <polhode/core/types.hpp>
 #include <polhode/model/contact_spec.hpp>
-#include <polhode/model/place.hpp>
 
 namespace polhode {
 

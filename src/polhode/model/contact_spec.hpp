@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <polhode/base/types.hpp>
-#include <polhode/model/place.hpp>
+#include <polhode/core/place.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/model/gear_geometry.hpp>
 
 namespace polhode {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <polhode/base/types.hpp>
-#include <polhode/model/place.hpp>
+#include <polhode/core/place.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode {
 

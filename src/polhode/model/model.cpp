@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {

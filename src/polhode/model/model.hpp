@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <polhode/base/time_function.hpp>
-#include <polhode/base/types.hpp>
+#include <polhode/core/place.hpp>
+#include <polhode/core/time_function.hpp>
+#include <polhode/core/types.hpp>
 #include <polhode/joints/frame_motion.hpp>
 #include <polhode/model/beam_spec.hpp>
 #include <polhode/model/contact_spec.hpp>
 #include <polhode/model/material_spec.hpp>
-#include <polhode/model/place.hpp>
 #include <polhode/model/solid_spec.hpp>
 
 namespace polhode {

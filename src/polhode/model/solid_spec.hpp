@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <polhode/base/time_function.hpp>
-#include <polhode/base/types.hpp>
-#include <polhode/fe/mesh/selection.hpp>
+#include <polhode/core/place.hpp>
+#include <polhode/core/time_function.hpp>
+#include <polhode/core/types.hpp>
 #include <polhode/model/contact_spec.hpp>
-#include <polhode/model/place.hpp>
+#include <polhode/solids/mesh/selection.hpp>
 
 namespace polhode {
 

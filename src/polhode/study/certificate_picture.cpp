@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include <polhode/base/format.hpp>
-#include <polhode/base/xml_text.hpp>
-#include <polhode/io/svg_panel.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/xml_text.hpp>
+#include <polhode/io/results/svg_panel.hpp>
 
 namespace polhode {
 

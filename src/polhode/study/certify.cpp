@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/io/csv_probes.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/csv_probes.hpp>
 
 namespace polhode {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/model/simulation.hpp>
+#include <polhode/simulation/simulation.hpp>
 #include <polhode/study/grid_convergence.hpp>
 
 namespace polhode {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <polhode/base/types.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode {
 

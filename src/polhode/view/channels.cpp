@@ -8,11 +8,11 @@
 #include <map>
 #include <optional>
 
-#include <polhode/base/error.hpp>
-#include <polhode/base/format.hpp>
-#include <polhode/base/names.hpp>
-#include <polhode/io/results_format.hpp>
-#include <polhode/io/svg_panel.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/results/results_format.hpp>
+#include <polhode/io/results/svg_panel.hpp>
 #include <polhode/loads/registry.hpp>
 
 namespace polhode {

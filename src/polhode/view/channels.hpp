@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/io/results_reader.hpp>
+#include <polhode/io/results/results_reader.hpp>
 
 namespace polhode {
 

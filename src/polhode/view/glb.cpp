@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polhode/base/error.hpp>
+#include <polhode/core/error.hpp>
 #include <polhode/view/chunk.hpp>
 
 namespace polhode {

@@ -7,9 +7,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <polhode/base/format.hpp>
-#include <polhode/io/read_model.hpp>
-#include <polhode/io/results_format.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/io/results/results_format.hpp>
 #include <polhode/view/chunk.hpp>
 #include <polhode/view/scene_parts.hpp>
 

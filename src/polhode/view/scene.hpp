@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/io/results_reader.hpp>
+#include <polhode/io/results/results_reader.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/base/format.hpp>
-#include <polhode/body/mass_properties.hpp>
-#include <polhode/io/paraview.hpp>
-#include <polhode/io/results_format.hpp>
+#include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/shape_surface.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/geometry/mass_properties.hpp>
+#include <polhode/io/results/paraview.hpp>
+#include <polhode/io/results/results_format.hpp>
 #include <polhode/loads/registry.hpp>
-#include <polhode/model/beam_mesh.hpp>
-#include <polhode/model/shape_surface.hpp>
 #include <polhode/view/scene_parts.hpp>
 
 namespace polhode {

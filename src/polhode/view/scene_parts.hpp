@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <polhode/body/triangle_surface.hpp>
+#include <polhode/geometry/triangle_surface.hpp>
 #include <polhode/view/scene.hpp>
 
 namespace polhode {

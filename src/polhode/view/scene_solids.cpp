@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <set>
 
-#include <polhode/base/format.hpp>
-#include <polhode/fe/mesh/mesh.hpp>
-#include <polhode/io/results_format.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/results_format.hpp>
+#include <polhode/solids/mesh/mesh.hpp>
 #include <polhode/view/scene_parts.hpp>
 
 namespace polhode {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/assembly/interaction.hpp>
-#include <polhode/so3/hat.hpp>
+#include <polhode/math/hat.hpp>
+#include <polhode/system/interaction.hpp>
 
 namespace polhode {
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/compile/plan_solid.hpp>
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+/// A deformable solid in a System.
+struct SolidMap {
+  SolidPlan plan;
+  int first_node = 0;          ///< Its node k is the System's first_node + k.
+  std::vector<int> groups;     ///< Of elements, by block of the mesh.
+  double mass = 0.0;           ///< [kg]
+  Vec3 centre = Vec3::Zero();  ///< Of mass at the start, world [m].
+
+  [[nodiscard]] int node_count() const { return static_cast<int>(plan.start.size()); }
+};
+
+/// Adds the nodes and elements of a solid.
+/// @param body  By Model::bodies: index in the System, kGround if fixed.
+/// @throws InputError for whatever plan_solid() refuses, and for a wrong material.
+[[nodiscard]] SolidMap add_solid(System& system, const Model& model, int solid,
+                                 const std::vector<int>& body);
+
+/// Adds a load on a solid, a LoadSpec whose `solid` is set.
+/// @returns the groups of elements that apply it, one for each shape of face.
+/// @throws InputError if its selection holds nothing.
+std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid);
+
+}  // namespace polhode

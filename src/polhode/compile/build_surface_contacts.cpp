@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/cable_contact.hpp>
+#include <polhode/compile/cable_pairs.hpp>
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/compile/rigid_surfaces.hpp>
+#include <polhode/compile/solid_parts.hpp>
+#include <polhode/compile/surface_overlaps.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/solids/materials/registry.hpp>
+#include <polhode/surface_contact/edge_contact.hpp>
+#include <polhode/surface_contact/solid_contact.hpp>
+#include <polhode/surface_contact/solid_inside.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Part of the smaller of edge and shape that the tolerance of the gap is.
+constexpr double kTolerance = 1e-3;
+/// Part of a cable's radius that it is against a solid, which gives way much farther.
+constexpr double kOnSolid = 1e-2;
+/// Part of Young's modulus that a pressure at gap zero is, at least.
+constexpr double kPressure = 0.02;
+/// The same of a cable's: what a strain of a hundredth presses on a drum of fifteen times the
+/// cable's radius.
+constexpr double kCablePressure = 1e-3;
+/// Of the band of faces, that of edges: faces that lie on each other keep their edges farther apart
+/// than that, so that these add nothing to a pressure.
+constexpr double kEdgeBand = 0.25;
+
+/// Young's modulus of small strains [Pa].
+double modulus(const Model& model, const SolidSpec& solid) {
+  const MaterialSpec& spec =
+      model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
+  const LinearModuli m =
+      make_material(format("materials.{}", spec.name), material_description(spec))->linear();
+  return m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear);
+}
+
+class SurfacesBuilder {
+ public:
+  SurfacesBuilder(System& system, const Model& model, const std::vector<int>& bodies,
+                  const std::vector<SolidMap>& solids, ContactMap& map)
+      : system_(system), model_(model), bodies_(bodies), solids_(solids), map_(map) {}
+
+  void build() {
+    const std::vector<SurfacePair> pairs = plan_surface_contacts(model_);
+    for (const SurfacePair& pair : pairs) {
+      if (is_cable_side(pair.own) && is_cable_side(pair.side))
+        add_cables(pair);
+      else if (is_cable_side(pair.own) && is_solid_side(pair.side))
+        add_cable_on_solid(pair);
+      else if (is_cable_side(pair.own))
+        add_cable(pair);
+      else if (is_solid_side(pair.side))
+        add_solids(pair);
+      else
+        add(pair);
+    }
+    keep(pairs);
+  }
+
+ private:
+  void add(const SurfacePair& pair) {
+    const int own = solid_of_side(pair.own);
+    const SolidMap& solid = solids_[static_cast<std::size_t>(own)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    const ShapeSpec& shape = body.shapes[pair.shape];
+    const int carrier = bodies_[static_cast<std::size_t>(pair.side)];
+    const std::vector<LoadedFaces> faces = faces_of(solid);
+    // What is bonded to a body does not touch its shapes.
+    std::vector<int> left_out;
+    for (int k = 0; k < solid.node_count(); ++k)
+      if (system_.nodes()[solid.first_node + k].body == carrier)
+        left_out.push_back(solid.first_node + k);
+    const SurfacePlace place = place_of(body, shape, carrier);
+    const std::vector<Vec3> X = positions();
+    for (const LoadedFaces& block : faces) {
+      const std::string where = name_of(pair);
+      const double edge = median_edge(block, X);
+      const SurfaceLaw law = law_of(pair.law, stuff_of({own}), edge,
+                                    std::min(edge, smallest_detail(shape)), Band::below);
+      SurfacePoints points;
+      try {
+        points = surface_points(where, block, X, left_out);
+      } catch (const InputError&) {
+        continue;  // everything there is bonded to the body
+      }
+      const int group = system_.add_elements(std::make_unique<SurfaceContact>(
+          where, std::move(points), X, rigid_surface(where, shape, law.normal.tolerance), place,
+          law));
+      map_.surfaces.push_back({pair.own, pair.side, pair.shape, group});
+    }
+  }
+
+  /// "rope on post".
+  [[nodiscard]] std::string name_of(const SurfacePair& pair) const {
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    return format("{} on {}", model_.side_name(pair.own),
+                  body.shapes.size() > 1 ? format("{}.{}", body.name, pair.shape) : body.name);
+  }
+
+  const CableLine& line_of(int side) {
+    auto [at, fresh] = lines_.try_emplace(side);
+    if (fresh) at->second = add_cable_line(system_, model_, cable_of(side), bodies_);
+    return at->second;
+  }
+  [[nodiscard]] const CableLineSpec& cable_of(int side) const {
+    return model_.cables[static_cast<std::size_t>(cable_of_side(side))];
+  }
+
+  /// Two cables, or one and itself.
+  void add_cables(const SurfacePair& pair) {
+    const CableSide a{cable_of(pair.own), line_of(pair.own)},
+        b{cable_of(pair.side), line_of(pair.side)};
+    const double radius = std::min(a.line.radius, b.line.radius);
+    const SurfaceLaw law = law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)),
+                                  2.0 * radius, radius, Band::about);
+    const std::vector<Vec3> X = positions();
+    const std::vector<int> carriers = this->carriers();
+    std::vector<int> nodes = a.line.nodes;
+    nodes.insert(nodes.end(), b.line.nodes.begin(), b.line.nodes.end());
+    const SolidContactStart start{.X = X,
+                                  .carriers = carriers,
+                                  .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
+                                  .way = way_of_step(nodes),
+                                  .self = pair.own == pair.side};
+    const int group = system_.add_elements(std::make_unique<EdgeContact>(
+        format("{} on {}", a.cable.name, start.self ? "itself" : b.cable.name),
+        cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
+    map_.surfaces.push_back({pair.own, pair.side, 0, group});
+  }
+
+  /// The centre line of a cable, all of it at its radius from what it meets.
+  void add_cable(const SurfacePair& pair) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    const ShapeSpec& shape = body.shapes[pair.shape];
+    const CableLine& line = line_of(pair.own);
+    const CableSizes sizes = cable_sizes(shape, line.radius);
+    const SurfaceLaw law =
+        law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
+    const std::string where = name_of(pair);
+    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
+    CablePoints points = cable_points(line, spacing(shape, line.radius));
+    points.points.through = sizes.through;
+    const SurfacePlace place = place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side)]);
+    const std::vector<Vec3> X = positions();
+    const std::vector<double> gaps =
+        SurfaceContact(where, points.points, X, surface, place, law).gaps(X);
+    leave_out_attachments(
+        points, cable, line,
+        [&](const AttachmentSpec& a) { return is_fastened_to(model_, a, pair.side); },
+        [&](int point) {
+          return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
+        });
+    if (points.arc.empty()) return;
+    const int group = system_.add_elements(
+        std::make_unique<SurfaceContact>(where, std::move(points.points), X, surface, place, law));
+    map_.surfaces.push_back({pair.own, pair.side, pair.shape, group});
+  }
+
+  /// The centre line of a cable on the triangles of a solid.
+  void add_cable_on_solid(const SurfacePair& pair) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
+    const int s = solid_of_side(pair.side);
+    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
+    const CableLine& line = line_of(pair.own);
+    const std::vector<Vec3> X = positions();
+    const std::vector<LoadedFaces> faces = faces_of(solids_[static_cast<std::size_t>(s)]);
+    const MeshSurface surface = triangulated(faces);
+    if (surface.triangles.empty()) return;
+    const SurfaceLaw law =
+        law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)), 2.0 * line.radius,
+               kOnSolid / kTolerance * line.radius, Band::about);
+    const std::vector<int> carriers = this->carriers();
+    std::vector<int> moving = nodes_of({s});
+    moving.insert(moving.end(), line.nodes.begin(), line.nodes.end());
+    const SolidContactStart start{
+        .X = X, .carriers = carriers, .edge = smallest_edge(faces, X), .way = way_of_step(moving)};
+    const std::string where = format("{} on {}", cable.name, solid.name);
+    const auto contact = [&](const CablePoints& points) {
+      return std::make_unique<SolidContact>(where, mesh_points(points.points), surface, law, start,
+                                            round_line(points.points));
+    };
+    CablePoints points = cable_points(line, 0.5 * line.radius);
+    const std::vector<double> gaps = contact(points)->gaps_at_start();
+    const std::vector<MeshPoint> places = mesh_points(points.points);
+    const SolidInside inside(solid_boundary(solids_[static_cast<std::size_t>(s)]), X[0].data());
+    leave_out_attachments(
+        points, cable, line,
+        [&](const AttachmentSpec& a) {
+          return std::any_of(solid.bonded.begin(), solid.bonded.end(), [&](const BondSpec& bond) {
+            return is_fastened_to(model_, a, bond.body);
+          });
+        },
+        [&](int point) {
+          const auto p = static_cast<std::size_t>(point);
+          return gaps[p] < -0.5 * law.normal.tolerance ||
+                 inside.overlap(places[p].at(X[0].data()), line.radius);
+        });
+    if (points.arc.empty()) return;
+    map_.surfaces.push_back({pair.own, pair.side, 0, system_.add_elements(contact(points))});
+  }
+
+  /// Body of each node.
+  [[nodiscard]] std::vector<int> carriers() const {
+    std::vector<int> list;
+    list.reserve(system_.nodes().count());
+    for (int i = 0; i < system_.nodes().count(); ++i) list.push_back(system_.nodes()[i].body);
+    return list;
+  }
+
+  [[nodiscard]] static double smallest_edge(const std::vector<LoadedFaces>& faces,
+                                            const std::vector<Vec3>& X) {
+    double edge = std::numeric_limits<double>::infinity();
+    for (const LoadedFaces& block : faces) edge = std::min(edge, median_edge(block, X));
+    return edge;
+  }
+
+  /// How far apart points of a cable may be. Over a plane the straight pieces are highest and
+  /// lowest at nodes; elsewhere what bends around the shape must not be missed.
+  [[nodiscard]] static double spacing(const ShapeSpec& shape, double radius) {
+    if (shape.type == "plane") return std::numeric_limits<double>::infinity();
+    const bool round = shape.type == "sphere" || shape.type == "capsule";
+    return 0.5 * (radius + (round ? 0.5 * shape.sizes[0] : 0.0));
+  }
+
+  [[nodiscard]] static std::vector<LoadedFaces> faces_of(const SolidMap& solid) {
+    return system_faces(solid, solid.plan.touching);
+  }
+
+  /// Points of each of both surfaces on the triangles of the other, at half their area.
+  void add_solids(const SurfacePair& pair) {
+    const int own = solid_of_side(pair.own), partner = solid_of_side(pair.side);
+    const bool self = partner == own;
+    const std::vector<Vec3> X = positions();
+    const int solids[2] = {own, partner};
+    std::vector<LoadedFaces> faces[2];
+    MeshSurface surfaces[2];
+    double edge[2];
+    for (int k = 0; k < 2; ++k) {
+      faces[k] = faces_of(solids_[static_cast<std::size_t>(solids[k])]);
+      surfaces[k] = triangulated(faces[k]);
+      edge[k] = smallest_edge(faces[k], X);
+    }
+    if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
+    const double least = std::min(edge[0], edge[1]);
+    SurfaceLaw law = law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least, Band::about);
+    const std::vector<int> carriers = this->carriers();
+    const auto& name = [&](int side) -> const std::string& {
+      return model_.solids[static_cast<std::size_t>(solids[side])].name;
+    };
+    const SolidContactStart start{.X = X,
+                                  .carriers = carriers,
+                                  .edge = least,
+                                  .way = way_of_step(nodes_of({solids[0], solids[1]})),
+                                  .self = self};
+    const auto contact = [&](int k) {
+      const std::string where = format("{} on {}", name(k), name(1 - k));
+      std::vector<MeshPoint> points =
+          contact_points(where, faces[k], X, self ? nullptr : &surfaces[1 - k]);
+      for (MeshPoint& p : points) p.area *= 0.5;
+      return std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start);
+    };
+    for (int k = 0; k < (self ? 1 : 2); ++k) {
+      const int group = system_.add_elements(contact(k));
+      map_.surfaces.push_back({side_of_solid(solids[k]), side_of_solid(solids[1 - k]), 0, group});
+    }
+    add_edges(pair, surfaces, X, law, start);
+  }
+
+  /// The sharp edges of both surfaces on each other.
+  void add_edges(const SurfacePair& pair, const MeshSurface (&surfaces)[2],
+                 const std::vector<Vec3>& X, SurfaceLaw law, const SolidContactStart& start) {
+    EdgeContact::Sides sides{sharp_edges(surfaces[0], X), sharp_edges(surfaces[1], X),
+                             start.edge * start.edge};
+    if (sides.first.edges.empty() || sides.second.edges.empty()) return;
+    law.normal.tolerance *= kEdgeBand;
+    law.normal.stiffness /= kEdgeBand;
+    const int group = system_.add_elements(
+        std::make_unique<EdgeContact>(format("edges of {} on {}", model_.side_name(pair.own),
+                                             start.self ? "itself" : model_.side_name(pair.side)),
+                                      std::move(sides), law, start));
+    map_.surfaces.push_back({pair.own, pair.side, 0, group});
+  }
+
+  [[nodiscard]] std::vector<int> nodes_of(const std::vector<int>& solids) const {
+    std::vector<int> list;
+    for (const int s : solids) {
+      const SolidMap& solid = solids_[static_cast<std::size_t>(s)];
+      for (int k = 0; k < solid.node_count(); ++k) list.push_back(solid.first_node + k);
+    }
+    return list;
+  }
+
+  /// How far nodes go against each other in the first step [m].
+  [[nodiscard]] double way_of_step(const std::vector<int>& nodes) const {
+    Vec3 mean = Vec3::Zero();
+    for (const int i : nodes) mean += system_.nodes()[i].velocity;
+    mean /= static_cast<double>(nodes.size());
+    double most = 0.0;
+    for (const int i : nodes) most = std::max(most, (system_.nodes()[i].velocity - mean).norm());
+    return most * model_.analysis.step.value_or(0.0);
+  }
+
+  /// On the ground, or carried by four nodes that are bonded to the body.
+  SurfacePlace place_of(const BodySpec& body, const ShapeSpec& shape, int carrier) {
+    const contact::ShapePlace own = shape_place(body, shape);
+    SurfacePlace place;
+    place.origin = own.origin;
+    place.axes = own.axes;
+    if (carrier == kGround) return place;
+    const double radius = half_size(shape);
+    place.size = std::isfinite(radius) ? 2.0 * radius : 1.0;
+    const Quat q = body.orientation.normalized();
+    for (int k = 0; k < 4; ++k) {
+      NodeData node;
+      node.Z = own.origin + (k == 0 ? Vec3(Vec3::Zero()) : Vec3(place.size * own.axes.col(k - 1)));
+      const Vec3 arm = q * node.Z;
+      node.position = body.position + arm;
+      node.velocity = body.velocity + body.angular_velocity.cross(arm);
+      node.body = carrier;
+      place.nodes[static_cast<std::size_t>(k)] = system_.add_node(node);
+    }
+    return place;
+  }
+
+  /// At the start, by the system's numbers.
+  [[nodiscard]] std::vector<Vec3> positions() const {
+    std::vector<Vec3> X;
+    X.reserve(system_.nodes().count());
+    for (int i = 0; i < system_.nodes().count(); ++i) X.push_back(system_.nodes()[i].position);
+    return X;
+  }
+
+  /// What decides how stiff a surface is.
+  struct Stuff {
+    double E = std::numeric_limits<double>::infinity();  ///< Young's modulus [Pa].
+    double pressure = E;                                 ///< At gap zero, at least [Pa].
+    double density = E;                                  ///< [kg/m³]
+  };
+  /// Of several solids the softest and lightest counts.
+  [[nodiscard]] Stuff stuff_of(const std::vector<int>& solids) const {
+    Stuff stuff;
+    for (const int s : solids) {
+      stuff.E = std::min(stuff.E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
+      stuff.pressure = kPressure * stuff.E;
+      stuff.density = std::min(stuff.density, solids_[static_cast<std::size_t>(s)].plan.density);
+    }
+    return stuff;
+  }
+  [[nodiscard]] static Stuff lesser(const Stuff& a, const Stuff& b) {
+    return {std::min(a.E, b.E), std::min(a.pressure, b.pressure), std::min(a.density, b.density)};
+  }
+  /// A cable counts as a full round bar, which is not flattened. @eq{cable-stiffness}
+  [[nodiscard]] static Stuff stuff_of(const CableLineSpec& cable) {
+    const double area = std::numbers::pi * cable.contact->radius * cable.contact->radius;
+    return {0.0, kCablePressure * cable.stiffness / area, cable.mass_per_length / area};
+  }
+
+  /// Place of the band in which surfaces act: below those of rigid shapes, which have an inside.
+  enum class Band { below, about };
+
+  /// @param edge      Of the mesh, or the diameter of a cable [m].
+  /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
+  [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const Stuff& stuff, double edge,
+                                  double smallest, Band place) const {
+    SurfaceLaw law;
+    if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
+    law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
+    const double dt = model_.analysis.type == "dynamics" ? model_.analysis.step.value_or(0.0) : 0.0;
+    const bool barrier = law.normal.potential == contact::NormalPotential::barrier;
+    if (barrier && place == Band::below) law.normal.upper = 0.0;
+    const double band = barrier ? law.normal.band() : 2.0 * law.normal.tolerance;
+    double& k = law.normal.stiffness;
+    if (spec.reference_pressure > 0.0) {
+      k = 1.5 * spec.reference_pressure / band;
+    } else {
+      k = 1.5 * std::max(stuff.E / edge, stuff.pressure / band);
+      if (dt > 0.0) k = std::max(k, stuff.density * edge / (dt * dt));
+    }
+    law.end_share = 0.5 * (1.0 - spec.restitution);
+    law.mu = spec.friction;
+    law.bristle = k;
+    return law;
+  }
+
+  /// Pairs that are named come first; all others follow, unless few are wanted.
+  void keep(const std::vector<SurfacePair>& pairs) {
+    std::set<std::pair<int, int>> kept;
+    const auto keep = [&](int a, int b) {
+      if ((is_surface_side(a) || is_surface_side(b)) && kept.insert(std::minmax(a, b)).second)
+        map_.pairs.push_back({a, b, ""});
+    };
+    for (const ContactPairSpec& pair : model_.contacts.pairs)
+      if (!pair.of_materials) keep(pair.a, pair.b);
+    for (const ProbeSpec& probe : model_.output.probes)
+      if (probe.kind == "contact") keep(probe.pair[0], probe.pair[1]);
+    if (!model_.contacts.record.value_or(true)) return;
+    for (const SurfacePair& pair : pairs) keep(pair.own, pair.side);
+  }
+
+  System& system_;
+  const Model& model_;
+  const std::vector<int>& bodies_;
+  const std::vector<SolidMap>& solids_;
+  ContactMap& map_;
+  std::map<int, CableLine> lines_;  ///< By side.
+};
+
+}  // namespace
+
+void add_surface_contacts(System& system, const Model& model, const std::vector<int>& bodies,
+                          const std::vector<SolidMap>& solids, ContactMap& map) {
+  if (model.contacts.present) SurfacesBuilder(system, model, bodies, solids, map).build();
+}
+
+}  // namespace polhode

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <polhode/beams/beam_element.hpp>
+#include <polhode/compile/beam_mesh.hpp>
+#include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/compile/joint_resistance.hpp>
+#include <polhode/contact/contact_set.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/joints/registry.hpp>
+#include <polhode/loads/gear.hpp>
+#include <polhode/loads/registry.hpp>
+#include <polhode/model/gear_geometry.hpp>
+
+namespace polhode {
+
+namespace {
+
+class Builder {
+ public:
+  explicit Builder(const Model& model) : model_(model) {}
+
+  System build(SystemMap* map) {
+    system_.set_gravity(model_.gravity);
+    const double reach = dummy_reach();
+    for (const BodySpec& body : model_.bodies) add_body(body, reach);
+    for (const JointSpec& joint : model_.joints) add_joint(joint);
+    for (std::size_t i = 0; i < model_.solids.size(); ++i)
+      map_.solids.push_back(add_solid(system_, model_, static_cast<int>(i), map_.body));
+    for (const LoadSpec& load : model_.loads) add_load(load);
+    for (const BeamSpec& beam : model_.beams) add_beam(beam);
+    for (const CableLineSpec& cable : model_.cables) add_cable(cable);
+    map_.contacts = build_contacts(model_, map_.body, map_.contact);
+    add_surface_contacts(system_, model_, map_.body, map_.solids, map_.contact);
+    system_.set_contacts(map_.contacts);
+    system_.finish();
+    if (map) fill(*map);
+    return std::move(system_);
+  }
+
+ private:
+  /// Radius of gyration for point masses: of the size of the other bodies, so that scales of
+  /// lengths are not spoilt; it has no effect on motion.
+  [[nodiscard]] double dummy_reach() const {
+    double sum = 0.0, farthest = 0.0;
+    int count = 0;
+    for (const BodySpec& body : model_.bodies) {
+      farthest = std::max(farthest, body.position.norm());
+      if (body.point_mass || body.fixed || body.mass <= 0.0) continue;
+      sum += std::sqrt(0.5 * body.inertia.trace() / body.mass);
+      ++count;
+    }
+    return count > 0 ? sum / count : farthest > 0.0 ? farthest : 1.0;
+  }
+
+  void add_body(const BodySpec& body, double reach) {
+    if (body.fixed) {
+      map_.body.push_back(kGround);
+      return;
+    }
+    BodyMotion start;
+    start.r = body.position;
+    start.q = body.orientation.normalized();
+    start.v = body.velocity;
+    BodyData data{.name = body.name, .mass = body.mass, .inertia = body.inertia};
+    data.point_mass = body.point_mass;
+    if (body.point_mass)
+      data.inertia = body.mass * reach * reach * Mat3::Identity();
+    else
+      start.W = start.q.conjugate() * body.angular_velocity;
+    map_.body.push_back(system_.add_body(std::move(data), start));
+  }
+
+  [[nodiscard]] const BodySpec* spec(int body) const {
+    return body == kGround ? nullptr : &model_.bodies.at(static_cast<std::size_t>(body));
+  }
+  [[nodiscard]] int system_body(int body) const {
+    return body == kGround ? kGround : map_.body.at(static_cast<std::size_t>(body));
+  }
+  [[nodiscard]] bool is_point_mass(int body) const {
+    const BodySpec* s = spec(body);
+    return s && s->point_mass && !s->fixed;
+  }
+  /// A point given in a fixed body's coordinates, in those of the world.
+  [[nodiscard]] Vec3 point(int body, const Vec3& Z) const {
+    const BodySpec* s = spec(body);
+    return s && s->fixed ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
+  }
+  [[nodiscard]] Mat3 axes(int body, const Mat3& R) const {
+    const BodySpec* s = spec(body);
+    return s && s->fixed ? Mat3(s->orientation.normalized().toRotationMatrix() * R) : R;
+  }
+  /// Where a point of any body is at the start [m].
+  [[nodiscard]] Vec3 start_position(int body, const Vec3& Z) const {
+    const BodySpec* s = spec(body);
+    return s ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
+  }
+
+  void check_movable(const std::string& where, int a, int b) const {
+    if (system_body(a) == kGround && system_body(b) == kGround)
+      throw InputError(where, "connects nothing that moves",
+                       "Name at least one body that is not fixed, or leave it out");
+  }
+  void refuse_turning(const std::string& where, int body) const {
+    throw InputError(where, format("would turn '{}', which is a point mass", spec(body)->name),
+                     "Attach it at the point mass itself so that it turns nothing, or give the "
+                     "body an inertia");
+  }
+
+  [[nodiscard]] JointRecipe recipe(const std::string& where, const JointSpec& joint) const {
+    const JointFrames frames{.Z_a = point(joint.a, joint.Z_a),
+                             .Z_b = point(joint.b, joint.Z_b),
+                             .R_a = axes(joint.a, joint.R_a),
+                             .R_b = axes(joint.b, joint.R_b)};
+    JointParameters parameters{.free = joint.free, .values = joint.parameters};
+    const JointKind& kind = joint_kind(joint.type);
+    if (kind.name == "distance" && !parameters.values.contains("distance")) {
+      const double distance =
+          (start_position(joint.b, joint.Z_b) - start_position(joint.a, joint.Z_a)).norm();
+      if (!(distance > 0.0))
+        throw InputError(where, "the two points coincide, so they have no distance to keep",
+                         "Give two points apart, or use a spherical joint");
+      parameters.values["distance"] = distance;
+    }
+    try {
+      return kind.recipe(frames, parameters);
+    } catch (const InputError& e) {
+      throw InputError(format("{}.{}", where, e.where()), e.what_is_wrong(), e.mend());
+    }
+  }
+
+  void add_joint(const JointSpec& joint) {
+    const std::string where = format("joints.{}", joint.name);
+    check_movable(where, joint.a, joint.b);
+    const JointRecipe r = recipe(where, joint);
+    const JointParts& parts = r.parts;
+    // Pairs of axes turn both bodies; planes turn a, on which their normals are.
+    if (is_point_mass(joint.a) && (parts.axes > 0 || parts.planes > 0 || !joint.Z_a.isZero(0.0)))
+      refuse_turning(where, joint.a);
+    if (is_point_mass(joint.b) && (parts.axes > 0 || !joint.Z_b.isZero(0.0)))
+      refuse_turning(where, joint.b);
+    system_.group<Joint>().items.emplace_back(
+        joint.name, joint.type, Participants{system_body(joint.a), system_body(joint.b)}, r);
+    if (joint.friction || joint.limits || joint.angle_limits)
+      system_.group<Joint>().items.back().set_resistance(joint_resistance(model_, joint));
+    if (joint.motion) system_.group<Joint>().items.back().set_motion(*joint.motion);
+  }
+
+  /// A load along a coordinate that its joint does not leave free.
+  [[noreturn]] static void refuse_coordinate(const std::string& where, const LoadSpec& load,
+                                             const JointSpec& joint, const Joint& item,
+                                             bool turns) {
+    const std::vector<std::string> names = item.coordinate_names();
+    const std::string what = turns ? "angle" : "displacement";
+    if (!load.coordinate.empty())
+      throw InputError(where + ".coordinate",
+                       format("'{}' is not free as {} {} in '{}' ({})", load.coordinate,
+                              turns ? "an" : "a", what, joint.name, joint.type),
+                       names.empty() ? "Name another joint" : "Free are: " + name_list(names));
+    if (load.drive.empty() && turns)
+      throw InputError(
+          where + ".joint",
+          format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
+          "Use a joint with one free rotation, such as revolute or cylindrical");
+    throw InputError(where + ".joint",
+                     format("'{}' is {}, which has not one free {}", joint.name, joint.type, what),
+                     turns ? "Use a joint with one free rotation, such as revolute or cylindrical, "
+                             "or give the coordinate"
+                           : "Use a joint with one free translation, such as prismatic or "
+                             "cylindrical, or give the coordinate");
+  }
+
+  void add_load(const LoadSpec& load) {
+    const std::string where = format("loads.{}", load.name);
+    if (load.solid >= 0) {
+      add_solid_load(system_, load, map_.solids.at(static_cast<std::size_t>(load.solid)));
+      return;
+    }
+    const LoadKind& kind = load_kind(load.type);
+    int a = load.a, b = load.b;
+    std::optional<FreeAngle> angle;
+    std::optional<FreeDisplacement> displacement;
+    std::optional<GearGeometry> gear;
+    if (kind.place == LoadPlace::joint) {
+      const int index = model_.joint_index(load.joint);
+      const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
+      a = joint.a;
+      b = joint.b;
+      const Joint& item = system_.group<Joint>().items[static_cast<std::size_t>(index)];
+      if (item.frame_moves())
+        throw InputError(where + ".joint",
+                         format("the frame of '{}' has a prescribed motion", joint.name),
+                         "Let a body of its own carry the motion, and act in a joint to that");
+      if (kind.turns)
+        angle = item.free_angle(load.coordinate);
+      else
+        displacement = item.free_displacement(load.coordinate);
+      if (kind.name == Screw::kKind)
+        gear = gear_of(where, {load.joint, load.joint}, {"z", "rz"});
+      else if (!angle && !displacement)
+        refuse_coordinate(where, load, joint, item, kind.turns);
+      if (load.drive == "speed" && model_.analysis.type != "dynamics")
+        throw InputError(where + ".speed", "is a rate, but in statics and modes nothing moves",
+                         kind.turns ? "Give the angle" : "Give the displacement");
+    } else if (kind.place == LoadPlace::joints) {
+      gear = gear_of(where, {load.joint, load.joint_2}, {load.coordinate, load.coordinate_2});
+      const bool has_radius = load.parameters.contains("radius");
+      if (gear->mixed != has_radius || load.parameters.contains("ratio") == has_radius)
+        throw InputError(where,
+                         gear->mixed ? "turns an angle into a displacement, which takes a radius"
+                                     : "takes a ratio between coordinates of one kind",
+                         gear->mixed ? "Give radius alone" : "Give ratio alone");
+    }
+    check_movable(where, kind.place == LoadPlace::body ? b : a, b);
+    for (const auto& [body, Z] : {std::pair(a, load.Z_a), std::pair(b, load.Z_b)})
+      if (is_point_mass(body) && (kind.turns || !Z.isZero(0.0))) refuse_turning(where, body);
+    LoadDescription d{
+        .name = load.name,
+        .bodies = {kind.place == LoadPlace::body ? kGround : system_body(a), system_body(b)},
+        .Z_a = point(a, load.Z_a),
+        .Z_b = point(b, load.Z_b),
+        .body_fixed = load.body_fixed,
+        .vector = load.vector.value_or(TimeVector{}),
+        .values = load.parameters,
+        .angle = angle,
+        .displacement = displacement,
+        .function = load.value,
+        .drive = load.drive};
+    d.laws = load.laws;
+    d.words = load.words;
+    d.matrices = load.matrices;
+    d.R_a = axes(a, load.R_a);
+    d.R_b = axes(b, load.R_b);
+    if (const BodySpec* one = spec(a)) d.mass_a = one->mass;
+    if (const BodySpec* one = spec(b)) {
+      d.mass_b = one->mass;
+      if (!one->point_mass) d.inertia_b = one->inertia;
+    }
+    if (gear) {
+      d.bodies = gear->bodies;
+      d.gear = gear->pair;
+    }
+    d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
+    kind.add(system_, d);
+  }
+
+  [[nodiscard]] GearGeometry gear_of(const std::string& where,
+                                     const std::array<std::string, 2>& joints,
+                                     const std::array<std::string, 2>& coordinates) {
+    std::array<GearJoint, 2> pair;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto index = static_cast<std::size_t>(model_.joint_index(joints[i]));
+      pair[i] = {&system_.group<Joint>().items[index], coordinates[i],
+                 model_.joints[index].assembled_start};
+    }
+    std::vector<GearPose> poses;
+    for (const BodySpec& body : model_.bodies)
+      if (!body.fixed)
+        poses.push_back({body.position, body.orientation.normalized().toRotationMatrix()});
+    return gear_geometry(where, pair, poses);
+  }
+
+  void add_beam(const BeamSpec& beam) {
+    auto& items = system_.group<BeamElement>().items;
+    for (int k = 0; k < static_cast<int>(beam.mesh.size()); ++k) {
+      const BeamSpec::Element& element = beam.mesh[static_cast<std::size_t>(k)];
+      const int a = beam.first_node + k, b = a + 1;
+      const Quat q_a = spec(a)->orientation.conjugate(), q_b = spec(b)->orientation.conjugate();
+      BeamElementSpec e;
+      e.name = format("{}.{}", beam.name, k);
+      e.bodies = {system_body(a), system_body(b)};
+      e.end_1.Q = (q_a * element.frame_1).toRotationMatrix();
+      e.end_2.Q = (q_b * element.frame_2).toRotationMatrix();
+      e.stiffness = beam.section.section.stiffness;
+      e.residual_bending_flexibility = beam.residual_bending_flexibility;
+      e.relaxation_time = beam.section.relaxation_time;
+      set_reference(e, instant(a), instant(b));
+      e.coupled_mass =
+          coupled_part(e.length * beam.section.section.mass_per_length, beam.consistent_mass);
+      items.emplace_back(e);
+    }
+  }
+
+  void add_cable(const CableLineSpec& cable) {
+    const std::string where = format("cables.{}", cable.name);
+    auto& items = system_.group<Cable>().items;
+    const auto pieces = static_cast<double>(cable.pieces.size());
+    for (const CableLineSpec::Piece& piece : cable.pieces) {
+      check_movable(where, piece.a.body, piece.b.body);
+      for (const AttachmentSpec& at : {piece.a, piece.b})
+        if (is_point_mass(at.body) && !at.Z.isZero(0.0)) refuse_turning(where, at.body);
+      items.emplace_back(CableSpec{.name = cable.name,
+                                   .bodies = {system_body(piece.a.body), system_body(piece.b.body)},
+                                   .Z_a = point(piece.a.body, piece.a.Z),
+                                   .Z_b = point(piece.b.body, piece.b.Z),
+                                   .stiffness = cable.stiffness,
+                                   .free_length = piece.free_length,
+                                   .damping = cable.damping * pieces,
+                                   .tension_only = cable.tension_only,
+                                   .strain = cable.strain,
+                                   .coupled_mass = coupled_part(piece.mass, 0.5)});
+    }
+  }
+
+  [[nodiscard]] BodyStep instant(int body) const {
+    const BodySpec& b = *spec(body);
+    return BodyStep::at_instant(b.position, b.orientation.normalized().toRotationMatrix(),
+                                Vec3::Zero(), Vec3::Zero());
+  }
+
+  /// Items keep the user's order within their group; loads are found by kind and count.
+  void fill(SystemMap& map) {
+    std::map<std::string, std::vector<int>> interactions;
+    for (int i = 0; i < static_cast<int>(system_.interactions().size()); ++i)
+      interactions[system_.group(system_.interactions()[i].group).kind()].push_back(i);
+    map_.joint = interactions[Joint::kKind];
+    std::map<std::string, std::size_t> next;
+    for (const LoadSpec& load : model_.loads)
+      map_.load.push_back(load.solid >= 0 ? -1 : interactions.at(load.type).at(next[load.type]++));
+    const auto take = [&](const std::string& kind, auto& things, auto&& size,
+                          std::vector<std::vector<int>>& of) {
+      std::size_t first = 0;
+      for (const auto& thing : things) {
+        const auto at = interactions[kind].begin() + static_cast<std::ptrdiff_t>(first);
+        of.emplace_back(at, at + static_cast<std::ptrdiff_t>(size(thing)));
+        first += size(thing);
+      }
+    };
+    take(
+        BeamElement::kKind, model_.beams, [](const BeamSpec& b) { return b.mesh.size(); },
+        map_.beam);
+    take(
+        Cable::kKind, model_.cables, [](const CableLineSpec& c) { return c.pieces.size(); },
+        map_.cable);
+    map = std::move(map_);
+  }
+
+  const Model& model_;
+  System system_;
+  SystemMap map_;
+};
+
+}  // namespace
+
+System build_system(const Model& model, SystemMap* map) { return Builder(model).build(map); }
+
+const Joint& joint_at(const System& system, int interaction) {
+  const InteractionRef& ref = system.interactions().at(static_cast<std::size_t>(interaction));
+  const auto* joints = dynamic_cast<const Group<Joint>*>(&system.group(ref.group));
+  if (!joints) throw std::logic_error("joint_at: the interaction is no joint");
+  return joints->items[static_cast<std::size_t>(ref.item)];
+}
+
+}  // namespace polhode

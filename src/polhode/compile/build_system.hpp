@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <polhode/compile/build_contacts.hpp>
+#include <polhode/compile/build_solids.hpp>
+#include <polhode/joints/joint.hpp>
+#include <polhode/model/model.hpp>
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+/// Where the things of a Model went in its System.
+struct SystemMap {
+  std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
+  std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
+  /// By Model::loads: likewise; of a load on a solid -1.
+  std::vector<int> load;
+  std::vector<SolidMap> solids;                   ///< By Model::solids.
+  std::vector<std::vector<int>> beam;             ///< By Model::beams and element: likewise.
+  std::vector<std::vector<int>> cable;            ///< By Model::cables and piece: likewise.
+  std::shared_ptr<contact::ContactSet> contacts;  ///< Null if nothing touches.
+  ContactMap contact;
+};
+
+/// Compiles a model: numbers its bodies, joints and loads and chooses the tree.
+///
+/// Fixed bodies become the ground, their points and axes moved to world coordinates. A point mass
+/// gets an inertia that nothing ever turns.
+///
+/// @param map  Filled in if given.
+/// @throws InputError if a type is unknown, if a joint or load connects nothing that moves or
+///         would turn a point mass, or if a torsional spring's joint has no axis.
+[[nodiscard]] System build_system(const Model& model, SystemMap* map = nullptr);
+
+/// The joint behind an interaction of a built system. @throws std::logic_error if it is none.
+[[nodiscard]] const Joint& joint_at(const System& system, int interaction);
+
+}  // namespace polhode

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/compile/contact_shapes.hpp>
+#include <polhode/compile/shape_surface.hpp>
+#include <polhode/contact/tube.hpp>
+
+namespace polhode {
+
+contact::Shape contact_shape(const std::string& where, contact::ShapePlace place,
+                             const ShapeSpec& shape, double rounding) {
+  const std::vector<double>& size = shape.sizes;
+  const std::string& type = shape.type;
+  if (type == "sphere") return contact::sphere(where, size[0], place);
+  if (type == "capsule") {
+    const double straight = size[1] - size[0];
+    return straight > 1e-12 * size[1] ? contact::capsule(where, size[0], straight, place)
+                                      : contact::sphere(where, size[0], place);
+  }
+  if (type == "box") return contact::box(where, {size[0], size[1], size[2]}, place, rounding);
+  if (type == "ellipsoid") return contact::ellipsoid(where, {size[0], size[1], size[2]}, place);
+  if (type == "cylinder") return contact::cylinder(where, size[0], size[1], place);
+  if (type == "cone") {
+    // The model file counts from the centroid, a quarter of the length above the base.
+    place.origin += 0.25 * size[1] * place.axes.col(2);
+    return contact::cone(where, size[0], size[1], place, rounding);
+  }
+  if (type == "plane") return contact::plane(place);
+  if (type == "hull") return contact::hull(where, hull_points(shape), place, rounding);
+  if (type == "height_field")
+    return contact::height_field(where, shape.columns, shape.spacing, shape.heights, place,
+                                 rounding);
+  if (type == "tube")
+    return contact::tube(where, size[0], size[1], size[2],
+                         shape_surface(where, shape, kTubeSegments), place, rounding);
+  return contact::mesh(where, shape_surface(where, shape, kTubeSegments), place, rounding);
+}
+
+}  // namespace polhode

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/compile/joint_resistance.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// A bristle gives way by this at the weight of the joint's bodies [rad, or part of a length].
+constexpr double kPresliding = 1e-5;
+/// Of critical damping, for the bristle.
+constexpr double kBristleDamping = 0.7;
+/// Width of a stop's barrier [rad, or part of a length].
+constexpr double kBand = 1e-3;
+/// k d̂ over the reference load, of a barrier that carries it at a twentieth of its band; and
+/// k Δt² over the inertia, so that lasting contact settles within a few steps.
+constexpr double kBarrier = 373.0, kBarrierByStep = 10.0;
+/// Where a model has no gravity, loads are taken to be like weights on earth [m/s²].
+constexpr double kEarth = 9.81;
+
+/// What loads and inertias the joint meets.
+struct Scales {
+  double mass = 0.0, inertia = 0.0;  ///< Reduced, of the joint's bodies; about the joint.
+  double weight = 0.0;               ///< Of the heavier body [N].
+  double length = 1.0;               ///< Radius of gyration about the joint [m].
+};
+
+Scales scales_of(const Model& model, const JointSpec& joint) {
+  const double g = model.gravity.norm() > 0.0 ? model.gravity.norm() : kEarth;
+  Scales s;
+  double per_mass = 0.0, per_inertia = 0.0;
+  for (const auto& [body, Z] : {std::pair(joint.a, joint.Z_a), std::pair(joint.b, joint.Z_b)}) {
+    if (body == kGround) continue;
+    const BodySpec& b = model.bodies[static_cast<std::size_t>(body)];
+    if (b.fixed || !(b.mass > 0.0)) continue;
+    const double inertia = b.mass * Z.squaredNorm() + b.inertia.trace() / 3.0;
+    per_mass += 1.0 / b.mass;
+    if (inertia > 0.0) per_inertia += 1.0 / inertia;
+    s.weight = std::max(s.weight, b.mass * g);
+  }
+  s.mass = per_mass > 0.0 ? 1.0 / per_mass : 1.0;
+  s.inertia = per_inertia > 0.0 ? 1.0 / per_inertia : s.mass;
+  s.length = std::sqrt(s.inertia / s.mass);
+  return s;
+}
+
+JointLimits limits_of(const JointLimitsSpec& spec, const AnalysisSpec& analysis, double load,
+                      double inertia, double length) {
+  JointLimits limits;
+  if (spec.lower) limits.lower = *spec.lower;
+  if (spec.upper) limits.upper = *spec.upper;
+  limits.restitution = spec.restitution;
+  const double band = spec.band.value_or(kBand * length);
+  const double by_step =
+      analysis.step ? kBarrierByStep * inertia / (*analysis.step * *analysis.step) : 0.0;
+  limits.law.tolerance = band;
+  limits.law.upper = 0.0;
+  if (!spec.stiffness) limits.inertia = inertia;
+  limits.law.stiffness = spec.stiffness.value_or(std::max(kBarrier * load / band, by_step));
+  return limits;
+}
+
+}  // namespace
+
+JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
+  JointResistance r;
+  if (!joint.friction && !joint.limits && !joint.angle_limits) return r;
+  const Scales s = scales_of(model, joint);
+  const bool slides = joint.type == "prismatic" || joint.type == "cylindrical";
+  if (joint.friction) {
+    const JointFrictionSpec& spec = *joint.friction;
+    JointFriction f;
+    f.mu = spec.mu;
+    f.radius = spec.radius;
+    f.face_radius = spec.face_radius;
+    f.length = spec.length;
+    f.constant = spec.constant;
+    const double arm = slides ? 1.0 : std::max(f.radius, f.face_radius);
+    const double most = f.constant + f.mu * arm * s.weight;
+    const double way = kPresliding * (slides ? s.length : 1.0);
+    f.stiffness = spec.stiffness.value_or(most > 0.0 ? most / way : 1.0);
+    const double inertia = slides ? s.mass : s.inertia;
+    f.damping = spec.damping.value_or(kBristleDamping * std::sqrt(f.stiffness * inertia));
+    r.friction = f;
+  }
+  if (slides && joint.limits)
+    r.slide = limits_of(*joint.limits, model.analysis, s.weight, s.mass, s.length);
+  const auto& angle = slides ? joint.angle_limits : joint.limits;
+  if (angle) r.turn = limits_of(*angle, model.analysis, s.weight * s.length, s.inertia, 1.0);
+  return r;
+}
+
+}  // namespace polhode

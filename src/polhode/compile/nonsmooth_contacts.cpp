@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/compile/nonsmooth_contacts.hpp>
+#include <polhode/core/format.hpp>
+
+namespace polhode {
+
+ImpulseOptions impulse_options(const ContactsSpec& contacts) {
+  ImpulseOptions options;
+  if (contacts.sweeps > 0) options.sweeps = contacts.sweeps;
+  if (contacts.sweep_tolerance > 0.0) options.tolerance = contacts.sweep_tolerance;
+  return options;
+}
+
+void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
+  if (!model.contacts.nonsmooth()) return;
+  const auto refuse = [&](const std::string& where, const std::string& what, const char* other) {
+    faults.emplace_back(where, what, format("Choose another contacts.default.law, or {}", other));
+  };
+  const auto holds = [&](const char* section, const std::string& name, const char* what) {
+    refuse(format("{}.{}", section, name),
+           format("{} in a model with the non-smooth law of contact, whose impulses move bodies "
+                  "that nothing but contact and loads holds",
+                  what),
+           "take this out");
+  };
+  if (!model.solids.empty()) holds("solids", model.solids.front().name, "is a deformable solid");
+  if (!model.cables.empty()) holds("cables", model.cables.front().name, "is a cable");
+  if (!model.beams.empty()) {
+    holds("beams", model.beams.front().name, "is a beam");
+  } else if (!model.joints.empty()) {
+    holds("joints", model.joints.front().name, "is a joint");
+  }
+  const AnalysisSpec& a = model.analysis;
+  if (a.type != "dynamics") return;  // no body may touch another there
+  if (!a.step)
+    refuse("analysis.step", "is automatic, but impulses have no error that could choose steps",
+           "give a step");
+  if (a.rho_inf != 1.0)
+    refuse("analysis.rho_inf",
+           format("is {:g}, but impulses and positions follow the midpoint rule", a.rho_inf),
+           "use rho_inf: 1");
+  if (a.momentum_rate != "momentum")
+    refuse("analysis.momentum_rate", format("is {}, but impulses change momenta", a.momentum_rate),
+           "use momentum_rate: momentum");
+  if (a.solver != "automatic")
+    refuse("analysis.solver",
+           format("is {}, but the non-smooth law of contact has a solver of its own", a.solver),
+           "use solver: automatic");
+}
+
+}  // namespace polhode

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which surfaces may meet what, and by which law.
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/compile/rigid_surfaces.hpp>
+#include <polhode/core/format.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// What a law asks for that surfaces of solids cannot do; empty if nothing. Constants of the force
+/// of a point, which surfaces choose for themselves, do not matter.
+std::string strange_key(const ContactLawSpec& law) {
+  if (law.static_friction > law.friction) return "static_friction";
+  if (law.friction_across > 0.0 && law.friction_across != law.friction) return "friction_across";
+  if (law.rolling > 0.0) return "rolling_friction";
+  if (law.torsion > 0.0) return "torsional_friction";
+  return {};
+}
+
+bool touches_itself(const CableLineSpec& cable) { return cable.contact && cable.contact->self; }
+
+class SurfacePlanner {
+ public:
+  SurfacePlanner(const Model& model, std::vector<InputError>* faults)
+      : model_(model), faults_(faults), groups_(model) {
+    for (const auto& [a, b] : model.contacts.excluded) excluded_.insert(std::minmax(a, b));
+    for (const ContactPairSpec& pair : model.contacts.pairs)
+      if (!pair.of_materials) named_.insert(std::minmax(pair.a, pair.b));
+  }
+
+  std::vector<SurfacePair> plan() {
+    for (std::size_t s = 0; s < model_.solids.size(); ++s)
+      add_bodies(side_of_solid(static_cast<int>(s)), contact_side(model_.solids[s]));
+    for (std::size_t c = 0; c < model_.cables.size(); ++c)
+      add_bodies(side_of_cable(static_cast<int>(c)), contact_side(model_.cables[c]));
+    for (std::size_t s = 0; s < model_.solids.size(); ++s)
+      for (std::size_t t = s; t < model_.solids.size(); ++t)
+        add_solids(static_cast<int>(s), static_cast<int>(t));
+    for (std::size_t c = 0; c < model_.cables.size(); ++c)
+      for (std::size_t s = 0; s < model_.solids.size(); ++s)
+        add_cable_on_solid(static_cast<int>(c), static_cast<int>(s));
+    for (std::size_t c = 0; c < model_.cables.size(); ++c)
+      for (std::size_t d = c; d < model_.cables.size(); ++d)
+        add_cables(static_cast<int>(c), static_cast<int>(d));
+    check_named();
+    return std::move(list_);
+  }
+
+ private:
+  [[nodiscard]] bool groups_meet(const ContactSide& a, const ContactSide& b) const {
+    return (groups_.of(a) & groups_.met_by(b)) && (groups_.of(b) & groups_.met_by(a));
+  }
+
+  /// Neither excluded nor bonded; a pair that is named is meant. A cable meets the bodies that it
+  /// hangs on, but for the parts near by.
+  [[nodiscard]] bool sides_meet(int own, int body) const {
+    const std::pair<int, int> key = std::minmax(own, body);
+    if (excluded_.contains(key)) return false;
+    if (is_cable_side(own) || named_.contains(key) || model_.contacts.joint_neighbours) return true;
+    const auto& bonds = model_.solids[static_cast<std::size_t>(solid_of_side(own))].bonded;
+    return std::none_of(bonds.begin(), bonds.end(),
+                        [&](const BondSpec& bond) { return bond.body == body; });
+  }
+
+  void add_bodies(int own, const ContactSide& side) {
+    if (!side.touches) return;
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      if (!sides_meet(own, static_cast<int>(b))) continue;
+      for (std::size_t k = 0; k < model_.bodies[b].shapes.size(); ++k) {
+        const ContactSide shape = contact_side(model_.bodies[b], k);
+        if (shape.touches && groups_meet(side, shape))
+          add(own, side, static_cast<int>(b), k, shape);
+      }
+    }
+  }
+
+  void add(int own, const ContactSide& of_own, int body, std::size_t shape,
+           const ContactSide& of_shape) {
+    const BodySpec& spec = model_.bodies[static_cast<std::size_t>(body)];
+    const std::string& name = model_.side_name(own);
+    const StatedLaw stated =
+        law_between(model_.contacts, {material_of(model_.contacts, of_own), own},
+                    {material_of(model_.contacts, of_shape), body});
+    const std::string where =
+        stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts.default";
+    check_tolerance(where, own, spec, shape, stated.law);
+    if (const std::string key = strange_key(stated.law); !key.empty())
+      fault(where,
+            format("'{}' and '{}' meet by a law with {}, which {} do not know", name, spec.name,
+                   key, is_cable_side(own) ? "cables" : "surfaces of solids"),
+            "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
+            "friction, or zero");
+    if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
+      fault(
+          where,
+          format("'{}' and '{}' meet with friction, which statics does not know", name, spec.name),
+          "Set friction: 0, or let the model come to rest in dynamics");
+    list_.push_back({own, body, shape, stated.law});
+  }
+
+  /// A band that is wide against the triangles of a shape, and the radius of a cable, would reach
+  /// through them.
+  void check_tolerance(const std::string& where, int own, const BodySpec& body, std::size_t k,
+                       const ContactLawSpec& law) {
+    const ShapeSpec& shape = body.shapes[k];
+    if (!(law.gap_tolerance > 0.0) || law.potential == "linear") return;
+    const bool cable = is_cable_side(own);
+    const double most =
+        cable ? widest_tolerance(
+                    shape,
+                    model_.cables[static_cast<std::size_t>(cable_of_side(own))].contact->radius)
+              : widest_tolerance(shape);
+    if (law.gap_tolerance > most)
+      fault(where,
+            format("'{}' meets the {} of '{}' with a gap_tolerance of {:.3g} m, above a quarter of "
+                   "the median edge of its triangles{}, {:.3g} m",
+                   model_.side_name(own), shape.type, body.name, law.gap_tolerance,
+                   cable ? " and an eighth of the cable's radius" : "", most),
+            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
+  }
+
+  /// Two solids; or one with itself, if it says so.
+  void add_solids(int s, int t) {
+    const SolidSpec &one = model_.solids[static_cast<std::size_t>(s)],
+                    &two = model_.solids[static_cast<std::size_t>(t)];
+    if (s == t && !one.self_contact) return;
+    add_surfaces(side_of_solid(s), contact_side(one), side_of_solid(t), contact_side(two),
+                 "surfaces of solids", "meshes");
+  }
+
+  /// Two cables; or one with itself, if it says so.
+  void add_cables(int c, int d) {
+    const CableLineSpec &one = model_.cables[static_cast<std::size_t>(c)],
+                        &two = model_.cables[static_cast<std::size_t>(d)];
+    if (c == d && !touches_itself(one)) return;
+    add_surfaces(side_of_cable(c), contact_side(one), side_of_cable(d), contact_side(two), "cables",
+                 "cables");
+  }
+
+  void add_cable_on_solid(int c, int s) {
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(c)];
+    const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
+    const std::optional<StatedLaw> stated =
+        add_surfaces(side_of_cable(c), contact_side(cable), side_of_solid(s), contact_side(solid),
+                     "cables", "cables");
+    const double most = widest_tolerance(cable.contact ? cable.contact->radius : 0.0);
+    if (stated && stated->law.gap_tolerance > most)
+      fault(place_of(*stated),
+            format("'{}' meets '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
+                   "cable's radius, {:.3g} m",
+                   cable.name, solid.name, stated->law.gap_tolerance, most),
+            "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
+  }
+
+  /// Two surfaces without a shape, or one twice. @returns their law, unless something keeps them
+  /// apart.
+  std::optional<StatedLaw> add_surfaces(int own, const ContactSide& a, int side,
+                                        const ContactSide& b, const char* they,
+                                        const char* passing) {
+    if (!a.touches || !b.touches || (own != side && !groups_meet(a, b))) return {};
+    if (excluded_.contains(std::minmax(own, side))) return {};
+    const StatedLaw stated = law_between(model_.contacts, {material_of(model_.contacts, a), own},
+                                         {material_of(model_.contacts, b), side});
+    check_law(stated,
+              own == side
+                  ? format("'{}' meets itself", model_.side_name(own))
+                  : format("'{}' and '{}' meet", model_.side_name(own), model_.side_name(side)),
+              they, passing);
+    list_.push_back({own, side, 0, stated.law});
+    return stated;
+  }
+
+  [[nodiscard]] static std::string place_of(const StatedLaw& stated) {
+    return stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
+  }
+
+  /// What two surfaces without a shape cannot do.
+  void check_law(const StatedLaw& stated, const std::string& who, const char* they,
+                 const char* passing) {
+    const std::string where = place_of(stated);
+    if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
+      fault(where, format("{} with friction, which statics does not know", who),
+            "Set friction: 0, or let the model come to rest in dynamics");
+    if (const std::string key = strange_key(stated.law); !key.empty())
+      fault(where, format("{} by a law with {}, which {} do not know", who, key, they),
+            "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
+            "friction, or zero");
+    if (stated.law.potential == "linear")
+      fault(where, format("{} by the linear law, which lets {} pass", who, passing),
+            "Give the pair a law of its own in contacts.pairs, with law: barrier");
+  }
+
+  /// A solid or a cable with itself, named without that it touches itself.
+  void check_named() {
+    for (const ContactPairSpec& pair : model_.contacts.pairs) {
+      if (pair.of_materials || pair.a != pair.b || !is_surface_side(pair.a)) continue;
+      const bool cable = is_cable_side(pair.a);
+      const bool self =
+          cable ? touches_itself(model_.cables[static_cast<std::size_t>(cable_of_side(pair.a))])
+                : model_.solids[static_cast<std::size_t>(solid_of_side(pair.a))].self_contact;
+      const std::string& name = model_.side_name(pair.a);
+      if (!self)
+        fault(format("contacts.pairs.{}", pair.name), format("'{}' does not touch itself", name),
+              format("Set {}.{}.contact: {{self: true}}, or leave the pair out",
+                     cable ? "cables" : "solids", name));
+    }
+  }
+
+  void fault(const std::string& where, const std::string& what, const std::string& mend) {
+    if (!faults_) throw InputError(where, what, mend);
+    if (told_.insert(where + what).second) faults_->emplace_back(where, what, mend);
+  }
+
+  const Model& model_;
+  std::vector<InputError>* faults_;
+  ContactGroups groups_;
+  std::set<std::pair<int, int>> excluded_, named_;
+  std::set<std::string> told_;
+  std::vector<SurfacePair> list_;
+};
+
+}  // namespace
+
+std::vector<SurfacePair> plan_surface_contacts(const Model& model,
+                                               std::vector<InputError>* faults) {
+  if (!model.contacts.present) return {};
+  return SurfacePlanner(model, faults).plan();
+}
+
+}  // namespace polhode

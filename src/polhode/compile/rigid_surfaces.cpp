@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include <polhode/compile/contact_shapes.hpp>
+#include <polhode/compile/rigid_surfaces.hpp>
+#include <polhode/compile/shape_surface.hpp>
+#include <polhode/geometry/polyhedron.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Part of the smallest half size, or edge of triangles, by which edges are rounded, at least.
+constexpr double kRounding = 1e-3;
+/// The same of boxes and cylinders, of cones and hulls, and of triangles, at most.
+constexpr double kMostOfBoxes = 0.5, kMostOfHulls = 0.2, kMostOfTriangles = 0.25;
+/// Part of the radius of a cable that its band may take: its points, no farther apart than 1.6
+/// radii, then let nothing through between them.
+constexpr double kMostOfRadius = 0.125;
+
+bool has_triangles(const ShapeSpec& shape) {
+  return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
+}
+
+TriangleSurface triangles_of(const ShapeSpec& shape) {
+  return shape_surface(shape.type, shape, kTubeSegments);
+}
+
+}  // namespace
+
+double half_size(const ShapeSpec& shape) {
+  if (shape.type == "plane") return std::numeric_limits<double>::infinity();
+  if (shape.type != "hull" && !has_triangles(shape))
+    return 0.5 * *std::min_element(shape.sizes.begin(), shape.sizes.end());
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : shape.type == "hull" ? hull_points(shape) : triangles_of(shape).points)
+    box.extend(x);
+  return 0.5 * box.sizes().minCoeff();
+}
+
+double smallest_detail(const ShapeSpec& shape) {
+  if (shape.type == "height_field") return shape.spacing;
+  return has_triangles(shape) ? contact::median_edge(triangles_of(shape)) : half_size(shape);
+}
+
+double widest_tolerance(const ShapeSpec& shape, double radius) {
+  if (!has_triangles(shape)) return std::numeric_limits<double>::infinity();
+  return kMostOfTriangles * smallest_detail(shape) + widest_tolerance(radius);
+}
+
+double widest_tolerance(double radius) { return kMostOfRadius * radius; }
+
+CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
+  if (has_triangles(shape)) return {radius, 0.5 * radius};
+  const double half = half_size(shape);
+  return {std::min(radius, half), 0.5 * (radius + half)};
+}
+
+RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, double tolerance) {
+  RigidSurface s;
+  const std::vector<double>& size = shape.sizes;
+  const auto rounding = [&](double length, double most) {
+    return std::clamp(tolerance, kRounding * length, most * length);
+  };
+  if (shape.type == "sphere") {
+    s.kind = RigidSurface::Kind::sphere;
+    s.radius = 0.5 * size[0];
+  } else if (shape.type == "capsule") {
+    s.kind = RigidSurface::Kind::capsule;
+    s.radius = 0.5 * size[0];
+    s.half[2] = 0.5 * std::max(0.0, size[1] - size[0]);
+  } else if (shape.type == "cylinder") {
+    s.kind = RigidSurface::Kind::cylinder;
+    s.radius = 0.5 * size[0];
+    s.half = Vec3(s.radius, s.radius, 0.5 * size[1]);
+    s.rounding = rounding(s.half.minCoeff(), kMostOfBoxes);
+  } else if (shape.type == "box") {
+    s.kind = RigidSurface::Kind::box;
+    s.half = 0.5 * Vec3(size[0], size[1], size[2]);
+    s.rounding = rounding(s.half.minCoeff(), kMostOfBoxes);
+  } else if (has_triangles(shape)) {
+    s.kind = RigidSurface::Kind::mesh;
+    s.triangles = std::make_shared<RigidMesh>(
+        contact_shape(where, {}, shape, rounding(smallest_detail(shape), kMostOfTriangles)));
+  } else if (shape.type != "plane") {
+    s.kind = RigidSurface::Kind::convex;
+    s.solid = std::make_shared<contact::Shape>(
+        contact_shape(where, {}, shape, rounding(half_size(shape), kMostOfHulls)));
+  }
+  return s;
+}
+
+}  // namespace polhode

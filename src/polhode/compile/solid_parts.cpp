@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/compile/solid_parts.hpp>
+#include <polhode/solids/elements/registry.hpp>
+
+namespace polhode {
+
+MaterialDescription material_description(const MaterialSpec& material) {
+  MaterialDescription d{.kind = material.type, .values = material.parameters};
+  if (material.fibre) {
+    d.fibre = material.fibre->law;
+    d.fibre_values = material.fibre->parameters;
+  }
+  d.relaxation_time = material.viscosity.relaxation_time;
+  d.viscous = {material.viscosity.lame, material.viscosity.shear};
+  return d;
+}
+
+std::vector<std::string> solid_element_names() {
+  std::vector<std::string> names;
+  for (const ElementKind& kind : element_kinds())
+    for (const std::string& name : {kind.shape, kind.name})
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return names;
+}
+
+std::string cell_of_element(std::string_view element) {
+  for (const ElementKind& kind : element_kinds())
+    if (kind.name == element || kind.shape == element) return kind.shape;
+  return {};
+}
+
+}  // namespace polhode

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <polhode/compile/contact_shapes.hpp>
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/compile/surface_overlaps.hpp>
+#include <polhode/contact/placement.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/solids/mesh/selection.hpp>
+#include <polhode/surface_contact/solid_contact.hpp>
+#include <polhode/surface_contact/solid_inside.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Shapes are looked at along their edges at distances of this part of a face of the solid.
+constexpr double kSpacing = 0.5;
+constexpr int kMostParts = 1000;  ///< Of an edge.
+/// Tolerances at which nothing acts: solids keep as many apart from each other.
+constexpr double kFree = 2.0;
+
+/// Where a shape is looked at: balls of its rounding about these points are all within it.
+std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
+  std::vector<Vec3> list = shape.corners;
+  if (shape.solid == contact::Solid::polyhedron)
+    list.push_back(std::accumulate(list.begin(), list.end(), Vec3(Vec3::Zero())) /
+                   static_cast<double>(list.size()));
+  for (const contact::Shape::Edge& edge : shape.edges) {
+    const Vec3 &p = shape.corners[static_cast<std::size_t>(edge.i)],
+               &q = shape.corners[static_cast<std::size_t>(edge.j)];
+    const int parts = static_cast<int>(std::min(1.0 * kMostParts, (q - p).norm() / spacing));
+    for (int k = 1; k < parts; ++k) list.emplace_back(p + (q - p) * k / parts);
+  }
+  if (!shape.round()) return list;
+  const double beside = shape.solid == contact::Solid::cone ? 0.5 : 1.0;  // at mid height
+  for (int k = 0; k < 3; ++k)
+    for (const double sign : {-1.0, 0.0, 1.0})
+      list.emplace_back(shape.centre +
+                        sign * (k < 2 ? beside : 1.0) * shape.half[k] * shape.axes.col(k));
+  return list;
+}
+
+class Finder {
+ public:
+  Finder(const Model& model, const System& system, const SystemMap& map, const State& state)
+      : model_(model), system_(system), map_(map), state_(state) {}
+
+  std::vector<SideOverlap> find() {
+    const NodeStep instant = node_instant(state_, still_);
+    for (const ContactMap::Surface& surface : map_.contact.surfaces) {
+      const ElementGroup& group = system_.nodes().group(surface.group);
+      const auto& touching = dynamic_cast<const TouchingSurface&>(group);
+      free_gap_ = kFree * touching.law().normal.tolerance;
+      if (const auto found = touching.overlap(instant)) note(surface.own, surface.side, *found);
+      if (is_solid_side(surface.own) && !is_surface_side(surface.side))
+        look_for_body(surface);
+      else if (const auto* contact = dynamic_cast<const SolidContact*>(&group))
+        look_for_points(surface, *contact);
+    }
+    return std::move(list_);
+  }
+
+ private:
+  /// A shape of a body in a solid, which may have no point in the shape. What is bonded to the
+  /// body lies around it as it likes.
+  void look_for_body(const ContactMap::Surface& surface) {
+    const auto& bonds = model_.solids[static_cast<std::size_t>(solid_of_side(surface.own))].bonded;
+    if (std::any_of(bonds.begin(), bonds.end(),
+                    [&](const BondSpec& bond) { return bond.body == surface.side; }))
+      return;
+    if (!seen_.emplace(surface.own, surface.side, surface.shape).second) return;
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(surface.side)];
+    const ShapeSpec& spec = body.shapes[surface.shape];
+    if (spec.type == "plane") return;  // half of the world
+    const contact::Shape shape =
+        contact_shape(shape_path(body, surface.shape), shape_place(body, spec), spec);
+    const int carrier = map_.body[static_cast<std::size_t>(surface.side)];
+    const BodyStep at =
+        carrier == kGround ? BodyStep::ground(1.0) : system_.instant(state_, carrier);
+    const SolidInside& solid = inside(surface.own);
+    for (const Vec3& Z : places_within(shape, kSpacing * solid.size())) {
+      if (const auto found = solid.overlap(at.r_n + at.Lambda_n * Z, shape.rounding))
+        note(surface.side, surface.own, *found);
+    }
+  }
+
+  /// Points of a solid or of a cable in another solid.
+  void look_for_points(const ContactMap::Surface& surface, const SolidContact& contact) {
+    const SolidInside& solid = inside(surface.side);
+    if (surface.own == surface.side) {
+      if (const auto found = solid.overlap_with_itself()) note(surface.own, surface.side, *found);
+      return;
+    }
+    for (const MeshPoint& point : contact.points())
+      if (const auto found = solid.overlap(point.at(state_.node_x.data()), contact.radius()))
+        note(surface.own, surface.side, *found);
+  }
+
+  const SolidInside& inside(int side) {
+    const int solid = solid_of_side(side);
+    const auto known = inside_.find(solid);
+    if (known != inside_.end()) return known->second;
+    const MeshSurface boundary = solid_boundary(map_.solids[static_cast<std::size_t>(solid)]);
+    return inside_.try_emplace(solid, boundary, state_.node_x.data()).first->second;
+  }
+
+  void note(int own, int side, const SurfaceOverlap& found) {
+    const auto known = std::find_if(list_.begin(), list_.end(), [&](const SideOverlap& o) {
+      return std::minmax(o.own, o.side) == std::minmax(own, side);
+    });
+    const SideOverlap overlap{own, side, found.depth, found.out, free_gap_};
+    if (known == list_.end())
+      list_.push_back(overlap);
+    else if (found.depth > known->depth)
+      *known = overlap;
+  }
+
+  const Model& model_;
+  const System& system_;
+  const SystemMap& map_;
+  const State& state_;
+  StepContext still_;
+  double free_gap_ = 0.0;  ///< Of the surface that is looked at [m].
+  std::vector<SideOverlap> list_;
+  std::set<std::tuple<int, int, std::size_t>> seen_;
+  std::map<int, SolidInside> inside_;  ///< By Model::solids.
+};
+
+}  // namespace
+
+std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces) {
+  std::vector<LoadedFaces> list;
+  for (const FaceBlock& block : faces.blocks) {
+    list.push_back({block.type, block.nodes});
+    for (int& node : list.back().nodes) node += solid.first_node;
+  }
+  return list;
+}
+
+MeshSurface solid_boundary(const SolidMap& solid) {
+  return triangulated(system_faces(solid, select_faces("", solid.plan.mesh, {})));
+}
+
+std::vector<SideOverlap> surface_overlaps(const Model& model, const System& system,
+                                          const SystemMap& map, const State& state) {
+  return Finder(model, system, map, state).find();
+}
+
+std::string overlap_text(const Model& model, const SideOverlap& overlap) {
+  const std::string own = model.side_name(overlap.own),
+                    other = overlap.own == overlap.side ? "itself" : model.side_name(overlap.side);
+  return overlap.depth > 0.0 ? format("{} in {} by {:.3g} m", own, other, overlap.depth)
+                             : format("{} touches {}", own, other);
+}
+
+}  // namespace polhode

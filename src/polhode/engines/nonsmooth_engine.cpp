@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/dynamics/mean_turn.hpp>
+#include <polhode/engines/nonsmooth_engine.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Searches with geometry renewed, after the first.
+constexpr int kMostRounds = 4;
+/// Loads that depend on the motion are repeated until the motion changes by less than this part.
+constexpr double kSameMotion = 1e-13;
+constexpr int kMostRepeats = 60;
+/// Depth of an overlap, as part of the smaller size, that no step may bring about.
+constexpr double kPressedIn = 0.1;
+/// Change of speeds in the last sweep over few points, over what gravity adds in a step, with which
+/// no step may end.
+constexpr double kFarOff = 1.0;
+/// Without gravity, the speed that tolerances are a part of: this part of the fastest.
+constexpr double kPartOfSpeed = 1e-2;
+
+}  // namespace
+
+bool NonsmoothEngine::has_impulses(const System& system) {
+  const auto* c = dynamic_cast<const ImpulsiveContacts*>(system.contacts().get());
+  return c && c->impulses();
+}
+
+NonsmoothEngine::NonsmoothEngine(const System& system)
+    : system_(&system),
+      contacts_(system.contacts().get()),
+      impulsive_(dynamic_cast<ImpulsiveContacts*>(contacts_)),
+      bodies_(system.body_count()),
+      loads_(system) {
+  if (!has_impulses(system) || system.rows() > 0 || !system.nodes().empty())
+    throw InputError("contacts",
+                     "the non-smooth law moves bodies that nothing but contact and loads holds",
+                     "Use another law in models with joints or solids");
+  options_ = *impulsive_->impulses();
+  contacts_->prepare(system);
+  const auto n = static_cast<std::size_t>(bodies_);
+  steps_.assign(n + 1, BodyStep::ground(0.5));
+  loads_now_.assign(n, Vec6::Zero());
+  impulses_.assign(n, Vec6::Zero());
+  nowhere_.assign(n, Vec6::Zero());
+  inertia_.resize(n);
+  sweeps_.bodies.assign(n + 1, {});
+  for (const BodyData& body : system.bodies()) {
+    sweeps_.bodies[round_.size()].inverse_mass = 1.0 / body.mass;
+    round_.push_back(body.inertia == body.inertia(0, 0) * Mat3::Identity() ? 1 : 0);
+  }
+}
+
+/// Bodies stand where they are at t_n and go on as they go.
+void NonsmoothEngine::begin_step(const State& state, Trial& trial) {
+  const double dt = dt_ = trial.context.dt;
+  double fastest = 0.0;
+  for (int b = 0; b < bodies_; ++b) {
+    BodyStep& s = steps_[b] = body_step(*system_, state, trial, b);
+    s.r_n1 = s.r_n;
+    s.Lambda_n1 = s.Lambda_n;
+    s.u = s.theta = Vec3::Zero();
+    const Mat3& J = system_->bodies()[b].inertia;
+    inertia_[b] = round_[b] ? J : Mat3(s.Lambda_n * J * s.Lambda_n.transpose());
+    sweeps_.bodies[b].inverse_inertia = inertia_[b].inverse();
+    fastest = std::max(fastest, s.v_n.squaredNorm());
+  }
+  reference_ = system_->gravity().norm() * std::abs(dt);
+  if (reference_ == 0.0) reference_ = kPartOfSpeed * std::sqrt(fastest);
+  contacts_->begin_step(state, steps_, trial.context);
+}
+
+/// Where impulses and loads take the bodies: exactly, by the same equations as any force. Loads
+/// that depend on where bodies go are repeated.
+bool NonsmoothEngine::move(const State& state, const Trial& trial) {
+  const double dt = trial.context.dt, per_length = 1.0 / system_->length_scale();
+  StepContext values = trial.context;
+  values.tangents = false;
+  for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
+    std::fill(loads_now_.begin(), loads_now_.end(), Vec6::Zero());
+    if (!loads_.empty())
+      loads_.run(steps_, values, trial.lambda.data(), state.history.data(),
+                 [&](int interaction, const PairStep&, const PairTerms& t) {
+                   const InteractionRef& ref = system_->interactions()[interaction];
+                   if (ref.a != kGround) loads_now_[ref.a] += t.wrench_a;
+                   if (ref.b != kGround) loads_now_[ref.b] += t.wrench_b;
+                 });
+    std::fill(impulses_.begin(), impulses_.end(), Vec6::Zero());
+    for (const ImpulsePoint& p : points_) {
+      if (p.a != kGround) impulses_[p.a].head<3>() += p.impulse;
+      if (p.b != kGround) impulses_[p.b].head<3>() -= p.impulse;
+    }
+    double change = 0.0, size = 0.0;
+    for (int b = 0; b < bodies_; ++b) {
+      BodyStep& s = steps_[b];
+      const Vec3 before = s.u, push = dt * loads_now_[b].head<3>() + impulses_[b].head<3>();
+      s.u = dt * (s.v_n + 0.5 * (dt * system_->gravity() + push / system_->bodies()[b].mass));
+      change = std::max(change, per_length * (s.u - before).norm());
+      size = std::max(size, per_length * s.u.norm());
+    }
+    // Arms reach from the middle of the step, which is known now.
+    for (const ImpulsePoint& p : points_) {
+      const auto turn = [&](int body, double sign) {
+        if (body == kGround) return;
+        const Vec3 arm = p.place - steps_[body].r_n - 0.5 * steps_[body].u;
+        impulses_[body].tail<3>() += sign * (arm.cross(p.impulse) + p.turning);
+      };
+      turn(p.a, 1.0);
+      turn(p.b, -1.0);
+    }
+    for (int b = 0; b < bodies_; ++b) {
+      BodyStep& s = steps_[b];
+      const Vec3 before = s.theta, tau = dt * loads_now_[b].tail<3>() + impulses_[b].tail<3>();
+      const Vec3 omega = s.Lambda_n * s.W_n;
+      Vec3 mean = repeat > 0 ? Vec3(before / dt) : omega;
+      if (round_[b]) {
+        mean = mean_turn_of_a_ball(inertia_[b](0, 0), omega, tau, dt);
+      } else if (!try_mean_turn(inertia_[b], omega, tau, dt, mean)) {
+        worst_body_ = b;
+        return false;
+      }
+      s.theta = dt * mean;
+      change = std::max(change, (s.theta - before).norm());
+      size = std::max(size, s.theta.norm());
+      s.r_n1 = s.r_n + s.u;
+      s.Lambda_n1 = cay(s.theta) * s.Lambda_n;
+      s.v_n1 = 2.0 / dt * s.u - s.v_n;
+      s.W_n1 = 2.0 / dt * (s.Lambda_n.transpose() * s.theta) - s.W_n;
+    }
+    if (loads_.empty() || change <= kSameMotion * std::max(1e-3, size)) return true;
+  }
+  worst_body_ = -1;
+  return false;
+}
+
+/// @param first  The steps know nothing of impulses yet.
+void NonsmoothEngine::set_up(double dt, bool first) {
+  for (int b = 0; b < bodies_; ++b) {
+    sweeps_.bodies[b].v = 2.0 / dt * steps_[b].u;
+    sweeps_.bodies[b].w = 2.0 / dt * steps_[b].theta;
+  }
+  const double slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
+  sweeps_.points.resize(points_.size());
+  sweeps_.turns.clear();
+  for (int k = 0; k < point_count(); ++k) {
+    ImpulsePoint& at = points_[k];
+    ImpulseSweeps::Point& p = sweeps_.points[k];
+    const BodyStep &a = steps_[index(at.a)], &b = steps_[index(at.b)];
+    p.a = index(at.a);
+    p.b = index(at.b);
+    p.normal = at.normal;
+    // Nobody asks for the arms of the ground.
+    p.arm_a = a.moves ? Vec3(at.place - a.r_n - 0.5 * a.u) : Vec3::Zero();
+    p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
+    const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
+    p.least = at.rate + least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
+    p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
+    p.friction = at.friction;
+    p.push = std::max(0.0, p.normal.dot(at.impulse));
+    p.rub = at.impulse - p.normal.dot(at.impulse) * p.normal;
+    const double limit = p.friction * p.push, size = p.rub.norm();
+    if (size > limit) p.rub *= limit / size;
+    if (first) {
+      at.impulse = p.push * p.normal + p.rub;
+      sweeps_.push(p, at.impulse);
+    } else if (k < static_cast<int>(places_.size())) {  // what it did, it does from here
+      const Vec3 moment = (at.place - places_[k]).cross(at.impulse);
+      sweeps_.turn(p, moment);
+    }
+    if (at.rolling == 0.0 && at.torsion == 0.0) continue;
+    sweeps_.turns.push_back({k, at.rolling, at.torsion, w_a - w_b, at.turning});
+    if (first) sweeps_.turn(p, at.turning);
+  }
+}
+
+/// Where sweeps do not end, Newton's method goes on from what they left, if there are few points.
+void NonsmoothEngine::sweep() {
+  const double enough = options_.tolerance * reference_;
+  const bool balls = BallSweeps::suit(sweeps_);
+  balls ? balls_.take(sweeps_) : sweeps_.prepare();
+  search_.converged = false;
+  do {
+    const bool backwards = search_.sweeps % 2 == 1;
+    const double change = std::sqrt(balls ? balls_.sweep(backwards) : sweeps_.sweep(backwards));
+    ++search_.sweeps;
+    search_.change = reference_ > 0.0 ? change / reference_ : change;
+    search_.converged = change <= enough;
+  } while (!search_.converged && search_.sweeps < options_.sweeps);
+  if (balls) balls_.give_back(sweeps_);
+  if (!search_.converged && is_small()) {
+    if (balls) sweeps_.prepare();
+    search_.converged = solve_impulses(sweeps_, enough);
+  }
+  for (int k = 0; k < point_count(); ++k) {
+    const ImpulseSweeps::Point& p = sweeps_.points[k];
+    points_[k].impulse = p.push * p.normal + p.rub;
+  }
+  for (const ImpulseSweeps::Turn& t : sweeps_.turns) points_[t.point].turning = t.impulse;
+}
+
+/// The first search starts from where bodies go without contact and from the impulses of the last
+/// step, the next ones from where the impulses take them: geometry and turns are renewed then.
+bool NonsmoothEngine::search(const State& state, const Trial& trial) {
+  const StepContext& context = trial.context;
+  points_.clear();
+  search_ = {};
+  search_.converged = true;
+  if (!move(state, trial)) return false;
+  const double scale = state.dt_last > 0.0 ? context.dt / state.dt_last : 1.0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const int known = point_count();
+    const int found = impulsive_->find_points(steps_, context, points_);
+    for (int k = known; k < point_count(); ++k) {
+      points_[k].impulse *= round == 0 ? scale : 0.0;
+      points_[k].turning *= round == 0 ? scale : 0.0;
+    }
+    if (points_.empty()) return true;
+    places_.clear();
+    for (int k = 0; k < known; ++k) places_.push_back(points_[k].place);
+    const int before = search_.sweeps;
+    impulsive_->place_points(steps_, points_);
+    set_up(context.dt, round == 0);
+    sweep();
+    if (!move(state, trial)) return false;
+    if (round > 0 && found == 0 && search_.sweeps <= before + 1) break;
+  }
+  return true;
+}
+
+Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, double) {
+  Iteration done;
+  for (int again = 0; again < kMostRounds; ++again) {
+    if (!search(state, trial)) {
+      done.reason = worst_body_ >= 0 ? "a body turns too far in one step"
+                                     : "loads are too stiff for the step";
+      done.worst_body = worst_body_;
+      return done;
+    }
+    if (impulsive_->covers(steps_)) break;
+    contacts_->cover(steps_, trial.context, nowhere_);
+  }
+  if (const int k = pressed_in(); k >= 0) {
+    const auto name = [&](int body) {
+      return body == kGround ? std::string("the ground")
+                             : format("body '{}'", system_->bodies()[body].name);
+    };
+    done.reason = format(
+        "{2} and {1} would overlap, as impulses were not found in {0} sweeps: raise "
+        "contacts.sweeps",
+        search_.sweeps, name(points_[k].a), name(points_[k].b));
+    return done;
+  }
+  for (int b = 0; b < bodies_; ++b) {
+    const BodyStep& s = steps_[b];
+    if (!s.u.allFinite() || !s.theta.allFinite()) return done;
+    done.rotation = std::max(done.rotation, s.theta.norm());
+    move_body(state, trial, system_->slot(b), s.u, s.theta);
+  }
+  add_up(trial.context.dt);
+  done.solved = true;
+  return done;
+}
+
+/// The point that ends the step deepest, if that is a part of its bodies' size and deeper than it
+/// began, or where the search is far from its end; −1: none.
+int NonsmoothEngine::pressed_in() const {
+  int worst = -1;
+  double deepest = -kPressedIn;
+  for (int k = 0; k < point_count(); ++k) {
+    const ImpulsePoint& p = points_[k];
+    const BodyStep &a = steps_[index(p.a)], &b = steps_[index(p.b)];
+    const Vec3 apart = a.u + a.theta.cross(p.place - a.r_n - 0.5 * a.u) - b.u -
+                       b.theta.cross(p.place - b.r_n - 0.5 * b.u);
+    const double opens = p.normal.dot(apart), gap = (p.gap + opens) / p.size;
+    if (!(opens < 0.0) || gap >= deepest) continue;
+    deepest = gap;
+    worst = k;
+  }
+  // Few points whose sweeps and Newton's method both failed: gaps alone do not show how far off
+  // they are where surfaces lie flush, as a corner is then near the side of the other body.
+  if (worst >= 0 || search_.converged || !is_small() || search_.change < kFarOff) return worst;
+  const auto weaker = [](const ImpulsePoint& p, const ImpulsePoint& q) {
+    return p.impulse.squaredNorm() < q.impulse.squaredNorm();
+  };
+  return static_cast<int>(std::max_element(points_.begin(), points_.end(), weaker) -
+                          points_.begin());
+}
+
+/// What impulses took, from the motion that they have led to: −½ p·y. @eq{nonsmooth-energy}
+void NonsmoothEngine::add_up(double dt) {
+  losses_.resize(points_.size());
+  for (int k = 0; k < point_count(); ++k) {
+    const ImpulsePoint& p = points_[k];
+    const BodyStep &a = steps_[index(p.a)], &b = steps_[index(p.b)];
+    const auto way = [&](const BodyStep& s) {
+      return Vec3(s.u + s.theta.cross(p.place - s.r_n - 0.5 * s.u));
+    };
+    const Vec3 slip = way(a) - way(b);
+    const double push = p.normal.dot(p.impulse), along = p.normal.dot(slip);
+    losses_[k].normal = -push * along / dt;
+    losses_[k].friction =
+        -((p.impulse - push * p.normal).dot(slip) + p.turning.dot(a.theta - b.theta)) / dt;
+  }
+}
+
+void NonsmoothEngine::add_ground_wrench(double* force, double* moment) const {
+  for (const ImpulsePoint& p : points_) {
+    if (p.a != kGround && p.b != kGround) continue;
+    const double sign = p.b == kGround ? 1.0 : -1.0;
+    const Vec3 f = sign / dt_ * p.impulse;
+    const Vec3 m = p.place.cross(f) + sign / dt_ * p.turning;
+    for (int i = 0; i < 3; ++i) {
+      force[i] += f[i];
+      moment[i] += m[i];
+    }
+  }
+}
+
+Work NonsmoothEngine::commit(State& state, const Trial& trial) {
+  return impulsive_->commit_impulses(state, steps_, trial.context, points_, losses_, search_);
+}
+
+}  // namespace polhode

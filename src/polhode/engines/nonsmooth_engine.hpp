@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/engines/ball_sweeps.hpp>
+#include <polhode/engines/impulse_newton.hpp>
+#include <polhode/engines/impulse_sweeps.hpp>
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/system/impulsive_contacts.hpp>
+#include <polhode/system/moving_contacts.hpp>
+
+namespace polhode {
+
+/// Steps of bodies that meet by impulses (Moreau's midpoint rule): velocities jump inside a step,
+/// forces and positions follow the midpoint rule. What other engines iterate by Newton is one
+/// search for impulses here, which always ends; joints are out of its reach.
+///
+/// Whatever the search leaves, momenta are exact: the last impulses move the bodies by the same
+/// equations as forces would. @eq{nonsmooth-step}
+class NonsmoothEngine final : public NewtonEngine {
+ public:
+  /// @throws InputError if the contacts have no impulses, or the system has joints or solids.
+  explicit NonsmoothEngine(const System& system);
+  [[nodiscard]] std::string name() const override { return "impulses: projected Gauss-Seidel"; }
+  void begin_step(const State& state, Trial& trial) override;
+  Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
+  [[nodiscard]] ConstraintCheck check(const State&, Trial&) override { return {}; }
+  [[nodiscard]] int worst_body() const override { return worst_body_; }
+  void add_ground_wrench(double* force, double* moment) const override;
+  void end_step(const State&, Trial&) override {}
+  Work commit(State& state, const Trial& trial) override;
+
+  [[nodiscard]] const ImpulseSearch& last_search() const { return search_; }
+  [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
+  /// Whether the contacts of a system act by impulses.
+  [[nodiscard]] static bool has_impulses(const System& system);
+
+ private:
+  [[nodiscard]] int index(int body) const { return body == kGround ? bodies_ : body; }
+  bool move(const State& state, const Trial& trial);
+  [[nodiscard]] bool search(const State& state, const Trial& trial);
+  void set_up(double dt, bool first);
+  void sweep();
+  [[nodiscard]] bool is_small() const {
+    return point_count() <= kMostDensePoints && sweeps_.turns.empty();
+  }
+  void add_up(double dt);
+  [[nodiscard]] int pressed_in() const;
+
+  const System* system_;
+  MovingContacts* contacts_;
+  ImpulsiveContacts* impulsive_;
+  int bodies_;
+  InteractionSweep loads_;
+  ImpulseOptions options_;
+  ImpulseSweeps sweeps_;
+  BallSweeps balls_;
+  std::vector<BodyStep> steps_;  ///< By body, the ground last.
+  std::vector<ImpulsePoint> points_;
+  std::vector<ImpulseLoss> losses_;
+  std::vector<Vec3> places_;  ///< By point: where impulses acted when bodies were moved last.
+  std::vector<Vec6> loads_now_, impulses_, nowhere_;  ///< By body.
+  std::vector<Mat3> inertia_;                         ///< World, at t_n.
+  std::vector<char> round_;  ///< By body: turns equally easily about any axis.
+  ImpulseSearch search_;
+  double dt_ = 0.0;         ///< Of the step [s].
+  double reference_ = 0.0;  ///< Speed that ImpulseOptions::tolerance is a part of [m/s].
+  int worst_body_ = -1;
+};
+
+}  // namespace polhode

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <polhode/dynamics/momentum_step.hpp>
+#include <polhode/equations/trial.hpp>
+#include <polhode/linear/kkt.hpp>
+
+namespace polhode {
+
+/// ε of exact multiplier rows in the scaled system: G x + ε(λ̂ − λ̂_c) = 0 [-]. With the centre zero
+/// it selects the smallest multipliers among those that redundant rows allow; with the centre at
+/// the solution it is without effect.
+inline constexpr double kProximal = 1e-12;
+
+/// Which blocks the linear system of a System has: a pair for each interaction that has multiplier
+/// rows or acts between two moving bodies.
+struct KktMap {
+  KktTopology topology;
+  std::vector<int> pair;  ///< By interaction: its pair, or -1 (a load on one body).
+};
+[[nodiscard]] KktMap kkt_map(const System& system);
+
+/// Evaluates interactions a batch at a time, one virtual call per batch of one group, and hands
+/// the terms of each to a visitor. Holds the only buffers that needs; allocates once.
+class InteractionSweep {
+ public:
+  explicit InteractionSweep(const System& system);
+  /// Only these interactions, in ascending order.
+  InteractionSweep(const System& system, std::vector<int> interactions);
+
+  [[nodiscard]] bool empty() const { return interactions_.empty(); }
+  /// @param steps    By body, the ground last.
+  /// @param visit    visit(int interaction, const PairStep&, const PairTerms&).
+  /// @param rows_only  Leave out batches without multiplier rows.
+  template <class Visit>
+  void run(std::span<const BodyStep> steps, const StepContext& context, const double* lambda,
+           const double* history, Visit&& visit, bool rows_only = false) {
+    for (const Batch& batch : batches_) {
+      if (rows_only && !batch.has_rows) continue;
+      evaluate(batch, steps, context, lambda, history);
+      for (int k = 0; k < batch.count; ++k)
+        visit(interactions_[batch.first + k], static_cast<const PairStep&>(pair_steps_[k]),
+              static_cast<const PairTerms&>(terms_[k]));
+    }
+  }
+
+ private:
+  struct Batch {
+    int group = 0, first = 0, count = 0;  ///< Positions [first, first + count), of one group.
+    bool has_rows = false;
+  };
+  void evaluate(const Batch& batch, std::span<const BodyStep> steps, const StepContext& context,
+                const double* lambda, const double* history);
+
+  const System* system_;
+  std::vector<int> interactions_;
+  std::vector<Batch> batches_;
+  std::vector<int> items_;
+  std::vector<PairStep> pair_steps_;
+  std::vector<PairTerms> terms_;
+};
+
+/// Residual and tangent of one step, assembled and scaled.
+///
+///   [ s·K  −B ] [ Δ(r,θ) ]     [ s·R              ]      s = βΔt²/m_ref,  λ̂ = s λ
+///   [ G     C ] [ Δλ̂     ] = − [ g + ε(λ̂ − λ̂_c)   ]      C = ε, or compliance/s
+///
+/// @eq{eq:ga-residual-vector} @eq{eq:ga-Newton-scheme}
+class NewtonSystem {
+ public:
+  NewtonSystem(const System& system, MomentumRate form);
+
+  /// Pairs of bodies that something else couples: their blocks come last in values(), for others
+  /// to fill. Replaces those stated before.
+  void couple(const std::vector<KktPair>& more);
+  /// Their blocks, all zero.
+  [[nodiscard]] std::span<KktValues::Pair> cleared_couplings();
+  /// Statics: bodies have no rates of momentum.
+  void set_static(bool yes) { static_ = yes; }
+  /// Fills right_hand_side() and the residuals; with `tangent` the values as well.
+  void assemble(const State& state, const Trial& trial, bool tangent);
+  /// Constraint values at the iterate only.
+  [[nodiscard]] ConstraintCheck check(const State& state, const Trial& trial);
+
+  [[nodiscard]] const KktTopology& topology() const { return map_.topology; }
+  [[nodiscard]] const KktValues& values() const { return values_; }
+  [[nodiscard]] KktValues& values() { return values_; }  ///< To add to after assemble().
+  /// Bodies (6 each, scaled by −s), then rows (negative).
+  [[nodiscard]] const Vec& right_hand_side() const { return rhs_; }
+
+  /// Momentum rate minus wrench at the iterate: (force [N], moment [N m]).
+  [[nodiscard]] const Vec6& body_residual(int body) const { return body_residual_[body]; }
+  /// Sum of the magnitudes that body_residual() is made of: times round-off, its noise.
+  [[nodiscard]] const Vec6& body_residual_scale(int body) const { return body_scale_[body]; }
+  /// g + compliance·λ of a row [m or -].
+  [[nodiscard]] double row_residual(int row) const { return row_residual_[row]; }
+  [[nodiscard]] const System& system() const { return *system_; }
+
+ private:
+  void take_steps(const State& state, const Trial& trial);
+  void add_pair(int interaction, const PairTerms& terms, const Trial& trial, double s,
+                bool tangent);
+
+  const System* system_;
+  MomentumRate form_;
+  bool static_ = false;
+  KktMap map_;
+  std::size_t own_pairs_ = 0;  ///< Of interactions: the first ones.
+  InteractionSweep sweep_;
+  std::vector<BodyStep> steps_;  ///< By body, the ground last.
+  KktValues values_;
+  Vec rhs_;
+  std::vector<Vec6> body_residual_, body_scale_;
+  std::vector<double> row_residual_;
+};
+
+/// Where the assembled residual is farthest from round-off.
+struct WorstResidual {
+  int body = -1;            ///< Or -1: nothing to report.
+  int component = 0;        ///< 0 to 2 force, 3 to 5 moment.
+  double value = 0.0;       ///< [N or N m]
+  double over_noise = 0.0;  ///< Multiples of its round-off scale [-].
+  [[nodiscard]] std::string text(const System& system) const;
+};
+[[nodiscard]] WorstResidual worst_residual(const NewtonSystem& assembled);
+
+}  // namespace polhode

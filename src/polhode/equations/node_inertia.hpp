@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <polhode/equations/node_condensation.hpp>
+
+namespace polhode {
+
+/// What deformable solids weigh and how they press on their bodies at an instant: the nodes'
+/// equations M a = f + M g with bonded nodes accelerated by their bodies,
+/// a_i = P (r̈, α) + ω × (ω × z_i), and the free ones eliminated.
+/// @eq{eq:rbm-rigid-point-acceleration}
+class NodeInertia {
+ public:
+  explicit NodeInertia(const System& system);
+
+  [[nodiscard]] const std::vector<KktPair>& pairs() const { return condensation_.pairs(); }
+  /// Takes an instant. @returns false if the solids' mass matrix is singular.
+  [[nodiscard]] bool take(const State& state);
+  /// The same where nothing acts and nothing turns: impulses instead of forces, and jumps of
+  /// velocities instead of accelerations.
+  /// @param given  Jumps of prescribed components, three a node, zero elsewhere; may be empty.
+  [[nodiscard]] bool take_masses(const State& state, std::span<const double> given = {});
+  /// Adds the condensed mass and, to `force` by body, what the nodes exert, all times `scale`.
+  void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
+           std::span<KktValues::Pair> pairs);
+  /// Accelerations of all nodes (3 each) from those of the bodies (6 each).
+  [[nodiscard]] const std::vector<double>& accelerations(const double* bodies);
+  /// M a − f − M g of all nodes (3 each) for the accelerations last asked for: what bodies, ground
+  /// and prescribed motion exert on those they hold, nothing but round-off on the free ones [N].
+  [[nodiscard]] std::vector<double> reactions() const;
+
+ private:
+  [[nodiscard]] bool condense();
+  [[nodiscard]] Vec3 M_gamma(int node) const;  ///< Of a node [N].
+
+  const System* system_;
+  NodeCondensation condensation_;
+  Trial trial_;
+  std::vector<double> mass_;      ///< M by 3×3 blocks of the graph.
+  std::vector<double> tangent_;   ///< Not used itself.
+  std::vector<double> residual_;  ///< M γ − f − M g.
+  std::vector<double> gamma_;  ///< ω × (ω × z) of bonded nodes, accelerations of prescribed ones.
+  std::vector<double> a_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <polhode/geometry/triangle_surface.hpp>
+
+namespace polhode {
+
+/// Reads a triangle surface, by the ending of its name: .stl (text or binary) or .obj.
+///
+/// Corners at equal coordinates are joined. Polygons of an .obj become fans of triangles. Nothing
+/// else is mended: see check_closed() and orient_outward().
+///
+/// @throws InputError with the file, and its line or triangle, when the file cannot be read, is cut
+///         short, has a coordinate that is no finite number, or has no triangles.
+[[nodiscard]] TriangleSurface read_surface(const std::string& path);
+
+/// As read_surface(), from the bytes of a file already in memory.
+/// @param name  First part of messages; its ending chooses the format.
+[[nodiscard]] TriangleSurface parse_surface(const std::string& name, std::string_view bytes);
+
+}  // namespace polhode

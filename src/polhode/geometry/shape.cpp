@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/geometry/hull.hpp>
+#include <polhode/geometry/polyhedron.hpp>
+#include <polhode/geometry/shape.hpp>
+#include <polhode/geometry/triangle_tree.hpp>
+
+namespace polhode::contact {
+
+namespace {
+
+constexpr double kRounding = 1e-3;       ///< Default radius of edges, part of the size.
+constexpr int kRimPoints = 12;           ///< Fixed points on a rim, for standing on it.
+constexpr double kStandingRadius = 0.9;  ///< Of those that meet faces, part of the rim's.
+
+void check_positive(std::string_view where, std::string_view what, double value) {
+  if (!(value > 0.0) || !std::isfinite(value))
+    throw InputError(where, format("the {} is {} m, not positive and finite", what, value),
+                     "Give a length above zero");
+}
+
+void check_rounding(std::string_view where, double rounding, double most) {
+  if (!(rounding >= 0.0) || rounding > most)
+    throw InputError(where, format("the rounding is {} m, not between 0 and {} m", rounding, most),
+                     "Give a smaller radius of edges and corners, or leave it out");
+}
+
+void finish_bounds(Shape& s, const Vec3& centre, double radius) {
+  s.bound_centre = centre;
+  s.bound_radius = radius;
+  s.size = radius;
+  s.reach = centre.norm() + radius;
+}
+
+void all_corners_meet(Shape& s) {
+  for (int i = 0; i < static_cast<int>(s.corners.size()); ++i) s.points.push_back(i);
+  s.face_points = s.points;
+}
+
+void bound_corners(Shape& s) {
+  Vec3 low = s.corners[0], high = s.corners[0];
+  for (const Vec3& x : s.corners) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  const Vec3 centre = 0.5 * (low + high);
+  double radius = 0.0;
+  for (const Vec3& x : s.corners) radius = std::max(radius, (x - centre).norm());
+  finish_bounds(s, centre, radius + s.rounding);
+  s.reach = 0.0;
+  for (const Vec3& x : s.corners) s.reach = std::max(s.reach, x.norm() + s.rounding);
+}
+
+TriangleSurface placed(TriangleSurface surface, const ShapePlace& place) {
+  for (Vec3& x : surface.points) x = place.origin + place.axes * x;
+  return surface;
+}
+
+/// Beyond these sizes products of lengths leave the numbers [m].
+constexpr double kLeastSize = 1e-15, kLargestSize = 1e15;
+/// Area of a triangle over the square of its longest edge, below which its corners lie on a line.
+constexpr double kNoArea = 1e-10;
+
+/// Thickness of a hull over its extent, below which it is flat.
+constexpr double kFlatShape = 1e-9;
+
+/// Refuses points of which no shape can be made. @returns their extent [m].
+double check_extent(std::string_view where, std::span<const Vec3> points) {
+  double size = 0.0;
+  for (const Vec3& x : points) size = std::max(size, (x - points[0]).cwiseAbs().maxCoeff());
+  if (!(size >= kLeastSize && size <= kLargestSize))
+    throw InputError(where, format("its points are up to {:.3g} m apart", size),
+                     "Check its unit of length, or give a scale");
+  return size;
+}
+
+/// Without points that no triangle uses.
+TriangleSurface used_part(const TriangleSurface& surface) {
+  TriangleSurface part;
+  std::vector<int> number(surface.points.size(), -1);
+  for (std::array<int, 3> t : surface.triangles) {
+    for (int& corner : t) {
+      int& known = number[corner];
+      if (known < 0) {
+        known = static_cast<int>(part.points.size());
+        part.points.push_back(surface.points[corner]);
+      }
+      corner = known;
+    }
+    part.triangles.push_back(t);
+  }
+  return part;
+}
+
+void check_triangles(std::string_view where, const TriangleSurface& surface) {
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec3 &a = surface.points[i], &b = surface.points[j], &c = surface.points[k];
+    const double longest =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    if (!((b - a).cross(c - a).norm() > kNoArea * longest))
+      throw InputError(where,
+                       format("the triangle at ({:.6g}, {:.6g}, {:.6g}) m has no area: its corners "
+                              "lie on a line",
+                              a[0], a[1], a[2]),
+                       "Let the program that made it remove degenerate triangles, or set "
+                       "contact: {touches: false}");
+  }
+}
+
+Shape polyhedron(std::string_view where, const TriangleSurface& outside, double rounding) {
+  Shape s;
+  s.solid = Solid::polyhedron;
+  s.rounding = rounding;
+  const TriangleSurface core = convex_hull(where, shrunk(outside, rounding).points);
+  take_triangles(s, core);
+  all_corners_meet(s);
+  bound_corners(s);
+  return s;
+}
+
+/// Points of a rim, and those that hold it where it stands on a face: a little inside, so that a
+/// rim that leans rolls on its disc.
+void add_rim(Shape& s, double z) {
+  for (const double part : {1.0, kStandingRadius})
+    for (int k = 0; k < kRimPoints; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kRimPoints, R = part * s.half[0];
+      (part == 1.0 ? s.points : s.face_points).push_back(static_cast<int>(s.corners.size()));
+      s.corners.push_back(s.centre + s.axes * Vec3(R * std::cos(angle), R * std::sin(angle), z));
+    }
+}
+
+Shape round_body(Solid solid, const Vec3& half, const ShapePlace& place) {
+  Shape s;
+  s.solid = solid;
+  s.centre = place.origin;
+  s.axes = place.axes;
+  s.half = half;
+  return s;
+}
+
+}  // namespace
+
+Shape sphere(std::string_view where, double diameter, const ShapePlace& place) {
+  check_positive(where, "diameter", diameter);
+  Shape s;
+  s.solid = Solid::ball;
+  s.rounding = s.detail = 0.5 * diameter;
+  s.centre = place.origin;
+  s.corners = {place.origin};
+  all_corners_meet(s);
+  bound_corners(s);
+  return s;
+}
+
+Shape capsule(std::string_view where, double diameter, double length, const ShapePlace& place) {
+  check_positive(where, "diameter", diameter);
+  check_positive(where, "length", length);
+  Shape s;
+  s.solid = Solid::segment;
+  s.rounding = s.detail = 0.5 * diameter;
+  s.centre = place.origin;
+  const Vec3 to_end = 0.5 * length * place.axes.col(2);
+  s.corners = {place.origin - to_end, place.origin + to_end};
+  s.edges.push_back({0, 1, Vec3::Zero(), true, false, false});
+  all_corners_meet(s);
+  bound_corners(s);
+  return s;
+}
+
+Shape box(std::string_view where, const Vec3& size, const ShapePlace& place, double rounding) {
+  for (int i = 0; i < 3; ++i) check_positive(where, "size", size[i]);
+  const Vec3 half = 0.5 * size;
+  check_rounding(where, rounding, 0.5 * half.minCoeff());
+  if (rounding == 0.0) rounding = kRounding * half.minCoeff();
+  TriangleSurface outside;
+  for (int k = 0; k < 8; ++k)
+    outside.points.push_back(place.origin + place.axes * Vec3(k & 1 ? half[0] : -half[0],
+                                                              k & 2 ? half[1] : -half[1],
+                                                              k & 4 ? half[2] : -half[2]));
+  outside = convex_hull(where, outside.points);
+  Shape s = polyhedron(where, outside, rounding);
+  s.detail = half.minCoeff();
+  return s;
+}
+
+Shape cylinder(std::string_view where, double diameter, double length, const ShapePlace& place) {
+  check_positive(where, "diameter", diameter);
+  check_positive(where, "length", length);
+  const double rounding = 0.5 * kRounding * std::min(diameter, length);
+  const double radius = 0.5 * diameter - rounding;
+  Shape s = round_body(Solid::cylinder, {radius, radius, 0.5 * length - rounding}, place);
+  s.rounding = rounding;
+  s.detail = 0.5 * std::min(diameter, length);
+  add_rim(s, -s.half[2]);
+  add_rim(s, s.half[2]);
+  finish_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
+  return s;
+}
+
+Shape cone(std::string_view where, double diameter, double length, const ShapePlace& place,
+           double rounding) {
+  check_positive(where, "diameter", diameter);
+  check_positive(where, "length", length);
+  const double radius = 0.5 * diameter;
+  check_rounding(where, rounding, 0.25 * std::min(radius, length));
+  if (rounding == 0.0) rounding = 0.5 * kRounding * std::min(radius, length);
+  // The cone whose base and flank lie deeper by the rounding.
+  const double above_base = rounding, below_apex = rounding * std::hypot(radius, length) / radius;
+  const double core_length = length - above_base - below_apex;
+  const double core_radius = radius * core_length / length;
+  Shape s = round_body(Solid::cone, {core_radius, core_radius, 0.5 * core_length}, place);
+  s.centre += 0.5 * (above_base - below_apex) * s.axes.col(2);
+  s.rounding = rounding;
+  s.detail = 0.5 * std::min(radius, length);
+  add_rim(s, -s.half[2]);
+  s.points.push_back(static_cast<int>(s.corners.size()));
+  s.face_points.push_back(s.points.back());
+  s.corners.push_back(s.centre + s.half[2] * s.axes.col(2));
+  finish_bounds(s, s.centre, std::hypot(radius, 0.5 * length) + below_apex);
+  return s;
+}
+
+Shape ellipsoid(std::string_view where, const Vec3& size, const ShapePlace& place) {
+  for (int i = 0; i < 3; ++i) check_positive(where, "size", size[i]);
+  const double rounding = 0.5 * kRounding * size.minCoeff();
+  Shape s = round_body(Solid::ellipsoid, 0.5 * size - Vec3::Constant(rounding), place);
+  s.rounding = rounding;
+  s.detail = 0.5 * size.minCoeff();
+  finish_bounds(s, place.origin, 0.5 * size.maxCoeff());
+  return s;
+}
+
+Shape plane(const ShapePlace& place) {
+  Shape s = round_body(Solid::half_space, Vec3::Zero(), place);
+  s.bound_radius = s.size = s.detail = s.reach = std::numeric_limits<double>::infinity();
+  return s;
+}
+
+Shape hull(std::string_view where, std::span<const Vec3> points, const ShapePlace& place,
+           double rounding) {
+  const double extent = check_extent(where, points);
+  const TriangleSurface outside = placed(convex_hull(where, points), place);
+  const double size = inner_size(outside);
+  if (!(size > kFlatShape * extent))
+    throw InputError(where, "the points lie almost in a plane, so their hull has no volume",
+                     "Give points that do not lie in one plane");
+  check_rounding(where, rounding, 0.5 * size);
+  Shape s = polyhedron(where, outside, rounding == 0.0 ? kRounding * size : rounding);
+  s.detail = size;
+  return s;
+}
+
+Shape mesh(std::string_view where, const TriangleSurface& surface, const ShapePlace& place,
+           double rounding) {
+  check_extent(where, surface.points);
+  TriangleSurface outside = placed(used_part(surface), place);
+  join_equal_points(outside);
+  check_closed(where, outside);
+  check_triangles(where, outside);
+  orient_outward(outside);
+  const double edge = median_edge(outside);
+  check_rounding(where, rounding, 0.25 * edge);
+  Shape s;
+  s.solid = Solid::surface;
+  s.rounding = rounding == 0.0 ? kRounding * edge : rounding;
+  take_triangles(s, shrunk(outside, s.rounding));
+  take_convex_corners(s);
+  s.tree = std::make_shared<const TriangleTree>(s.corners, s.triangles);
+  bound_corners(s);
+  s.size = s.detail = edge;
+  return s;
+}
+
+Shape height_field(std::string_view where, int columns, double spacing,
+                   std::span<const double> heights, const ShapePlace& place, double rounding) {
+  check_positive(where, "spacing", spacing);
+  const int rows = columns < 2 ? 0 : static_cast<int>(heights.size()) / columns;
+  if (rows < 2 || rows * columns != static_cast<int>(heights.size()))
+    throw InputError(where,
+                     format("{} heights do not fill rows of {} columns", heights.size(), columns),
+                     "Give at least two rows and two columns, row by row");
+  TriangleSurface field;
+  for (int iy = 0; iy < rows; ++iy)
+    for (int ix = 0; ix < columns; ++ix) {
+      const double z = heights[iy * columns + ix];
+      if (!std::isfinite(z))
+        throw InputError(where, "a height is not finite", "Correct the table of heights");
+      field.points.push_back(
+          {spacing * (ix - 0.5 * (columns - 1)), spacing * (iy - 0.5 * (rows - 1)), z});
+    }
+  for (int iy = 0; iy + 1 < rows; ++iy)
+    for (int ix = 0; ix + 1 < columns; ++ix) {
+      const int a = iy * columns + ix, b = a + 1, c = a + columns, d = c + 1;
+      field.triangles.push_back({a, b, d});
+      field.triangles.push_back({a, d, c});
+    }
+  field = placed(std::move(field), place);
+  check_rounding(where, rounding, 0.25 * spacing);
+  Shape s;
+  s.axes = place.axes;
+  s.solid = Solid::surface;
+  s.rounding = rounding == 0.0 ? kRounding * spacing : rounding;
+  take_triangles(s, shrunk(field, s.rounding));
+  take_convex_corners(s);
+  s.tree = std::make_shared<const TriangleTree>(s.corners, s.triangles);
+  bound_corners(s);
+  s.size = s.detail = spacing;
+  return s;
+}
+
+}  // namespace polhode::contact

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <polhode/geometry/nearest.hpp>
+
+namespace polhode::contact {
+
+/// Boxes around triangles in a tree: which of many triangles are near a point. The answers depend
+/// on the triangles alone.
+class TriangleTree {
+ public:
+  TriangleTree(const std::vector<Vec3>& corners, const std::vector<std::array<int, 3>>& triangles);
+
+  /// The triangle nearest to a point; of several the first in the tree.
+  struct Hit {
+    int triangle = -1;  ///< None is nearer than was asked for.
+    TriangleRegion region;
+    double distance = std::numeric_limits<double>::infinity();  ///< [m]
+  };
+  /// @param at_most  Triangles farther away do not matter [m].
+  [[nodiscard]] Hit nearest(const Vec3& x, double at_most) const;
+
+  /// Triangles whose boxes come as near to a point as `distance`, and perhaps others.
+  [[nodiscard]] std::vector<int> near(const Vec3& x, double distance) const;
+
+  /// How often a closed surface winds around a point: 1 within it, 0 outside, 2 where two parts of
+  /// it overlap; in its own hollows 0.
+  [[nodiscard]] int winding(const Vec3& x) const;
+
+  /// Calls use(triangle) for those in leaves that, like all around them, fulfil meets(box) with the
+  /// box's `low` and `high`.
+  template <class Meets, class Use>
+  void visit(Meets&& meets, Use&& use) const;
+
+  [[nodiscard]] const Vec3& low() const { return nodes_.front().low; }  ///< Of all triangles [m].
+  [[nodiscard]] const Vec3& high() const { return nodes_.front().high; }
+
+ private:
+  struct Node {
+    Vec3 low, high;
+    int first = 0, count = 0;  ///< Of a leaf: into order_.
+    int second_child = 0;      ///< Else: the first one follows.
+    [[nodiscard]] double squared_distance(const Vec3& x) const {
+      return (low - x).cwiseMax(x - high).cwiseMax(0.0).squaredNorm();
+    }
+  };
+  void build(const std::vector<Vec3>& middles, int first, int last);
+  /// Halving 2^31 triangles takes fewer levels.
+  static constexpr int kDeepest = 64;
+
+  std::vector<std::array<Vec3, 3>> triangles_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+template <class Meets, class Use>
+void TriangleTree::visit(Meets&& meets, Use&& use) const {
+  std::array<int, kDeepest> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!meets(node)) continue;
+    if (node.second_child > 0) {
+      stack[depth++] = node.second_child;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (int k = node.first; k < node.first + node.count; ++k)
+      use(order_[static_cast<std::size_t>(k)]);
+  }
+}
+
+}  // namespace polhode::contact

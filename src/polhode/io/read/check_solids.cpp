@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+
+#include <polhode/compile/plan_solid.hpp>
+#include <polhode/compile/solid_point.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+
+namespace polhode {
+namespace {
+
+/// The parts of a path such as solids.pad.mesh.elements[3].
+std::vector<std::string> parts_of(std::string_view path) {
+  std::vector<std::string> parts(1);
+  for (const char c : path) {
+    if (c == ']') continue;
+    if (c == '.' || c == '[')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+/// Whether a load's nodes or faces exist.
+void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
+  const std::string where = format("loads.{}", load.name);
+  try {
+    if (load.type == "nodal_force")
+      static_cast<void>(select_nodes(where + ".nodes", plan.mesh, load.selection));
+    else if (load.type != "body_force")
+      static_cast<void>(select_faces(where + ".surface", plan.mesh, load.selection));
+  } catch (const InputError& e) {
+    faults.push_back(e);
+  }
+}
+
+/// Whether a probe's point lies in the solid.
+void check_probe(const ProbeSpec& probe, const SolidPlan& plan, std::vector<InputError>& faults) {
+  const std::string where = format("output.probes.{}", probe.name);
+  if (probe.node && *probe.node >= static_cast<int>(plan.mesh.nodes.size())) {
+    faults.emplace_back(where + ".node", format("node {} does not exist", *probe.node),
+                        format("The solid has {} nodes; the first is 0", plan.mesh.nodes.size()));
+  } else if (!probe.node && probe.reaction_of.empty()) {
+    try {
+      static_cast<void>(solid_point(where + ".point", plan.mesh, probe.point));
+    } catch (const InputError& e) {
+      faults.push_back(e);
+    }
+  }
+}
+
+}  // namespace
+
+Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path) {
+  const SourceNode* node = &root;
+  Place place = context.tree.place_of(root);
+  for (const std::string& part : parts_of(path)) {
+    if (node->is_map()) {
+      const auto key = std::find_if(node->keys.begin(), node->keys.end(),
+                                    [&](const auto& k) { return k.name == part; });
+      if (key == node->keys.end()) break;
+      node = &node->children[static_cast<std::size_t>(key - node->keys.begin())];
+      // A map is meant by its name, a value by itself.
+      place = node->is_map() ? context.tree.place_of(*key, *node) : context.tree.place_of(*node);
+    } else if (node->is_list()) {
+      std::size_t index = 0;
+      const auto end = part.data() + part.size();
+      if (std::from_chars(part.data(), end, index).ptr != end || index >= node->children.size())
+        break;
+      node = &node->children[index];
+      place = context.tree.place_of(*node);
+    } else {
+      break;
+    }
+  }
+  return place;
+}
+
+void check_solids(ReadContext& context, const SourceNode& root) {
+  const Model& model = context.model;
+  std::vector<InputError> faults;
+  for (std::size_t s = 0; s < model.solids.size(); ++s) {
+    const SolidSpec& solid = model.solids[s];
+    if (!context.solid_is_sound[s]) continue;
+    const auto material = context.materials.at(solid.material);
+    if (!context.material_is_sound[static_cast<std::size_t>(material)]) continue;
+    const std::size_t before = faults.size();
+    const SolidPlan plan = plan_solid(model, static_cast<int>(s), &faults);
+    if (model.analysis.type == "statics" && solid.bonded.empty() && solid.prescribed.empty())
+      faults.emplace_back(format("solids.{}", solid.name), "nothing holds the solid",
+                          "In statics bond it to a body or to ground, or prescribe nodes.");
+    if (faults.size() > before) continue;
+    for (const LoadSpec& load : model.loads)
+      if (load.solid == static_cast<int>(s)) check_load(load, plan, faults);
+    for (const ProbeSpec& probe : model.output.probes)
+      if (probe.kind == "solid" && probe.target == solid.name) check_probe(probe, plan, faults);
+  }
+  for (const InputError& e : faults)
+    context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
+                            sentence(e.mend()));
+}
+
+}  // namespace polhode

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+
+namespace polhode {
+namespace {
+
+/// Writes a value where the file gives one, and leaves the standard where it does not.
+template <class Target, class Value>
+void assign(Target& target, const std::optional<Value>& value) {
+  if (value) target = *value;
+}
+
+/// A time, or auto.
+void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
+  const SourceNode* value = section.find("step");
+  if (!value || (value->is_text() && value->text == "auto")) return;
+  if (const std::string guess = value->is_text() ? closest(value->text, {"auto", "automatic"}) : "";
+      !guess.empty()) {
+    context.fault(*value, section.path("step"), quote(value->text) + " is not known",
+                  "Did you mean 'auto'? Give auto or a time.");
+    return;
+  }
+  analysis.step = section.number("step");
+}
+
+/// Entries that mean nothing in an analysis of this type.
+void check_type(Section& section, const std::string& type) {
+  const auto refuse = [&](const char* key, const std::string& goes_with) {
+    if (section.has(key))
+      section.fault(key, "does not go with type " + type, "It goes with " + goes_with + ".");
+  };
+  if (type != "dynamics")
+    for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "momentum_rate",
+                            "min_step", "max_step", "smooth_multipliers"})
+      refuse(key, "type dynamics");
+  if (type == "dynamics") refuse("load_steps", "type statics or modes");
+  if (type != "modes")
+    for (const char* key : {"count", "about"}) refuse(key, "type modes");
+}
+
+}  // namespace
+
+void read_analysis(ReadContext& context, const SourceNode& node, const Place& place) {
+  AnalysisSpec& analysis = context.model.analysis;
+  analysis.place = place;
+  Section section(context, node, place, "analysis", analysis_fields());
+  if (!node.is_map()) return;
+  assign(analysis.type, section.choice("type"));
+  assign(analysis.duration, section.number("duration"));
+  read_step(context, section, analysis);
+  analysis.tolerance = section.number("tolerance");
+  assign(analysis.rho_inf, section.number("rho_inf"));
+  if (const auto order = section.choice("order")) analysis.order = std::stoi(*order);
+  assign(analysis.momentum_rate, section.choice("momentum_rate"));
+  assign(analysis.solver, section.choice("solver"));
+  assign(analysis.jacobian, section.choice("jacobian"));
+  assign(analysis.isa, section.choice("isa"));
+  assign(analysis.conserving, section.boolean("conserving"));
+  assign(analysis.newton_tolerance, section.number("newton_tolerance"));
+  if (const auto most = section.integer("max_iterations")) analysis.max_iterations = *most;
+  if (const auto parts = section.integer("load_steps")) analysis.load_steps = *parts;
+  assign(analysis.count, section.integer("count"));
+  assign(analysis.about, section.choice("about"));
+  assign(analysis.line_search, section.boolean("line_search"));
+  assign(analysis.max_step_rotation, section.number("max_step_rotation"));
+  assign(analysis.assembly_tolerance, section.number("assembly_tolerance"));
+  analysis.min_step = section.number("min_step");
+  analysis.max_step = section.number("max_step");
+  assign(analysis.smooth_multipliers, section.boolean("smooth_multipliers"));
+  assign(analysis.checkpoint_every, section.number("checkpoint_every"));
+
+  check_type(section, analysis.type);
+  if (analysis.step && analysis.tolerance)
+    section.fault("tolerance", "stands beside a fixed step of " + shown(*analysis.step) + " s",
+                  "A tolerance chooses the steps by itself: leave 'step' out, write 'step: auto', "
+                  "or leave out 'tolerance'.");
+  if (analysis.order == 4 && !analysis.step)
+    section.fault("order", "order 4 has no error estimate, so it cannot choose its steps",
+                  "Give a step, or use order 2, 6 or 8.");
+  if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0)
+    section.fault(
+        "order",
+        format("order {} stands beside rho_inf {}", *analysis.order, shown(analysis.rho_inf)),
+        "Orders above 2 go back in time within a step, where numerical damping would feed energy "
+        "in: use rho_inf 1 or order 2.");
+  if (analysis.min_step && analysis.max_step && *analysis.min_step > *analysis.max_step)
+    section.fault("min_step",
+                  format("is above max_step: {} s > {} s", shown(*analysis.min_step),
+                         shown(*analysis.max_step)),
+                  "Give a smaller min_step.");
+}
+
+namespace {
+
+/// The name of a thing that a probe records; known are those in `names`.
+std::string read_target(ReadContext& context, Section& section, const std::string& kind,
+                        const std::vector<std::string>& names) {
+  const auto name = section.text(kind);
+  if (!name) return {};
+  if (std::find(names.begin(), names.end(), *name) == names.end()) {
+    std::string title = kind;
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    const std::string list = names.empty() ? format("The model has no {}s.", kind)
+                                           : format("{}s: {}.", title, name_list(names));
+    context.fault(*section.find(kind), section.path(kind),
+                  format("unknown {} {}", kind, quote(*name)), did_you_mean(*name, names) + list);
+  }
+  return *name;
+}
+
+/// An element of a beam or a piece of a cable.
+void read_line_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  std::vector<std::string> names;
+  const Model& model = context.model;
+  std::size_t count = 0;
+  const bool beam = probe.kind == "beam";
+  const auto take = [&](const std::string& name, std::size_t pieces) {
+    names.push_back(name);
+    if (name == probe.target) count = pieces;
+  };
+  if (const SourceNode* node = section.find(probe.kind); node->is_text()) probe.target = node->text;
+  for (const BeamSpec& b : model.beams)
+    if (beam) take(b.name, b.mesh.size());
+  for (const CableLineSpec& c : model.cables)
+    if (!beam) take(c.name, c.pieces.size());
+  read_target(context, section, probe.kind, names);
+  probe.element = section.integer("element").value_or(0);
+  if (count > 0 && static_cast<std::size_t>(std::max(0, probe.element)) >= count)
+    section.fault(
+        "element",
+        format("is {}, but the last of {} is {}", probe.element, quote(probe.target), count - 1),
+        "The first is 0.");
+}
+
+/// A point, a node or an interface of a solid.
+void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  const auto solid = read_solid_name(context, *section.find("solid"), section.path("solid"));
+  const auto point = section.vector("point");
+  const auto node = section.integer("node");
+  const auto interface = section.text("interface");
+  if (section.refuse_both("point", "node", "Give one of them.") ||
+      section.refuse_both("point", "interface", "Give one of them.") ||
+      section.refuse_both("node", "interface", "Give one of them.") || !solid)
+    return;
+  const SolidSpec& spec = context.model.solids[static_cast<std::size_t>(*solid)];
+  probe.target = spec.name;
+  if (!section.has("point") && !section.has("node") && !section.has("interface"))
+    section.fault("names no point of the solid", "Give one of: point, node, interface.");
+  if (point) probe.point = *point;
+  probe.node = node;
+  probe.stress = section.boolean("stress").value_or(false);
+  if (probe.stress && interface)
+    section.fault("stress", "does not go with 'interface'", "Give a point or a node of the solid.");
+  if (!interface) return;
+  std::vector<std::string> names;
+  for (const BondSpec& bond : spec.bonded) names.push_back(context.model.body_name(bond.body));
+  for (const PrescribedSpec& prescribed : spec.prescribed) names.push_back(prescribed.name);
+  probe.reaction_of = *interface;
+  if (const auto body = context.bodies.find(*interface); body != context.bodies.end())
+    probe.reaction_of = context.model.body_name(body->second);  // mast.end has a number, too
+  if (std::find(names.begin(), names.end(), probe.reaction_of) == names.end())
+    section.fault(
+        "interface",
+        format("the solid {} has no interface {}", quote(spec.name), quote(*interface)),
+        did_you_mean(*interface, names) +
+            (names.empty() ? "It is bonded to nothing." : "Interfaces: " + name_list(names) + "."));
+}
+
+/// Two bodies with shapes, solids or cables, in a model with contact.
+void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
+  const auto pair = read_side_pair(context, *section.find("contact"), section.path("contact"));
+  if (!pair) return;
+  if (!context.model.contacts.present) {
+    section.fault("contact", "the model has no contacts", "Add 'contacts: {}'.");
+    return;
+  }
+  for (const int body : *pair) {
+    if (is_solid_side(body)) continue;
+    if (is_cable_side(body)) {
+      const CableLineSpec& cable =
+          context.model.cables[static_cast<std::size_t>(cable_of_side(body))];
+      if (cable.contact) continue;
+      section.fault("contact", format("the cable {} does not touch", quote(cable.name)),
+                    "Give it contact: {radius: ...}, or leave the probe out.");
+      return;
+    }
+    const bool ground = body == kGround;
+    if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
+    section.fault("contact",
+                  ground ? std::string("the ground has no shapes")
+                         : format("the body {} has no shape",
+                                  quote(context.model.bodies[static_cast<std::size_t>(body)].name)),
+                  ground ? "Name the fixed body whose shape is meant."
+                         : "Give it a shape, or leave the probe out.");
+    return;
+  }
+  probe.pair = *pair;
+}
+
+void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) {
+  Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
+  if (!node.is_map()) return;
+  int targets = 0;
+  for (const char* kind : {"body", "joint", "load", "solid", "beam", "cable", "contact"}) {
+    if (!section.has(kind)) continue;
+    probe.kind = kind;
+    ++targets;
+  }
+  if (targets != 1) {
+    section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
+                  "Give one of: body, joint, load, solid, beam, cable, contact.");
+    return;
+  }
+  probe.every = section.number("every");
+  if (section.has("point") && probe.kind != "body" && probe.kind != "solid")
+    section.fault("point", format("does not go with '{}'", probe.kind),
+                  "A point belongs to a body or a solid.");
+  for (const char* key : {"node", "stress", "interface"})
+    if (section.has(key) && probe.kind != "solid")
+      section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a solid.");
+  if (section.has("element") && probe.kind != "beam" && probe.kind != "cable")
+    section.fault("element", format("does not go with '{}'", probe.kind),
+                  "It belongs to a beam or a cable.");
+  if (section.has("axes") && probe.kind != "joint")
+    section.fault("axes", format("does not go with '{}'", probe.kind),
+                  "Axes belong to a joint's reaction.");
+  if (const auto axes = section.choice("axes")) probe.axes = *axes;
+  if (probe.kind == "body") {
+    const auto body = section.body("body");
+    const auto point = section.vector("point");
+    if (!body) return;
+    if (*body == kGround) {
+      section.fault("body", "the ground does not move", "Name a body.");
+      return;
+    }
+    const BodySpec& spec = context.model.bodies[static_cast<std::size_t>(*body)];
+    probe.target = spec.name;
+    if (point) probe.point = *point - spec.com;
+  } else if (probe.kind == "solid") {
+    read_solid_probe(context, section, probe);
+  } else if (probe.kind == "beam" || probe.kind == "cable") {
+    read_line_probe(context, section, probe);
+  } else if (probe.kind == "contact") {
+    read_contact_probe(context, section, probe);
+  } else if (probe.kind == "joint") {
+    probe.target = read_target(context, section, "joint", context.joint_names());
+  } else {
+    probe.target = read_target(context, section, "load", context.load_names());
+  }
+}
+
+}  // namespace
+
+void read_output(ReadContext& context, const SourceNode& node, const Place& place) {
+  OutputSpec& output = context.model.output;
+  Section section(context, node, place, "output", output_fields());
+  if (!node.is_map()) return;
+  output.every = section.number("every");
+  assign(output.hdf5, section.boolean("hdf5"));
+  assign(output.csv, section.boolean("csv"));
+  assign(output.paraview, section.boolean("paraview"));
+  const SourceNode* probes = section.find("probes");
+  if (!probes || probes->kind == SourceNode::Kind::kEmpty) return;
+  if (!probes->is_map()) {
+    context.fault(*probes, section.path("probes"),
+                  "expects a map from names to probes, but is " + probes->description(),
+                  "Write 'name: {body: ...}'.");
+    return;
+  }
+  for (std::size_t k = 0; k < probes->keys.size(); ++k) {
+    const SourceNode::Key& key = probes->keys[k];
+    if (!check_name(context, key, probes->children[k], "output.probes")) continue;
+    ProbeSpec probe;
+    probe.name = key.name;
+    probe.place = context.tree.place_of(key, probes->children[k]);
+    read_probe(context, probes->children[k], probe);
+    output.probes.push_back(std::move(probe));
+  }
+}
+
+}  // namespace polhode

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <polhode/compile/build_contacts.hpp>
+#include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+
+namespace polhode {
+namespace {
+
+template <class T>
+void assign(T& target, const std::optional<T>& value) {
+  if (value) target = *value;
+}
+
+/// The smallest restitution that a damper can bring about.
+constexpr double kLeastDamped = 0.05;
+
+/// Keys of forces, which impulses do not have.
+constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_stiffness",
+                                "reference_load",     "rebound",         "reference_pressure",
+                                "static_friction",    "friction_across", "direction",
+                                "friction_stiffness", "friction_damping"};
+
+void read_law(Section& section, ContactLawSpec& law) {
+  const auto potential = section.choice("law");
+  const bool sound_law = potential || !section.has("law");
+  assign(law.potential, potential);
+  assign(law.gap_tolerance, section.number("gap_tolerance"));
+  if (law.potential == "nonsmooth") {
+    for (const char* key : kForceKeys)
+      if (section.has(key))
+        section.fault(key, "does not go with the law nonsmooth",
+                      "Leave it out: impulses know restitution, friction, rolling_friction and "
+                      "torsional_friction.");
+    assign(law.restitution, section.number("restitution"));
+    assign(law.friction, section.number("friction"));
+    assign(law.rolling, section.number("rolling_friction"));
+    assign(law.torsion, section.number("torsional_friction"));
+    return;
+  }
+  const bool hertz = law.potential == "hertz";
+  for (const char* key : {"stiffness", "hertz_stiffness"}) {
+    const auto value = section.number(key);
+    if (!value || !sound_law) continue;
+    if (hertz == (key == std::string("hertz_stiffness")))
+      law.stiffness = *value;
+    else
+      section.fault(key, format("does not go with the law {}", law.potential),
+                    hertz ? "Use hertz_stiffness." : "Use stiffness, or law: hertz.");
+  }
+  assign(law.reference_load, section.number("reference_load"));
+  if (section.has("reference_load"))
+    section.refuse_both("stiffness", "reference_load", "Give one of them.");
+  assign(law.reference_pressure, section.number("reference_pressure"));
+  assign(law.restitution, section.number("restitution"));
+  assign(law.rebound, section.choice("rebound"));
+  if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
+    section.fault("rebound", "damped stands beside the barrier law",
+                  "Use law: linear or hertz with it, or leave it out.");
+  else if (law.rebound == "damped" && law.restitution < kLeastDamped)
+    section.fault("restitution", format("a damper cannot bring about {}", shown(law.restitution)),
+                  format("Give at least {}, or leave out 'rebound'.", shown(kLeastDamped)));
+  assign(law.friction, section.number("friction"));
+  assign(law.static_friction, section.number("static_friction"));
+  if (section.has("static_friction") && law.static_friction < law.friction)
+    section.fault(
+        "static_friction",
+        format("{} is below friction, {}", shown(law.static_friction), shown(law.friction)),
+        "What sticks holds at least as much as what slides.");
+  assign(law.friction_across, section.number("friction_across"));
+  assign(law.direction, section.direction("direction"));
+  if (section.has("direction") && law.friction_across == 0.0)
+    section.fault("direction", "stands without 'friction_across'", "Give both, or neither.");
+  if (section.has("friction_across") && law.friction == 0.0)
+    section.fault("friction_across", "stands without 'friction'", "Give friction along direction.");
+  assign(law.rolling, section.number("rolling_friction"));
+  assign(law.torsion, section.number("torsional_friction"));
+  assign(law.friction_stiffness, section.number("friction_stiffness"));
+  assign(law.friction_damping, section.number("friction_damping"));
+}
+
+Combination combination(const std::string& word) {
+  if (word == "mean") return Combination::mean;
+  if (word == "minimum") return Combination::minimum;
+  if (word == "maximum") return Combination::maximum;
+  if (word == "product") return Combination::product;
+  return Combination::geometric_mean;
+}
+
+/// Reads the section; faults go to the context.
+class ContactsReader {
+ public:
+  ContactsReader(ReadContext& context, const SourceNode& node)
+      : context_(context),
+        node_(node),
+        contacts_(context.model.contacts),
+        section_(context, node, context.tree.place_of(node), "contacts", contacts_fields()) {}
+
+  void read() {
+    contacts_.present = true;
+    contacts_.place = section_.place();
+    if (!node_.is_map()) return;
+    if (const SourceNode* node = section_.find("default")) {
+      Section law(context_, *node, context_.tree.place_of(*node), section_.path("default"),
+                  contact_law_fields());
+      if (node->is_map()) read_law(law, contacts_.standard);
+    }
+    if (const SourceNode* node = section_.find("combine")) read_combination(*node);
+    each("materials", contact_material_fields(), "{friction: 0.5}",
+         [&](Section& section, const std::string& name) {
+           ContactMaterialSpec material{name, section.place(), contacts_.standard.friction,
+                                        contacts_.standard.restitution};
+           assign(material.friction, section.number("friction"));
+           assign(material.restitution, section.number("restitution"));
+           contacts_.materials.push_back(std::move(material));
+         });
+    each("pairs", contact_pair_fields(), "{between: [a, b], friction: 0.5}",
+         [&](Section& section, const std::string& name) { read_pair(section, name); });
+    if (const SourceNode* node = section_.find("exclude")) read_excluded(*node);
+    assign(contacts_.joint_neighbours, section_.boolean("joint_neighbours"));
+    each("sensors", contact_sensor_fields(), "{between: [a, b]}",
+         [&](Section& section, const std::string& name) { read_sensor(section, name); });
+    contacts_.resolve_overlaps = section_.choice("overlaps").value_or("error") == "resolve";
+    contacts_.record = section_.boolean("record");
+    assign(contacts_.sweeps, section_.integer("sweeps"));
+    assign(contacts_.sweep_tolerance, section_.number("sweep_tolerance"));
+    for (const char* key : {"sweeps", "sweep_tolerance"})
+      if (section_.has(key) && !contacts_.nonsmooth())
+        section_.fault(key, "stands without the law nonsmooth",
+                       "Set contacts.default.law: nonsmooth, or leave it out.");
+  }
+
+ private:
+  /// Every entry of a map from names to sections.
+  template <class F>
+  void each(const std::string& key, const FieldTable& table, const char* example, F&& read_one) {
+    const SourceNode* node = section_.find(key);
+    if (!node || node->kind == SourceNode::Kind::kEmpty) return;
+    if (!node->is_map()) {
+      context_.fault(*node, section_.path(key),
+                     format("expects a map from names to {}, but is {}", key, node->description()),
+                     format("Write name: {}.", example));
+      return;
+    }
+    for (std::size_t k = 0; k < node->keys.size(); ++k) {
+      const std::string& name = node->keys[k].name;
+      if (!check_name(context_, node->keys[k], node->children[k], section_.path(key))) continue;
+      Section section(context_, node->children[k],
+                      context_.tree.place_of(node->keys[k], node->children[k]),
+                      section_.path(key) + "." + name, table);
+      if (node->children[k].is_map()) read_one(section, name);
+    }
+  }
+
+  void read_combination(const SourceNode& node) {
+    Section section(context_, node, context_.tree.place_of(node), section_.path("combine"),
+                    contact_combination_fields());
+    if (!node.is_map()) return;
+    if (const auto way = section.choice("friction")) contacts_.friction = combination(*way);
+    if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
+  }
+
+  /// Two bodies that have shapes, or one and a solid or cable; ground itself has none.
+  std::optional<std::array<int, 2>> read_sides(Section& section) {
+    const SourceNode* node = section.find("between");
+    if (!node) return std::nullopt;
+    const auto pair = read_side_pair(context_, *node, section.path("between"));
+    if (!pair || !check_bodies(*pair, *section.find("between"), section.path("between")))
+      return std::nullopt;
+    return pair;
+  }
+
+  bool check_bodies(const std::array<int, 2>& pair, const SourceNode& node,
+                    const std::string& path) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (is_solid_side(pair[k])) continue;
+      if (is_cable_side(pair[k])) {
+        const CableLineSpec& cable =
+            context_.model.cables[static_cast<std::size_t>(cable_of_side(pair[k]))];
+        if (cable.contact) continue;
+        context_.fault(node.children[k], path,
+                       format("the cable {} does not touch", quote(cable.name)),
+                       "Give it contact: {radius: ...}, or leave the pair out.");
+        return false;
+      }
+      if (pair[k] == kGround) {
+        context_.fault(node.children[k], path, "the ground has no shapes",
+                       "Name the fixed body whose shape is meant.");
+        return false;
+      }
+      const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(pair[k])];
+      if (!body.shapes.empty()) continue;
+      if (context_.body_is_sound[static_cast<std::size_t>(pair[k])])
+        context_.fault(node.children[k], path, format("the body {} has no shape", quote(body.name)),
+                       "Give it a shape, or leave the pair out.");
+      return false;
+    }
+    const auto fixed = [&](int b) {
+      return !is_surface_side(b) && context_.model.bodies[static_cast<std::size_t>(b)].fixed;
+    };
+    if (!fixed(pair[0]) || !fixed(pair[1])) return true;
+    context_.fault(node, path, "both bodies are fixed", "Name at least one that moves.");
+    return false;
+  }
+
+  void read_pair(Section& section, const std::string& name) {
+    ContactPairSpec pair;
+    pair.name = name;
+    pair.place = section.place();
+    pair.law = contacts_.standard;
+    if (section.refuse_both("between", "materials", "Give one of them.")) return;
+    if (!section.has("between") && !section.has("materials")) {
+      if (!section.has_unknown_key())
+        section.fault("names no pair", "Give 'between' with two bodies, or 'materials' with two.");
+      return;
+    }
+    std::optional<std::array<int, 2>> ends;
+    if (section.has("materials")) {
+      pair.of_materials = true;
+      ends = read_materials(section);
+      if (ends) {
+        const auto combined = combined_surface(contacts_, (*ends)[0], (*ends)[1]);
+        pair.law.friction = combined.friction;
+        pair.law.restitution = combined.restitution;
+      }
+    } else {
+      ends = read_sides(section);
+    }
+    read_law(section, pair.law);
+    if ((pair.law.potential == "nonsmooth") != contacts_.nonsmooth())
+      section.fault("law",
+                    format("{} beside {} in contacts.default", pair.law.potential,
+                           contacts_.standard.potential),
+                    "The law nonsmooth decides how steps are taken: state it in contacts.default "
+                    "for all pairs, or nowhere.");
+    if (!ends) return;
+    if (!pair.of_materials) check_law_of_sides(section, *ends);
+    pair.a = (*ends)[0];
+    pair.b = (*ends)[1];
+    for (const ContactPairSpec& other : contacts_.pairs)
+      if (other.of_materials == pair.of_materials &&
+          std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b))
+        section.fault(pair.of_materials ? "materials" : "between",
+                      format("{} states this pair already", quote(other.name)),
+                      "Keep one of them.");
+    contacts_.pairs.push_back(std::move(pair));
+  }
+
+  /// What is stated of a point does not suit a surface, and the other way round.
+  void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
+    if (!is_surface_side(sides[0]) && !is_surface_side(sides[1])) {
+      if (section.has("reference_pressure"))
+        section.fault("reference_pressure", "stands in a pair of bodies",
+                      "It belongs to surfaces of solids and to cables: use reference_load.");
+      return;
+    }
+    const bool cable = is_cable_side(sides[0]) || is_cable_side(sides[1]);
+    const std::string not_of =
+        format("does not go with {}", cable ? "a cable" : "the surface of a solid");
+    for (const char* key : {"stiffness", "hertz_stiffness", "reference_load", "rebound",
+                            "friction_stiffness", "friction_damping"})
+      if (section.has(key))
+        section.fault(key, not_of,
+                      "Leave it out; reference_pressure makes the surface stiffer or softer.");
+    if (section.has("law") && section.choice("law") == "hertz")
+      section.fault("law", "hertz " + not_of,
+                    cable ? "Use barrier or linear."
+                          : "Use barrier or linear: the solid itself gives way as Hertz says.");
+  }
+
+  std::optional<std::array<int, 2>> read_materials(Section& section) {
+    const SourceNode& node = *section.find("materials");
+    const std::string path = section.path("materials");
+    if (!node.is_list() || node.children.size() != 2) {
+      context_.fault(node, path,
+                     format("expects two contact materials, but is {}",
+                            node.is_list() ? format("a list of {}", node.children.size())
+                                           : node.description()),
+                     "Write [rubber, steel]; a material against itself stands twice.");
+      return std::nullopt;
+    }
+    std::array<int, 2> ends{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto name = read_text(context_, node.children[k], path);
+      if (!name) return std::nullopt;
+      const auto index = find_material(*name);
+      if (!index) {
+        unknown_material(context_.tree.place_of(node.children[k]), path, *name);
+        return std::nullopt;
+      }
+      ends[k] = *index;
+    }
+    return ends;
+  }
+
+  std::optional<int> find_material(const std::string& name) const {
+    for (std::size_t k = 0; k < contacts_.materials.size(); ++k)
+      if (contacts_.materials[k].name == name) return static_cast<int>(k);
+    return std::nullopt;
+  }
+
+  void unknown_material(const Place& place, const std::string& path, const std::string& name) {
+    std::vector<std::string> names;
+    for (const ContactMaterialSpec& m : contacts_.materials) names.push_back(m.name);
+    context_.diagnostics.add(
+        place, path, "unknown contact material " + quote(name),
+        did_you_mean(name, names) + (names.empty() ? "contacts.materials lists none."
+                                                   : sentence("Materials: " + name_list(names))));
+  }
+
+  void read_sensor(Section& section, const std::string& name) {
+    if (!section.has("between")) return;
+    const auto ends = read_sides(section);
+    if (!ends) return;
+    if (is_surface_side((*ends)[0]) || is_surface_side((*ends)[1])) {
+      section.fault("between", "a sensor does not know surfaces of solids, nor cables",
+                    "Name two bodies; for a solid or cable a probe tells gap and force.");
+      return;
+    }
+    for (const ContactPairSpec& other : contacts_.pairs)
+      if (!other.of_materials &&
+          std::minmax(other.a, other.b) == std::minmax((*ends)[0], (*ends)[1]))
+        section.fault("between", format("{} states this pair already", quote(other.name)),
+                      "A sensor exerts no force: keep one of them. What touches is reported too, "
+                      "see output.probes.");
+    ContactPairSpec pair;
+    pair.name = name;
+    pair.place = section.place();
+    pair.a = (*ends)[0];
+    pair.b = (*ends)[1];
+    pair.sensor = true;
+    contacts_.pairs.push_back(std::move(pair));
+  }
+
+  void read_excluded(const SourceNode& node) {
+    const std::string path = section_.path("exclude");
+    if (node.kind == SourceNode::Kind::kEmpty) return;
+    if (!node.is_list()) {
+      context_.fault(node, path, "expects a list of pairs, but is " + node.description(),
+                     "Write [[a, b], [a, c]].");
+      return;
+    }
+    for (const SourceNode& child : node.children) {
+      const auto pair = read_side_pair(context_, child, path);
+      if (pair && check_bodies(*pair, child, path)) contacts_.excluded.push_back(*pair);
+    }
+  }
+
+  ReadContext& context_;
+  const SourceNode& node_;
+  ContactsSpec& contacts_;
+  Section section_;
+};
+
+}  // namespace
+
+std::optional<std::vector<std::string>> read_names(ReadContext& context, const SourceNode& node,
+                                                   const std::string& path) {
+  if (!node.is_list() || node.children.empty()) {
+    context.fault(node, path, "expects a list of names, but is " + node.description(),
+                  "Write [a, b], for example.");
+    return std::nullopt;
+  }
+  std::vector<std::string> names;
+  for (const SourceNode& child : node.children) {
+    const auto name = read_text(context, child, path);
+    if (!name) return std::nullopt;
+    if (name->empty() || std::find(names.begin(), names.end(), *name) != names.end()) {
+      context.fault(child, path, name->empty() ? "a name is empty" : quote(*name) + " stands twice",
+                    "Give each name once.");
+      return std::nullopt;
+    }
+    names.push_back(*name);
+  }
+  return names;
+}
+
+ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
+                                  const std::string& path) {
+  ContactSideSpec side;
+  side.place = context.tree.place_of(node);
+  Section section(context, node, side.place, path, contact_side_fields());
+  if (node.is_map()) read_contact_side(section, side);
+  return side;
+}
+
+void read_contact_side(Section& section, ContactSideSpec& side) {
+  side.place = section.place();
+  side.touches = section.boolean("touches");
+  side.material = section.text("material");
+  side.groups = section.names("groups");
+  side.meets = section.names("meets");
+}
+
+void read_solid_contact(ReadContext& context, const SourceNode& node, const std::string& path,
+                        SolidSpec& solid) {
+  Section section(context, node, context.tree.place_of(node), path, solid_contact_fields());
+  if (!node.is_map()) return;
+  if (const SourceNode* value = section.find("surface"))
+    if (auto faces = read_selections(context, *value, section.path("surface")))
+      solid.contact_surface = std::move(*faces);
+  solid.self_contact = section.boolean("self").value_or(false);
+  read_contact_side(section, solid.contact);
+}
+
+std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
+                                                 const std::string& path) {
+  const auto is_solid = [&](const SourceNode& child) {
+    return child.is_text() && context.solids.contains(child.text);
+  };
+  const auto is_cable = [&](const SourceNode& child) {
+    return child.is_text() && context.cables.contains(child.text);
+  };
+  if (!node.is_list() || node.children.size() != 2 ||
+      std::none_of(node.children.begin(), node.children.end(),
+                   [&](const SourceNode& child) { return is_solid(child) || is_cable(child); }))
+    return read_body_pair(context, node, path);
+  std::array<int, 2> sides{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const SourceNode& child = node.children[k];
+    const bool solid = is_solid(child), cable = is_cable(child);
+    if (!solid && !cable) {
+      const auto body = read_body(context, child, path);
+      if (!body) return std::nullopt;
+      sides[k] = *body;
+      continue;
+    }
+    if (const bool body = context.bodies.contains(child.text); body || (solid && cable)) {
+      context.fault(child, path,
+                    format("{} is a {} and a {}", quote(child.text), body ? "body" : "solid",
+                           cable ? "cable" : "solid"),
+                    "Give one of them another name.");
+      return std::nullopt;
+    }
+    if (cable && !context.cables.at(child.text)) return std::nullopt;  // its fault is told
+    sides[k] = cable ? side_of_cable(*context.cables.at(child.text))
+                     : side_of_solid(context.solids.at(child.text));
+  }
+  return sides;
+}
+
+void read_contacts(ReadContext& context, const SourceNode& node) {
+  ContactsReader(context, node).read();
+}
+
+void check_contacts(ReadContext& context, const SourceNode& root) {
+  Model& model = context.model;
+  if (!model.contacts.present) return;
+  if (std::find(context.body_is_sound.begin(), context.body_is_sound.end(), false) !=
+      context.body_is_sound.end())
+    return;
+  std::vector<InputError> faults;
+  check_contact_shapes(model, faults);
+  if (faults.empty()) static_cast<void>(plan_surface_contacts(model, &faults));
+  for (const InputError& e : faults)
+    context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
+                            sentence(e.mend()));
+}
+
+}  // namespace polhode

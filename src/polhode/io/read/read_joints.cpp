@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+#include <polhode/joints/registry.hpp>
+
+namespace polhode {
+namespace {
+
+/// Where a body stands at the start; the ground is the world.
+struct Pose {
+  Vec3 r = Vec3::Zero();    ///< Centre of mass [m].
+  Vec3 com = Vec3::Zero();  ///< The same in the user's body coordinates [m].
+  Mat3 Lambda = Mat3::Identity();
+
+  [[nodiscard]] Vec3 from_world(const Vec3& point) const {
+    return Lambda.transpose() * (point - r);
+  }
+  [[nodiscard]] Vec3 to_world(const Vec3& Z) const { return r + Lambda * Z; }
+};
+
+Pose pose_of(const ReadContext& context, int body) {
+  if (body == kGround) return {};
+  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
+  return {b.position, b.com, b.orientation.toRotationMatrix()};
+}
+
+/// Right-handed axes with this z; x as near as it can be to a wish, or along the world axis that is
+/// least along z.
+Mat3 axes_about(const Vec3& z, const std::optional<Vec3>& wish = {}) {
+  int least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  const Vec3 x = wish.value_or(Vec3::Unit(least));
+  Mat3 F;
+  F.col(2) = z;
+  F.col(0) = (x - x.dot(z) * z).normalized();
+  F.col(1) = z.cross(F.col(0));
+  return F;
+}
+
+class JointReader {
+ public:
+  JointReader(ReadContext& context, const SourceNode& node, JointSpec& joint,
+              const FieldTable& table)
+      : context_(context),
+        node_(node),
+        joint_(joint),
+        table_(table),
+        section_(context, node, joint.place, "joints." + joint.name, table) {}
+
+  void read() {
+    if (!node_.is_map()) return;
+    const std::size_t before = context_.diagnostics.size();
+    const auto bodies = section_.body_pair("bodies");
+    if (bodies) {
+      joint_.a = (*bodies)[0];
+      joint_.b = (*bodies)[1];
+      check_can_move();
+    }
+    a_ = pose_of(context_, joint_.a);
+    b_ = pose_of(context_, joint_.b);
+    read_points();
+    read_axes();
+    read_parameters();
+    read_friction();
+    joint_.limits = read_limits("limits");
+    joint_.angle_limits = read_limits("angle_limits");
+    read_frame_motion();
+    // What follows needs sound numbers, and bodies that stand where they should.
+    const auto sound = [&](int body) {
+      return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
+    };
+    if (context_.diagnostics.size() != before || !bodies || !sound(joint_.a) || !sound(joint_.b))
+      return;
+    if (joint_.type == "distance") complete_distance();
+    check_recipe();
+    check_start();
+  }
+
+ private:
+  [[nodiscard]] bool takes(const std::string& name) const { return table_.find(name) != nullptr; }
+
+  void check_can_move() {
+    const auto stays = [&](int body) {
+      return body == kGround || context_.model.bodies[static_cast<std::size_t>(body)].fixed;
+    };
+    if (stays(joint_.a) && stays(joint_.b))
+      section_.fault("bodies", "neither body can move",
+                     "Leave the joint out, or name a body that is not fixed.");
+  }
+
+  void read_points() {
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
+    if (const auto points = section_.vector_pair("at_body")) {
+      joint_.Z_a = (*points)[0] - a_.com;
+      joint_.Z_b = (*points)[1] - b_.com;
+      joint_.assembled_start = true;
+    }
+    if (section_.has("at_body")) return;
+    if (!section_.has("at")) {
+      // Directions alone matter to parallel axes.
+      if (joint_.type != "parallel_axes" && section_.misses("at") && section_.misses("at_body"))
+        section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
+      return;
+    }
+    if (table_.at("at").kind == FieldKind::kVectorPair) {
+      const auto points = section_.vector_pair("at");
+      if (!points) return;
+      joint_.Z_a = a_.from_world((*points)[0]);
+      joint_.Z_b = b_.from_world((*points)[1]);
+    } else if (const auto point = section_.vector("at")) {
+      joint_.Z_a = a_.from_world(*point);
+      joint_.Z_b = b_.from_world(*point);
+    }
+  }
+
+  void set_axes(const Mat3& F) {
+    joint_.R_a = a_.Lambda.transpose() * F;
+    joint_.R_b = b_.Lambda.transpose() * F;
+  }
+
+  void read_axes() {
+    if (takes("axes")) {
+      read_cross();
+      return;
+    }
+    if (!takes("axis")) {
+      set_axes(Mat3::Identity());
+      return;
+    }
+    if (takes("axis_body")) {
+      section_.refuse_both("axis", "axis_body", "Give one of them.");
+      if (section_.misses("axis") && section_.misses("axis_body"))
+        section_.fault("'axis' is missing", "Give axis (world) or axis_body (on each body).");
+      if (section_.has("axis_body")) {
+        read_body_axes();
+        return;
+      }
+    }
+    const auto axis = section_.direction("axis");
+    const auto x = section_.direction("x_axis");
+    if (section_.has("axis") && !axis) return;
+    const Vec3 z = axis.value_or(Vec3::UnitZ());
+    if (x && !check_x(z, *x)) return;
+    set_axes(axes_about(z, x));
+  }
+
+  bool check_x(const Vec3& z, const Vec3& x) {
+    if (x.cross(z).norm() > 1e-3) return true;
+    section_.fault("x_axis", "is parallel to the joint's z", "Give a direction across the axis.");
+    return false;
+  }
+
+  /// z on each body; x_axis counts in the world at the start, as seen from a.
+  void read_body_axes() {
+    const auto z = section_.direction_pair("axis_body");
+    const auto x = section_.direction("x_axis");
+    if (!z) return;
+    const Vec3 z_a = a_.Lambda * (*z)[0], z_b = b_.Lambda * (*z)[1];
+    if (x && !check_x(z_a, *x)) return;
+    const Mat3 F = axes_about(z_a, x);
+    // The shortest turn from one axis to the other keeps the joint's angle at the start near zero.
+    const Quat turn = Quat::FromTwoVectors(z_a, z_b);
+    joint_.R_a = a_.Lambda.transpose() * F;
+    joint_.R_b = b_.Lambda.transpose() * (turn * F);
+    joint_.assembled_start = true;
+  }
+
+  /// The two axes of a universal joint: x on a, y on b.
+  void read_cross() {
+    const auto axes = section_.direction_pair("axes");
+    if (!axes) return;
+    const auto& [x, y] = *axes;
+    const double angle = std::atan2(x.cross(y).norm(), x.dot(y));
+    if (std::abs(x.dot(y)) > 1e-6) {
+      section_.fault("axes", format("are {:.6g} deg apart", angle * 180.0 / 3.14159265358979323846),
+                     "The two axes of a universal joint are perpendicular.");
+      return;
+    }
+    Mat3 F;
+    F.col(0) = x;
+    F.col(2) = x.cross(y).normalized();
+    F.col(1) = F.col(2).cross(x);
+    set_axes(F);
+  }
+
+  void read_parameters() {
+    const JointKind& kind = joint_kind(joint_.type);
+    if (kind.takes_free_list)
+      if (const auto free = section_.choices("free")) joint_.free = *free;
+    for (const Parameter& parameter : kind.parameters) {
+      if (const auto value = section_.number(parameter.name))
+        joint_.parameters[parameter.name] = *value;
+      else if (parameter.standard)
+        joint_.parameters[parameter.name] = *parameter.standard;
+    }
+  }
+
+  void read_friction() {
+    const SourceNode* node = takes("friction") ? section_.find("friction") : nullptr;
+    if (!node) return;
+    const auto kind = std::find_if(friction_tables().begin(), friction_tables().end(),
+                                   [&](const KindTable& k) { return k.name == joint_.type; });
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("friction"),
+                    kind->table);
+    if (!node->is_map()) return;
+    const auto number = [&](const char* name) {
+      return kind->table.find(name) ? section.number(name).value_or(0.0) : 0.0;
+    };
+    JointFrictionSpec f{.mu = number("mu"),
+                        .radius = number("radius"),
+                        .face_radius = number("face_radius"),
+                        .length = number("length"),
+                        .constant = number("moment") + number("force"),
+                        .stiffness = section.number("stiffness"),
+                        .damping = section.number("damping")};
+    const bool by_arm =
+        joint_.type == "revolute" || joint_.type == "spherical" || joint_.type == "universal";
+    if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
+      section.fault("'radius' is missing", "mu acts on the radius of the pin or ball: give it.");
+    else if (f.mu == 0.0 && f.constant == 0.0 && section.misses("mu"))
+      section.fault("nothing rubs here",
+                    format("Give mu, or {}, or leave friction out.", by_arm ? "moment" : "force"));
+    joint_.friction = f;
+  }
+
+  std::optional<JointLimitsSpec> read_limits(const char* key) {
+    const SourceNode* node = takes(key) ? section_.find(key) : nullptr;
+    if (!node) return std::nullopt;
+    const bool turns = table_.at(key).table == angle_limit_fields().title;
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path(key),
+                    turns ? angle_limit_fields() : stroke_limit_fields());
+    if (!node->is_map()) return std::nullopt;
+    JointLimitsSpec l{.lower = section.number("lower"),
+                      .upper = section.number("upper"),
+                      .restitution = section.number("restitution").value_or(0.0),
+                      .band = section.number("band"),
+                      .stiffness = section.number("stiffness")};
+    if (section.misses("lower") && section.misses("upper"))
+      section.fault("no stop is given", "Give lower, upper, or both.");
+    if (l.lower && l.upper && !(*l.lower < *l.upper))
+      section.fault("upper", "is not above lower",
+                    "Exchange them, or use a joint without this freedom.");
+    else if (l.lower && l.upper && l.band && *l.upper - *l.lower <= *l.band)
+      section.fault("band", "is wider than the way between the stops", "Give a narrower band.");
+    return l;
+  }
+
+  void read_frame_motion() {
+    const SourceNode* node = takes("motion") ? section_.find("motion") : nullptr;
+    if (!node) return;
+    for (const char* other : {"friction", "limits", "angle_limits"})
+      if (takes(other) && section_.has(other))
+        section_.fault("motion", format("stands beside '{}'", other),
+                       "Let a body of its own carry the motion, and join it without.");
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("motion"),
+                    motion_fields());
+    if (!node->is_map()) return;
+    std::array<bool, 3> moves{};
+    joint_.motion = read_motion(context_, section, moves);
+    joint_.assembled_start = joint_.assembled_start || joint_.motion;
+  }
+
+  /// Joints given with `at` stand at zero; others are looked at when the start is assembled.
+  void check_start() {
+    if (joint_.assembled_start) return;
+    for (const auto& [key, limits] :
+         {std::pair("limits", joint_.limits), std::pair("angle_limits", joint_.angle_limits)})
+      if (limits && (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))
+        section_.fault(key, "the joint starts at 0, which is outside",
+                       "Coordinates count from the start where the joint is given with at: shift "
+                       "the limits, or give at_body or axis_body.");
+  }
+
+  void complete_distance() {
+    const double start = (a_.to_world(joint_.Z_a) - b_.to_world(joint_.Z_b)).norm();
+    const auto [found, is_new] = joint_.parameters.emplace("distance", start);
+    if (is_new && !(start > 0.0)) {
+      section_.fault(section_.has("at") ? "at" : "at_body", "the two points coincide at the start",
+                     "Use a spherical joint, or give the distance.");
+    }
+    if (!is_new && std::abs(found->second - start) > 1e-9 * start) joint_.assembled_start = true;
+  }
+
+  /// The kind itself knows what else can be wrong.
+  void check_recipe() {
+    try {
+      joint_kind(joint_.type)
+          .recipe({joint_.Z_a, joint_.Z_b, joint_.R_a, joint_.R_b},
+                  {joint_.free, joint_.parameters});
+    } catch (const InputError& error) {
+      const bool is_key = table_.find(error.where()) != nullptr;
+      section_.fault(is_key ? error.where() : "type", error.what_is_wrong(), error.mend());
+    }
+  }
+
+  ReadContext& context_;
+  const SourceNode& node_;
+  JointSpec& joint_;
+  const FieldTable& table_;
+  Section section_;
+  Pose a_, b_;
+};
+
+}  // namespace
+
+void read_joints(ReadContext& context, const SourceNode& node) {
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const SourceNode::Key& key = node.keys[k];
+    if (!check_name(context, key, node.children[k], "joints")) continue;
+    JointSpec joint;
+    joint.name = key.name;
+    joint.place = context.tree.place_of(key, node.children[k]);
+    if (const FieldTable* table = read_kind(context, node.children[k], joint.place,
+                                            "joints." + key.name, joint_tables(), joint.type))
+      JointReader(context, node.children[k], joint, *table).read();
+    context.joints.emplace(joint.name, static_cast<int>(context.model.joints.size()));
+    context.model.joints.push_back(std::move(joint));
+  }
+}
+
+}  // namespace polhode

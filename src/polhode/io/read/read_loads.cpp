@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+#include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
+
+namespace polhode {
+namespace {
+
+/// A world point at the start, seen from a body's centre of mass in its axes.
+Vec3 seen_from(const ReadContext& context, int body, const Vec3& point) {
+  if (body == kGround) return point;
+  const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
+  return b.orientation.conjugate() * (point - b.position);
+}
+
+/// A point in the user's body coordinates, seen from the centre of mass.
+Vec3 from_com(const ReadContext& context, int body, const Vec3& point) {
+  if (body == kGround) return point;
+  return point - context.model.bodies[static_cast<std::size_t>(body)].com;
+}
+
+/// True if a joint leaves one rotation free, and that about its z.
+bool turns_about_z(const JointSpec& joint) {
+  if (joint.type.empty()) return true;  // Its own fault is told already.
+  const auto has = [&](const std::string& freedom) {
+    return std::find(joint.free.begin(), joint.free.end(), freedom) != joint.free.end();
+  };
+  const JointKind& kind = joint_kind(joint.type);
+  if (kind.takes_free_list) return has("rz") && !has("rx") && !has("ry");
+  const std::string& free = kind.free;
+  const auto leaves = [&](const char* freedom) { return free.find(freedom) != std::string::npos; };
+  return leaves("Rz") && !leaves("Rx") && !leaves("Ry");
+}
+
+class LoadReader {
+ public:
+  LoadReader(ReadContext& context, const SourceNode& node, LoadSpec& load, const FieldTable& table)
+      : context_(context),
+        load_(load),
+        table_(table),
+        section_(context, node, load.place, "loads." + load.name, table) {}
+
+  void read() {
+    if (table_.find("solid")) {
+      read_on_solid();
+    } else {
+      read_on_bodies(load_kind(load_.type));
+    }
+    for (const Field& field : table_.fields)
+      if (field.kind == FieldKind::kNumber)
+        if (const auto value = section_.number(field.name)) load_.parameters[field.name] = *value;
+  }
+
+ private:
+  /// A force or moment on one body.
+  void read_wrench(const LoadKind& kind) {
+    if (const auto body = section_.body("body")) {
+      load_.b = *body;
+      if (*body == kGround)
+        section_.fault("body", "a load on the ground moves nothing", "Name a body.");
+    }
+    if (kind.vector.empty()) return;
+    if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
+    load_.body_fixed = section_.boolean("body_fixed").value_or(false);
+    if (kind.turns) return;  // The same wherever it acts.
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
+    if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
+    if (const auto point = section_.vector("at_body"))
+      load_.Z_b = from_com(context_, load_.b, *point);
+  }
+
+  void read_on_bodies(const LoadKind& kind) {
+    switch (kind.place) {
+      case LoadPlace::body:
+        read_wrench(kind);
+        break;
+      case LoadPlace::points:
+        read_bodies();
+        read_points();
+        break;
+      case LoadPlace::joint:
+        load_.joint = read_joint("joint", section_.find("joint"), &load_.a, &load_.b);
+        if (table_.find("coordinate"))
+          if (const auto coordinate = section_.choice("coordinate")) load_.coordinate = *coordinate;
+        check_angle(kind);
+        break;
+      case LoadPlace::joints:
+        read_joint_pair();
+        break;
+      case LoadPlace::frames:
+        read_bodies();
+        read_frames();
+        break;
+      case LoadPlace::surface:
+        read_bodies();
+        read_points();
+        read_axes();
+        break;
+      case LoadPlace::centres:
+        read_bodies();
+        break;
+    }
+    read_drive(kind);
+    read_laws(kind);
+    require_effect(kind);
+  }
+
+  /// A load on nodes or faces of a deformable solid.
+  void read_on_solid() {
+    if (const SourceNode* value = section_.find("solid"))
+      if (const auto solid = read_solid_name(context_, *value, section_.path("solid")))
+        load_.solid = *solid;
+    for (const char* key : {"surface", "nodes"}) {
+      if (!table_.find(key) || !section_.has(key)) continue;
+      if (auto selection = read_selections(context_, *section_.find(key), section_.path(key)))
+        load_.selection = std::move(*selection);
+    }
+    if (table_.find("pressure")) load_.value = section_.time_number("pressure");
+    if (table_.find("follower")) load_.follower = section_.boolean("follower").value_or(true);
+    if (table_.find("keeps"))
+      if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
+    for (const char* key : {"traction", "acceleration", "force"})
+      if (table_.find(key))
+        if (const auto vector = section_.time_vector(key)) load_.vector = *vector;
+  }
+
+  void read_bodies() {
+    if (const auto bodies = section_.body_pair("bodies")) {
+      load_.a = (*bodies)[0];
+      load_.b = (*bodies)[1];
+    }
+  }
+
+  /// False after a fault.
+  bool check_point_keys() {
+    if (section_.refuse_both("at", "at_body", "Give one of them.")) return false;
+    if (section_.misses("at") && section_.misses("at_body"))
+      section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
+    return true;
+  }
+
+  void read_points() {
+    if (!check_point_keys()) return;
+    if (const auto points = section_.vector_pair("at")) {
+      load_.Z_a = seen_from(context_, load_.a, (*points)[0]);
+      load_.Z_b = seen_from(context_, load_.b, (*points)[1]);
+    }
+    read_points_on_bodies();
+  }
+
+  void read_points_on_bodies() {
+    if (const auto points = section_.vector_pair("at_body")) {
+      load_.Z_a = from_com(context_, load_.a, (*points)[0]);
+      load_.Z_b = from_com(context_, load_.b, (*points)[1]);
+    }
+  }
+
+  /// One point and one set of axes at the start, carried by both bodies.
+  void read_frames() {
+    if (!check_point_keys()) return;
+    if (const auto point = section_.vector("at")) {
+      load_.Z_a = seen_from(context_, load_.a, *point);
+      load_.Z_b = seen_from(context_, load_.b, *point);
+    }
+    read_points_on_bodies();
+    read_axes();
+  }
+
+  void read_axes() {
+    const auto axis = section_.direction("axis");
+    const auto wish = section_.direction("x_axis");
+    const Vec3 z = axis.value_or(Vec3::UnitZ());
+    int least = 0;
+    z.cwiseAbs().minCoeff(&least);
+    const Vec3 x = wish.value_or(Vec3::Unit(least));
+    if (x.cross(z).norm() < 1e-3) {
+      section_.fault("x_axis", "is parallel to the axis", "Give a direction across the axis.");
+      return;
+    }
+    Mat3 F;
+    F.col(2) = z;
+    F.col(0) = (x - x.dot(z) * z).normalized();
+    F.col(1) = z.cross(F.col(0));
+    const auto axes_on = [&](int body) -> Mat3 {
+      if (body == kGround) return F;
+      const BodySpec& b = context_.model.bodies[static_cast<std::size_t>(body)];
+      return b.orientation.toRotationMatrix().transpose() * F;
+    };
+    load_.R_a = axes_on(load_.a);
+    load_.R_b = axes_on(load_.b);
+  }
+
+  /// A spring about an axis, where the joint has one such axis or a coordinate says which.
+  void check_angle(const LoadKind& kind) {
+    if (!kind.turns || !kind.drives.empty() || !table_.find("coordinate")) return;
+    if (section_.has("coordinate")) return;
+    const auto found = context_.joints.find(load_.joint);
+    if (found == context_.joints.end()) return;
+    const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
+    if (turns_about_z(joint)) return;
+    section_.fault(
+        "joint",
+        format("the {} joint {} has no angle about its axis alone", joint.type, quote(joint.name)),
+        "Name a joint that turns about its axis, such as a revolute one.");
+  }
+
+  void read_joint_pair() {
+    const SourceNode* joints = section_.find("joints");
+    if (!joints) return;
+    if (!joints->is_list() || joints->children.size() != 2) {
+      section_.fault("joints", "expects two joints", "Write [first, second].");
+      return;
+    }
+    int b_1 = kGround;
+    load_.joint = read_joint("joints", &joints->children[0], &load_.a, &load_.b);
+    load_.joint_2 = read_joint("joints", &joints->children[1], &b_1, &b_1);
+    if (!load_.joint.empty() && load_.joint == load_.joint_2 && !section_.has("coordinates"))
+      section_.fault("joints", "are the same", "Name two joints, or give both coordinates.");
+    const SourceNode* names = section_.find("coordinates");
+    if (!names) return;
+    if (!names->is_list() || names->children.size() != 2) {
+      section_.fault("coordinates", "expects two coordinates", "Write [rz, z], for example.");
+      return;
+    }
+    const std::vector<std::string> known{"x", "y", "z", "rx", "ry", "rz"};
+    for (std::size_t i = 0; i < 2; ++i)
+      if (const auto word =
+              read_choice(context_, names->children[i], section_.path("coordinates"), known))
+        (i == 0 ? load_.coordinate : load_.coordinate_2) = *word;
+  }
+
+  /// The function of time that a kind of load follows.
+  void read_drive(const LoadKind& kind) {
+    if (kind.drives.empty()) return;
+    std::string keys;
+    for (const DriveParameter& d : kind.drives) {
+      keys += (keys.empty() ? "" : ", ") + d.name;
+      if (!section_.has(d.name)) continue;
+      if (!load_.drive.empty()) {
+        section_.fault(d.name, format("is given beside '{}'", load_.drive),
+                       "Give one of them: a motor follows one function of time.");
+        return;
+      }
+      load_.drive = d.name;
+      load_.value = section_.time_number(d.name);
+    }
+    if (load_.drive.empty())
+      section_.fault("has nothing to follow", format("Give one of: {}.", keys));
+  }
+
+  /// Laws, words, vectors and matrices.
+  void read_laws(const LoadKind& kind) {
+    for (const LawParameter& l : kind.laws) {
+      const TimeFunctionPtr law = section_.law(l.name);
+      if (!law) continue;
+      load_.laws[l.name] = law;
+      if (l.variable == "v") check_resistance(l, *law);
+    }
+    for (const ChoiceParameter& w : kind.words)
+      if (const auto word = section_.choice(w.name)) load_.words[w.name] = *word;
+    for (const Parameter& p : kind.vectors)
+      if (const auto v = section_.vector(p.name))
+        for (int i = 0; i < 3; ++i) load_.parameters[p.name + "." + "xyz"[i]] = (*v)[i];
+    for (const Parameter& p : kind.matrices)
+      if (const SourceNode* node = section_.find(p.name)) read_matrix(p.name, *node);
+  }
+
+  /// A resistance takes energy at any rate.
+  void check_resistance(const LawParameter& l, const TimeFunction& law) {
+    for (int k = -40; k <= 20; ++k)
+      for (const double sign : {-1.0, 1.0}) {
+        const double v = sign * std::pow(10.0, 0.1 * k), force = law(v);
+        if (force * v >= -1e-12 * std::abs(v)) continue;
+        section_.fault(l.name,
+                       format("is {} at v = {}: a damper does not push along its rate",
+                              shown(force), shown(v)),
+                       "Give a force of the sign of v.");
+        return;
+      }
+  }
+
+  void read_matrix(const std::string& key, const SourceNode& node) {
+    const auto fault = [&](const std::string& what, const char* hint) {
+      section_.fault(key, what, hint);
+    };
+    if (!node.is_list() || node.children.size() != 6) {
+      fault("expects six rows of six numbers", "Write [[..., ...], ...].");
+      return;
+    }
+    Mat6 M;
+    const Field number{.name = key, .meaning = "A number."};
+    for (int i = 0; i < 6; ++i) {
+      const SourceNode& row = node.children[static_cast<std::size_t>(i)];
+      if (!row.is_list() || row.children.size() != 6) {
+        fault(format("row {} has not six numbers", i + 1), "Write [[..., ...], ...].");
+        return;
+      }
+      for (int j = 0; j < 6; ++j) {
+        const auto value = read_number(context_, row.children[static_cast<std::size_t>(j)],
+                                       section_.path(key), number);
+        if (!value) return;
+        M(i, j) = *value;
+      }
+    }
+    const double size = M.cwiseAbs().maxCoeff();
+    if ((M - M.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) {
+      fault("is not symmetric", "A matrix that is not has no energy.");
+      return;
+    }
+    if (M.ldlt().vectorD().minCoeff() < -1e-9 * size) {
+      fault("takes or gives energy from nothing: it is not positive", "Check its signs.");
+      return;
+    }
+    load_.matrices[key] = 0.5 * (M + M.transpose());
+  }
+
+  /// Name of a joint and its bodies; empty if there is none.
+  std::string read_joint(const char* key, const SourceNode* value, int* a, int* b) {
+    if (!value) return {};
+    const auto name = read_text(context_, *value, section_.path(key));
+    if (!name) return {};
+    const auto found = context_.joints.find(*name);
+    if (found == context_.joints.end()) {
+      const std::vector<std::string> names = context_.joint_names();
+      context_.fault(
+          *value, section_.path(key), "unknown joint " + quote(*name),
+          did_you_mean(*name, names) +
+              (names.empty() ? "The model has no joints." : "Joints: " + name_list(names) + "."));
+      return {};
+    }
+    const JointSpec& joint = context_.model.joints[static_cast<std::size_t>(found->second)];
+    *a = joint.a;
+    *b = joint.b;
+    return *name;
+  }
+
+  void require_effect(const LoadKind& kind) {
+    const std::vector<std::string>& keys = kind.needs_one_of;
+    if (keys.empty()) return;
+    for (const std::string& key : keys)
+      if (!section_.misses(key)) return;
+    if (keys.size() == 1)
+      section_.fault(format("'{}' is missing", keys[0]), "Give it.");
+    else if (keys[0] == "stiffness" && keys[1] == "damping")
+      section_.fault("has neither stiffness nor damping", "Give one of them, or both.");
+    else
+      section_.fault("has no effect", "Give one of: " + name_list(keys) + ".");
+  }
+
+  ReadContext& context_;
+  LoadSpec& load_;
+  const FieldTable& table_;
+  Section section_;
+};
+
+}  // namespace
+
+void read_loads(ReadContext& context, const SourceNode& node) {
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const SourceNode::Key& key = node.keys[k];
+    if (!check_name(context, key, node.children[k], "loads")) continue;
+    LoadSpec load;
+    load.name = key.name;
+    load.place = context.tree.place_of(key, node.children[k]);
+    if (const FieldTable* table = read_kind(context, node.children[k], load.place,
+                                            "loads." + key.name, load_tables(), load.type))
+      LoadReader(context, node.children[k], load, *table).read();
+    context.loads.emplace(load.name, static_cast<int>(context.model.loads.size()));
+    context.model.loads.push_back(std::move(load));
+  }
+}
+
+}  // namespace polhode

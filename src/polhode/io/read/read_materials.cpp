@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/compile/solid_parts.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/io/read/read_context.hpp>
+#include <polhode/solids/materials/registry.hpp>
+
+namespace polhode {
+namespace {
+
+/// Reads one material; faults go to the context.
+class MaterialReader {
+ public:
+  MaterialReader(ReadContext& context, const SourceNode& node, MaterialSpec& material,
+                 const FieldTable& table)
+      : context_(context),
+        material_(material),
+        table_(table),
+        section_(context, node, material.place, "materials." + material.name, table) {}
+
+  void read() {
+    const std::size_t before = context_.diagnostics.size();
+    for (const Field& field : table_.fields) {
+      if (field.kind != FieldKind::kNumber) continue;
+      const auto value = section_.number(field.name);
+      if (!value) continue;
+      if (field.name == "density")
+        material_.density = *value;
+      else
+        material_.parameters[field.name] = *value;
+    }
+    if (const SourceNode* value = section_.find("viscosity")) read_viscosity(*value);
+    if (const SourceNode* value = section_.find("fibre")) read_fibre(*value);
+    if (context_.diagnostics.size() == before) check();
+  }
+
+ private:
+  void read_viscosity(const SourceNode& node) {
+    Section section(context_, node, context_.tree.place_of(node), section_.path("viscosity"),
+                    viscosity_fields());
+    if (!node.is_map()) return;
+    ViscositySpec& v = material_.viscosity;
+    if (section.refuse_both("relaxation_time", "shear", "Give one of them.") ||
+        section.refuse_both("relaxation_time", "lame", "Give one of them."))
+      return;
+    if (!section.has("relaxation_time") && section.misses("shear"))
+      section.fault("'shear' is missing", "Give relaxation_time, or shear and lame.");
+    v.relaxation_time = section.number("relaxation_time").value_or(0.0);
+    v.shear = section.number("shear").value_or(0.0);
+    v.lame = section.number("lame").value_or(0.0);
+  }
+
+  void read_fibre(const SourceNode& node) {
+    const std::string path = section_.path("fibre");
+    FibreSpec fibre;
+    const FieldTable* table = read_kind(context_, node, context_.tree.place_of(node), path,
+                                        fibre_tables(), fibre.law, "law");
+    if (!table) return;
+    Section section(context_, node, context_.tree.place_of(node), path, *table);
+    for (const Field& field : table->fields)
+      if (field.kind == FieldKind::kNumber)
+        if (const auto value = section.number(field.name)) fibre.parameters[field.name] = *value;
+    if (const auto direction = section.direction("direction")) fibre.direction = *direction;
+    material_.fibre = std::move(fibre);
+  }
+
+  /// What only the law itself knows, such as moduli that do not go together.
+  void check() {
+    try {
+      static_cast<void>(make_material(section_.path(), material_description(material_)));
+    } catch (const InputError& e) {
+      section_.fault(e.what_is_wrong(), sentence(e.mend()));
+    }
+  }
+
+  ReadContext& context_;
+  MaterialSpec& material_;
+  const FieldTable& table_;
+  Section section_;
+};
+
+}  // namespace
+
+void read_materials(ReadContext& context, const SourceNode& node) {
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const SourceNode::Key& key = node.keys[k];
+    if (!check_name(context, key, node.children[k], "materials")) continue;
+    MaterialSpec material;
+    material.name = key.name;
+    material.place = context.tree.place_of(key, node.children[k]);
+    const std::size_t before = context.diagnostics.size();
+    if (const FieldTable* table =
+            read_kind(context, node.children[k], material.place, "materials." + key.name,
+                      material_tables(), material.type))
+      MaterialReader(context, node.children[k], material, *table).read();
+    context.material_is_sound.push_back(context.diagnostics.size() == before);
+    context.materials.emplace(material.name, static_cast<int>(context.model.materials.size()));
+    context.model.materials.push_back(std::move(material));
+  }
+}
+
+}  // namespace polhode

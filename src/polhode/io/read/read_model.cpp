@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/read/read_model.hpp>
+
+#include <algorithm>
+
+#include <polhode/compile/contact_sides.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+#include <polhode/io/text/file_error.hpp>
+
+namespace polhode {
+
+void read_units(ReadContext& context, const SourceNode& node) {
+  const FieldTable& table = units_fields();
+  Section section(context, node, context.tree.place_of(node), "units", table);
+  const auto set = [&](const char* name, double& target) {
+    const auto text = section.text(name);
+    if (!text) return;
+    const UnitReading reading = read_unit(*text);
+    if (!reading.unit) {
+      section.fault(name, reading.what, reading.mend);
+      return;
+    }
+    const Dimension& wanted = table.at(name).dimension;
+    const Dimension& given = reading.unit->dimension;
+    if (!given.matches(wanted) || given.angle != wanted.angle) {
+      section.fault(
+          name, format("{} is a unit of {}, not of {}", quote(*text), given.name(), wanted.name()),
+          format("Give a unit such as {}.", wanted.si_unit()));
+      return;
+    }
+    target = reading.unit->factor;
+  };
+  set("length", context.units.length);
+  set("mass", context.units.mass);
+  set("time", context.units.time);
+  set("angle", context.units.angle);
+}
+
+void read_variables(ReadContext& context, const SourceNode& node) {
+  if (node.kind == SourceNode::Kind::kEmpty) return;
+  if (!node.is_map()) {
+    context.fault(node, "variables",
+                  "expects a map from names to numbers, but is " + node.description(),
+                  "Write 'L: 1.0'.");
+    return;
+  }
+  const std::vector<std::string> reserved = reserved_names();
+  for (std::size_t k = 0; k < node.keys.size(); ++k) {
+    const std::string& name = node.keys[k].name;
+    const Place place = context.tree.place_of(node.keys[k], node.children[k]);
+    const auto is_word = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ||
+        !std::all_of(name.begin(), name.end(), is_word)) {
+      context.diagnostics.add(place, "variables",
+                              quote(name) + " is not allowed as the name of a variable",
+                              "Use letters, digits and '_', a letter first.");
+      continue;
+    }
+    if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) {
+      context.diagnostics.add(place, "variables", format("the name '{}' is taken", name),
+                              "Choose another name.");
+      continue;
+    }
+    const auto expression = read_expression(context, node.children[k], "variables." + name, false);
+    if (!expression) {
+      context.variables[name] = {
+          1.0, Certainty::kBare, {}};  // So that its uses give no more faults.
+      continue;
+    }
+    Quantity value{(*expression)(0.0), expression->certainty(), expression->dimension()};
+    // A number without a unit means whatever it is used for.
+    if (value.certainty == Certainty::kPure) value.certainty = Certainty::kBare;
+    context.variables[name] = value;
+  }
+}
+
+namespace {
+
+/// A map from names to things; an empty value stands for no things.
+const SourceNode* named_things(ReadContext& context, const Section& section,
+                               const std::string& name) {
+  const SourceNode* node = section.find(name);
+  if (!node || node->kind == SourceNode::Kind::kEmpty) return nullptr;
+  if (node->is_map()) return node;
+  context.fault(*node, name,
+                format("expects a map from names to {}, but is {}", name, node->description()),
+                "Write 'name: {...}'.");
+  return nullptr;
+}
+
+void read_root(ReadContext& context, const SourceNode& root) {
+  const Place start{context.tree.source().name(), 1, 1};
+  if (root.kind == SourceNode::Kind::kEmpty) {
+    context.diagnostics.add({start.file, 0, 0}, "", "the file is empty",
+                            "A model starts with 'format: 1'.");
+    return;
+  }
+  Section section(context, root, start, "", model_fields());
+  if (!root.is_map()) return;
+  Model& model = context.model;
+  section.integer("format");
+  if (const auto title = section.text("title")) model.title = *title;
+  if (const SourceNode* node = section.find("units")) read_units(context, *node);
+  if (const SourceNode* node = section.find("variables")) read_variables(context, *node);
+  if (const auto gravity = section.vector("gravity")) model.gravity = *gravity;
+  if (const SourceNode* node = named_things(context, section, "bodies"))
+    read_bodies(context, *node);
+  if (const SourceNode* node = named_things(context, section, "materials"))
+    read_materials(context, *node);
+  if (const SourceNode* node = named_things(context, section, "sections"))
+    read_sections(context, *node);
+  if (const SourceNode* node = named_things(context, section, "beams")) read_beams(context, *node);
+  if (const SourceNode* node = named_things(context, section, "cables"))
+    read_cables(context, *node);
+  if (const SourceNode* node = named_things(context, section, "joints"))
+    read_joints(context, *node);
+  if (const SourceNode* node = named_things(context, section, "solids"))
+    read_solids(context, *node);
+  if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);
+  if (const SourceNode* node = section.find("contacts")) read_contacts(context, *node);
+  if (const SourceNode* node = section.find("analysis"))
+    read_analysis(context, *node, context.tree.place_of(*node));
+  if (const SourceNode* node = section.find("output"))
+    read_output(context, *node, context.tree.place_of(*node));
+  if (model.bodies.empty() && model.solids.empty() && context.diagnostics.empty())
+    section.fault("bodies", "the model has no bodies", "Add 'bodies: {name: {...}}'.");
+  check_solids(context, root);
+  check_contacts(context, root);
+  check_model(context, root);
+}
+
+void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& diagnostics) {
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      diagnostics.add({"--set " + text, 0, 0}, "", "expects 'name=value'",
+                      "Write --set L=1.2 or --set bodies.crank.mass=2.");
+      continue;
+    }
+    tree.apply_override(text.substr(0, equals), text.substr(equals + 1), diagnostics);
+  }
+}
+
+}  // namespace
+
+void check_model(ReadContext& context, const SourceNode& root) {
+  const Model& model = context.model;
+  const int order = model.analysis.order.value_or(2);
+  const bool surfaces =
+      model.analysis.type == "statics" && (!model.solids.empty() || has_touching_cables(model));
+  if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces)
+    context.fault(*root.find("contacts"), "contacts",
+                  format("stands beside an analysis of type {}", model.analysis.type),
+                  "Contact of bodies exists in dynamics only: let the model come to rest there.");
+  if (order > 2 && model.contacts.present)
+    context.fault(*root.find("analysis")->find("order"), "analysis.order",
+                  format("order {} stands beside contacts", order),
+                  "Orders above 2 go back in time within a step, where friction and impacts would "
+                  "feed energy in: use order 2.");
+  if (order <= 2) return;
+  const auto refuse = [&](const std::string& what, const char* named) {
+    context.fault(*root.find("analysis")->find("order"), "analysis.order",
+                  format("order {} stands beside {}", order, what),
+                  format("Orders above 2 go back in time within a step, where {} would feed "
+                         "energy in: use order 2.",
+                         named));
+  };
+  for (const SolidSpec& solid : model.solids) {
+    const auto material = context.materials.find(solid.material);
+    if (material == context.materials.end() ||
+        !model.materials[static_cast<std::size_t>(material->second)].viscosity.any())
+      continue;
+    refuse("the viscosity of " + quote(solid.material), "viscosity");
+    break;
+  }
+  for (const BeamSpec& beam : model.beams) {
+    if (!(beam.section.relaxation_time > 0.0)) continue;
+    refuse("the viscosity of the beam " + quote(beam.name), "viscosity");
+    break;
+  }
+  for (const CableLineSpec& cable : model.cables) {
+    if (!(cable.damping > 0.0)) continue;
+    refuse("the damping of the cable " + quote(cable.name), "a damper");
+    break;
+  }
+  for (const LoadSpec& load : model.loads) {
+    const auto damping = load.parameters.find("damping");
+    if (damping == load.parameters.end() || damping->second <= 0.0) continue;
+    refuse("the damper in " + quote(load.name), "a damper");
+    break;
+  }
+}
+
+Model read_model_text(std::string text, const std::string& filename, const Overrides& overrides) {
+  SourceTree tree = SourceTree::parse(std::move(text), filename);
+  Diagnostics diagnostics(tree.source());
+  apply_overrides(tree, overrides, diagnostics);
+  diagnostics.throw_if_any();
+  ReadContext context{.tree = tree, .diagnostics = diagnostics};
+  context.folder = std::filesystem::path(filename).parent_path().string();
+  context.model.source_file = filename;
+  read_root(context, tree.root());
+  diagnostics.throw_if_any();
+  return std::move(context.model);
+}
+
+Model read_model(const std::filesystem::path& file, const Overrides& overrides) {
+  return read_model_text(read_file(file.string()), file.string(), overrides);
+}
+
+}  // namespace polhode

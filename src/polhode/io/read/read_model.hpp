@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <polhode/io/text/diagnostics.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// Overrides as on the command line, each "path=value": the name of a variable ("L=1.2"), or keys
+/// and list indices joined by dots ("bodies.crank.mass=2", "joints.A.at.0=0.1"). The value is
+/// written as it would be in the file.
+using Overrides = std::vector<std::string>;
+
+/// Reads a model file (YAML or JSON) and resolves it: SI units, every name checked, mass
+/// properties and frames worked out.
+/// @throws ModelErrors with all faults of the model at once.
+/// @throws FileError if the file cannot be read.
+[[nodiscard]] Model read_model(const std::filesystem::path& file, const Overrides& overrides = {});
+
+/// As read_model(), from a text already in memory.
+/// @param filename  Shown in messages; mesh files are seen from its folder.
+[[nodiscard]] Model read_model_text(std::string text, const std::string& filename,
+                                    const Overrides& overrides = {});
+
+}  // namespace polhode

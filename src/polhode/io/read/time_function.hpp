@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <polhode/io/text/expression.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// The same value at all times.
+class ConstantFunction final : public TimeFunction {
+ public:
+  explicit ConstantFunction(double value) : value_(value) {}
+  [[nodiscard]] double operator()(double) const override { return value_; }
+  [[nodiscard]] bool is_constant() const override { return true; }
+  [[nodiscard]] TimeRates rates(double, TimeSide) const override { return {value_, 0.0, 0.0}; }
+  [[nodiscard]] TimeBounds bounds(double, double) const override;
+
+ private:
+  double value_;
+};
+
+/// An expression in t, times the factor that brings it to SI.
+class ExpressionFunction final : public TimeFunction {
+ public:
+  ExpressionFunction(std::shared_ptr<const Expression> expression, double factor)
+      : expression_(std::move(expression)), factor_(factor) {}
+  [[nodiscard]] double operator()(double t) const override { return factor_ * (*expression_)(t); }
+  [[nodiscard]] TimeRates rates(double t, TimeSide side) const override {
+    const TimeRates r = expression_->rates(t, side);
+    return {factor_ * r.value, factor_ * r.rate, factor_ * r.second};
+  }
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override {
+    return expression_->next_break(t, until);
+  }
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
+
+ private:
+  std::shared_ptr<const Expression> expression_;
+  double factor_;
+};
+
+/// How a table goes on between its points.
+enum class Interpolation : unsigned char {
+  kLinear,  ///< Straight lines.
+  kCubic,   ///< Natural cubic spline, or a periodic one.
+  kStep,    ///< Each value holds until the next point.
+};
+
+/// Values at given times; before the first and after the last the end value holds, or it repeats.
+class TableFunction final : public TimeFunction {
+ public:
+  /// @param times   At least two, strictly increasing [s].
+  /// @param values  As many; if periodic and not kStep, the last equals the first.
+  TableFunction(std::vector<double> times, std::vector<double> values, Interpolation interpolation,
+                bool periodic);
+  [[nodiscard]] double operator()(double t) const override;
+  [[nodiscard]] TimeRates rates(double t, TimeSide side) const override;
+
+  /// The points: the value jumps at those of kStep, the slope at those of kLinear, the third
+  /// derivative at those of kCubic.
+  [[nodiscard]] TimeBreak next_break(double t, double until) const override;
+  [[nodiscard]] TimeBounds bounds(double from, double to) const override;
+
+ private:
+  /// Number of the last point at or before a time in the table, −1 if there is none.
+  [[nodiscard]] int interval(double t) const;
+  /// The time in the table that t stands for: of a periodic one, within its first period.
+  [[nodiscard]] double in_table(double t) const;
+
+  std::vector<double> times_, values_;
+  std::vector<double> curvatures_;  ///< Second derivatives at the points, of kCubic.
+  Interpolation interpolation_;
+  bool periodic_;
+};
+
+}  // namespace polhode

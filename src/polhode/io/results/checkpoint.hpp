@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/simulation/simulation.hpp>
+
+namespace polhode {
+
+/// Saves a state so that a run continues from it bit for bit. The file is written atomically and
+/// carries a checksum. @throws FileError
+void write_checkpoint(const std::string& path, const Model& model, const System& system,
+                      const State& state);
+
+/// Reads a checkpoint of this model.
+/// @throws FileError if it cannot be read; InputError if it is no checkpoint, is damaged, has
+///         another format version, or belongs to another model.
+[[nodiscard]] State read_checkpoint(const std::string& path, const Model& model,
+                                    const System& system);
+
+}  // namespace polhode

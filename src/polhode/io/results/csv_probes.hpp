@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/compile/solid_point.hpp>
+#include <polhode/simulation/simulation.hpp>
+
+namespace polhode {
+
+/// A table of numbers that grows row by row and holds whole lines only, even after a kill.
+class CsvTable {
+ public:
+  /// @param header  Names with units, e.g. "x [m]".
+  /// @param keep    Continue an existing file: rows up to that time (first column) stay.
+  /// @throws FileError; InputError if the file that is to be continued has another header.
+  CsvTable(std::string path, const std::vector<std::string>& header,
+           std::optional<double> keep = std::nullopt);
+  ~CsvTable();
+  CsvTable(CsvTable&& other) noexcept;
+
+  void append(const std::vector<double>& row);  ///< @throws FileError
+  /// Time of the last row; nothing if there is none.
+  [[nodiscard]] std::optional<double> last_time() const { return last_time_; }
+  void flush();  ///< @throws FileError
+
+ private:
+  std::string path_, held_;
+  int file_ = -1;
+  std::optional<double> last_time_;
+  std::chrono::steady_clock::time_point last_write_{};
+};
+
+/// A probe found in its model: what it records, as numbers in columns.
+struct ProbeTarget {
+  ProbeSpec spec{};
+  int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
+  SolidPoint point{};  ///< Of a solid.
+  int interface = -1;  ///< Of a solid; -1: none.
+  std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
+};
+
+/// @throws InputError if the model has no such thing.
+[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec);
+/// The time and the values of a probe at the present state, in the order of its header.
+[[nodiscard]] std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation);
+
+/// The probes of a model (output.probes), each in its own file <name>.csv, each at its own rate:
+/// a row at the first step end at or after each multiple of the interval.
+class CsvProbes {
+ public:
+  /// @param folder  Where the files go; made if missing.
+  /// @param keep    Continue existing files, see CsvTable.
+  /// @throws FileError, InputError
+  CsvProbes(const Simulation& simulation, const std::string& folder,
+            std::optional<double> keep = std::nullopt);
+  /// After every step, and once at the start. @throws FileError
+  void record(const Simulation& simulation);
+  void flush();
+  [[nodiscard]] bool empty() const { return probes_.empty(); }
+
+ private:
+  struct Probe {
+    ProbeTarget target;
+    double every;       ///< [s]; 0: every step.
+    std::int64_t next;  ///< The next row is due at next·every.
+    CsvTable table;
+  };
+
+  std::vector<Probe> probes_;
+};
+
+}  // namespace polhode

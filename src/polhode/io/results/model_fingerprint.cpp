@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places in files and pictures do not count; all else does, field by field as the specs list them.
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <polhode/core/sha256.hpp>
+#include <polhode/io/results/model_fingerprint.hpp>
+#include <polhode/io/text/file_error.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Times at which functions are looked at: 0, and from 0.1 ms to some three hours.
+constexpr int kTimes = 240;
+constexpr double kFirstTime = 1e-4, kGrowth = 1.08;
+
+/// Feeds values into a hash, each list with its length, so that neighbours cannot run together.
+class Fingerprint {
+ public:
+  template <class... Values>
+  void add(const Values&... values) {
+    (one(values), ...);
+  }
+  std::string hex() { return hash_.hex(); }
+
+ private:
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void one(T value) {
+    const auto number = static_cast<double>(value);
+    hash_.update(&number, sizeof number);
+  }
+  void one(const std::string& text) {
+    one(text.size());
+    hash_.update(text);
+  }
+  template <class Derived>
+  void one(const Eigen::MatrixBase<Derived>& values) {
+    for (Eigen::Index j = 0; j < values.cols(); ++j)
+      for (Eigen::Index i = 0; i < values.rows(); ++i) one(values(i, j));
+  }
+  void one(const Quat& q) { one(q.coeffs()); }
+  template <class T>
+  void one(const std::optional<T>& value) {
+    one(value.has_value());
+    if (value) one(*value);
+  }
+  template <class T>
+  void one(const std::vector<T>& list) {
+    one(list.size());
+    for (const T& value : list) one(value);
+  }
+  template <class T, std::size_t n>
+  void one(const std::array<T, n>& list) {
+    for (const T& value : list) one(value);
+  }
+  template <class T>
+  void one(const std::map<std::string, T>& map) {
+    one(map.size());
+    for (const auto& [key, value] : map) add(key, value);
+  }
+  void one(const TimeFunctionPtr& f) {
+    one(f != nullptr);
+    if (!f) return;
+    one((*f)(0.0));
+    double t = kFirstTime;
+    for (int k = 0; k < kTimes; ++k, t *= kGrowth) one((*f)(t));
+  }
+  /// What a file holds, wherever it lies. One that is gone since the model was read stops no run.
+  void contents(const std::string& file) {
+    if (file.empty()) return;
+    try {
+      one(read_file(file));
+    } catch (const FileError&) {
+      one(file);
+    }
+  }
+
+  void one(const ContactSideSpec& s) { add(s.touches, s.material, s.groups, s.meets); }
+  void one(const ShapeSpec& s) {
+    add(s.type, s.sizes, s.scale, s.points, s.heights, s.columns, s.spacing, s.position,
+        s.orientation, s.contact);
+    contents(s.file);
+  }
+  void one(const BodySpec& b) {
+    add(b.name, b.fixed, b.point_mass, b.mass, b.inertia, b.position, b.orientation, b.com,
+        b.velocity, b.angular_velocity, b.contact);
+  }
+  void one(const JointFrictionSpec& f) {
+    add(f.mu, f.radius, f.face_radius, f.length, f.constant, f.stiffness, f.damping);
+  }
+  void one(const JointLimitsSpec& l) { add(l.lower, l.upper, l.restitution, l.band, l.stiffness); }
+  void one(const FrameMotion& m) {
+    add(m.displacement, static_cast<int>(m.rotation), m.parameters, m.sequence);
+  }
+  void one(const JointSpec& j) {
+    add(j.name, j.type, j.a, j.b, j.Z_a, j.Z_b, j.R_a, j.R_b, j.free, j.parameters, j.friction,
+        j.limits, j.angle_limits, j.motion);
+  }
+  void one(const Selection& s) {
+    add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
+        s.on_surface, s.tolerance, s.nodes);
+  }
+  void one(const LoadSpec& l) {
+    add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
+        l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
+        l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
+  }
+  void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
+  void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }
+  void one(const MaterialSpec& m) {
+    add(m.name, m.type, m.parameters, m.density, m.viscosity, m.fibre);
+  }
+  void one(const MeshSpec& m) {
+    add(m.type, m.group, m.scale, m.parameters, m.nodes, m.elements, m.sets, m.position,
+        m.orientation);
+    contents(m.file);
+  }
+  void one(const BondSpec& b) { add(b.body, b.nodes); }
+  void one(const PrescribedSpec& p) { add(p.name, p.nodes, p.displacement); }
+  void one(const SolidSpec& s) {
+    add(s.name, s.mesh, s.element, s.material, s.stress, s.density, s.bonded, s.prescribed,
+        s.contact, s.contact_surface, s.self_contact, s.velocity, s.angular_velocity);
+  }
+  void one(const SectionSpec& s) {
+    add(s.section.stiffness, s.section.mass_per_length, s.section.inertia_per_length,
+        s.relaxation_time);
+  }
+  void one(const BeamBondSpec& b) { add(b.body, b.at_end); }
+  void one(const BeamContactSpec& c) { add(c.radius, c.side); }
+  void one(const BeamSpec::Element& e) { add(e.length, e.frame_1, e.frame_2); }
+  void one(const BeamSpec& b) {
+    add(b.name, b.points, b.arc, b.elements, b.section, b.up, b.residual_bending_flexibility,
+        b.consistent_mass, b.velocity, b.angular_velocity, b.bonds, b.contact, b.first_node,
+        b.mesh);
+  }
+  void one(const AttachmentSpec& a) { add(a.body, a.Z); }
+  void one(const CableContactSpec& c) { add(c.radius, c.self, c.side); }
+  void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
+  void one(const CableLineSpec& c) {
+    add(c.name, c.through, c.stiffness, c.free_length, c.damping, c.tension_only, c.strain,
+        c.mass_per_length, c.elements, c.contact, c.pieces);
+  }
+  void one(const ContactLawSpec& l) {
+    add(l.potential, l.gap_tolerance, l.stiffness, l.reference_load, l.reference_pressure,
+        l.restitution, l.rebound, l.friction, l.static_friction, l.friction_across, l.direction,
+        l.rolling, l.torsion, l.friction_stiffness, l.friction_damping);
+  }
+  void one(const ContactMaterialSpec& m) { add(m.name, m.friction, m.restitution); }
+  void one(const ContactPairSpec& p) { add(p.name, p.of_materials, p.a, p.b, p.sensor, p.law); }
+  void one(const ContactsSpec& c) {
+    add(c.present, c.standard, c.materials, c.friction, c.restitution, c.pairs, c.excluded,
+        c.joint_neighbours, c.sweeps, c.sweep_tolerance);
+  }
+
+  Sha256 hash_;
+};
+
+}  // namespace
+
+std::string model_fingerprint(const Model& model) {
+  Fingerprint f;
+  f.add(model.gravity, model.bodies, model.joints, model.loads, model.materials, model.solids,
+        model.beams, model.cables, model.contacts);
+  // Shapes weigh nothing here, as masses do: only what touches asks for them.
+  if (model.contacts.present)
+    for (const BodySpec& body : model.bodies) f.add(body.shapes);
+  const AnalysisSpec& a = model.analysis;
+  f.add(a.type, a.rho_inf, a.momentum_rate, a.conserving);
+  return f.hex();
+}
+
+}  // namespace polhode

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/geometry/triangle_surface.hpp>
+#include <polhode/io/results/paraview_series.hpp>
+#include <polhode/model/model.hpp>
+#include <polhode/simulation/simulation.hpp>
+#include <polhode/simulation/solid_report.hpp>
+
+namespace polhode {
+
+/// What is drawn of one body: triangles in body axes, measured from the centre of mass.
+struct BodyPicture {
+  std::string name;
+  TriangleSurface surface;
+};
+
+/// Pictures of the bodies of a model. A moving body without shapes is drawn as the box that has
+/// its mass and inertia, a point mass as a small cube, nodes of beams and cables not at all
+/// (LinesWriter draws these). Of a plane, which has no
+/// end, a square about its point is drawn that reaches beyond all bodies at the start.
+/// @param size  Extent of the mechanism, which the cube's size follows [m].
+/// @throws InputError if a mesh file cannot be read.
+[[nodiscard]] std::vector<BodyPicture> body_pictures(const Model& model, double size);
+
+/// The box with the mass and inertia of a body, about its centre of mass, body axes; of a point
+/// mass a cube of 2 % of `size`.
+/// @param thinnest  Least length of a side, as a part of the largest [-].
+[[nodiscard]] TriangleSurface inertia_box(const BodySpec& body, double size,
+                                          double thinnest = 0.02);
+
+/// Moving shapes for ParaView, as a ParaviewSeries of .vtp files: the triangles of one time, with
+/// point data "velocity" [m/s], cell data "body" (index) and the names of the bodies as field data
+/// "body_names".
+class ParaviewWriter {
+ public:
+  /// @param keep  Continue existing files: times up to that one stay listed.
+  /// @throws FileError
+  ParaviewWriter(const std::string& folder, const std::string& name,
+                 std::vector<BodyPicture> pictures, std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtp", keep), pictures_(std::move(pictures)) {}
+
+  /// @param motions  Of every picture's body. @throws FileError
+  void append(double t, const std::vector<BodyMotion>& motions);
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<BodyPicture> pictures_;
+};
+
+/// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points stand where the nodes
+/// are at the time. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
+/// "von_mises" [Pa], "strain_energy_density" [J/m³]. Cell data: these three by element,
+/// "principal_stretches" [-], largest first, and "solid" (index); field data "solid <name>"
+/// holds the index of each. Stresses have six components: xx, yy, zz, xy, yz, xz.
+class SolidsWriter {
+ public:
+  /// @param meshes  Of the solids; nodes and cells in the order of the reports.
+  /// @param keep    Continue existing files: times up to that one stay listed.
+  /// @throws FileError
+  SolidsWriter(const std::string& folder, const std::string& name, std::vector<std::string> solids,
+               std::vector<const Mesh*> meshes, std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtu", keep),
+        solids_(std::move(solids)),
+        meshes_(std::move(meshes)) {}
+
+  /// @param reports  Of every solid. @throws FileError
+  void append(double t, const std::vector<SolidReport>& reports);
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> solids_;
+  std::vector<const Mesh*> meshes_;
+};
+
+/// Beams and cables for ParaView, as a ParaviewSeries of .vtp files with a line for each element or
+/// piece. Point data: "velocity" [m/s], "radius" [m], of a circle of about the section's size, for
+/// the filter Tube, and "y_axis", that of the section. Cell data: "force" (N, V_y, V_z) [N],
+/// "moment" [N m], "strain" [-] and "curvature" [1/m] along section axes, of cables the tension as
+/// N, and "line" (index); the names of the beams, then the cables, are field data "line_names".
+class LinesWriter {
+ public:
+  /// @param size  Extent of the mechanism, that thickness follows where none is known [m].
+  /// @param keep  Continue existing files: times up to that one stay listed.
+  /// @throws FileError
+  LinesWriter(const std::string& folder, const std::string& name, const Model& model, double size,
+              std::optional<double> keep = std::nullopt);
+
+  /// @param beams, cables  All of the model. @throws FileError
+  void append(double t, const std::vector<BeamReport>& beams,
+              const std::vector<CableReport>& cables);
+  [[nodiscard]] std::size_t frames() const { return series_.frames(); }
+  void close() { series_.close(); }  ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> names_;
+  std::vector<double> radii_;  ///< Of the beams, then the cables [m].
+};
+
+/// Forces of contact for ParaView, as a ParaviewSeries of .vtp files: a point where each force
+/// acts, with point data "force" and "friction" [N] on the first of its two bodies, "normal_force"
+/// [N], "gap" [m] and "bodies" (two indices); draw them with the filter Glyph. The names of the
+/// bodies are field data "body_names".
+class ContactsWriter {
+ public:
+  /// @param keep  Continue existing files: times up to that one stay listed. @throws FileError
+  ContactsWriter(const std::string& folder, const std::string& name,
+                 std::vector<std::string> bodies, std::vector<int> body_of_shape,
+                 std::optional<double> keep = std::nullopt)
+      : series_(folder, name, "vtp", keep),
+        bodies_(std::move(bodies)),
+        body_of_shape_(std::move(body_of_shape)) {}
+
+  void append(double t, const std::vector<contact::TouchingPoint>& points);  ///< @throws FileError
+  void close() { series_.close(); }                                          ///< @throws FileError
+
+ private:
+  ParaviewSeries series_;
+  std::vector<std::string> bodies_;
+  std::vector<int> body_of_shape_;
+};
+
+}  // namespace polhode

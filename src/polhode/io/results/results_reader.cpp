@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/results/hdf5_id.hpp>
+#include <polhode/io/results/results_reader.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <utility>
+
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/results/results_format.hpp>
+#include <polhode/io/text/file_error.hpp>
+
+namespace polhode {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using hdf5::Id;
+
+constexpr const char* kHint = "Name the results.h5 that 'polhode run' wrote";
+
+Id open_file(const std::string& path) {
+  Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+  H5Pset_file_locking(access.get(), false, true);
+#endif
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose};
+}
+
+/// Length that the first block of an HDF5 file promises; 0 if it is no such file. Format of that
+/// block: HDF5 File Format Specification 3.0, section II.A.
+std::uint64_t promised_length(const std::string& path) {
+  std::array<char, 64> head{};
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(head.data(), head.size()) || std::memcmp(head.data(), "\x89HDF\r\n\x1a\n", 8) != 0)
+    return 0;
+  const int version = head[8];
+  const int place = version == 0 ? 40 : version == 1 ? 44 : 28;
+  std::uint64_t length = 0;
+  std::memcpy(&length, head.data() + place, sizeof length);
+  return length;
+}
+
+/// Temporary copy of a file that has lost its end, zeros in place of what is missing.
+class FullLengthCopy {
+ public:
+  FullLengthCopy(const std::string& path, std::uint64_t length) {
+    std::string name = (fs::temp_directory_path() / "polhode-results-XXXXXX").string();
+    const int descriptor = mkstemp(name.data());
+    if (descriptor < 0) throw FileError::from_errno(name, "cannot be written");
+    ::close(descriptor);
+    path_ = name;
+    fs::copy_file(path, path_, fs::copy_options::overwrite_existing);
+    fs::resize_file(path_, length);
+  }
+  ~FullLengthCopy() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  FullLengthCopy(const FullLengthCopy&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::vector<hsize_t> extent(hid_t dataset) {
+  const Id space(H5Dget_space(dataset), H5Sclose);
+  std::vector<hsize_t> dims(
+      static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.get()))));
+  if (!dims.empty()) H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
+  return dims;
+}
+
+std::string text_of(hid_t attribute) {
+  const Id type(H5Aget_type(attribute), H5Tclose);
+  if (H5Tget_class(type.get()) != H5T_STRING) return "";
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* value = nullptr;
+    if (H5Aread(attribute, type.get(), static_cast<void*>(&value)) < 0 || value == nullptr)
+      return "";
+    std::string text = value;
+    H5free_memory(value);
+    return text;
+  }
+  std::string text(H5Tget_size(type.get()), '\0');
+  if (H5Aread(attribute, type.get(), text.data()) < 0) return "";
+  return text.substr(0, text.find('\0'));
+}
+
+std::string attribute_of(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return "";
+  const Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  return text_of(attribute.get());
+}
+
+/// Whole frames of a data set before the first part that lies beyond the end of the file.
+hsize_t frames_before(hid_t dataset, std::uint64_t end, hsize_t frames) {
+  hsize_t chunks = 0;
+  const Id space(H5Dget_space(dataset), H5Sclose);
+  if (H5Dget_num_chunks(dataset, space.get(), &chunks) < 0) return 0;
+  const std::vector<hsize_t> dims = extent(dataset);
+  const std::size_t rank = dims.size();
+  std::vector<hsize_t> chunk(rank);
+  const Id creation(H5Dget_create_plist(dataset), H5Pclose);
+  H5Pget_chunk(creation.get(), static_cast<int>(rank), chunk.data());
+  const bool all_of_a_frame = std::equal(dims.begin() + 1, dims.end(), chunk.begin() + 1);
+  const hsize_t depth = all_of_a_frame ? chunk[0] : 0;
+  std::vector<hsize_t> offset(rank);
+  hsize_t whole = frames;
+  for (hsize_t i = 0; i < chunks; ++i) {
+    unsigned filter = 0;
+    haddr_t address = 0;
+    hsize_t bytes = 0;
+    if (H5Dget_chunk_info(dataset, space.get(), i, offset.data(), &filter, &address, &bytes) < 0)
+      return 0;
+    if (address + bytes <= end) continue;
+    // Frames of a chunk lie one after the other: those before the cut are whole.
+    const hsize_t rows = address < end && bytes > 0 ? (end - address) * depth / bytes : 0;
+    whole = std::min(whole, offset[0] + rows);
+  }
+  return chunks == 0 ? 0 : whole;
+}
+
+}  // namespace
+
+std::size_t ResultsReader::DataSet::size() const {
+  return std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>());
+}
+
+struct ResultsReader::Impl {
+  std::string path;
+  std::unique_ptr<FullLengthCopy> copy;  // Outlives the open file.
+  Id file;
+  std::uint64_t end = 0;  ///< Length of the file as it lies on the disk.
+  std::size_t frames = 0;
+  std::vector<DataSet> sets;
+
+  [[nodiscard]] Id open(const std::string& name) const {
+    return {H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose};
+  }
+  [[noreturn]] void fail(const std::string& what, const char* hint = kHint) const {
+    throw FileError(path, what, hint);
+  }
+
+  static herr_t visit(hid_t object, const char* name, const H5O_info_t* info, void* data) {
+    auto& self = *static_cast<Impl*>(data);
+    const std::string path = std::string("/") + name;
+    if (info->type != H5O_TYPE_DATASET) return 0;
+    const Id dataset(H5Dopen2(object, name, H5P_DEFAULT), H5Dclose);
+    const Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+    // What grows by frames is stored in chunks; lists are not, and views are virtual.
+    if (!dataset.valid() || H5Pget_layout(creation.get()) != H5D_CHUNKED) return 0;
+    const std::vector<hsize_t> dims = extent(dataset.get());
+    if (dims.empty()) return 0;
+    if (self.copy)
+      self.frames =
+          std::min<std::size_t>(self.frames, frames_before(dataset.get(), self.end, self.frames));
+    self.sets.push_back(
+        {path, {dims.begin() + 1, dims.end()}, attribute_of(dataset.get(), "unit")});
+    return 0;
+  }
+};
+
+ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+  Impl& m = *impl_;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  m.path = path;
+  std::error_code error;
+  m.end = fs::file_size(path, error);
+  if (error) throw FileError(path, "cannot be read", "Check the path and the permissions");
+  const std::uint64_t promised = promised_length(path);
+  if (promised == 0) m.fail("is no HDF5 file");
+  if (promised > m.end && promised < (std::uint64_t{1} << 46))
+    m.copy = std::make_unique<FullLengthCopy>(path, promised);
+  m.file = open_file(m.copy ? m.copy->path() : path);
+  const char* rerun = "Run the model again, or copy the file again";
+  if (!m.file.valid()) m.fail("is damaged: its index cannot be read", rerun);
+  if (attribute("/", "format") != "polhode results")
+    m.fail(m.copy ? "is damaged: its head is lost" : "holds no results of Polhode",
+           m.copy ? rerun : kHint);
+  const Id version(H5Aopen(m.file.get(), "format_version", H5P_DEFAULT), H5Aclose);
+  double number = 0.0;
+  H5Aread(version.get(), H5T_NATIVE_DOUBLE, &number);
+  if (number < 1.0 || number > results::kFormatVersion)
+    m.fail(format("has format version {:g}, and this program reads versions up to {}", number,
+                  results::kFormatVersion),
+           "Use the version of Polhode that wrote it, or a later one");
+  const Id time = m.open(results::kTime);
+  if (!time.valid()) m.fail("has no data set '/time'");
+  m.frames = extent(time.get())[0];
+  H5Ovisit(m.file.get(), H5_INDEX_NAME, H5_ITER_INC, Impl::visit, &m);
+}
+
+ResultsReader::~ResultsReader() = default;
+ResultsReader::ResultsReader(ResultsReader&&) noexcept = default;
+
+std::size_t ResultsReader::frames() const { return impl_->frames; }
+bool ResultsReader::cut_short() const { return impl_->copy != nullptr; }
+const std::vector<ResultsReader::DataSet>& ResultsReader::data_sets() const { return impl_->sets; }
+
+const ResultsReader::DataSet* ResultsReader::find(const std::string& path) const {
+  for (const DataSet& set : impl_->sets)
+    if (set.path == path) return &set;
+  return nullptr;
+}
+
+bool ResultsReader::has(const std::string& path) const { return impl_->open(path).valid(); }
+
+std::vector<double> ResultsReader::read(const std::string& path, std::size_t every) const {
+  const Impl& m = *impl_;
+  const Id dataset = m.open(path);
+  if (!dataset.valid()) m.fail(format("has no data set '{}'", path));
+  std::vector<hsize_t> count = extent(dataset.get()), start(count.size(), 0),
+                       stride(count.size(), 1);
+  if (count.empty() || count[0] < m.frames) m.fail(format("has too few frames of '{}'", path));
+  count[0] = m.frames == 0 ? 0 : (m.frames - 1) / every + 1;
+  stride[0] = every;
+  const std::size_t size =
+      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  std::vector<double> values(size);
+  if (size == 0) return values;
+  const Id memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                  H5Sclose);
+  const Id source(H5Dget_space(dataset.get()), H5Sclose);
+  H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), stride.data(), count.data(),
+                      nullptr);
+  if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), source.get(), H5P_DEFAULT,
+              values.data()) < 0)
+    m.fail(format("cannot be read at '{}'", path), "Copy the file again");
+  return values;
+}
+
+std::vector<std::string> ResultsReader::names(const std::string& path) const {
+  const Id dataset = impl_->open(path);
+  if (!dataset.valid()) return {};
+  const std::vector<hsize_t> dims = extent(dataset.get());
+  std::vector<char*> pointers(dims.empty() ? 1 : dims[0], nullptr);
+  const Id type(H5Dget_type(dataset.get()), H5Tclose);
+  if (pointers.empty() || H5Tis_variable_str(type.get()) <= 0 ||
+      H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+              static_cast<void*>(pointers.data())) < 0)
+    return {};
+  std::vector<std::string> values;
+  for (char* p : pointers) {
+    values.emplace_back(p == nullptr ? "" : p);
+    if (p != nullptr) H5free_memory(p);
+  }
+  return values;
+}
+
+std::vector<std::int64_t> ResultsReader::numbers(const std::string& path) const {
+  const Id dataset = impl_->open(path);
+  if (!dataset.valid()) return {};
+  const std::vector<hsize_t> dims = extent(dataset.get());
+  std::vector<std::int64_t> values(dims.empty() ? 0 : dims[0]);
+  if (!values.empty() &&
+      H5Dread(dataset.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
+  return values;
+}
+
+std::vector<double> ResultsReader::vectors(const std::string& path) const {
+  const Id dataset = impl_->open(path);
+  if (!dataset.valid()) return {};
+  const std::vector<hsize_t> dims = extent(dataset.get());
+  std::vector<double> values(
+      std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>()));
+  if (!values.empty() &&
+      H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    impl_->fail(format("cannot be read at '{}'", path), "Copy the file again");
+  return values;
+}
+
+std::string ResultsReader::attribute(const std::string& group, const std::string& name) const {
+  const Id object(H5Oopen(impl_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose);
+  return object.valid() ? attribute_of(object.get(), name.c_str()) : "";
+}
+
+std::vector<std::string> ResultsReader::groups(const std::string& path) const {
+  const Id group(H5Gopen2(impl_->file.get(), path.c_str(), H5P_DEFAULT), H5Gclose);
+  std::vector<std::string> list;
+  if (!group.valid()) return list;
+  H5G_info_t info;
+  if (H5Gget_info(group.get(), &info) < 0) return list;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    std::array<char, 1024> name{};
+    if (H5Lget_name_by_idx(group.get(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(),
+                           name.size(), H5P_DEFAULT) >= 0)
+      list.emplace_back(name.data());
+  }
+  return list;
+}
+
+}  // namespace polhode

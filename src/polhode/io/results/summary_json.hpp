@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <polhode/simulation/simulation.hpp>
+
+namespace polhode {
+
+/// End of a run as its user sees it, and the place of its results.
+struct RunPlace {
+  std::string end = "finished";  ///< finished, not_converged, interrupted or limit.
+  int exit_code = 0;             ///< Of the command line.
+  std::string folder{};          ///< Of the results; may be empty.
+  std::size_t frames = 0;        ///< Written or kept.
+};
+
+/// The figures of a run as one JSON object, see docs/reference/cli.md.
+[[nodiscard]] std::string summary_json(const RunSummary& summary, const RunPlace& place);
+
+}  // namespace polhode

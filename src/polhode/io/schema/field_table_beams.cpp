@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/schema/field_table.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+namespace {
+
+Field size(const char* name, const char* meaning) {
+  return {.name = name,
+          .kind = kNumber,
+          .dimension = kLength,
+          .meaning = meaning,
+          .required = true,
+          .range = kPositive};
+}
+
+/// What the library of units has no name for: N m², kg/m, kg m.
+constexpr Dimension kBendingStiffness{3, 1, -2, 0}, kMassPerLength{-1, 1, 0, 0},
+    kInertiaPerLength{1, 1, 0, 0};
+
+Field stiffness(const char* name, const Dimension& dimension, const char* meaning) {
+  return {.name = name,
+          .kind = kNumber,
+          .dimension = dimension,
+          .meaning = meaning,
+          .standard = "from matrix",
+          .range = kPositive};
+}
+
+Field factor(const char* name, const char* meaning) {
+  return {.name = name,
+          .kind = kNumber,
+          .meaning = meaning,
+          .standard = "from the shape",
+          .range = kPositive};
+}
+
+KindTable section(const std::string& name, const std::string& meaning,
+                  const std::vector<Field>& more) {
+  KindTable kind{name, {"section " + name, meaning, {}}};
+  kind.table.fields.push_back({.name = "type",
+                               .kind = kChoice,
+                               .meaning = "The kind of section.",
+                               .required = true,
+                               .choices = {name}});
+  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
+  return kind;
+}
+
+/// A shape filled with a material.
+KindTable shaped(const std::string& name, const std::string& meaning, std::vector<Field> sizes) {
+  sizes.push_back({.name = "material",
+                   .kind = kMaterial,
+                   .meaning = "A material with youngs_modulus, poisson_ratio and density; its "
+                              "relaxation time is that of the beam.",
+                   .required = true});
+  sizes.push_back(factor("torsion_factor", "Multiplies the torsion constant of the shape."));
+  sizes.back().standard = "1";
+  sizes.push_back(factor("shear_factor_y", "Instead of Cowper's, along y."));
+  sizes.push_back(factor("shear_factor_z", "Instead of Cowper's, along z."));
+  return section(name, meaning, sizes);
+}
+
+}  // namespace
+
+const std::vector<KindTable>& section_tables() {
+  static const std::vector<KindTable> tables = {
+      shaped("rectangle", "A full rectangle.",
+             {size("height", "Along the section's y."), size("width", "Along its z.")}),
+      shaped("circle", "A full circle.", {size("diameter", "Diameter.")}),
+      shaped("tube", "A round tube.",
+             {size("outer", "Outer diameter."), size("inner", "Inner diameter.")}),
+      shaped("i", "A doubly symmetric I: its web along y, its flanges along z.",
+             {size("height", "Over all, along y."), size("width", "Of the flanges, along z."),
+              size("web", "Thickness of the web."), size("flange", "Thickness of a flange.")}),
+      section(
+          "general", "A section given by its stiffnesses: six numbers, or a matrix that couples.",
+          {stiffness("EA", kForce, "Axial force per extension."),
+           stiffness("GA_y", kForce, "Shear force along y per shear, shear factor included."),
+           stiffness("GA_z", kForce, "Shear force along z per shear, shear factor included."),
+           stiffness("GJ", kBendingStiffness, "Torque per twist."),
+           stiffness("EI_y", kBendingStiffness, "Bending moment about y per curvature."),
+           stiffness("EI_z", kBendingStiffness, "Bending moment about z per curvature."),
+           {.name = "matrix",
+            .kind = kMatrix6,
+            .meaning =
+                "Instead of the six, in SI: (N, V_y, V_z, M_x, M_y, M_z) by strain, symmetric and "
+                "positive definite."},
+           {.name = "mass_per_length",
+            .kind = kNumber,
+            .dimension = kMassPerLength,
+            .meaning = "Mass per length.",
+            .required = true,
+            .range = kPositive},
+           {.name = "inertia_per_length",
+            .kind = kVector,
+            .dimension = kInertiaPerLength,
+            .meaning = "Rotary inertia per length about x, y, z.",
+            .required = true},
+           {.name = "relaxation_time",
+            .kind = kNumber,
+            .dimension = kTime,
+            .meaning = "Viscous section forces are this times stiffness times rate of strain.",
+            .standard = "0",
+            .range = kNotNegative}}),
+  };
+  return tables;
+}
+
+const FieldTable& beam_fields() {
+  static const FieldTable table{
+      "beam",
+      "A geometrically exact beam. Its nodes are bodies: mast.start, mast.end, or mast.3 by number "
+      "from 0, wherever a body is named.",
+      {
+          {.name = "points",
+           .kind = kPoints,
+           .dimension = kLength,
+           .meaning = "[start, ..., end], world at the start of the run, free of stress. Corners "
+                      "are rigid."},
+          {.name = "arc",
+           .kind = kPoints,
+           .dimension = kLength,
+           .meaning = "Instead of points: [start, a point between, end] of an arc of a circle."},
+          {.name = "elements",
+           .kind = kInteger,
+           .meaning = "Elements of the whole beam, shared out to its pieces by length.",
+           .required = true,
+           .range = {1.0, 1e6}},
+          {.name = "section", .kind = kText, .meaning = "Name of a section.", .required = true},
+          {.name = "up",
+           .kind = kDirection,
+           .meaning = "Where the section's y points: made perpendicular to the beam.",
+           .standard = "z, or x where the beam runs along z"},
+          {.name = "bonded",
+           .kind = kBeamBonds,
+           .meaning = "Bodies that hold its ends: {plate: start, ground: end}. Gives joints of "
+                      "these names, mast.start and mast.end, with their reactions."},
+          {.name = "velocity",
+           .kind = kVector,
+           .dimension = kVelocity,
+           .meaning = "Of the first point at the start, world.",
+           .standard = "as the body moves that holds it, else [0, 0, 0]"},
+          {.name = "angular_velocity",
+           .kind = kVector,
+           .dimension = kAngularVelocity,
+           .meaning = "Of the whole beam, about its first point, world.",
+           .standard = "as the body turns that holds it, else [0, 0, 0]"},
+          {.name = "consistent_mass",
+           .kind = kNumber,
+           .meaning = "Part of the translational mass that is consistent, not lumped at nodes.",
+           .standard = "0.5; 0 with contact",
+           .range = {0.0, 1.0}},
+          {.name = "contact",
+           .kind = kSection,
+           .meaning = "The beam touches bodies, other beams and itself as a round bar, beside "
+                      "'contacts'.",
+           .standard = "it touches nothing",
+           .table = "beam contact"},
+          {.name = "residual_bending_flexibility",
+           .kind = kBoolean,
+           .meaning = "Adds the bending that an element's constant strains miss to its shear "
+                      "flexibility.",
+           .standard = "true"},
+      }};
+  return table;
+}
+
+const FieldTable& beam_contact_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"beam contact",
+                 "How a beam takes part in contact: every node carries the halves of its elements "
+                 "as round bars.",
+                 {{.name = "radius",
+                   .kind = kNumber,
+                   .dimension = kLength,
+                   .meaning = "Of the bar, about the centre line.",
+                   .standard = "half the section's height or width, whichever is less",
+                   .range = kPositive}}};
+    const std::vector<Field>& side = contact_side_fields().fields;
+    t.fields.insert(t.fields.end(), side.begin(), side.end());
+    return t;
+  }();
+  return table;
+}
+
+const FieldTable& cable_fields() {
+  static const FieldTable table{
+      "cable",
+      "A cable, rope, rod or truss member: straight elastic pieces from point to point, each with "
+      "its own elongation.",
+      {
+          {.name = "through",
+           .kind = kAttachments,
+           .dimension = kLength,
+           .meaning = "[[body, point], ...]: points in the coordinates of the body (ground: "
+                      "world). [body] is its centre of mass; [mast, end] the end of a beam.",
+           .required = true},
+          {.name = "stiffness",
+           .kind = kNumber,
+           .dimension = kForce,
+           .meaning = "EA: force per strain.",
+           .required = true,
+           .range = kPositive},
+          {.name = "free_length",
+           .kind = kNumber,
+           .dimension = kLength,
+           .meaning = "Of the whole cable, without force.",
+           .standard = "that at the start",
+           .range = kPositive},
+          {.name = "damping",
+           .kind = kNumber,
+           .dimension = kDamping,
+           .meaning = "Of the whole cable, force per rate of elongation, while taut.",
+           .standard = "0",
+           .range = kNotNegative},
+          {.name = "tension_only",
+           .kind = kBoolean,
+           .meaning = "Slack when shorter than its free length. false: a rod.",
+           .standard = "true"},
+          {.name = "strain",
+           .kind = kChoice,
+           .meaning = "Measure of strain: l/L - 1, or (l^2/L^2 - 1)/2.",
+           .standard = "engineering",
+           .choices = {"engineering", "green"}},
+          {.name = "mass_per_length",
+           .kind = kNumber,
+           .dimension = kMassPerLength,
+           .meaning = "Puts point masses on it (stay.0, stay.1, ...), with "
+                      "spherical joints at its points.",
+           .standard = "0",
+           .range = kNotNegative},
+          {.name = "elements",
+           .kind = kInteger,
+           .meaning = "Pieces from one point to the next, if it has mass.",
+           .standard = "1",
+           .range = {1.0, 1e6}},
+          {.name = "contact",
+           .kind = kSection,
+           .meaning = "The cable touches bodies, beams and other cables as a round rope, beside "
+                      "'contacts'.",
+           .standard = "it touches nothing",
+           .table = "cable contact"},
+      }};
+  return table;
+}
+
+const FieldTable& cable_contact_fields() {
+  static const FieldTable table = [] {
+    FieldTable t{"cable contact",
+                 "How a cable takes part in contact: all along its centre line.",
+                 {{.name = "radius",
+                   .kind = kNumber,
+                   .dimension = kLength,
+                   .meaning = "Of the cable, about its centre line.",
+                   .required = true,
+                   .range = kPositive},
+                  {.name = "self",
+                   .kind = kBoolean,
+                   .meaning = "true: it touches itself, too, where it is wound or folded.",
+                   .standard = "false"}}};
+    const std::vector<Field>& side = contact_side_fields().fields;
+    t.fields.insert(t.fields.end(), side.begin(), side.end());
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace polhode

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/schema/field_table.hpp>
+#include <polhode/joints/registry.hpp>
+#include <polhode/loads/registry.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+namespace {
+
+const Field kBodies{.name = "bodies",
+                    .kind = kBodyPair,
+                    .meaning =
+                        "[a, b]: coordinates are those of b's frame seen from a's; a positive "
+                        "angle turns b about +z.",
+                    .required = true};
+const Field kAt{.name = "at",
+                .kind = kVector,
+                .dimension = kLength,
+                .meaning = "The joint's point at the start, world. Or at_body."};
+const Field kPointsAt{.name = "at",
+                      .kind = kVectorPair,
+                      .dimension = kLength,
+                      .meaning = "The points on a and on b at the start, world. Or at_body."};
+const Field kAtBody{.name = "at_body",
+                    .kind = kVectorPair,
+                    .dimension = kLength,
+                    .meaning =
+                        "The joint's point on a and on b, each in its body's coordinates (ground: "
+                        "world); the start is then assembled."};
+const Field kAxis{
+    .name = "axis", .kind = kDirection, .meaning = "The joint's z at the start, world."};
+const Field kAxisBody{
+    .name = "axis_body",
+    .kind = kDirectionPair,
+    .meaning =
+        "Instead of axis: z on a and on b, each in its body's axes; the start is then assembled."};
+const Field kXAxis{.name = "x_axis",
+                   .kind = kDirection,
+                   .meaning = "The joint's x at the start, world; made perpendicular to z.",
+                   .standard = "the world axis least along z, made perpendicular"};
+
+enum class Axis { kRequired, kOptional, kNone };
+
+/// How a joint is given its axes; a kind that is not named here has one that matters.
+Axis axis_of(const std::string& name) {
+  if (name == "universal" || name == "distance") return Axis::kNone;
+  if (name == "spherical" || name == "fixed" || name == "generic") return Axis::kOptional;
+  return Axis::kRequired;
+}
+
+Field parameter_field(const Parameter& p) {
+  const UnitReading unit = read_unit(p.unit);
+  Field field{.name = p.name, .kind = kNumber, .meaning = sentence(p.meaning)};
+  if (unit.unit) field.dimension = unit.unit->dimension;
+  if (p.standard) field.standard = format("{:g}", *p.standard);
+  // The smallest positive number stands for "above zero", the largest for "any".
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const bool positive = p.least == std::numeric_limits<double>::min();
+  if (p.least != -kMost) field.range.least = positive ? 0.0 : p.least;
+  if (p.most != kMost) field.range.most = p.most;
+  field.range.above_least = positive;
+  return field;
+}
+
+Field type_field(const std::string& what, const std::string& name) {
+  return {.name = "type",
+          .kind = kChoice,
+          .meaning = format("The kind of {}.", what),
+          .required = true,
+          .choices = {name}};
+}
+
+/// Friction and stops of the kinds that take them.
+void add_resistance(const std::string& name, std::vector<Field>& fields) {
+  const auto section = [&](const char* key, const std::string& table, const char* meaning) {
+    fields.push_back({.name = key, .kind = kSection, .meaning = meaning, .table = table});
+  };
+  for (const KindTable& kind : friction_tables())
+    if (kind.name == name) section("friction", kind.table.title, "Dry friction in the joint.");
+  if (name == "revolute")
+    section("limits", angle_limit_fields().title, "Stops of the joint's angle.");
+  if (name == "prismatic" || name == "cylindrical")
+    section("limits", stroke_limit_fields().title, "Stops of the joint's displacement.");
+  if (name == "cylindrical")
+    section("angle_limits", angle_limit_fields().title, "Stops of the joint's angle.");
+}
+
+KindTable joint_table(const JointKind& kind) {
+  KindTable result{kind.name, {"joint " + kind.name, sentence(kind.meaning), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  fields.push_back(type_field("joint", kind.name));
+  fields.push_back(kBodies);
+  fields.push_back(kind.name == "distance" ? kPointsAt : kAt);
+  fields.push_back(kAtBody);
+  const Axis axis = axis_of(kind.name);
+  if (axis != Axis::kNone) {
+    fields.push_back(kAxis);
+    if (axis == Axis::kOptional) fields.back().standard = "z";
+    if (axis == Axis::kRequired) fields.push_back(kAxisBody);
+    fields.push_back(kXAxis);
+  }
+  if (kind.name == "universal")
+    fields.push_back({.name = "axes",
+                      .kind = kDirectionPair,
+                      .meaning = "[axis on a, axis on b] at the start, world; perpendicular.",
+                      .required = true});
+  if (kind.takes_free_list)
+    fields.push_back({.name = "free",
+                      .kind = kChoices,
+                      .meaning = "The free ones, in the joint's axes.",
+                      .required = true,
+                      .choices = {"x", "y", "z", "rx", "ry", "rz"}});
+  for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
+  add_resistance(kind.name, fields);
+  if (kind.name != "distance")
+    fields.push_back({.name = "motion",
+                      .kind = kSection,
+                      .meaning = "Prescribed motion of the joint's frame on the first body.",
+                      .table = motion_fields().title});
+  return result;
+}
+
+const Field kLoadBody{
+    .name = "body", .kind = kBody, .meaning = "The body it acts on.", .required = true};
+const Field kBodyPointAt{.name = "at",
+                         .kind = kVector,
+                         .dimension = kLength,
+                         .meaning = "The body's point, world at the start. Or at_body."};
+const Field kBodyPoint{.name = "at_body",
+                       .kind = kVector,
+                       .dimension = kLength,
+                       .meaning = "The body's point, body coordinates.",
+                       .standard = "the centre of mass"};
+const Field kBodyFixed{.name = "body_fixed",
+                       .kind = kBoolean,
+                       .meaning = "The components turn with the body.",
+                       .standard = "false"};
+const Field kLoadBodies{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true};
+const Field kLoadPointsBody{
+    .name = "at_body",
+    .kind = kVectorPair,
+    .dimension = kLength,
+    .meaning = "The points on a and b, each in its body's coordinates (ground: world)."};
+const Field kLoadJoint{
+    .name = "joint", .kind = kJoint, .meaning = "The joint it acts in.", .required = true};
+const Field kLoadJoints{
+    .name = "joints", .kind = kNames, .meaning = "[first joint, second joint]", .required = true};
+const Field kLoadFrameAt{.name = "at",
+                         .kind = kVector,
+                         .dimension = kLength,
+                         .meaning = "The point at the start on both bodies, world. Or at_body."};
+
+KindTable load(const std::string& name, const std::string& meaning,
+               const std::vector<Field>& more) {
+  KindTable kind{name, {"load " + name, meaning, {type_field("load", name)}}};
+  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
+  return kind;
+}
+
+KindTable load_table(const LoadKind& kind) {
+  KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  fields.push_back(type_field("load", kind.name));
+  switch (kind.place) {
+    case LoadPlace::body:
+      fields.push_back(kLoadBody);
+      if (!kind.turns && !kind.vector.empty())
+        fields.insert(fields.end(), {kBodyPointAt, kBodyPoint});
+      break;
+    case LoadPlace::points:
+      fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody});
+      break;
+    case LoadPlace::joint:
+      fields.push_back(kLoadJoint);
+      break;
+    case LoadPlace::joints:
+      fields.push_back(kLoadJoints);
+      fields.push_back({.name = "coordinates",
+                        .kind = kNames,
+                        .meaning = "Which free coordinate of each: x, y, z, rx, ry or rz.",
+                        .standard = "the only one of each"});
+      break;
+    case LoadPlace::frames:
+      fields.insert(fields.end(), {kLoadBodies, kLoadFrameAt, kLoadPointsBody, kAxis, kXAxis});
+      fields[fields.size() - 2].standard = "z";
+      break;
+    case LoadPlace::surface:
+      fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody, kAxis, kXAxis});
+      fields[fields.size() - 2].standard = "z";
+      break;
+    case LoadPlace::centres:
+      fields.push_back(kLoadBodies);
+      break;
+  }
+  if (!kind.vector.empty()) {
+    fields.push_back({.name = kind.vector,
+                      .kind = kTimeVector,
+                      .dimension = kind.turns ? kMoment : kForce,
+                      .meaning = "Components along the world's axes, or the body's if body_fixed.",
+                      .required = true});
+    fields.push_back(kBodyFixed);
+  }
+  for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
+  for (const LawParameter& l : kind.laws)
+    fields.push_back({.name = l.name,
+                      .kind = kLaw,
+                      .dimension = read_unit(l.unit).unit.value().dimension,
+                      .meaning = sentence(l.meaning),
+                      .variable = l.variable,
+                      .of = read_unit(l.of).unit.value().dimension});
+  for (const ChoiceParameter& w : kind.words)
+    fields.push_back({.name = w.name,
+                      .kind = kChoice,
+                      .meaning = sentence(w.meaning),
+                      .standard = w.choices.front(),
+                      .choices = w.choices});
+  for (const Parameter& p : kind.vectors) {
+    fields.push_back(parameter_field(p));
+    fields.back().kind = kVector;
+    if (p.standard) fields.back().standard = "[0, 0, 0]";
+  }
+  for (const Parameter& p : kind.matrices)
+    fields.push_back({.name = p.name, .kind = kMatrix6, .meaning = sentence(p.meaning) + " SI."});
+  if (kind.place == LoadPlace::joint && kind.name != "screw")
+    fields.push_back({.name = "coordinate",
+                      .kind = kChoice,
+                      .meaning = "Which of the joint's free coordinates.",
+                      .standard = "the only one of its kind",
+                      .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
+                                            : std::vector<std::string>{"x", "y", "z"}});
+  for (const DriveParameter& d : kind.drives)
+    fields.push_back({.name = d.name,
+                      .kind = kTimeNumber,
+                      .dimension = read_unit(d.unit).unit.value().dimension,
+                      .meaning = sentence(d.meaning)});
+  return result;
+}
+
+}  // namespace
+
+const std::vector<KindTable>& joint_tables() {
+  static const std::vector<KindTable> tables = [] {
+    std::vector<KindTable> list;
+    for (const JointKind& kind : joint_kinds()) list.push_back(joint_table(kind));
+    return list;
+  }();
+  return tables;
+}
+
+const std::vector<KindTable>& load_tables() {
+  const Field solid{
+      .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
+  const Field surface{.name = "surface",
+                      .kind = kSelection,
+                      .meaning = "The faces, among those of the solid's boundary.",
+                      .standard = "the whole boundary",
+                      .table = "selection"};
+  static const std::vector<KindTable> tables = [&] {
+    std::vector<KindTable> list;
+    for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
+    const std::vector<KindTable> on_solids = {
+        load("pressure",
+             "A pressure on faces of a deformable solid, against their outward normals.",
+             {solid,
+              surface,
+              {.name = "pressure",
+               .kind = kTimeNumber,
+               .dimension = kPressure,
+               .meaning = "Positive pushes inward.",
+               .required = true},
+              {.name = "follower",
+               .kind = kBoolean,
+               .meaning = "Turns with the faces and acts on their deformed area; else as on the "
+                          "undeformed solid.",
+               .standard = "true"},
+              {.name = "keeps",
+               .kind = kChoice,
+               .meaning = "What a follower keeps exactly over a step: on a closed surface no force "
+                          "and moment, or the work, pressure times change of volume.",
+               .standard = "momentum",
+               .choices = {"momentum", "work"}}}),
+        load("traction", "A force per area on faces of a deformable solid.",
+             {solid,
+              surface,
+              {.name = "traction",
+               .kind = kTimeVector,
+               .dimension = kPressure,
+               .meaning = "World components, per undeformed area.",
+               .required = true}}),
+        load("body_force", "A force on all of a deformable solid, in proportion to its mass.",
+             {solid,
+              {.name = "acceleration",
+               .kind = kTimeVector,
+               .dimension = kAcceleration,
+               .meaning = "Force per mass, world components; gravity acts by itself.",
+               .required = true}}),
+        load("nodal_force", "A force on each of some nodes of a deformable solid.",
+             {solid,
+              {.name = "nodes",
+               .kind = kSelection,
+               .meaning = "The nodes.",
+               .required = true,
+               .table = "selection"},
+              {.name = "force",
+               .kind = kTimeVector,
+               .dimension = kForce,
+               .meaning = "On each of the nodes, world components.",
+               .required = true}}),
+    };
+    list.insert(list.end(), on_solids.begin(), on_solids.end());
+    return list;
+  }();
+  return tables;
+}
+
+}  // namespace polhode

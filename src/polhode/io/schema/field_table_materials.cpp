@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/schema/field_table.hpp>
+#include <polhode/solids/materials/registry.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+namespace {
+
+/// The smallest positive number, and the neighbours of round numbers, stand for open ends.
+Range range_of(const Parameter& p) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto is_round = [](double x) { return std::isfinite(x) && 2.0 * x == std::round(2.0 * x); };
+  Range range{p.least, p.most, false, false};
+  if (p.least == std::numeric_limits<double>::min()) range = {0.0, p.most, true, false};
+  if (const double below = std::nextafter(p.least, -kInfinity);
+      is_round(below) && !is_round(p.least))
+    range.least = below, range.above_least = true;
+  if (const double above = std::nextafter(p.most, kInfinity); is_round(above) && !is_round(p.most))
+    range.most = above, range.below_most = true;
+  if (range.most == std::numeric_limits<double>::max()) range.most = kInfinity;
+  return range;
+}
+
+/// A parameter that stands in an alternative may be left out.
+bool is_required(const MaterialKind& kind, const Parameter& p) {
+  if (p.standard) return false;
+  for (const auto& set : kind.alternatives)
+    for (const std::string& name : set)
+      if (name == p.name) return false;
+  return true;
+}
+
+std::vector<Field> parameter_fields(const MaterialKind& kind) {
+  std::vector<Field> fields;
+  for (const Parameter& p : kind.parameters) {
+    const UnitReading unit = read_unit(p.unit);
+    fields.push_back({.name = p.name,
+                      .kind = kNumber,
+                      .dimension = unit.unit ? unit.unit->dimension : kNone,
+                      .meaning = sentence(p.meaning),
+                      .standard = p.standard ? format("{:g}", *p.standard) : "",
+                      .required = is_required(kind, p),
+                      .range = range_of(p)});
+  }
+  return fields;
+}
+
+/// Which parameters go together, as a sentence.
+std::string alternatives_text(const MaterialKind& kind) {
+  std::string text;
+  for (const auto& set : kind.alternatives) {
+    std::string names;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      names += (i == 0 ? "" : i + 1 == set.size() ? " and " : ", ") + set[i];
+    text += (text.empty() ? " Give " : "; or ") + names;
+  }
+  return text.empty() ? text : text + ".";
+}
+
+Field type_field(const std::string& key, const std::string& meaning, const std::string& name) {
+  return {.name = key, .kind = kChoice, .meaning = meaning, .required = true, .choices = {name}};
+}
+
+KindTable material_table(const std::string& name, const MaterialKind& kind) {
+  KindTable result{name,
+                   {"material " + name, sentence(kind.meaning) + alternatives_text(kind), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  fields = parameter_fields(kind);
+  fields.insert(fields.begin(), type_field("type", "The kind of material.", name));
+  fields.insert(fields.end(), {{.name = "density",
+                                .kind = kNumber,
+                                .dimension = kDensity,
+                                .meaning = "In the undeformed shape.",
+                                .standard = "given with each solid",
+                                .range = kPositive},
+                               {.name = "viscosity",
+                                .kind = kSection,
+                                .meaning = "Kelvin-Voigt viscosity.",
+                                .standard = "none",
+                                .table = "viscosity"},
+                               {.name = "fibre",
+                                .kind = kSection,
+                                .meaning = "Fibres that resist stretch only.",
+                                .standard = "none",
+                                .table = "fibre"}});
+  return result;
+}
+
+}  // namespace
+
+const std::vector<KindTable>& material_tables() {
+  static const std::vector<KindTable> tables = [] {
+    std::vector<KindTable> list;
+    for (const MaterialKind& kind : material_kinds()) {
+      list.push_back(material_table(kind.name, kind));
+      if (!kind.also.empty()) list.push_back(material_table(kind.also, kind));
+    }
+    return list;
+  }();
+  return tables;
+}
+
+const FieldTable& viscosity_fields() {
+  static const FieldTable table{
+      "viscosity",
+      "Kelvin-Voigt viscosity: a relaxation time, or moduli of its own.",
+      {
+          {.name = "relaxation_time",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "Viscous over elastic moduli of the undeformed material.",
+           .range = kPositive},
+          {.name = "shear",
+           .kind = kNumber,
+           .dimension = kViscosity,
+           .meaning = "Stress per rate of strain: 2 times this times the rate.",
+           .standard = "0",
+           .range = kNotNegative},
+          {.name = "lame",
+           .kind = kNumber,
+           .dimension = kViscosity,
+           .meaning = "Stress per rate of volume strain.",
+           .standard = "0"},
+      }};
+  return table;
+}
+
+const std::vector<KindTable>& fibre_tables() {
+  static const std::vector<KindTable> tables = [] {
+    std::vector<KindTable> list;
+    for (const MaterialKind& kind : fibre_kinds()) {
+      KindTable one{kind.name, {"fibre " + kind.name, sentence(kind.meaning), {}}};
+      one.table.meaning += alternatives_text(kind);
+      one.table.fields = parameter_fields(kind);
+      one.table.fields.insert(one.table.fields.begin(),
+                              type_field("law", "The law of the fibres.", kind.name));
+      one.table.fields.push_back({.name = "direction",
+                                  .kind = kDirection,
+                                  .meaning = "Of the fibres, in the mesh's own axes.",
+                                  .required = true});
+      list.push_back(std::move(one));
+    }
+    return list;
+  }();
+  return tables;
+}
+
+}  // namespace polhode

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <polhode/core/names.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+/// One fault of a model file.
+struct Diagnostic {
+  Place place;       ///< file:line:column; line 0: the place has no line (an override).
+  std::string path;  ///< Where in the model, e.g. joints.B.bodies; may be empty.
+  std::string what;  ///< With the value given; no full stop at the end.
+  std::string mend;  ///< What to do; whole sentences, may be empty.
+  std::string
+      excerpt;  ///< The source line with the faulty part underlined, two lines; may be empty.
+
+  /// `file:line:column: error: path: what. mend.` and the excerpt below it.
+  [[nodiscard]] std::string text() const;
+};
+
+/// A model file has faults: all of them at once.
+class ModelErrors : public std::invalid_argument {
+ public:
+  explicit ModelErrors(std::vector<Diagnostic> diagnostics);
+
+  [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+  /// Every message with its excerpt, in the order of the file; the same as what().
+  [[nodiscard]] std::string text() const { return what(); }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+};
+
+/// The text of a model file, by lines, to quote from.
+class SourceText {
+ public:
+  SourceText() = default;
+  SourceText(std::string name, std::string text);
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// Where a line starts in the text; 1-based.
+  [[nodiscard]] std::size_t offset(int line_number) const;
+  /// A line without its end; 1-based, empty beyond the end.
+  [[nodiscard]] std::string_view line(int number) const;
+  /// A line and, below it, a caret and tildes under the value or key that starts at the column.
+  /// @param length  Bytes to underline; 0: as far as the value reaches on its line.
+  [[nodiscard]] std::string excerpt(int line_number, int column, int length = 0) const;
+
+ private:
+  std::string name_, text_;
+  std::vector<std::size_t> line_starts_;
+};
+
+/// Gathers the faults of one file.
+class Diagnostics {
+ public:
+  explicit Diagnostics(const SourceText& source) : source_(&source) {}
+
+  /// @param length  Bytes to underline; 0: as far as the value reaches on its line.
+  void add(const Place& place, std::string path, std::string what, std::string mend,
+           int length = 0);
+  [[nodiscard]] bool empty() const { return list_.empty(); }
+  [[nodiscard]] std::size_t size() const { return list_.size(); }
+  /// @throws ModelErrors if there is a fault, in the order of the file.
+  void throw_if_any();
+
+ private:
+  const SourceText* source_;
+  std::vector<Diagnostic> list_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include <polhode/io/text/expression.hpp>
+
+namespace polhode {
+
+/// What a step of an expression's program does to the stack of values.
+enum class ExpressionOp : unsigned char {
+  kPush,
+  kTime,
+  kScale,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kPower,
+  kNegate,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr,
+  kNot,
+  kChoose,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kAtan2,
+  kSinh,
+  kCosh,
+  kTanh,
+  kExp,
+  kLog,
+  kLog10,
+  kSqrt,
+  kAbs,
+  kSign,
+  kFloor,
+  kMin,
+  kMax,
+};
+
+/// What a function wants and gives.
+enum class FunctionRule : unsigned char {
+  kAngleToNumber,
+  kNumberToAngle,
+  kNumber,
+  kRoot,
+  kKeep,
+  kKeepTwo,
+  kQuotientToAngle,
+  kToNumber,
+  kPower
+};
+
+/// A function by name.
+struct NamedFunction {
+  const char* name;
+  ExpressionOp op;
+  int arguments;
+  FunctionRule rule;
+};
+inline constexpr std::array kExpressionFunctions = {
+    NamedFunction{"sin", ExpressionOp::kSin, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"cos", ExpressionOp::kCos, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"tan", ExpressionOp::kTan, 1, FunctionRule::kAngleToNumber},
+    NamedFunction{"asin", ExpressionOp::kAsin, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"acos", ExpressionOp::kAcos, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"atan", ExpressionOp::kAtan, 1, FunctionRule::kNumberToAngle},
+    NamedFunction{"atan2", ExpressionOp::kAtan2, 2, FunctionRule::kQuotientToAngle},
+    NamedFunction{"sinh", ExpressionOp::kSinh, 1, FunctionRule::kNumber},
+    NamedFunction{"cosh", ExpressionOp::kCosh, 1, FunctionRule::kNumber},
+    NamedFunction{"tanh", ExpressionOp::kTanh, 1, FunctionRule::kNumber},
+    NamedFunction{"exp", ExpressionOp::kExp, 1, FunctionRule::kNumber},
+    NamedFunction{"log", ExpressionOp::kLog, 1, FunctionRule::kNumber},
+    NamedFunction{"log10", ExpressionOp::kLog10, 1, FunctionRule::kNumber},
+    NamedFunction{"sqrt", ExpressionOp::kSqrt, 1, FunctionRule::kRoot},
+    NamedFunction{"abs", ExpressionOp::kAbs, 1, FunctionRule::kKeep},
+    NamedFunction{"sign", ExpressionOp::kSign, 1, FunctionRule::kToNumber},
+    NamedFunction{"floor", ExpressionOp::kFloor, 1, FunctionRule::kNumber},
+    NamedFunction{"min", ExpressionOp::kMin, 2, FunctionRule::kKeepTwo},
+    NamedFunction{"max", ExpressionOp::kMax, 2, FunctionRule::kKeepTwo},
+    NamedFunction{"pow", ExpressionOp::kPower, 2, FunctionRule::kPower},
+};
+
+/// Number of values that an operation takes from the stack.
+[[nodiscard]] constexpr int operands(ExpressionOp op) {
+  using Op = ExpressionOp;
+  switch (op) {
+    case Op::kPush:
+    case Op::kTime:
+      return 0;
+    case Op::kChoose:
+      return 3;
+    case Op::kAdd:
+    case Op::kSubtract:
+    case Op::kMultiply:
+    case Op::kDivide:
+    case Op::kPower:
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kAtan2:
+    case Op::kMin:
+    case Op::kMax:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
+/// Values at once on the stack; the parser refuses what needs more.
+inline constexpr int kStackSize = 128;
+
+}  // namespace polhode

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/io/text/expression_ops.hpp>
+
+namespace polhode {
+
+namespace {
+
+constexpr std::size_t kLongest = 4096;
+constexpr int kDeepest = 48;  // Brackets in brackets.
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+/// Recursive descent; checks dimensions and writes a program for a stack machine as it goes.
+class ExpressionParser {
+ public:
+  using Op = ExpressionOp;
+
+  /// @param variable  What the expression may depend on; "" for nothing.
+  ExpressionParser(std::string_view text, const Variables& variables, const UnitSystem& units,
+                   std::string_view variable, double in_units)
+      : text_(text),
+        variables_(variables),
+        units_(units),
+        variable_(variable),
+        in_units_(in_units) {}
+
+  std::shared_ptr<const Expression> parse(ExpressionFault& fault) {
+    try {
+      if (text_.size() > kLongest)
+        stop(0, 1, format("the expression is longer than {} characters", kLongest),
+             "Use variables for its parts.");
+      read_all();
+      return std::make_shared<const Expression>(std::move(result_));
+    } catch (ExpressionFault& found) {
+      fault = std::move(found);
+      return nullptr;
+    }
+  }
+
+ private:
+  /// Type of a part of the expression, and where its program starts.
+  struct Part {
+    Quantity type;           ///< The value is not used.
+    std::size_t start = 0;   ///< First instruction.
+    std::size_t offset = 0;  ///< First byte.
+  };
+
+  [[noreturn]] static void stop(std::size_t offset, std::size_t length, std::string what,
+                                std::string mend) {
+    throw ExpressionFault{offset, length, std::move(what), std::move(mend)};
+  }
+
+  // --- Reading -------------------------------------------------------------------------------
+
+  void skip_blanks() {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+  }
+
+  bool take(std::string_view token) {
+    skip_blanks();
+    if (!text_.substr(at_).starts_with(token)) return false;
+    at_ += token.size();
+    return true;
+  }
+
+  void expect(std::string_view token) {
+    if (!take(token)) unexpected(format("expected '{}'", token));
+  }
+
+  [[noreturn]] void unexpected(const std::string& wanted) {
+    skip_blanks();
+    if (at_ >= text_.size())
+      stop(0, text_.size(), "the expression " + quote(text_) + " ends too early: " + wanted,
+           "Complete it.");
+    stop(at_, 1,
+         format("{} cannot be read as a number or expression: {} at {}", quote(text_), wanted,
+                quote(text_.substr(at_, 12))),
+         "Write a number, a number with its unit, or an expression of the variables.");
+  }
+
+  void read_all() {
+    Part whole = choice();
+    skip_blanks();
+    if (at_ < text_.size() && starts_unit()) {
+      read_written_unit(whole);
+      at_ = text_.size();
+    }
+    if (at_ < text_.size()) unexpected("an operator is missing");
+    result_.type_ = whole.type;
+    if (!result_.depends_on_time_) {
+      const double value = result_(0.0);
+      result_.program_.assign(1, {Op::kPush, value});
+      result_.type_.value = value;
+    }
+    result_.fold_constants();
+  }
+
+  [[nodiscard]] bool starts_unit() const {
+    const char c = text_[at_];
+    return is_letter(c) || c == '%' || static_cast<unsigned char>(c) >= 0x80 ||
+           (c == '1' && text_.substr(at_).starts_with("1/"));
+  }
+
+  void read_written_unit(Part& whole) {
+    const std::string_view written = text_.substr(at_);
+    if (text_[at_ - 1] != ' ' && is_letter(text_[at_])) {
+      stop(at_, written.size(), quote(text_) + " lacks a blank before the unit",
+           format("Write '{} {}'.", text_.substr(0, at_), written));
+    }
+    const UnitReading reading = read_unit(written);
+    if (!reading.unit) stop(at_, written.size(), reading.what, reading.mend);
+    if (whole.type.certainty == Certainty::kKnown)
+      stop(at_, written.size(),
+           format("the unit '{}' follows an expression that is {} already", written,
+                  whole.type.dimension.name()),
+           instead_of_unit(*reading.unit, written));
+    result_.unit_ = reading.unit;
+    scale(result_.program_.size(), reading.unit->factor);
+    whole.type = known(reading.unit->dimension);
+  }
+
+  /// The text to write where an expression has a dimension before the unit behind it: a unit counts
+  /// for the whole, so that of `tilt - 90 deg` is not that of 90 alone.
+  [[nodiscard]] std::string instead_of_unit(const Unit& unit, std::string_view written) const {
+    const std::size_t end = text_.find_last_not_of(' ', at_ - 1);
+    const std::size_t before =
+        number_begin_ > 0 ? text_.find_last_not_of(' ', number_begin_ - 1) : std::string_view::npos;
+    const bool added = number_end_ == end + 1 && before != std::string_view::npos &&
+                       (text_[before] == '+' || text_[before] == '-');
+    if (!added) return "Leave the unit out.";
+    const std::string_view number = text_.substr(number_begin_, number_end_ - number_begin_);
+    const std::string_view rest = text_.substr(0, number_begin_);
+    const double factor = unit.factor / units_.factor(unit.dimension);
+    const bool degrees = written == "deg" && units_.angle == 1.0;
+    return format(
+        "A unit counts for the whole expression. Write '{}{}', or make '{} {}' a variable.", rest,
+        degrees ? format("{}*pi/180", number)
+                : format("{:.9g}", std::strtod(std::string(number).c_str(), nullptr) * factor),
+        number, written);
+  }
+
+  Part choice() {
+    const Nesting nesting(*this);
+    Part condition = disjunction();
+    if (!take("?")) return condition;
+    Part a = choice();
+    expect(":");
+    Part b = choice();
+    const Quantity type = unify(a, b, "':'");
+    emit(Op::kChoose, 3);
+    return {type, condition.start, condition.offset};
+  }
+
+  Part disjunction() {
+    Part a = conjunction();
+    while (take("||")) a = logical(a, conjunction(), Op::kOr);
+    return a;
+  }
+
+  Part conjunction() {
+    Part a = comparison();
+    while (take("&&")) a = logical(a, comparison(), Op::kAnd);
+    return a;
+  }
+
+  Part logical(const Part& a, const Part&, Op op) {
+    emit(op, 2);
+    return {{}, a.start, a.offset};
+  }
+
+  Part comparison() {
+    static constexpr std::array<std::pair<const char*, Op>, 6> kComparisons = {
+        {{"<=", Op::kLessEqual},
+         {">=", Op::kGreaterEqual},
+         {"==", Op::kEqual},
+         {"!=", Op::kNotEqual},
+         {"<", Op::kLess},
+         {">", Op::kGreater}}};
+    Part a = sum();
+    for (const auto& [token, op] : kComparisons) {
+      if (!take(token)) continue;
+      Part b = sum();
+      unify(a, b, format("'{}'", token));
+      emit(op, 2);
+      return {{}, a.start, a.offset};
+    }
+    return a;
+  }
+
+  Part sum() {
+    Part a = product();
+    while (true) {
+      const bool plus = take("+");
+      if (!plus && !take("-")) return a;
+      Part b = product();
+      a.type = unify(a, b, plus ? "'+'" : "'-'");
+      emit(plus ? Op::kAdd : Op::kSubtract, 2);
+    }
+  }
+
+  Part product() {
+    Part a = signed_power();
+    while (true) {
+      skip_blanks();
+      const bool times = take("*");
+      if (!times && !take("/")) return a;
+      Part b = signed_power();
+      a.type = multiply(a, b, times ? 1.0 : -1.0);
+      emit(times ? Op::kMultiply : Op::kDivide, 2);
+    }
+  }
+
+  Part signed_power() {
+    const Nesting nesting(*this);
+    skip_blanks();
+    const std::size_t start = result_.program_.size(), offset = at_;
+    if (take("+")) return signed_power();
+    if (take("-")) {
+      Part a = signed_power();
+      emit(Op::kNegate, 1);
+      return {a.type, start, offset};
+    }
+    if (text_.substr(at_).starts_with("!") && take("!")) {
+      signed_power();
+      emit(Op::kNot, 1);
+      return {{}, start, offset};
+    }
+    Part base = primary();
+    if (!take("^")) return base;
+    Part exponent = signed_power();  // 2^3^2 = 2^(3^2), 2^-1 = 0.5, -2^2 = -4.
+    return raise(base, exponent);
+  }
+
+  Part primary() {
+    const Nesting nesting(*this);
+    skip_blanks();
+    if (at_ >= text_.size()) unexpected("a value is missing");
+    const std::size_t offset = at_;
+    const std::size_t start = result_.program_.size();
+    if (take("(")) {
+      Part inner = choice();
+      expect(")");
+      return {inner.type, start, offset};
+    }
+    const char c = text_[at_];
+    if (is_digit(c) || c == '.') return number();
+    if (is_letter(c)) return name();
+    unexpected("a value is missing");
+  }
+
+  Part number() {
+    const std::size_t offset = at_;
+    double value = 0.0;
+    const auto [end, error] =
+        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error == std::errc::result_out_of_range)
+      stop(offset, 1, "a number in " + quote(text_) + " is too large or too small",
+           "Stay within 1e-300 and 1e300.");
+    if (error != std::errc()) unexpected("a value is missing");
+    at_ = static_cast<std::size_t>(end - text_.data());
+    number_begin_ = offset;
+    number_end_ = at_;
+    const std::size_t start = result_.program_.size();
+    push({Op::kPush, value});
+    return {{}, start, offset};
+  }
+
+  Part name() {
+    const std::size_t offset = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    const std::string_view word = text_.substr(offset, at_ - offset);
+    const std::size_t start = result_.program_.size();
+    for (const NamedFunction& f : kExpressionFunctions)
+      if (word == f.name) return call(f, offset);
+    if (word == "pi") {
+      push({Op::kPush, std::numbers::pi});
+      return {{}, start, offset};
+    }
+    if (word == variable_) {
+      result_.depends_on_time_ = true;
+      push({Op::kTime, 1.0 / in_units_});
+      return {{0.0, Certainty::kBare, {}}, start, offset};
+    }
+    if (word == "t")
+      stop(offset, 1, "'t' (the time) has no meaning here", "This value cannot depend on time.");
+    const auto found = variables_.find(word);
+    if (found == variables_.end()) unknown_name(word, offset);
+    push({Op::kPush, found->second.value});
+    return {found->second, start, offset};
+  }
+
+  [[noreturn]] void unknown_name(std::string_view word, std::size_t offset) const {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : variables_) names.push_back(name);
+    std::string known =
+        names.empty() ? "There are no variables." : "Variables: " + name_list(names) + ".";
+    std::vector<std::string> all = reserved_names();
+    all.insert(all.end(), names.begin(), names.end());
+    stop(offset, word.size(), "unknown name " + quote(word), did_you_mean(word, all) + known);
+  }
+
+  Part call(const NamedFunction& f, std::size_t offset) {
+    const std::size_t start = result_.program_.size();
+    expect("(");
+    Part a = choice();
+    Part b;
+    if (f.arguments == 2) {
+      expect(",");
+      b = choice();
+    }
+    expect(")");
+    if (f.rule == FunctionRule::kPower) {
+      Part raised = raise(a, b);
+      return {raised.type, start, offset};
+    }
+    const Quantity type = result_type(f, a, b);
+    emit(f.op, f.arguments);
+    return {type, start, offset};
+  }
+
+  // --- Dimensions ----------------------------------------------------------------------------
+
+  static Quantity known(const Dimension& d) {
+    if (d.is_none()) return {};
+    return {0.0, Certainty::kKnown, d};
+  }
+  static bool is_known(const Part& p) { return p.type.certainty == Certainty::kKnown; }
+
+  /// Brings two parts that are added or compared to one dimension.
+  Quantity unify(Part& a, Part& b, const std::string& where) {
+    if (is_known(a) && is_known(b)) {
+      if (!a.type.dimension.matches(b.type.dimension))
+        stop(a.offset, at_ - a.offset,
+             format("{} joins {} and {}", where, a.type.dimension.name(), b.type.dimension.name()),
+             "Both must have the same dimension.");
+      return a.type;
+    }
+    if (is_known(a)) {
+      adopt(b, a.type.dimension);
+      return a.type;
+    }
+    if (is_known(b)) {
+      const std::size_t before = result_.program_.size();
+      adopt(a, b.type.dimension, b.start);
+      b.start += result_.program_.size() - before;
+      return b.type;
+    }
+    if (a.type.certainty == Certainty::kPure) return b.type;
+    return a.type;
+  }
+
+  /// A number in the user's base units becomes one in SI.
+  void adopt(const Part& part, const Dimension& d, std::optional<std::size_t> end = {}) {
+    const bool with_angle = std::abs(part.type.dimension.angle) < 1e-9;
+    scale(end.value_or(result_.program_.size()),
+          with_angle ? units_.factor(d) : units_.factor_without_angle(d));
+  }
+
+  Quantity multiply(Part& a, Part& b, double sign) {
+    const Dimension d = a.type.dimension + sign * b.type.dimension;
+    const bool bare = a.type.certainty == Certainty::kBare || b.type.certainty == Certainty::kBare;
+    if (!bare) return is_known(a) || is_known(b) ? known(d) : Quantity{};
+    // With a variable of any dimension the product has any; all counts in the user's base units.
+    if (is_known(a)) {
+      const std::size_t before = result_.program_.size();
+      scale(b.start, 1.0 / units_.factor_without_angle(a.type.dimension));
+      b.start += result_.program_.size() - before;
+    }
+    if (is_known(b))
+      scale(result_.program_.size(), 1.0 / units_.factor_without_angle(b.type.dimension));
+    return {0.0, Certainty::kBare, {0, 0, 0, d.angle}};
+  }
+
+  Part raise(const Part& base, const Part& exponent) {
+    if (is_known(exponent))
+      stop(exponent.offset, at_ - exponent.offset,
+           "the exponent is " + exponent.type.dimension.name(), "It must be a plain number.");
+    Quantity type = base.type;
+    if (base.type.certainty != Certainty::kPure) {
+      const std::optional<double> n = constant_value(exponent.start);
+      if (!n && is_known(base))
+        stop(exponent.offset, at_ - exponent.offset,
+             "the exponent of " + base.type.dimension.name() + " depends on time",
+             "It must be constant.");
+      if (n) type.dimension = *n * type.dimension;
+      if (is_known(base)) type = known(type.dimension);
+    }
+    emit(Op::kPower, 2);
+    return {type, base.start, base.offset};
+  }
+
+  /// Value of the program from an instruction on, if it has no t.
+  [[nodiscard]] std::optional<double> constant_value(std::size_t start) const {
+    Expression part;
+    part.program_.assign(result_.program_.begin() + static_cast<std::ptrdiff_t>(start),
+                         result_.program_.end());
+    for (const auto& instruction : part.program_)
+      if (instruction.op == Op::kTime) return std::nullopt;
+    const double value = part(0.0);
+    return std::isfinite(value) && std::abs(value) <= 99 ? std::optional(value) : std::nullopt;
+  }
+
+  Quantity result_type(const NamedFunction& f, Part& a, Part& b) {
+    const auto want_number = [&](const char* wanted) {
+      if (is_known(a) && !a.type.dimension.matches({}))
+        stop(a.offset, at_ - a.offset, format("{}() is given {}", f.name, a.type.dimension.name()),
+             format("It wants {}.", wanted));
+    };
+    switch (f.rule) {
+      case FunctionRule::kAngleToNumber:
+        want_number("an angle; bare numbers are radians");
+        return {};
+      case FunctionRule::kNumberToAngle:
+        want_number("a plain number");
+        return known(dimensions::kAngle);
+      case FunctionRule::kNumber:
+        want_number("a plain number");
+        return {};
+      case FunctionRule::kQuotientToAngle:
+        unify(a, b, "atan2()");
+        return known(dimensions::kAngle);
+      case FunctionRule::kKeepTwo:
+        return unify(a, b, format("{}()", f.name));
+      case FunctionRule::kToNumber:
+        return {};
+      case FunctionRule::kRoot: {
+        Quantity type = a.type;
+        type.dimension = 0.5 * type.dimension;
+        return type;
+      }
+      case FunctionRule::kKeep:
+      case FunctionRule::kPower:
+        break;
+    }
+    return a.type;
+  }
+
+  // --- Writing the program -------------------------------------------------------------------
+
+  void push(Expression::Instruction instruction) {
+    result_.program_.push_back(instruction);
+    if (++height_ > kStackSize)
+      stop(0, text_.size(), "the expression is too deeply nested", "Use variables for its parts.");
+  }
+
+  void emit(Op op, int arguments) {
+    result_.program_.push_back({op});
+    height_ -= arguments - 1;
+  }
+
+  void scale(std::size_t position, double factor) {
+    if (factor == 1.0) return;
+    result_.program_.insert(result_.program_.begin() + static_cast<std::ptrdiff_t>(position),
+                            {Op::kScale, factor});
+  }
+
+  /// Counts brackets, signs and calls within each other.
+  struct Nesting {
+    explicit Nesting(ExpressionParser& p) : parser(p) {
+      if (++parser.depth_ > 3 * kDeepest)
+        stop(0, parser.text_.size(), "the expression is too deeply nested",
+             "Use variables for its parts.");
+    }
+    ~Nesting() { --parser.depth_; }
+    Nesting(const Nesting&) = delete;
+    Nesting& operator=(const Nesting&) = delete;
+    ExpressionParser& parser;
+  };
+
+  std::string_view text_;
+  const Variables& variables_;
+  const UnitSystem& units_;
+  std::string_view variable_;
+  double in_units_;  ///< Size of the user's base unit of the variable, SI.
+  std::size_t at_ = 0;
+  std::size_t number_begin_ = 0, number_end_ = 0;  ///< Of the number read last.
+  int depth_ = 0, height_ = 0;
+  Expression result_;
+};
+
+std::shared_ptr<const Expression> Expression::parse(std::string_view text,
+                                                    const Variables& variables,
+                                                    const UnitSystem& units,
+                                                    std::string_view variable, double in_units,
+                                                    ExpressionFault& fault) {
+  return ExpressionParser(text, variables, units, variable, in_units).parse(fault);
+}
+
+}  // namespace polhode

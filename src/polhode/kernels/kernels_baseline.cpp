@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any x86-64 (SSE2) and arm64 (NEON): two doubles a register.
+#define POLHODE_ISA lanes_baseline
+#define POLHODE_WIDTH 2
+#include <polhode/kernels/kernels.hpp>
+
+namespace polhode {
+extern const LaneKernels kBaselineKernels;
+constinit const LaneKernels kBaselineKernels = lanes_baseline::make_kernels("baseline");
+}  // namespace polhode

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/linear/block_cg.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Of a symmetric matrix, by cofactors. @returns false if it is not positive.
+bool invert(const Mat3& M, Mat3& inverse) {
+  const double a = M(0, 0), b = M(1, 0), c = M(2, 0), d = M(1, 1), e = M(2, 1), f = M(2, 2);
+  const double A = d * f - e * e, B = c * e - b * f, C = b * e - c * d, minor = a * d - b * b;
+  const double det = a * A + b * B + c * C;
+  if (!(a > 0.0 && minor > 0.0 && det > 0.0)) return false;
+  const double s = 1.0 / det;
+  const double D = a * f - c * c, E = b * c - a * e;
+  inverse << s * A, s * B, s * C, s * B, s * D, s * E, s * C, s * E, s * minor;
+  return true;
+}
+
+}  // namespace
+
+inline BlockCg::Four BlockCg::cross(Four a, Four b) {
+  const Four turned =
+      a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
+}
+
+inline BlockCg::Pair BlockCg::times(const Block& block, const Pair& x) {
+  Pair y{x.moved[0] * block.column[0].moved, x.moved[0] * block.column[0].turned};
+  for (int k = 1; k < 6; ++k) {
+    const float s = k < 3 ? x.moved[k] : x.turned[k - 3];
+    y.moved += s * block.column[k].moved;
+    y.turned += s * block.column[k].turned;
+  }
+  return y;
+}
+
+inline double BlockCg::dot(const Pair& x, const Pair& y) {
+  const Four s = x.moved * y.moved + x.turned * y.turned;
+  return (static_cast<double>(s[0]) + static_cast<double>(s[1])) +
+         (static_cast<double>(s[2]) + static_cast<double>(s[3]));
+}
+
+/// Adds Pᵀ C P with P = [I, −arm^].
+inline void BlockCg::add(const Spring& spring, Four arm, Block& block) {
+  const Four *C = spring.C, turned[3] = {cross(arm, C[0]), cross(arm, C[1]), cross(arm, C[2])};
+  // Column j of −C arm^ is C (e_j × arm).
+  const Four back[3] = {arm[1] * C[2] - arm[2] * C[1], arm[2] * C[0] - arm[0] * C[2],
+                        arm[0] * C[1] - arm[1] * C[0]};
+  for (int j = 0; j < 3; ++j) {
+    block.column[j].moved += C[j];
+    block.column[j].turned += turned[j];
+    block.column[3 + j].moved += back[j];
+    block.column[3 + j].turned += cross(arm, back[j]);
+  }
+}
+
+/// [A, Bᵀ; B, D]⁻¹ by the Schur complement of A. @returns false if it is not positive.
+bool BlockCg::invert(const Block& block, Block& inverse) {
+  Mat3 A, B, D, inverse_A, inverse_S;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      A(i, j) = block.column[j].moved[i];
+      B(i, j) = block.column[j].turned[i];
+      D(i, j) = block.column[3 + j].turned[i];
+    }
+  if (!polhode::invert(A, inverse_A)) return false;
+  const Mat3 X = B * inverse_A;
+  if (!polhode::invert(D - X * B.transpose(), inverse_S)) return false;
+  const Mat3 Y = inverse_S * X;
+  inverse_A += X.transpose() * Y;
+  const auto four = [](double x, double y, double z) {
+    return Four{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.0f};
+  };
+  for (int j = 0; j < 3; ++j) {
+    inverse.column[j].moved = four(inverse_A(0, j), inverse_A(1, j), inverse_A(2, j));
+    inverse.column[j].turned = four(-Y(0, j), -Y(1, j), -Y(2, j));
+    inverse.column[3 + j].moved = four(-Y(j, 0), -Y(j, 1), -Y(j, 2));
+    inverse.column[3 + j].turned = four(inverse_S(0, j), inverse_S(1, j), inverse_S(2, j));
+  }
+  return true;
+}
+
+bool BlockCg::set_bodies(std::span<const Mat6> blocks) {
+  double moving = 0.0, turning = 0.0;
+  for (const Mat6& B : blocks) {
+    moving = std::max(moving, B.topLeftCorner<3, 3>().trace());
+    turning = std::max(turning, B.bottomRightCorner<3, 3>().trace());
+  }
+  if (!blocks.empty() && !(moving > 0.0 && turning > 0.0)) return false;
+  per_length_ = 1.0 / std::sqrt(moving);
+  per_turn_ = 1.0 / std::sqrt(turning);
+  own_.resize(blocks.size());
+  own_inverse_.resize(blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (int j = 0; j < 6; ++j) {
+      const double scale = j < 3 ? per_length_ : per_turn_;
+      Pair& to = own_[b].column[j];
+      to = Pair{};
+      for (int i = 0; i < 3; ++i) {
+        const auto half = [&](int k) { return 0.5 * (blocks[b](k, j) + blocks[b](j, k)); };
+        to.moved[i] = static_cast<float>(per_length_ * scale * half(i));
+        to.turned[i] = static_cast<float>(per_turn_ * scale * half(3 + i));
+      }
+    }
+    if (!invert(own_[b], own_inverse_[b])) return false;
+  }
+  return true;
+}
+
+void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const int> moving) {
+  const double squared = per_length_ * per_length_, ratio = per_turn_ / per_length_;
+  const auto four = [](const auto& x, double s) {
+    return Four{static_cast<float>(s * x[0]), static_cast<float>(s * x[1]),
+                static_cast<float>(s * x[2]), 0.0f};
+  };
+  const auto count = static_cast<int>(moving.size());
+  moving_.assign(moving.begin(), moving.end());
+  place_.assign(own_.size(), count);
+  block_.resize(moving.size());
+  for (int k = 0; k < count; ++k) {
+    place_[moving[k]] = k;
+    block_[k] = own_[moving[k]];
+  }
+  inverse_ = block_;
+  springs_.clear();
+  rubs_.clear();
+  for (const ActingPoint& point : points) {
+    const ContactSpring& from = point.spring;
+    Spring s;
+    s.a = from.a == kGround ? count : place_[from.a];
+    s.b = from.b == kGround ? count : place_[from.b];
+    if (s.a == count && s.b == count) continue;
+    for (int j = 0; j < 3; ++j) s.C[j] = four(from.C.col(j), squared);
+    s.arm_a = four(from.arm_a, ratio);
+    s.arm_b = four(from.arm_b, ratio);
+    if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
+    if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
+    springs_.push_back(s);
+    if (!from.rub.isZero(0.0))
+      rubs_.push_back(
+          {four(from.rub, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
+  }
+  // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
+  for (int k = 0; k < count; ++k)
+    if (Block inverse; invert(inverse_[k], inverse))
+      inverse_[k] = inverse;
+    else
+      inverse_[k] = own_inverse_[moving[k]];
+}
+
+/// y = A p. What stays has a part of p that is zero, and one of y that is never read.
+void BlockCg::multiply() {
+  for (std::size_t k = 0; k < block_.size(); ++k) y_[k] = times(block_[k], p_[k]);
+  for (const Spring& s : springs_) {
+    const Pair &a = p_[s.a], &b = p_[s.b];
+    const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
+    const Four F = u[0] * s.C[0] + u[1] * s.C[1] + u[2] * s.C[2];
+    y_[s.a].moved += F;
+    y_[s.a].turned += cross(s.arm_a, F);
+    y_[s.b].moved -= F;
+    y_[s.b].turned -= cross(s.arm_b, F);
+  }
+}
+
+double BlockCg::scale(std::span<const Vec6> rhs, Vectors& b) const {
+  // Forces of any unit fit into single precision.
+  double size = 0.0;
+  for (const int body : moving_) {
+    const Vec6& f = rhs[body];
+    size = std::max(size, per_length_ * f.head<3>().lpNorm<Eigen::Infinity>());
+    size = std::max(size, per_turn_ * f.tail<3>().lpNorm<Eigen::Infinity>());
+  }
+  if (!(size > 0.0) || !std::isfinite(size)) return 0.0;
+  const double by_length = per_length_ / size, by_turn = per_turn_ / size;
+  b.assign(moving_.size(), Pair{});
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      b[k].moved[i] = static_cast<float>(by_length * rhs[moving_[k]][i]);
+      b[k].turned[i] = static_cast<float>(by_turn * rhs[moving_[k]][3 + i]);
+    }
+  return size;
+}
+
+void BlockCg::unscale(const Vectors& from, double size, std::vector<Vec6>& x) const {
+  const double length = per_length_ * size, turn = per_turn_ * size;
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      x[moving_[k]][i] = length * from[k].moved[i];
+      x[moving_[k]][3 + i] = turn * from[k].turned[i];
+    }
+}
+
+int BlockCg::iterate(const Vectors& b, double part, int most) {
+  const std::size_t n = moving_.size();
+  const Pair zero{};
+  x_.assign(n, zero);
+  r_ = b;
+  z_.resize(n);
+  p_.assign(n + 1, zero);
+  y_.assign(n + 1, zero);
+  double rz = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    z_[k] = p_[k] = times(inverse_[k], r_[k]);
+    rz += dot(r_[k], z_[k]);
+  }
+  const double enough = part * rz;
+  int iterations = 0;
+  while (iterations < most && rz > enough) {
+    ++iterations;
+    multiply();
+    double curvature = 0.0;
+    for (std::size_t k = 0; k < n; ++k) curvature += dot(p_[k], y_[k]);
+    if (!(curvature > 0.0)) break;
+    const auto alpha = static_cast<float>(rz / curvature);
+    double next = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      x_[k].moved += alpha * p_[k].moved;
+      x_[k].turned += alpha * p_[k].turned;
+      r_[k].moved -= alpha * y_[k].moved;
+      r_[k].turned -= alpha * y_[k].turned;
+      z_[k] = times(inverse_[k], r_[k]);
+      next += dot(r_[k], z_[k]);
+    }
+    const auto beta = static_cast<float>(next / rz);
+    rz = next;
+    for (std::size_t k = 0; k < n; ++k) {
+      p_[k].moved = z_[k].moved + beta * p_[k].moved;
+      p_[k].turned = z_[k].turned + beta * p_[k].turned;
+    }
+  }
+  return iterations;
+}
+
+int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most,
+                   int directions) {
+  x.assign(rhs.size(), Vec6::Zero());
+  const double size = scale(rhs, basis_[0]);
+  if (size == 0.0) return 0;
+  const int iterations = rubs_.empty() || directions == 0
+                             ? iterate(basis_[0], part, most)
+                             : iterate_rubbing(part, most, std::min(directions, kMostDirections));
+  unscale(x_, size, x);
+  return iterations;
+}
+
+void BlockCg::subtract_rubs(const Vectors& p, Vectors& y) const {
+  for (const Rub& s : rubs_) {
+    const Pair &a = p[s.a], &b = p[s.b];
+    const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
+    const Four n = s.normal * u, F = (n[0] + n[1] + n[2]) * s.force;
+    y[s.a].moved -= F;
+    y[s.a].turned -= cross(s.arm_a, F);
+    y[s.b].moved += F;
+    y[s.b].turned += cross(s.arm_b, F);
+  }
+}
+
+/// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993) for S − U: S z is what conjugate gradients
+/// took from v.
+int BlockCg::iterate_rubbing(double part, int most, int directions) {
+  const std::size_t n = moving_.size();
+  const auto product = [n](const Vectors& p, const Vectors& q) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < n; ++k) sum += dot(p[k], q[k]);
+    return sum;
+  };
+  const auto add_times = [n](double factor, const Vectors& p, Vectors& to) {
+    const auto s = static_cast<float>(factor);
+    for (std::size_t k = 0; k < n; ++k) {
+      to[k].moved += s * p[k].moved;
+      to[k].turned += s * p[k].turned;
+    }
+  };
+  const double length = std::sqrt(product(basis_[0], basis_[0]));
+  add_times(1.0 / length - 1.0, basis_[0], basis_[0]);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(directions + 1, directions);
+  Eigen::VectorXd weights;
+  int iterations = 0;
+  for (int j = 0; j < directions; ++j) {
+    iterations += iterate(basis_[j], part, most);
+    Vectors& w = basis_[j + 1];
+    w = basis_[j];
+    add_times(-1.0, r_, w);
+    x_.resize(n + 1);
+    w.resize(n + 1);
+    x_.back() = Pair{};
+    subtract_rubs(x_, w);
+    w.resize(n);
+    found_[j] = x_;
+    for (int i = 0; i <= j; ++i) {
+      H(i, j) = product(basis_[i], w);
+      add_times(-H(i, j), basis_[i], w);
+    }
+    H(j + 1, j) = std::sqrt(product(w, w));
+    const Eigen::MatrixXd so_far = H.topLeftCorner(j + 2, j + 1);
+    const Eigen::VectorXd start = length * Eigen::VectorXd::Unit(j + 2, 0);
+    weights = so_far.colPivHouseholderQr().solve(start);
+    const double left = (so_far * weights - start).squaredNorm();
+    if (!(left > part * length * length) || !(H(j + 1, j) > 0.0)) break;
+    add_times(1.0 / H(j + 1, j) - 1.0, w, w);
+  }
+  x_.assign(n, Pair{});
+  for (int j = 0; j < weights.size(); ++j) add_times(weights[j], found_[j], x_);
+  return iterations;
+}
+
+}  // namespace polhode

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <dlfcn.h>
+#include <dmumps_c.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/linear/mumps.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Entry = void (*)(DMUMPS_STRUC_C*);
+
+/// The library, loaded once.
+Entry load() {
+  void* library = dlopen(POLHODE_MUMPS_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    throw InputError("solids", format("need the MUMPS library: {}", dlerror()),
+                     format("Install {} (Debian: libmumps-seq)", POLHODE_MUMPS_LIBRARY));
+  using SetThreads = void (*)(int);
+  if (auto one = reinterpret_cast<SetThreads>(dlsym(library, "openblas_set_num_threads"))) one(1);
+  return reinterpret_cast<Entry>(dlsym(library, "dmumps_c"));
+}
+
+constexpr int kUseCommWorld = -987654;  // as MUMPS asks for without MPI
+constexpr int kInitialise = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3;
+// Numbers of MUMPS' errors that more workspace mends, and those that say "singular".
+constexpr int kWorkspaceTooSmall = -9, kIntegersTooSmall = -8, kSingular = -10, kStructural = -6;
+
+}  // namespace
+
+struct Mumps::Impl {
+  mutable DMUMPS_STRUC_C m;
+  Entry call;
+  std::vector<MUMPS_INT> rows, columns;
+  std::vector<double> values;
+  std::vector<MUMPS_INT> null_list;
+  bool started = false;
+
+  explicit Impl(Symmetry symmetry) {
+    static const Entry entry = load();
+    call = entry;
+    std::memset(&m, 0, sizeof m);
+    m.comm_fortran = kUseCommWorld;
+    m.par = 1;
+    m.sym = symmetry == Symmetry::symmetric ? 2 : 0;
+    m.job = kInitialise;
+    call(&m);
+    started = true;
+    for (int k = 1; k <= 4; ++k) control(k) = k < 4 ? -1 : 0;  // silent
+    control(14) = 30;                                          // workspace: 30 % more than planned
+  }
+  ~Impl() {
+    if (!started) return;
+    m.job = kEnd;
+    call(&m);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  MUMPS_INT& control(int k) const { return m.icntl[k - 1]; }
+
+  void solve(double* x, int count, bool transposed) const {
+    control(9) = transposed ? 0 : 1;
+    m.rhs = x;
+    m.nrhs = count;
+    m.lrhs = m.n;
+    m.job = kSolve;
+    call(&m);
+    if (m.infog[0] < 0) throw std::runtime_error(format("MUMPS: solve failed ({})", m.infog[0]));
+  }
+};
+
+Mumps::Mumps(Symmetry symmetry) : impl_(std::make_unique<Impl>(symmetry)) {}
+Mumps::~Mumps() = default;
+Mumps::Mumps(Mumps&&) noexcept = default;
+
+void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>& columns) {
+  Impl& s = *impl_;
+  s.rows.resize(rows.size());
+  s.columns.resize(columns.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    s.rows[k] = rows[k] + 1;
+    s.columns[k] = columns[k] + 1;
+  }
+  s.values.assign(rows.size(), 0.0);
+  s.m.n = n;
+  s.m.nnz = static_cast<MUMPS_INT8>(rows.size());
+  s.m.irn = s.rows.data();
+  s.m.jcn = s.columns.data();
+  s.m.a = s.values.data();
+  s.m.job = kAnalyse;
+  s.call(&s.m);
+  if (s.m.infog[0] < 0)
+    throw std::runtime_error(
+        s.m.infog[0] == kStructural
+            ? "MUMPS: the matrix is structurally singular"
+            : format("MUMPS: analysis failed ({}, {})", s.m.infog[0], s.m.infog[1]));
+}
+
+bool Mumps::factor(const double* values) {
+  Impl& s = *impl_;
+  std::copy(values, values + s.values.size(), s.values.begin());
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    s.m.job = kFactor;
+    s.call(&s.m);
+    const int error = s.m.infog[0];
+    if (error >= 0) return true;
+    if (error == kSingular) return false;
+    if (error != kWorkspaceTooSmall && error != kIntegersTooSmall)
+      throw std::runtime_error(format(
+          "MUMPS: factorisation failed ({}, {}); is there enough memory?", error, s.m.infog[1]));
+    s.control(14) *= 2;
+  }
+  return false;  // finds hardly a pivot, and puts off the others without end
+}
+
+void Mumps::solve(double* x, int count) const { impl_->solve(x, count, false); }
+void Mumps::solve_transposed(double* x, int count) const { impl_->solve(x, count, true); }
+int Mumps::negative_pivots() const { return impl_->m.infog[11]; }
+double Mumps::factor_flops() const { return impl_->m.rinfog[2]; }
+double Mumps::factor_entries() const {
+  const MUMPS_INT n = impl_->m.infog[28];  // in millions if negative
+  return n < 0 ? -1e6 * n : n;
+}
+void Mumps::find_null_pivots(bool yes) { impl_->control(24) = yes ? 1 : 0; }
+
+std::vector<int> Mumps::null_pivots() const {
+  const Impl& s = *impl_;
+  std::vector<int> list;
+  list.reserve(s.m.infog[27]);
+  for (int k = 0; k < s.m.infog[27]; ++k) list.push_back(s.m.pivnul_list[k] - 1);
+  return list;
+}
+
+}  // namespace polhode

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/core/types.hpp>
+
+namespace polhode {
+
+/// Exponential map: the rotation by the angle |chi| about chi.
+/// @eq{eq:rbr-rotation-tensor-alt-2}, equal to @eq{eq:rbr-rotation-tensor} and
+/// @eq{eq:rbr-rotation-tensor-alt-1}, which divide by the angle.
+///
+///   exp[χ̂] = I + sin χ/χ χ̂ + 2/χ² sin²(χ/2) χ̂²
+///
+/// @param chi  Rotation vector χ n [rad]; any finite value, series below 1e-4 rad.
+/// @returns    Rotation matrix Λ [-].
+[[nodiscard]] Mat3 exp_map(const Vec3& chi);
+
+/// Rotation vector of a rotation, the inverse of exp_map(): angle in [0, π] [rad].
+[[nodiscard]] Vec3 log_map(const Mat3& Lambda);
+
+}  // namespace polhode

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/newton/barrier_guard.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <polhode/equations/node_motion.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// What is left in front of a barrier after an iteration, of what there was before it.
+constexpr double kLeave = 0.1;
+/// Parts are taken a little smaller, as the way to a barrier is not straight.
+constexpr double kShorterWay = 0.98;
+constexpr int kGuardRepeats = 20;
+
+double smallest(const std::vector<double>& clearances) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double c : clearances) least = std::min(least, c);
+  return least;
+}
+
+}  // namespace
+
+BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& trial,
+                           NewtonEngine& engine)
+    : system_(system), state_(state), trial_(trial), engine_(engine) {
+  const Nodes& nodes = system.nodes();
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* points = dynamic_cast<const BarrierPoints*>(&nodes.group(g)))
+      points_.push_back({points, state.element_history.data() + nodes.first_history(g)});
+  idle_ = system.barriers().empty() && points_.empty();
+}
+
+void BarrierGuard::measure(std::vector<double>& clearance) const {
+  clearance.clear();
+  for (int i : system_.barriers()) {
+    const InteractionRef& ref = system_.interactions()[i];
+    const PairView view = pair_view(system_, state_, trial_, ref);
+    clearance.push_back(system_.group(ref.group).clearance(ref.item, view.step()));
+  }
+  if (points_.empty()) return;
+  const NodeStep step = node_step(state_, trial_);
+  for (const Watched& w : points_) w.points->clearances(step, w.history, clearance);
+}
+
+void BarrierGuard::measure_start() {
+  measure(from_);
+  if (!points_.empty()) from_x_ = trial_.node_x;
+}
+
+double BarrierGuard::part() const {
+  double most = 1.0;
+  for (std::size_t i = 0; i < from_.size(); ++i) {
+    const double leave = kLeave * std::min(from_[i], 1.0);
+    if (to_[i] >= leave) continue;
+    const double way = from_[i] - to_[i];
+    most = std::min(most, way > 0.0 ? kShorterWay * (from_[i] - leave) / way : 0.0);
+  }
+  if (points_.empty()) return most;
+  const NodeStep to = node_step(state_, trial_);
+  NodeStep from = to;
+  from.x_n1 = from_x_.data();
+  for (const Watched& w : points_) {
+    const double free = w.points->free_part(from, to, w.history);
+    if (free < 1.0) most = std::min(most, kShorterWay * free);
+  }
+  return most;
+}
+
+void BarrierGuard::hold_prediction() {
+  if (idle_) return;
+  const std::vector<TrialBlock> predicted = trial_.blocks;
+  const std::vector<double> node_u = trial_.node_u;
+  const auto go = [&](double part) {
+    std::copy(predicted.begin(), predicted.end(), trial_.blocks.begin());
+    trial_.node_u = node_u;
+    shorten_motion(system_, state_, part, trial_);
+  };
+  measure(to_);
+  near_ = smallest(to_) < 1.0;
+  if (!near_ && points_.empty()) return;
+  go(0.0);
+  measure_start();
+  go(1.0);
+  double taken = 1.0;
+  for (int repeat = 0; repeat < kGuardRepeats; ++repeat) {
+    const double fits = part();
+    if (fits >= 1.0) break;
+    taken = repeat + 1 < kGuardRepeats ? taken * fits : 0.0;
+    go(taken);
+    measure(to_);
+  }
+}
+
+void BarrierGuard::before() {
+  if (idle_) return;
+  measure_start();
+  engine_.end_step(state_, trial_);  // brings the multipliers into the trial
+  iterate_.keep(system_, trial_);
+}
+
+Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
+  if (idle_) return done;
+  double applied = 1.0;
+  for (int repeat = 0; done.solved && repeat < kGuardRepeats; ++repeat) {
+    measure(to_);
+    const double fits = part();
+    if (fits >= 1.0) break;
+    applied *= fits;
+    iterate_.restore(system_, trial_);
+    engine_.resume(state_, trial_);
+    done = engine_.iterate(state_, trial_, refactor, damping * applied);
+  }
+  near_ = std::min(smallest(from_), smallest(to_)) < 1.0;
+  done.applied *= applied;
+  return done;
+}
+
+}  // namespace polhode

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/QR>
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <polhode/core/format.hpp>
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/linear/loop_rank.hpp>
+#include <polhode/newton/rank_report.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// The exact rows of an interaction, each scaled to length one.
+struct Rows {
+  int interaction = 0, a = kGround, b = kGround;
+  Eigen::Matrix<double, Eigen::Dynamic, 12> G;
+};
+
+std::vector<Rows> constraint_rows(const System& system, const State& state) {
+  std::vector<BodyStep> steps;
+  steps.reserve(system.body_count() + 1);
+  for (int b = 0; b < system.body_count(); ++b) steps.push_back(system.instant(state, b));
+  steps.push_back(BodyStep::ground(1.0));
+  StepContext context;
+  context.ga = GeneralizedAlpha::from_spectral_radius(0.0);
+  context.t_n = state.t;
+  context.conserving = false;
+
+  std::vector<Rows> list;
+  const std::vector<double> no_lambda(system.rows(), 0.0);
+  const double per_length = 1.0 / system.length_scale();
+  InteractionSweep sweep(system);
+  sweep.run(
+      steps, context, no_lambda.data(), state.history.data(),
+      [&](int i, const PairStep&, const PairTerms& terms) {
+        const InteractionRef& ref = system.interactions()[i];
+        Rows rows{i, ref.a, ref.b, {}};
+        for (int k = 0; k < ref.rows; ++k) {
+          if (terms.compliance[k] != 0.0) continue;
+          Eigen::Matrix<double, 1, 12> row = Eigen::Matrix<double, 1, 12>::Zero();
+          if (ref.a != kGround) row.head<6>() = terms.G_a.row(k);
+          if (ref.b != kGround) row.tail<6>() = terms.G_b.row(k);
+          row.segment<3>(3) *= per_length;
+          row.tail<3>() *= per_length;
+          if (const double size = row.norm(); size > 0.0) row /= size;
+          rows.G.conservativeResize(rows.G.rows() + 1, 12);
+          rows.G.bottomRows<1>() = row;
+        }
+        if (rows.G.rows() > 0) list.push_back(std::move(rows));
+      },
+      true);
+  return list;
+}
+
+/// Takes out, one after the other, the joint of each body that hangs on a single one: where its
+/// rows are independent on that body alone, they are independent of all others. What is left are
+/// loops. @returns the rank of what was taken out.
+int take_out_branches(const System& system, double tolerance, std::vector<Rows>& rows) {
+  std::vector<std::vector<int>> of_body(static_cast<std::size_t>(system.body_count()));
+  for (int k = 0; k < static_cast<int>(rows.size()); ++k)
+    for (const int body : {rows[k].a, rows[k].b})
+      if (body != kGround) of_body[body].push_back(k);
+  std::vector<char> gone(rows.size(), 0);
+  std::vector<int> ends;
+  for (int b = 0; b < system.body_count(); ++b)
+    if (of_body[b].size() == 1) ends.push_back(b);
+  int rank = 0;
+  while (!ends.empty()) {
+    const int body = ends.back();
+    ends.pop_back();
+    if (of_body[body].size() != 1) continue;
+    const int k = of_body[body].front();
+    const Rows& joint = rows[k];
+    Eigen::ColPivHouseholderQR<Mat> qr(6, joint.G.rows());
+    qr.setThreshold(tolerance);
+    qr.compute((joint.a == body ? joint.G.leftCols<6>() : joint.G.rightCols<6>()).transpose());
+    if (qr.rank() < joint.G.rows()) continue;
+    rank += static_cast<int>(joint.G.rows());
+    gone[k] = 1;
+    of_body[body].clear();
+    const int other = joint.a == body ? joint.b : joint.a;
+    if (other == kGround) continue;
+    std::vector<int>& left = of_body[other];
+    left.erase(std::find(left.begin(), left.end(), k));
+    if (left.size() == 1) ends.push_back(other);
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (!gone[k]) std::swap(rows[kept++], rows[k]);
+  rows.resize(kept);
+  return rank;
+}
+
+/// Interactions that share bodies, directly or by way of others: their places in the list.
+std::vector<std::vector<int>> clusters(const System& system, const std::vector<Rows>& rows) {
+  std::vector<int> tie(static_cast<std::size_t>(system.body_count()));
+  std::iota(tie.begin(), tie.end(), 0);
+  const auto first = [&](int body) {
+    while (tie[body] != body) body = tie[body] = tie[tie[body]];
+    return body;
+  };
+  for (const Rows& r : rows)
+    if (r.a != kGround && r.b != kGround) tie[first(r.a)] = first(r.b);
+  std::map<int, std::vector<int>> by_first;
+  for (int k = 0; k < static_cast<int>(rows.size()); ++k)
+    by_first[first(rows[k].a != kGround ? rows[k].a : rows[k].b)].push_back(k);
+  std::vector<std::vector<int>> list;
+  for (auto& [body, members] : by_first) list.push_back(std::move(members));
+  return list;
+}
+
+/// The rows of a cluster over its own bodies, and the interaction of each.
+struct ClusterRows {
+  std::vector<BodyRows> blocks;
+  std::vector<int> interaction;
+  int bodies = 0;
+};
+
+ClusterRows rows_of(const std::vector<Rows>& rows, const std::vector<int>& cluster) {
+  ClusterRows list;
+  std::map<int, int> place;
+  for (const int k : cluster) {
+    const Rows& r = rows[static_cast<std::size_t>(k)];
+    BodyRows block{{}, Mat(r.G.rows(), 0)};
+    for (const auto& [body, part] :
+         {std::pair<int, Mat>(r.a, r.G.leftCols<6>()), {r.b, r.G.rightCols<6>()}}) {
+      if (body == kGround) continue;
+      block.bodies.push_back(place.try_emplace(body, static_cast<int>(place.size())).first->second);
+      block.G.conservativeResize(Eigen::NoChange, block.G.cols() + 6);
+      block.G.rightCols(6) = part;
+    }
+    list.interaction.insert(list.interaction.end(), static_cast<std::size_t>(r.G.rows()),
+                            r.interaction);
+    list.blocks.push_back(std::move(block));
+  }
+  list.bodies = static_cast<int>(place.size());
+  return list;
+}
+
+}  // namespace
+
+std::string RankReport::text() const {
+  std::string s = format("mobility {}, {} constraint rows, rank {}", mobility, rows, rank);
+  if (redundant == 0) return s + ", none redundant";
+  s += format(", {} redundant among", redundant);
+  for (std::size_t i = 0; i < names.size(); ++i) s += (i == 0 ? " " : ", ") + names[i];
+  return s;
+}
+
+RankReport rank_report(const System& system, const State& state, double tolerance) {
+  std::vector<Rows> rows = constraint_rows(system, state);
+  RankReport report;
+  for (const Rows& r : rows) report.rows += static_cast<int>(r.G.rows());
+  report.rank = take_out_branches(system, tolerance, rows);
+  std::set<int> involved;
+  for (const std::vector<int>& cluster : clusters(system, rows)) {
+    const ClusterRows own = rows_of(rows, cluster);
+    const LoopRank found = loop_rank(own.blocks, own.bodies, tolerance);
+    report.rank += found.rank;
+    for (std::size_t j = 0; j < found.dependent.size(); ++j)
+      if (found.dependent[j]) involved.insert(own.interaction[j]);
+  }
+  report.redundant = report.rows - report.rank;
+  report.mobility = 6 * system.body_count() - report.rank;
+  for (const int i : involved) {
+    report.involved.push_back(i);
+    const InteractionRef& ref = system.interactions()[i];
+    report.names.push_back(format("{} '{}'", system.group(ref.group).kind(), system.name(ref)));
+  }
+  return report;
+}
+
+}  // namespace polhode

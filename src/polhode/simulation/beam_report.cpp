@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include <polhode/beams/beam_element.hpp>
+#include <polhode/simulation/beam_report.hpp>
+#include <polhode/simulation/simulation.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// What of each of the interactions listed, at a state; Item is their type.
+template <class Item, class What>
+auto of_each(const System& system, const State& state, const std::vector<int>& interactions,
+             What&& what) {
+  std::vector<decltype(what(std::declval<const Item&>(), std::declval<const PairStep&>()))> values;
+  for (int i : interactions) {
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
+    const auto& group = dynamic_cast<const Group<Item>&>(system.group(ref.group));
+    const PairView view = system.instant(state, ref, nullptr);
+    values.push_back(what(group.items[static_cast<std::size_t>(ref.item)], view.step()));
+  }
+  return values;
+}
+
+}  // namespace
+
+BeamReport beam_report(const Simulation& simulation, const BeamSpec& spec,
+                       const std::vector<int>& elements) {
+  BeamReport report;
+  for (int k = 0; k < spec.node_count(); ++k) {
+    const BodyMotion node = simulation.body(spec.first_node + k);
+    report.position.push_back(node.r);
+    report.velocity.push_back(node.v);
+    report.orientation.push_back(node.q);
+  }
+  report.forces = of_each<BeamElement>(
+      simulation.system(), simulation.state(), elements,
+      [](const BeamElement& item, const PairStep& step) { return item.section_forces(step); });
+  report.strains = of_each<BeamElement>(
+      simulation.system(), simulation.state(), elements,
+      [](const BeamElement& item, const PairStep& step) { return item.strains(step); });
+  return report;
+}
+
+CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
+                         const std::vector<int>& pieces) {
+  CableReport report;
+  const auto add = [&](const AttachmentSpec& at) {
+    Simulation::PointMotion end{at.Z, Vec3::Zero(), Vec3::Zero()};
+    if (at.body != kGround) end = simulation.point(at.body, at.Z);
+    report.position.push_back(end.position);
+    report.velocity.push_back(end.velocity);
+  };
+  add(spec.pieces.front().a);
+  for (const CableLineSpec::Piece& piece : spec.pieces) add(piece.b);
+  report.tension =
+      of_each<Cable>(simulation.system(), simulation.state(), pieces,
+                     [](const Cable& item, const PairStep& step) { return item.tension(step); });
+  report.length =
+      of_each<Cable>(simulation.system(), simulation.state(), pieces,
+                     [](const Cable& item, const PairStep& step) { return item.length(step); });
+  for (std::size_t k = 0; k < spec.pieces.size(); ++k)
+    report.strain.push_back(report.length[k] / spec.pieces[k].free_length - 1.0);
+  return report;
+}
+
+}  // namespace polhode

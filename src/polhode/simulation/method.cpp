@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/engines/contact_engine.hpp>
+#include <polhode/engines/coupled_engine.hpp>
+#include <polhode/engines/crowd_engine.hpp>
+#include <polhode/engines/nonsmooth_engine.hpp>
+#include <polhode/engines/sparse_engine.hpp>
+#include <polhode/engines/tree_engine.hpp>
+#include <polhode/simulation/method.hpp>
+#include <polhode/surface_contact/edge_contact.hpp>
+#include <polhode/surface_contact/surface_contact.hpp>
+#include <polhode/system/barrier_points.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Newton tolerances. The higher orders resolve smaller errors; in solids what is left of a step
+/// goes into many vibrations.
+constexpr double kToleranceBodies = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
+/// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
+constexpr int kIterations = 12, kIterationsSolids = 30;
+/// Surfaces of solids in contact: forces follow from tiny ways.
+constexpr double kToleranceSurfaces = 1e-9;
+/// Cables among them: what rounds of the length of a stiff piece moves light nodes sideways.
+constexpr double kToleranceCables = 1e-7;
+/// Of contact, whose stiffness turns a gap that is off by little into a force that is off by much.
+constexpr double kToleranceContact = 1e-12;
+constexpr int kIterationsContact = 40;
+/// So many bodies that only contact couples are solved by conjugate gradients.
+constexpr int kCrowd = 50;
+/// Error of automatic steps if the user gives none.
+constexpr double kDefaultError = 1e-6;
+/// Below this many loops open at one body the tree is ahead whatever the rest.
+constexpr int kFewOpenLoops = 6;
+/// The tree does about this many times more operations a second than the block LU.
+constexpr double kTreeAdvantage = 2.5;
+
+JacobianPolicy jacobian_policy(const std::string& word) {
+  if (word == "automatic") return JacobianPolicy::automatic;
+  if (word == "every_iteration") return JacobianPolicy::every_iteration;
+  if (word == "every_step") return JacobianPolicy::every_step;
+  if (word == "never") return JacobianPolicy::never;
+  throw InputError("analysis.jacobian", format("'{}' is not known", word),
+                   "Use one of: automatic, every_iteration, every_step, never");
+}
+
+/// Order of accuracy, with what speaks against it.
+int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
+  const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
+  if (system.contacts() && a.order.value_or(2) != 2)
+    throw InputError("analysis.order",
+                     format("is {}, but the model has contacts, which orders above 2 cannot step "
+                            "back and forth through",
+                            *a.order),
+                     "Use order: 2 for this model");
+  if (!a.order) {
+    if (!a.tolerance || a.step || system.contacts()) return 2;
+    const int order = composable ? 6 : 2;
+    narration += format("The tolerance of {:g} chose order {} with automatic steps: {}.\n",
+                        *a.tolerance, order,
+                        composable ? "nothing in the model dissipates"
+                                   : "higher orders need rho_inf = 1 and a model without dampers");
+    return order;
+  }
+  const int order = *a.order;
+  if (order == 2) return order;
+  const auto refuse = [&](const std::string& why, const std::string& mend) {
+    throw InputError("analysis.order", format("is {}, but {}", order, why), mend);
+  };
+  if (order != 4 && order != 6 && order != 8) refuse("only 2, 4, 6 and 8 exist", "Use one of them");
+  if (a.rho_inf != 1.0)
+    refuse(format("rho_inf is {:g}: stages that run backwards in time would feed in what the "
+                  "others damp",
+                  a.rho_inf),
+           "Set rho_inf: 1, or order: 2");
+  if (system.dissipates())
+    refuse("the model has dampers: stages that run backwards in time would feed energy in",
+           "Use order: 2 for this model");
+  if (a.momentum_rate != "momentum")
+    refuse("only the momentum form of the rate is symmetric in time",
+           "Set momentum_rate: momentum, or order: 2");
+  if (order == 4 && !a.step)
+    refuse("automatic steps exist for orders 2, 6 and 8", "Give a step, or use order: 6");
+  return order;
+}
+
+/// Surfaces of solids touch.
+bool has_surfaces(const System& system) {
+  for (int g = 0; g < system.nodes().group_count(); ++g)
+    if (dynamic_cast<const BarrierPoints*>(&system.nodes().group(g))) return true;
+  return false;
+}
+
+bool has_touching_cables(const System& system) {
+  for (int g = 0; g < system.nodes().group_count(); ++g) {
+    if (system.nodes().group(g).kind() == kCableContact) return true;
+    if (const auto* edges = dynamic_cast<const EdgeContact*>(&system.nodes().group(g)))
+      if (edges->of_cables()) return true;
+  }
+  return false;
+}
+
+/// Bodies hang together by beams or cables, of which the tree makes loops.
+bool has_elastic_pairs(const System& system) {
+  for (const InteractionRef& ref : system.interactions())
+    if (ref.rows == 0 && ref.a != kGround && ref.b != kGround &&
+        system.group(ref.group).reach(ref.item) > 0.0)
+      return true;
+  return false;
+}
+
+std::unique_ptr<NewtonEngine> choose_engine(const System& system, const AnalysisSpec& a,
+                                            MomentumRate rate, JacobianPolicy policy,
+                                            std::string& narration) {
+  const bool tree_fits = rate == MomentumRate::momentum && policy != JacobianPolicy::every_step &&
+                         policy != JacobianPolicy::never;
+  if (a.solver == "tree" && !tree_fits)
+    throw InputError("analysis.solver",
+                     "'tree' has the momentum form of the rate and factors in every iteration only",
+                     "Use solver: block_lu with this momentum_rate or jacobian");
+  if (NonsmoothEngine::has_impulses(system)) {
+    narration += "Solver: impulses by projected Gauss-Seidel, as contacts are non-smooth.\n";
+    return std::make_unique<NonsmoothEngine>(system);
+  }
+  if (system.contacts()) {
+    if (a.solver == "tree")
+      throw InputError("analysis.solver", "'tree' has no contacts",
+                       "Use solver: automatic, block_lu, klu or sparse_lu");
+    if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
+        system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
+      narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
+                          system.body_count());
+      return std::make_unique<CrowdEngine>(
+          system, a.newton_tolerance > 0.0 ? a.newton_tolerance : CrowdEngine::kResidual);
+    }
+  }
+  if (!system.nodes().empty()) {
+    if (a.solver == "tree")
+      throw InputError(
+          "analysis.solver",
+          has_surfaces(system) ? "'tree' has no contacts" : "'tree' has no deformable solids",
+          "Use solver: automatic, block_lu, klu or sparse_lu");
+    const NodeFactor factor =
+        policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
+            ? NodeFactor::every_iteration
+            : NodeFactor::automatic;
+    return std::make_unique<CoupledEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
+                                           rate, factor);
+  }
+  if (system.contacts())
+    return std::make_unique<ContactEngine>(system, a.solver == "automatic" ? "block_lu" : a.solver,
+                                           rate);
+  if (a.solver != "automatic" && a.solver != "tree")
+    return std::make_unique<SparseEngine>(system, a.solver, rate);
+  if (!tree_fits) {
+    narration += "Solver: block LU, as the tree does not have this momentum_rate or jacobian.\n";
+    return std::make_unique<SparseEngine>(system, "block_lu", rate);
+  }
+  auto tree = std::make_unique<TreeEngine>(system, a.isa);
+  const bool elastic = has_elastic_pairs(system);
+  if (a.solver == "tree" || (!elastic && tree->plan().most_open <= kFewOpenLoops)) return tree;
+  auto sparse = std::make_unique<SparseEngine>(system, "block_lu", rate);
+  if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
+  narration += elastic ? "Solver: block LU, as beams or cables hold bodies together.\n"
+                       : format("Solver: block LU, as up to {} loops are open at one body.\n",
+                                tree->plan().most_open);
+  return sparse;
+}
+
+}  // namespace
+
+Method choose_method(const System& system, const AnalysisSpec& a) {
+  Method m;
+  m.ga = GeneralizedAlpha::from_spectral_radius(a.rho_inf);
+  m.kernels = &lane_kernels(a.isa);
+  const JacobianPolicy policy = jacobian_policy(a.jacobian);
+  StepControl& c = m.control;
+  c.order = choose_order(system, a, m.narration);
+  c.step = a.step;
+  c.tolerance = a.tolerance.value_or(kDefaultError);
+  c.horizon = a.duration;
+  c.min_step = a.min_step.value_or(0.0);
+  c.max_step = a.max_step.value_or(0.0);
+  c.conserving = a.conserving;
+  c.newton.tolerance = a.newton_tolerance > 0.0  ? a.newton_tolerance
+                       : c.order > 4             ? kToleranceHighOrder
+                       : !system.nodes().empty() ? kToleranceSolids
+                                                 : kToleranceBodies;
+  c.newton.max_iterations =
+      a.max_iterations.value_or(system.nodes().empty() ? kIterations : kIterationsSolids);
+  c.newton.jacobian = policy;
+  c.newton.line_search = a.line_search;
+  c.newton.max_rotation = a.max_step_rotation;
+  if (system.contacts()) {
+    if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceContact;
+    c.newton.max_iterations = a.max_iterations.value_or(kIterationsContact);
+    if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
+    c.newton.line_search = false;  // the engine has one of its own
+  }
+  if ((system.contacts() || has_surfaces(system)) && a.rho_inf < 1.0)
+    m.narration += format(
+        "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, up to nine "
+        "tenths of that of an impact shorter than the step; restitution and rebound heights are "
+        "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
+        a.rho_inf);
+  if (has_surfaces(system)) {
+    if (a.newton_tolerance <= 0.0)
+      c.newton.tolerance = has_touching_cables(system) ? kToleranceCables : kToleranceSurfaces;
+    if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
+  }
+  m.engine = choose_engine(system, a, momentum_rate(a.momentum_rate), policy, m.narration);
+  return m;
+}
+
+}  // namespace polhode

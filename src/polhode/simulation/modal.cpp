@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include <polhode/core/clock.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/simulation/modal.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Unbalanced forces above this part of the largest deserve a word.
+constexpr double kUnbalanced = 1e-6;
+
+/// A velocity of a centre of mass below this part of the size of the model times its angular
+/// velocity is rounding.
+constexpr double kStays = 1e-9;
+
+/// Angular velocities of the bodies of the system at the start, in body axes; empty if nothing
+/// turns. @throws InputError if anything moves but about its own centre of mass.
+std::vector<Vec3> steady_spin(const Model& model) {
+  for (const SolidSpec& solid : model.solids)
+    if ((solid.velocity && !solid.velocity->isZero(0.0)) ||
+        (solid.angular_velocity && !solid.angular_velocity->isZero(0.0)))
+      throw InputError(format("solids.{}", solid.name), "has a velocity, but modes are about rest",
+                       "Leave it out; bodies and beams may turn about their axes");
+  const bool any = std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodySpec& b) {
+    return !b.velocity.isZero(0.0) || !b.angular_velocity.isZero(0.0);
+  });
+  if (!any) return {};
+  const System system = build_system(model, nullptr);
+  const State state = system.initial_state();
+  std::vector<Vec3> spin;
+  bool turns = false;
+  for (int b = 0; b < system.body_count(); ++b) {
+    const BodyMotion m = system.motion(state, b);
+    if (m.v.norm() > kStays * system.length_scale() * m.W.norm())
+      throw InputError(
+          format("bodies.{}", system.bodies()[b].name),
+          format("moves with {:.3g} m/s, but modes are about a state that stays", m.v.norm()),
+          "Leave velocity out; a body may turn about an axis through its centre of "
+          "mass");
+    spin.push_back(system.bodies()[b].point_mass ? Vec3(Vec3::Zero()) : m.W);
+    turns = turns || !spin.back().isZero(0.0);
+  }
+  return turns ? spin : std::vector<Vec3>{};
+}
+
+/// The same model at rest, for statics.
+Model static_model(Model model) {
+  model.analysis.type = "statics";
+  for (BodySpec& body : model.bodies) body.velocity = body.angular_velocity = Vec3::Zero();
+  for (BeamSpec& beam : model.beams) beam.velocity = beam.angular_velocity = Vec3::Zero();
+  return model;
+}
+
+}  // namespace
+
+ModalAnalysis::ModalAnalysis(Model model) {
+  const double wall = wall_clock(), cpu = cpu_clock();
+  const AnalysisSpec analysis = model.analysis;
+  ModeOptions options;
+  options.count = analysis.count;
+  options.spin = steady_spin(model);
+  simulation_ = std::make_unique<Simulation>(static_model(std::move(model)));
+  (void)build_system(simulation_->model(), &map_);
+  State state = simulation_->state();
+  if (analysis.about == "start") {
+    // The multipliers that carry the loads where the model is at rest.
+    const InstantSolution now = InstantSolver(simulation_->system()).accelerations(state);
+    if (now.solved) state.lambda = now.lambda;
+  } else {
+    const RunSummary summary = simulation_->run();
+    if (summary.end != RunEnd::finished) message_ = summary.message;
+    state = simulation_->state();
+  }
+  if (message_.empty()) {
+    report_ = find_modes(simulation_->system(), state, options);
+    if (report_.unbalanced > kUnbalanced)
+      report_.warnings.push_back(format(
+          "the start is no equilibrium: {:.2g} of the largest force is unbalanced; use about: "
+          "equilibrium",
+          report_.unbalanced));
+  }
+  wall_time_ = wall_clock() - wall;
+  cpu_time_ = cpu_clock() - cpu;
+}
+
+Vec6 ModalAnalysis::body_shape(int mode, int body, bool imaginary) const {
+  const int index = map_.body[static_cast<std::size_t>(body)];
+  const Mode& m = report_.modes[static_cast<std::size_t>(mode)];
+  const Vec& shape = imaginary ? m.shape_imag : m.shape;
+  if (index == kGround || shape.size() == 0) return Vec6::Zero();
+  return shape.segment<6>(6 * index);
+}
+
+std::vector<double> ModalAnalysis::node_shapes(int mode, bool imaginary) const {
+  const System& system = simulation_->system();
+  const Mode& m = report_.modes[static_cast<std::size_t>(mode)];
+  const Vec& shape = imaginary ? m.shape_imag : m.shape;
+  if (shape.size() == 0)
+    return std::vector<double>(3 * static_cast<std::size_t>(system.nodes().count()), 0.0);
+  return node_shape(system, simulation_->state(), shape);
+}
+
+}  // namespace polhode

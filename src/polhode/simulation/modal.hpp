@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/compile/build_system.hpp>
+#include <polhode/simulation/simulation.hpp>
+#include <polhode/statics/modes.hpp>
+
+namespace polhode {
+
+/// Natural frequencies and shapes of a model about the equilibrium that statics finds from its
+/// start, or about the start itself (analysis.about). Bodies and beams may turn steadily about axes
+/// through their centres of mass: rotors, whose gyroscopic moments count.
+class ModalAnalysis {
+ public:
+  /// @throws InputError if the model cannot be built or its start not assembled, or if a centre of
+  ///         mass or a solid has a velocity.
+  explicit ModalAnalysis(Model model);
+
+  /// False if no equilibrium was found: message() says why, and there are no modes.
+  [[nodiscard]] bool converged() const { return message_.empty(); }
+  [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] const Model& model() const { return simulation_->model(); }
+  /// At the equilibrium.
+  [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
+  [[nodiscard]] const ModesReport& report() const { return report_; }
+  /// How a body of the model moves in a mode: displacement of its centre of mass and small
+  /// rotation, world, of the mass-normalised shape. Fixed bodies do not.
+  /// @param imaginary  Of the imaginary part of the shape.
+  [[nodiscard]] Vec6 body_shape(int mode, int body, bool imaginary = false) const;
+  /// Displacements of the nodes of solids, three each, likewise.
+  [[nodiscard]] std::vector<double> node_shapes(int mode, bool imaginary = false) const;
+  [[nodiscard]] double wall_time() const { return wall_time_; }  ///< [s]
+  [[nodiscard]] double cpu_time() const { return cpu_time_; }    ///< Of one processor [s].
+
+ private:
+  std::unique_ptr<Simulation> simulation_;
+  SystemMap map_;
+  ModesReport report_;
+  std::string message_;
+  double wall_time_ = 0.0, cpu_time_ = 0.0;
+};
+
+}  // namespace polhode

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/core/clock.hpp>
+#include <polhode/simulation/simulation_impl.hpp>
+#include <polhode/system/state_archive.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Two times closer than this part of the distance between outputs are the same.
+constexpr double kSameTime = 1e-9;
+
+}  // namespace
+
+Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
+  impl_->start_consistently();
+}
+
+Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(std::move(model))) {
+  if (state.blocks.size() != impl_->system.initial_state().blocks.size() ||
+      state.node_x.size() != impl_->system.initial_state().node_x.size() ||
+      state.lambda.size() != impl_->system.initial_state().lambda.size())
+    throw InputError("restart", "the state belongs to another model",
+                     "Restart with the model it was saved from");
+  impl_->state = std::move(state);
+  impl_->contacts.resume(impl_->state);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+const Model& Simulation::model() const { return impl_->model; }
+const System& Simulation::system() const { return impl_->system; }
+const State& Simulation::state() const { return impl_->state; }
+const StartReport& Simulation::start_report() const { return impl_->start_report; }
+
+StepReport Simulation::step(double t_limit) {
+  const double wall = wall_clock(), cpu = cpu_clock();
+  StepReport report = impl_->advance(t_limit);
+  impl_->figures.wall_time_s += wall_clock() - wall;
+  impl_->figures.cpu_time_s += cpu_clock() - cpu;
+  return report;
+}
+
+RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
+                           const std::function<void(Simulation&)>& on_step,
+                           const std::atomic<bool>* stop) {
+  Impl& s = *impl_;
+  const double end = s.end();
+  const std::optional<double> every = s.statics ? std::nullopt : s.model.output.every;
+  const bool automatic = !s.model.analysis.step;
+  const double wall = wall_clock(), cpu = cpu_clock();
+  const auto look = [&] {
+    const double t0 = wall_clock();
+    s.at_instant();  // the velocity residual is part of the figures
+    s.watch_stretches();
+    watch_stress();
+    if (observe) observe(*this);
+    s.output_seconds += wall_clock() - t0;
+  };
+  const auto output_after = [&](double t) {
+    return every ? (std::floor(t / *every + kSameTime) + 1.0) * *every : end;
+  };
+  if (s.state.ledger.steps == 0) look();
+  s.figures.end = RunEnd::finished;
+  double next = output_after(s.state.t);
+  while (s.state.t < end * (1.0 - kSameTime)) {
+    if (stop && stop->load()) {
+      s.figures.end = RunEnd::interrupted;
+      break;
+    }
+    const StepReport report = s.advance(automatic ? std::min(next, end) : end);
+    if (!report.accepted) {
+      s.figures.end = RunEnd::not_converged;
+      s.figures.message = report.message;
+      s.watch_stretches();
+      watch_stress();
+      break;
+    }
+    if (on_step) on_step(*this);
+    const bool finished = s.state.t >= end * (1.0 - kSameTime);
+    if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
+      look();
+      next = output_after(s.state.t);
+    }
+  }
+  s.figures.wall_time_s += wall_clock() - wall;
+  s.figures.cpu_time_s += cpu_clock() - cpu;
+  return summary();
+}
+
+RunSummary Simulation::summary() const {
+  const Impl& s = *impl_;
+  const Ledger& l = s.state.ledger;
+  RunSummary r = s.figures;
+  r.t = s.state.t;
+  r.steps = l.steps;
+  r.rejected_steps = l.rejected;
+  r.newton_iterations = l.iterations;
+  const Drifts drifts = polhode::drifts(l);
+  r.energy_drift = drifts.energy;
+  r.linear_momentum_drift = drifts.linear_momentum;
+  r.angular_momentum_drift = drifts.angular_momentum;
+  r.constraint_residual_max = l.constraint_max;
+  if (l.errors.steps > 0 && !s.statics)
+    r.errors = {l.errors.largest, l.errors.sum, l.errors.time, s.whose_error(),
+                std::min(l.errors.steps, l.steps)};
+  r.phases = {{"start", s.start_seconds}};
+  for (const auto& phase : s.stepper->phases()) r.phases.push_back(phase);
+  r.phases.emplace_back("output", s.output_seconds);
+  r.result_hash = state_hash();
+  r.solver = s.engine_name;
+  r.instruction_set = s.method.kernels->name;
+  r.version = POLHODE_VERSION;
+  r.order = s.method.control.order;
+  r.narration = s.narration;
+  r.warnings = s.warnings();
+  for (std::size_t i = 0; i < s.solid_watches.size(); ++i) {
+    const Impl::SolidWatch& w = s.solid_watches[i];
+    r.solids.push_back(
+        {s.model.solids[i].name, w.part(w.error_energy), w.part(w.largest_error), w.t_largest});
+  }
+  if (s.statics) {
+    r.statics = s.statics->report();
+    r.strain_energy = s.statics->strain_energy(s.state);
+  }
+  if (has_contacts()) {
+    const ContactLosses lost = contact_losses();
+    const Balance b = balance();
+    r.contacts = RunSummary::Contacts{
+        .shapes = static_cast<int>(s.map.contact.body.size()),
+        .surfaces = static_cast<int>(s.map.contact.surfaces.size()),
+        .touching =
+            s.contacts.touching() + surface_figures(s.system, s.state, s.map.contact).touching,
+        .least_gap = std::fmin(s.contacts.least_gap(), s.surface_gap),
+        .lost_in_impacts = lost.impacts,
+        .lost_by_friction = lost.friction,
+        .numerical = b.kinetic + b.potential - l.initial_energy - b.put_in + b.dissipated,
+        .sweeps = {}};
+    if (const double short_ones = s.contacts.unresolved(); short_ones > 0.0)
+      r.warnings.push_back(
+          format("contacts: {:.0f} impacts took fewer than twenty steps, for which their stiffness "
+                 "or damper asks: speeds after them are right, forces and times of contact are "
+                 "not. Take shorter steps",
+                 short_ones));
+    if (s.model.contacts.nonsmooth()) {
+      const ImpulseFigures search = s.contacts.impulse_figures();
+      r.contacts->sweeps = {search.sweeps / static_cast<double>(std::max<std::int64_t>(l.steps, 1)),
+                            static_cast<std::int64_t>(search.unconverged)};
+      if (search.unconverged > 0.0)
+        r.warnings.push_back(
+            format("contacts: {:.0f} of {} steps ended above sweep_tolerance. Raise "
+                   "contacts.sweeps, or take shorter steps",
+                   search.unconverged, l.steps));
+    }
+  }
+  return r;
+}
+std::string Simulation::state_hash() const {
+  return polhode::state_hash(impl_->system, impl_->state);
+}
+
+}  // namespace polhode

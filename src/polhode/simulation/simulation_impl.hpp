@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Simulation holds; for simulation.cpp and simulation_reports.cpp only.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <polhode/compile/build_surface_contacts.hpp>
+#include <polhode/compile/build_system.hpp>
+#include <polhode/core/clock.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/simulation/method.hpp>
+#include <polhode/simulation/separate_overlaps.hpp>
+#include <polhode/simulation/simulation.hpp>
+#include <polhode/solids/solid_elements.hpp>
+
+namespace polhode {
+
+/// Above this many bodies the start does not solve for multipliers that the method does not need.
+inline constexpr int kSmallSystem = 2000;
+/// Breaks of a prescribed motion that are looked at before a run.
+inline constexpr int kMostBreaks = 10000;
+/// An estimated error of one step from which on the motion is not resolved [-].
+inline constexpr double kUnresolved = 1e-2;
+/// Velocities normal to the constraints, over those of the rows' terms, that call for a warning.
+inline constexpr double kFarOff = 0.1;
+/// How far assembling the start may move a body that was said to be in place, and one that was not.
+inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
+
+/// Strains below this are made by rounding: a solid that has no others has no stress.
+inline constexpr double kRoundedStrain = 1e-10;
+/// Error of a solid's stress that deserves a word [-].
+inline constexpr double kUncertainStress = 0.1;
+
+struct Simulation::Impl {
+  Model model;
+  SystemMap map;
+  System system;
+  Method method;
+  std::unique_ptr<Stepper> stepper;
+  std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
+  ContactKeeper contacts;
+  State state;
+  StartReport start_report;
+  RunSummary figures;  ///< Times, end and message; the rest is in the state.
+  std::string narration, engine_name;
+  double start_seconds = 0.0, output_seconds = 0.0;
+  // What stands at t_n is solved for once per state.
+  std::unique_ptr<InstantSolver> instant_solver;
+  InstantSolution instant;
+  State projected;  ///< The state with velocities on G v = 0: what is reported.
+  std::int64_t instant_step = -1;
+  /// Largest |G v| at output times and when [s], and the largest magnitudes of its terms.
+  double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
+  /// Smallest of surfaces of solids after any step [m].
+  double surface_gap = std::numeric_limits<double>::quiet_NaN();
+  /// A solid's report at the instant, and the largest error of its stress.
+  struct SolidWatch {
+    NodalRecovery recovery;
+    double least_energy;  ///< What rounding can make [J].
+    SolidReport report = {};
+    std::int64_t step = -1;
+    double largest_energy = 0.0, error_energy = 0.0, largest_error = 0.0, t_largest = 0.0;
+
+    void see(const NodalFields& nodal, double t) {
+      largest_energy = std::max(largest_energy, nodal.energy);
+      error_energy = nodal.error_energy;
+      if (error_energy <= largest_error) return;
+      largest_error = error_energy;
+      t_largest = t;
+    }
+    /// √ of a part of the largest energy, which grows as the run goes on.
+    [[nodiscard]] double part(double energy) const {
+      return largest_energy > least_energy ? std::sqrt(energy / largest_energy) : 0.0;
+    }
+  };
+  std::deque<SolidWatch> solid_watches;         ///< Made when asked for; references to them stay.
+  std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
+
+  explicit Impl(Model m)
+      : model(std::move(m)),
+        system(build_system(model, &map)),
+        contacts(map.contacts, map.contact) {
+    method = choose_method(system, model.analysis);
+    narration = method.narration;
+    if (model.analysis.type == "statics") choose_statics();
+    for (const SolidMap& solid : map.solids)
+      for (const std::string& warning : solid.plan.warnings)
+        narration += format("Warning: {}\n", warning);
+    engine_name = statics ? "mumps" : method.engine->name();
+    stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
+                                        *method.kernels);
+  }
+
+  void choose_statics() {
+    for (const BodySpec& body : model.bodies)
+      if (!body.velocity.isZero(0.0) || !body.angular_velocity.isZero(0.0))
+        throw InputError(format("bodies.{}", body.name),
+                         "has a velocity, but in statics and modes nothing moves",
+                         "Leave velocity and angular_velocity out, or use type: dynamics");
+    if (map.contacts)
+      throw InputError(
+          "contacts", "bodies may touch bodies, which in statics and modes they cannot do",
+          "Exclude these pairs: surfaces of solids and cables touch alone, or use type: dynamics");
+    StaticOptions options;
+    options.load_steps = model.analysis.load_steps.value_or(0);
+    options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
+    statics = std::make_unique<LoadStepper>(system, options);
+    narration.clear();  // it was about steps in time
+  }
+
+  /// Time that the run ends at; in statics the full load.
+  [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
+
+  StepReport advance(double t_limit) {
+    if (!statics) {
+      StepReport report = stepper->advance(state, t_limit);
+      if (report.accepted) {
+        contacts.after_step(state);
+        watch_surfaces();
+      }
+      return report;
+    }
+    const double before = state.t;
+    const std::size_t tried = statics->report().steps.size();
+    const int iterations = statics->report().iterations;
+    StepReport report;
+    report.accepted = statics->advance(state, std::min(t_limit, 1.0));
+    const StaticReport& r = statics->report();
+    report.t = state.t;
+    report.dt = state.t - before;
+    report.rejected = static_cast<int>(r.steps.size() - tried) - (report.accepted ? 1 : 0);
+    report.message = r.message;
+    state.dt_last = report.dt;
+    state.ledger.steps += report.accepted ? 1 : 0;
+    state.ledger.rejected += report.rejected;
+    state.ledger.iterations += r.iterations - iterations;
+    return report;
+  }
+
+  void start_consistently() {
+    const double t0 = wall_clock();
+    state = system.initial_state();
+    const bool small = system.body_count() <= kSmallSystem;
+    const AnalysisSpec& a = model.analysis;
+    StartOptions options;
+    options.multipliers = small;
+    options.load_factor = statics ? 0.0 : 1.0;
+    options.smooth_multipliers =
+        a.smooth_multipliers && small && a.step && method.control.order == 2;
+    if (model.contacts.resolve_overlaps) move_apart();
+    start_report = start(system, state, method.ga, a.step.value_or(0.0), options);
+    refuse_bad_start();
+    refuse_jumps();
+    refuse_overlaps();
+    if (map.contacts && a.step) state.dt_next = *a.step;  // stiffness follows it
+    if (statics) statics->begin(state);
+    stepper->begin(state);
+    contacts.begin(state);
+    watch_surfaces();
+    state.ledger.constraint_max = 0.0;
+    start_seconds = wall_clock() - t0;
+  }
+
+  /// Prescribed positions that jump: no force does that.
+  void refuse_jumps() const {
+    if (statics) return;
+    for (const SolidSpec& solid : model.solids)
+      for (const PrescribedSpec& p : solid.prescribed)
+        for (std::size_t c = 0; c < 3; ++c)
+          if (p.displacement[c])
+            refuse_jumps(format("solids.{}.prescribed.{}.{}", solid.name, p.name, "xyz"[c]),
+                         *p.displacement[c], "m");
+    for (const LoadSpec& load : model.loads)
+      if (load.type.ends_with("motor") && (load.drive == "angle" || load.drive == "displacement"))
+        refuse_jumps(format("loads.{}.{}", load.name, load.drive), *load.value,
+                     load.drive == "angle" ? "rad" : "m");
+  }
+  void refuse_jumps(const std::string& where, const TimeFunction& d, const char* unit) const {
+    TimeBreak at;
+    for (int k = 0; k < kMostBreaks; ++k) {
+      at = d.next_break(k == 0 ? state.t : at.t, end());
+      if (!at.exists()) return;
+      if (at.derivative > 0) continue;
+      const TimeRates before = d.rates(at.t, TimeSide::kBefore),
+                      after = d.rates(at.t, TimeSide::kAfter);
+      const double jump =
+          jump_at(at.t, before.value, after.value, std::abs(before.rate) + std::abs(after.rate));
+      if (jump == 0.0) continue;
+      throw InputError(
+          where,
+          format("jumps by {:.6g} {} at t = {:.6g} s, which no force can do", jump, unit, at.t),
+          "Give a ramp, such as a table with interpolation: linear");
+    }
+  }
+
+  void refuse_bad_start() const {
+    const StartReport& r = start_report;
+    if (!r.assembled) {
+      std::string names;
+      for (const std::string& n : r.unsatisfied) names += (names.empty() ? "" : ", ") + n;
+      throw InputError("the start",
+                       format("cannot be assembled: {} contradict one another{}",
+                              names.empty() ? "the joints" : names,
+                              format(" (largest residual {:.2g})", r.position_residual)),
+                       "Check positions and axes of these joints; 'polhode check' lists residuals");
+    }
+    for (std::size_t i = 0; i < model.joints.size(); ++i) refuse_outside_limits(i);
+    bool to_assemble = false;
+    for (const JointSpec& j : model.joints) to_assemble = to_assemble || j.assembled_start;
+    const double given = model.analysis.assembly_tolerance;
+    const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
+    if (r.largest_move > allowed)
+      throw InputError("the start",
+                       format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
+                              "radians), more than analysis.assembly_tolerance = {:.2g}",
+                              r.moved_body, r.largest_move, allowed),
+                       "Give the body's position closer to where its joints want it, or raise "
+                       "assembly_tolerance");
+  }
+
+  /// Elements that are compressed more than their kind stands: the worst of each group is kept.
+  void watch_stretches() {
+    StepContext still;
+    still.t_n = state.t;
+    const Nodes& nodes = system.nodes();
+    for (int g = 0; g < nodes.group_count(); ++g) {
+      const auto* solid = dynamic_cast<const SolidElements*>(&nodes.group(g));
+      if (!solid || solid->element().least_stretch == 0.0) continue;
+      const LeastStretch now = solid->least_stretch(
+          node_instant(state, still), state.element_history.data() + nodes.first_history(g));
+      LeastStretch& least = least_stretches[g];
+      if (now.value < least.value) least = now;
+    }
+  }
+
+  SolidWatch& solid_watch(int solid) {
+    while (solid_watches.size() <= static_cast<std::size_t>(solid)) {
+      const SolidMap& next = map.solids[solid_watches.size()];
+      const auto& elements =
+          dynamic_cast<const SolidElements&>(system.nodes().group(next.groups.front()));
+      double volume = 0.0;
+      for (const int g : next.groups)
+        volume += dynamic_cast<const SolidElements&>(system.nodes().group(g)).volume();
+      const LinearModuli moduli = elements.material().linear();
+      solid_watches.push_back({NodalRecovery(next.plan.mesh, moduli),
+                               moduli.shear * volume * kRoundedStrain * kRoundedStrain});
+    }
+    return solid_watches[static_cast<std::size_t>(solid)];
+  }
+
+  /// Findings of steps and of watch_stretches() that deserve a look.
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    std::vector<std::string> list = stepper->warnings();
+    for (const auto& [g, least] : least_stretches) {
+      const auto& solid = dynamic_cast<const SolidElements&>(system.nodes().group(g));
+      const std::string text = solid.stretch_warning(least);
+      if (!text.empty()) list.push_back(text);
+    }
+    warn_of_errors(list);
+    for (std::size_t i = 0; i < solid_watches.size(); ++i) {
+      const SolidWatch& watch = solid_watches[i];
+      const double error = watch.part(watch.largest_error);
+      if (error > kUncertainStress)
+        list.push_back(format(
+            "solids.{}: the stress is uncertain by {:.0f} % (mean over the solid at {} = {:.4g}): "
+            "so "
+            "much do neighbouring elements differ, and peaks may be further off. Use quadratic "
+            "elements, or a finer mesh.",
+            model.solids[i].name, 100.0 * error, statics ? "load factor" : "t", watch.t_largest));
+    }
+    return list;
+  }
+
+  /// Body or solid with the largest error of a step.
+  [[nodiscard]] std::string whose_error() const {
+    const StepErrors& e = state.ledger.errors;
+    if (e.body >= 0) return format("body '{}'", system.bodies()[e.body].name);
+    for (std::size_t k = 0; k < map.solids.size(); ++k) {
+      const int node = e.node - map.solids[k].first_node;
+      if (e.node >= 0 && node >= 0 && node < map.solids[k].node_count())
+        return format("node {} of solid '{}'", node, model.solids[k].name);
+    }
+    return e.node >= 0 ? "a beam or cable" : "";
+  }
+
+  /// Steps that do not resolve the motion. The figures are those of the run so far.
+  void warn_of_errors(std::vector<std::string>& list) const {
+    if (statics) return;
+    const StepErrors& e = state.ledger.errors;
+    const std::string whose = whose_error();
+    if (e.largest > kUnresolved)
+      list.push_back(
+          format("the steps are too long for the motion: {} errs by about {:.2g} of the "
+                 "mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter steps, "
+                 "or give a tolerance",
+                 whose.empty() ? "a body" : whose, e.largest, e.time));
+    if (velocity_residual > kFarOff * velocity_scale)
+      list.push_back(
+          format("velocities are far from those that the joints allow, by {:.2g} of the largest "
+                 "speeds, at t = {:.6g} s. Take shorter steps, or rho_inf below 1",
+                 velocity_residual / velocity_scale, velocity_time));
+    if (e.hard > 0)
+      list.push_back(
+          format("Newton's method only just converged in {} of {} steps, first in that "
+                 "to t = {:.6g} s. Take shorter steps",
+                 e.hard, state.ledger.steps, e.hard_time));
+  }
+
+  /// A joint that starts beyond its stops by more than their band.
+  void refuse_outside_limits(std::size_t index) const {
+    const Joint& joint = joint_at(system, map.joint[index]);
+    if (!joint.has_barrier()) return;
+    const PairView view = system.instant(state, system.interactions()[map.joint[index]], nullptr);
+    const JointCoordinates c = joint.coordinates(view.step());
+    const std::vector<std::string> names = joint.coordinate_names();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto& limits =
+          names[k] == "z" ? joint.resistance()->data().slide : joint.resistance()->data().turn;
+      const double play = limits ? limits->law.tolerance : 0.0;
+      if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
+        continue;
+      throw InputError(format("joints.{}", joint.name),
+                       format("starts at {} = {:.6g}, outside its limits [{:g}, {:g}]", names[k],
+                              c.value[k], limits->lower, limits->upper),
+                       "Move the bodies, or widen the limits");
+    }
+  }
+
+  void move_apart() {
+    for (const auto& [name, distance] : separate_overlaps(model, system, map, state))
+      narration +=
+          format("'{}' was moved by {:.3g} m, as it overlapped at the start.\n", name, distance);
+  }
+
+  void watch_surfaces() {
+    surface_gap = std::fmin(surface_gap, surface_figures(system, state, map.contact).least_gap);
+  }
+
+  void refuse_overlaps() const {
+    std::vector<std::string> surfaces;
+    for (const SideOverlap& overlap : surface_overlaps(model, system, map, state))
+      surfaces.push_back(overlap_text(model, overlap));
+    if (!surfaces.empty())
+      throw InputError(
+          "contacts", "surfaces overlap or touch at the start: " + name_list(surfaces, 12),
+          model.contacts.resolve_overlaps
+              ? "They could not be moved apart: correct positions or sizes. What is held does not "
+                "move, nor do cables, nor sharp edges that cross"
+              : "Correct positions or sizes, exclude pairs that are meant to overlap, or set "
+                "contacts.overlaps: resolve. Between two solids leave a gap of at least half the "
+                "gap_tolerance");
+    if (!map.contacts) return;
+    const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
+    if (list.empty()) return;
+    throw InputError(
+        "contacts", "shapes overlap at the start: " + name_list(list, 12),
+        model.contacts.resolve_overlaps
+            ? "They could not be moved apart: correct positions or sizes"
+            : "Correct positions or sizes, exclude pairs that are meant to overlap, or "
+              "set contacts.overlaps: resolve");
+  }
+
+  const InstantSolution& at_instant() {
+    if (instant_step == state.ledger.steps) return instant;
+    if (statics) {
+      projected = state;
+      instant.r_ddot.assign(system.body_count(), Vec3::Zero());
+      instant.alpha.assign(system.body_count(), Vec3::Zero());
+      instant.lambda = state.lambda;
+      instant.node_force = statics->newton().node_residual();
+      instant_step = state.ledger.steps;
+      return instant;
+    }
+    if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
+    projected = state;
+    const VelocityReport v = instant_solver->project_velocities(projected);
+    figures.velocity_constraint_residual_max =
+        std::max(figures.velocity_constraint_residual_max, v.residual_before);
+    velocity_scale = std::max(velocity_scale, v.scale);
+    if (v.residual_before > velocity_residual) {
+      velocity_residual = v.residual_before;
+      velocity_time = state.t;
+    }
+    instant = instant_solver->accelerations(projected, contacts.wrenches());
+    instant_step = state.ledger.steps;
+    return instant;
+  }
+};
+
+}  // namespace polhode

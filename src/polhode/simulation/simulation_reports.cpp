@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Simulation reports of the instant that it stands at.
+#include <algorithm>
+
+#include <polhode/dynamics/point_motion.hpp>
+#include <polhode/loads/registry.hpp>
+#include <polhode/simulation/simulation_impl.hpp>
+
+namespace polhode {
+
+BodyMotion Simulation::body(int body) const {
+  const int index = impl_->map.body[body];
+  if (index != kGround) {
+    impl_->at_instant();
+    return impl_->system.motion(impl_->projected, index);
+  }
+  const BodySpec& fixed = impl_->model.bodies[body];
+  BodyMotion m;
+  m.r = fixed.position;
+  m.q = fixed.orientation;
+  return m;
+}
+
+Simulation::PointMotion Simulation::point(int body, const Vec3& Z) const {
+  const BodyMotion m = this->body(body);
+  const int index = impl_->map.body[body];
+  const Pose pose{m.r, m.Lambda()};
+  if (index == kGround) return {point_position(pose, Z), Vec3::Zero(), Vec3::Zero()};
+  const InstantSolution& now = impl_->at_instant();
+  const Velocities rates{m.v, m.omega()};
+  return {point_position(pose, Z), point_velocity(pose, rates, Z),
+          point_acceleration(pose, rates, {now.r_ddot[index], now.alpha[index]}, Z)};
+}
+
+JointReport Simulation::joint(int joint, bool joint_axes) const {
+  const System& system = impl_->system;
+  const int interaction = impl_->map.joint[joint];
+  const InteractionRef& ref = system.interactions()[interaction];
+  const InstantSolution& now = impl_->at_instant();
+  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
+  const PairStep step = view.step();
+  const Joint& item = joint_at(system, interaction);
+  const JointCoordinates free = item.coordinates(step);
+  const Reaction reaction = item.reaction(step, joint_axes);
+  JointReport report;
+  report.coordinates.assign(free.value.begin(), free.value.begin() + free.count);
+  report.rates.assign(free.rate.begin(), free.rate.begin() + free.count);
+  report.force = reaction.force;
+  report.moment = reaction.moment;
+  report.residual =
+      item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
+  if (item.frame_moves()) {
+    report.power = {item.drive_power(step)};
+    report.work = {item.drive_work(step)};
+  }
+  if (!item.resistance()) return report;
+  const ResistanceReport resistance = item.resistance_report(step);
+  report.friction.assign(resistance.friction.begin(),
+                         resistance.friction.begin() + resistance.count);
+  report.slips = resistance.slips;
+  if (item.resistance()->data().slide) report.stops.push_back(resistance.slide);
+  if (item.resistance()->data().turn) report.stops.push_back(resistance.turn);
+  return report;
+}
+
+std::vector<double> Simulation::load(int load) const {
+  const InstantSolution& now = impl_->at_instant();
+  const System& system = impl_->system;
+  const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
+  const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
+  return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
+}
+
+BeamReport Simulation::beam(int beam) const {
+  const auto k = static_cast<std::size_t>(beam);
+  return beam_report(*this, impl_->model.beams.at(k), impl_->map.beam.at(k));
+}
+
+CableReport Simulation::cable(int cable) const {
+  const auto k = static_cast<std::size_t>(cable);
+  return cable_report(*this, impl_->model.cables.at(k), impl_->map.cable.at(k));
+}
+
+Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
+
+const std::vector<SolidMap>& Simulation::solids() const { return impl_->map.solids; }
+
+namespace {}  // namespace
+
+/// Velocity of a node: a bonded one has its body's, without what Newmark's adds of order Δt².
+Vec3 Simulation::node_velocity(int node) const {
+  const int body = impl_->system.nodes()[node].body;
+  if (body == kFreeNode) return at_node(impl_->state.node_v, node);
+  if (body == kGround) return Vec3::Zero();
+  impl_->at_instant();
+  const BodyMotion m = impl_->system.motion(impl_->projected, body);
+  return m.v + m.omega().cross(at_node(impl_->state.node_x, node) - m.r);
+}
+
+std::array<Vec3, 3> Simulation::solid_point(int solid, const SolidPoint& point) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  std::array<Vec3, 3> sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t k = 0; k < point.nodes.size(); ++k) {
+    const int node = map.first_node + point.nodes[k];
+    const Vec3 x = at_node(impl_->state.node_x, node);
+    sum[0] += point.weights[k] * x;
+    sum[1] += point.weights[k] * (x - map.plan.start[static_cast<std::size_t>(point.nodes[k])]);
+    sum[2] += point.weights[k] * node_velocity(node);
+  }
+  return sum;
+}
+
+const SolidReport& Simulation::solid(int solid) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  const Nodes& nodes = impl_->system.nodes();
+  const State& state = impl_->state;
+  Impl::SolidWatch& watch = impl_->solid_watch(solid);
+  SolidReport& report = watch.report;
+  if (watch.step == state.ledger.steps) return report;
+  watch.step = state.ledger.steps;
+  report = {};
+  for (int k = 0; k < map.node_count(); ++k) {
+    const Vec3 x = at_node(state.node_x, map.first_node + k);
+    report.position.push_back(x);
+    report.displacement.emplace_back(x - map.plan.start[static_cast<std::size_t>(k)]);
+    report.velocity.push_back(node_velocity(map.first_node + k));
+  }
+  StepContext still;
+  still.t_n = state.t;
+  const NodeStep instant = node_instant(state, still);
+  for (const int g : map.groups) {
+    const ElementGroup& group = nodes.group(g);
+    std::vector<ElementSample> samples(static_cast<std::size_t>(group.size()));
+    group.sample(instant, state.element_history.data() + nodes.first_history(g), samples);
+    report.elements.insert(report.elements.end(), samples.begin(), samples.end());
+  }
+  report.nodal = watch.recovery.fields(report.elements);
+  return report;
+}
+
+Mat3 Simulation::solid_stress(int solid, const SolidPoint& point) const {
+  return point.value(this->solid(solid).nodal.cauchy);
+}
+
+void Simulation::watch_stress() {
+  for (int i = 0; i < static_cast<int>(impl_->map.solids.size()); ++i) {
+    const NodalFields& nodal = solid(i).nodal;
+    impl_->solid_watch(i).see(nodal, impl_->state.t);
+  }
+}
+
+std::vector<std::string> Simulation::interfaces(int solid) const {
+  const Model& model = impl_->model;
+  const SolidSpec& spec = model.solids.at(static_cast<std::size_t>(solid));
+  std::vector<std::string> names;
+  for (const BondSpec& bond : spec.bonded) names.push_back(model.body_name(bond.body));
+  for (const PrescribedSpec& prescribed : spec.prescribed) names.push_back(prescribed.name);
+  return names;
+}
+
+InterfaceReport Simulation::interface_reaction(int solid, int k) const {
+  const SolidMap& map = impl_->map.solids.at(static_cast<std::size_t>(solid));
+  const auto bonds = static_cast<int>(map.plan.bonded.size());
+  const std::vector<int>& nodes = k < bonds
+                                      ? map.plan.bonded.at(static_cast<std::size_t>(k))
+                                      : map.plan.prescribed.at(static_cast<std::size_t>(k - bonds));
+  const Nodes& all = impl_->system.nodes();
+  const InstantSolution& now = impl_->at_instant();
+  InterfaceReport report;
+  if (now.node_force.empty()) return report;
+  for (const int k_node : nodes) {
+    const int node = map.first_node + k_node;
+    Vec3 force = at_node(now.node_force, node);
+    // Free components of a prescribed node are in balance but for round-off.
+    for (int c = 0; c < 3; ++c)
+      if (!all.bonded(node) && all.unknown(node, c) >= 0) force[c] = 0.0;
+    Vec3 arm = at_node(impl_->state.node_x, node);
+    if (all[node].body >= 0) arm -= impl_->system.motion(impl_->state, all[node].body).r;
+    report.force += force;
+    report.moment += arm.cross(force);
+  }
+  return report;
+}
+
+const contact::ContactSet* Simulation::contact_set() const { return impl_->map.contacts.get(); }
+
+const ContactMap& Simulation::contact_map() const { return impl_->map.contact; }
+
+bool Simulation::has_contacts() const {
+  return impl_->map.contacts || !impl_->map.contact.surfaces.empty();
+}
+
+ContactReport Simulation::contact(int pair) const {
+  const ContactMap& map = impl_->map.contact;
+  const ContactMap::Pair& sides = map.pairs.at(static_cast<std::size_t>(pair));
+  if (is_surface_side(sides.a) || is_surface_side(sides.b))
+    return surface_report(impl_->system, impl_->state, map, sides);
+  return impl_->contacts.report(pair);
+}
+
+int Simulation::contact_pair(int side_a, int side_b) const {
+  const std::vector<ContactMap::Pair>& pairs = contact_map().pairs;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(side_a, side_b))
+      return static_cast<int>(k);
+  throw InputError("contacts",
+                   format("results of '{}' and '{}' are not kept", model().side_name(side_a),
+                          model().side_name(side_b)),
+                   "Name the pair in contacts.pairs or a probe, or set contacts.record: true");
+}
+
+ContactLosses Simulation::contact_losses() const {
+  ContactLosses sum = impl_->contacts.losses();
+  const ContactLosses more = surface_losses(impl_->system, impl_->state, impl_->map.contact);
+  sum.impacts += more.impacts;
+  sum.friction += more.friction;
+  return sum;
+}
+
+std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
+  const int group = impl_->map.contact.surfaces.at(static_cast<std::size_t>(surface)).group;
+  const Nodes& nodes = impl_->system.nodes();
+  StepContext still;
+  still.t_n = impl_->state.t;
+  return dynamic_cast<const TouchingSurface&>(nodes.group(group))
+      .point_reports(node_instant(impl_->state, still),
+                     impl_->state.element_history.data() + nodes.first_history(group));
+}
+
+const std::vector<contact::TouchingPoint>& Simulation::contact_points() const {
+  return impl_->contacts.points();
+}
+
+const std::vector<SensorEvent>& Simulation::sensor_events() const {
+  return impl_->contacts.events();
+}
+
+}  // namespace polhode

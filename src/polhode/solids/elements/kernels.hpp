@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <polhode/solids/materials/kernels.hpp>
+
+namespace polhode {
+
+/// What the kernels know of a group of elements. Elements lie in blocks of as many as a pack is
+/// wide; the last block is filled up with its last element. Packs stand one after the other.
+struct ElementData {
+  int elements = 0;
+  int blocks = 0;
+  const int* nodes = nullptr;        ///< n an element, with those that fill up.
+  const double* X = nullptr;         ///< Block: 3n packs, reference positions.
+  const double* points = nullptr;    ///< Block: by point, weight and 3 packs a row, see Rows.
+  const double* volumes = nullptr;   ///< Block: a pack.
+  const double* fibres = nullptr;    ///< Block: 3 packs; null without fibres.
+  const double* to_nodes = nullptr;  ///< n × points, from values at points to those at nodes.
+  const void* law = nullptr;
+  const void* fibre = nullptr;
+  LawKernel law_kernel{};
+  FibreKernel fibre_kernel{};
+  VolumeKernel volume_kernel{};
+  bool uncoupled = false;
+  double bulk = 0.0;       ///< Of the volume's own energy, if uncoupled [Pa].
+  bool conserving = true;  ///< Discrete gradient; else the stress of the averaged F.
+  bool viscous = false;
+  double viscous_lame = 0.0, viscous_shear = 0.0;  ///< [Pa s]
+};
+
+/// One evaluation: the motion, and where results go.
+struct ElementStep {
+  const double *x_n = nullptr, *x_n1 = nullptr, *v_n = nullptr, *v_n1 = nullptr;
+  double alpha_f = 1.0;
+  double rate = 0.0;  ///< D v_{n+1}/D x_{n+1} [1/s].
+  double dt = 0.0;
+  bool mixed_point = false;
+  const double* history = nullptr;
+  double* scratch = nullptr;  ///< Null at an instant: internal unknowns are those of the history.
+  double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Row by row; of what was condensed.
+  double* force = nullptr;
+  double* tangent = nullptr;  ///< Null: not wanted.
+  const int* slots = nullptr;
+  double least_volume = 1.0;  ///< Out: smallest det F.
+  int worst_element = -1;     ///< Out.
+};
+
+/// Averages over an element: Cauchy stress and C (6 each), energy density, volume.
+inline constexpr int kSampleSize = 14;
+/// At each node of an element: Cauchy stress (6) and energy density.
+inline constexpr int kNodalSize = 7;
+
+/// What a kind of element computes.
+struct ElementKernel {
+  void (*evaluate)(const ElementData&, ElementStep&);
+  /// @returns the largest move of an internal unknown [m].
+  double (*advance)(const ElementData&, const ElementStep&, const double* du);
+  /// Energy at t_{n+1}, and power taken by viscosity.
+  void (*work)(const ElementData&, const ElementStep&, double* stored, double* power);
+  /// @param nodal  n × kNodalSize an element, or null.
+  void (*sample)(const ElementData&, const ElementStep&, double* samples, double* nodal);
+};
+
+/// Sizes that kernels and the group agree on: rows of gradients at a point (nodes, then enhanced
+/// modes), numbers of history by element and packs of scratch by block.
+struct ElementSizes {
+  int nodes, points, enhanced;
+  bool mean_dilatation;
+
+  [[nodiscard]] constexpr int rows() const { return nodes + enhanced; }
+  [[nodiscard]] constexpr int point_packs() const { return 1 + 3 * rows(); }
+  /// Enhanced: α, and α̇ of the step before. Mean dilatation: pressure.
+  [[nodiscard]] constexpr int history() const {
+    return enhanced > 0 ? 6 * enhanced : mean_dilatation ? 1 : 0;
+  }
+  // Scratch of enhanced elements: α, K_αα⁻¹ r_α, K_αα⁻¹, K_uα K_αα⁻¹, K_αα⁻¹ K_αu.
+  [[nodiscard]] constexpr int modes() const { return 3 * enhanced; }
+  [[nodiscard]] constexpr int at_move() const { return modes(); }
+  [[nodiscard]] constexpr int at_inverse() const { return 2 * modes(); }
+  [[nodiscard]] constexpr int at_left() const { return at_inverse() + modes() * modes(); }
+  [[nodiscard]] constexpr int at_right() const { return at_left() + 3 * nodes * modes(); }
+  // Of mean dilatation: pressure, extrapolated pressure, slope of it by the nodes' moves.
+  [[nodiscard]] constexpr int at_slope() const { return 2; }
+  [[nodiscard]] constexpr int scratch() const {
+    return enhanced > 0 ? at_right() + 3 * nodes * modes() : mean_dilatation ? 2 + 3 * nodes : 0;
+  }
+};
+
+/// Every kind of element, in the order of kElementSizes.
+inline constexpr ElementSizes kElementSizes[] = {
+    {8, 8, 0, false},    // hex8_standard
+    {8, 8, 3, false},    // hex8_eas9
+    {8, 8, 0, true},     // hex8_q1p0
+    {20, 27, 0, false},  // hex20
+    {27, 27, 0, false},  // hex27
+    {4, 1, 0, false},    // tet4
+    {10, 4, 0, false},   // tet10
+    {6, 6, 0, false},    // wedge6
+};
+inline constexpr int kElementKinds = sizeof kElementSizes / sizeof kElementSizes[0];
+
+/// All kinds for one instruction set.
+struct ElementKernels {
+  const char* name;
+  int width;
+  const ElementKernel* kinds;
+};
+
+/// As material_kernels(). @throws InputError if the machine or the build lacks it.
+[[nodiscard]] const ElementKernels& element_kernels(const std::string& isa);
+
+}  // namespace polhode

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/solids/elements/quadrature.hpp>
+
+namespace polhode {
+
+std::vector<std::pair<double, double>> gauss(int points) {
+  switch (points) {
+    case 1:
+      return {{0.0, 2.0}};
+    case 2: {
+      const double x = 1.0 / std::sqrt(3.0);
+      return {{-x, 1.0}, {x, 1.0}};
+    }
+    case 3: {
+      const double x = std::sqrt(0.6);
+      return {{-x, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {x, 5.0 / 9.0}};
+    }
+    case 4: {
+      const double r = 2.0 / 7.0 * std::sqrt(1.2), s = std::sqrt(30.0);
+      const double a = std::sqrt(3.0 / 7.0 - r), b = std::sqrt(3.0 / 7.0 + r);
+      const double v = (18.0 + s) / 36.0, w = (18.0 - s) / 36.0;
+      return {{-b, w}, {-a, v}, {a, v}, {b, w}};
+    }
+    case 5: {
+      const double r = 2.0 * std::sqrt(10.0 / 7.0), s = 13.0 * std::sqrt(70.0);
+      const double a = std::sqrt(5.0 - r) / 3.0, b = std::sqrt(5.0 + r) / 3.0;
+      const double v = (322.0 + s) / 900.0, w = (322.0 - s) / 900.0;
+      return {{-b, w}, {-a, v}, {0.0, 128.0 / 225.0}, {a, v}, {b, w}};
+    }
+    default:
+      throw InputError("quadrature", format("there is no Gauss rule of {} points here", points),
+                       "Use 1 to 5 points");
+  }
+}
+
+Quadrature hexahedron_rule(int points) {
+  Quadrature rule;
+  const auto line = gauss(points);
+  for (const auto& [z, w_z] : line)
+    for (const auto& [y, w_y] : line)
+      for (const auto& [x, w_x] : line) rule.push_back({{x, y, z}, w_x * w_y * w_z});
+  return rule;
+}
+
+Quadrature tetrahedron_rule(int degree) {
+  if (degree == 1) return {{Vec3::Constant(0.25), 1.0 / 6.0}};
+  if (degree == 2) {
+    const double a = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0, b = (5.0 - std::sqrt(5.0)) / 20.0;
+    const double w = 1.0 / 24.0;
+    return {{{b, b, b}, w}, {{a, b, b}, w}, {{b, a, b}, w}, {{b, b, a}, w}};
+  }
+  // A cube folded into the tetrahedron: 9 degrees in each variable, 2 of them for the fold.
+  Quadrature rule;
+  const auto line = gauss(5);
+  for (const auto& [s, w_s] : line)
+    for (const auto& [t, w_t] : line)
+      for (const auto& [u, w_u] : line) {
+        const double a = 0.5 * (1.0 + s), b = 0.5 * (1.0 + t), c = 0.5 * (1.0 + u);
+        rule.push_back({{a, b * (1.0 - a), c * (1.0 - a) * (1.0 - b)},
+                        0.125 * w_s * w_t * w_u * (1.0 - a) * (1.0 - a) * (1.0 - b)});
+      }
+  return rule;
+}
+
+namespace {
+
+/// Triangle: degree 2 (3 points) or 4 (6 points; D. A. Dunavant, International Journal for
+/// Numerical Methods in Engineering 21 (1985) 1129-1148).
+Quadrature triangle_rule(int degree) {
+  Quadrature rule;
+  const auto orbit = [&](double a, double w) {
+    const double b = 1.0 - 2.0 * a;
+    rule.push_back({{a, a, 0.0}, w});
+    rule.push_back({{b, a, 0.0}, w});
+    rule.push_back({{a, b, 0.0}, w});
+  };
+  if (degree == 2) {
+    orbit(1.0 / 6.0, 1.0 / 6.0);
+  } else {
+    orbit(0.445948490915965, 0.5 * 0.223381589678011);
+    orbit(0.091576213509771, 0.5 * 0.109951743655322);
+  }
+  return rule;
+}
+
+Quadrature quadrilateral_rule(int points) {
+  Quadrature rule;
+  const auto line = gauss(points);
+  for (const auto& [y, w_y] : line)
+    for (const auto& [x, w_x] : line) rule.push_back({{x, y, 0.0}, w_x * w_y});
+  return rule;
+}
+
+}  // namespace
+
+Quadrature wedge_rule() {
+  Quadrature rule;
+  for (const auto& [z, w_z] : gauss(2))
+    for (const QuadraturePoint& p : triangle_rule(2))
+      rule.push_back({{p.xi[0], p.xi[1], z}, p.weight * w_z});
+  return rule;
+}
+
+Quadrature face_rule(const std::string& shape) {
+  if (shape == "tri3") return triangle_rule(2);
+  if (shape == "tri6") return triangle_rule(4);
+  if (shape == "quad4") return quadrilateral_rule(2);
+  if (shape == "quad8" || shape == "quad9") return quadrilateral_rule(3);
+  throw InputError("load", format("a face of shape '{}' cannot bear a load", shape),
+                   "Faces are tri3, tri6, quad4, quad8 or quad9");
+}
+
+}  // namespace polhode

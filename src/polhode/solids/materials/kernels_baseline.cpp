@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/solids/materials/kernel_templates.hpp>
+
+namespace polhode {
+namespace {
+
+using P = Pack<2>;
+constexpr auto kLaws = law_table<P>(MaterialLaws{});
+constexpr auto kFibres = fibre_table<P>(FibreLaws{});
+
+}  // namespace
+
+extern const MaterialKernels kMaterialsBaseline;
+const MaterialKernels kMaterialsBaseline = {
+    "baseline", 2, kLaws.entry, kFibres.entry, {volume_pressure<P>, volume_energy<P>}};
+
+}  // namespace polhode

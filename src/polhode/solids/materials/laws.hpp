@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material and every fibre there is. To add one: its file, and its name here.
+#pragma once
+
+#include <polhode/solids/materials/exponential_fibre.hpp>
+#include <polhode/solids/materials/mooney_rivlin.hpp>
+#include <polhode/solids/materials/mooney_rivlin_uncoupled.hpp>
+#include <polhode/solids/materials/neo_hookean.hpp>
+#include <polhode/solids/materials/st_venant_kirchhoff.hpp>
+#include <polhode/solids/materials/toe_fibre.hpp>
+
+namespace polhode {
+
+template <class... Law>
+struct LawList {};
+
+/// In the order of the reference page.
+using MaterialLaws = LawList<StVenantKirchhoff, NeoHookean, MooneyRivlin, MooneyRivlinUncoupled>;
+using FibreLaws = LawList<ExponentialFibre, ToeFibre>;
+
+}  // namespace polhode

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <polhode/core/types.hpp>
+#include <polhode/solids/materials/material_kind.hpp>
+
+namespace polhode {
+
+/// A material as a user describes it.
+struct MaterialDescription {
+  std::string kind;        ///< A name of material_kinds().
+  ParameterValues values;  ///< SI, by the kind's names; what is left out takes its standard.
+  std::string fibre = {};  ///< A name of fibre_kinds(), or "": no fibres.
+  ParameterValues fibre_values = {};
+  /// Kelvin-Voigt viscosity, one of: times the elastic moduli at rest [s] (of an uncoupled
+  /// material times its shear modulus only) ...
+  double relaxation_time = 0.0;
+  /// ... or moduli of its own, S_v = λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
+  LinearModuli viscous = {};
+};
+
+/// A material: its laws with their constants, ready for the kernels. Made by make_material().
+class Material {
+ public:
+  [[nodiscard]] const MaterialKind& kind() const { return *kind_; }
+  [[nodiscard]] bool uncoupled() const { return kind_->uncoupled; }
+  [[nodiscard]] bool has_fibres() const { return fibre_index_ >= 0; }
+  [[nodiscard]] bool viscous() const { return viscous_.lame != 0.0 || viscous_.shear != 0.0; }
+  [[nodiscard]] LinearModuli linear() const { return linear_; }           ///< At rest [Pa].
+  [[nodiscard]] LinearModuli viscous_moduli() const { return viscous_; }  ///< [Pa s]
+  [[nodiscard]] double bulk_modulus() const {                             ///< At rest [Pa].
+    return linear_.lame + 2.0 / 3.0 * linear_.shear;
+  }
+
+  // For the kernels.
+  [[nodiscard]] int law_index() const { return law_index_; }
+  [[nodiscard]] const void* law() const { return law_.data(); }
+  [[nodiscard]] int fibre_index() const { return fibre_index_; }
+  [[nodiscard]] const void* fibre() const { return fibre_.data(); }
+
+ private:
+  friend struct MaterialMaker;
+  const MaterialKind* kind_ = nullptr;
+  int law_index_ = 0, fibre_index_ = -1;
+  LinearModuli linear_, viscous_;
+  alignas(16) std::array<std::byte, 64> law_{}, fibre_{};
+};
+
+/// Discrete stress between two strains, with its derivative by the second.
+struct MaterialPoint {
+  Vec6 S;  ///< Order 11 22 33 12 23 31 [Pa].
+  Mat6 D;  ///< ∂S/∂E_1, on strains with doubled shear [Pa].
+};
+
+/// One point by itself: for tests, plots and fits. Elements use the kernels.
+/// @param E_0, E_1  Green's strain, order 11 22 33 12 23 31, no factors of two.
+/// @param A         Direction of fibres, unit length; not read without fibres.
+/// @param whole     False: of an uncoupled material without its resistance to changes of volume.
+[[nodiscard]] MaterialPoint discrete_stress(const Material& material, const Vec6& E_0,
+                                            const Vec6& E_1, const Vec3& A = Vec3::UnitX(),
+                                            bool whole = true);
+/// Strain energy per reference volume [J/m³].
+[[nodiscard]] double strain_energy(const Material& material, const Vec6& E,
+                                   const Vec3& A = Vec3::UnitX(), bool whole = true);
+
+}  // namespace polhode

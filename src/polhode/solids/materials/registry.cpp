@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstring>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/solids/materials/kernels.hpp>
+#include <polhode/solids/materials/laws.hpp>
+#include <polhode/solids/materials/registry.hpp>
+
+namespace polhode {
+namespace {
+
+template <class... Law>
+std::vector<MaterialKind> kinds_of(LawList<Law...>) {
+  return {Law::kind()...};
+}
+
+/// Makes the law of that number in the list and keeps its bytes.
+template <class Use, class... Law>
+void with_law(LawList<Law...>, int index, const ParameterValues& values, const Use& use) {
+  int i = 0;
+  ((i++ == index ? use(Law::from(values)) : void()), ...);
+}
+
+const MaterialKind& find(const std::vector<MaterialKind>& kinds, std::string_view where,
+                         std::string_view name, std::string_view what) {
+  std::vector<std::string> names;
+  for (const MaterialKind& kind : kinds) {
+    if (kind.name == name || (!kind.also.empty() && kind.also == name)) return kind;
+    names.push_back(kind.name);
+  }
+  throw InputError(where, format("the {} {} is not known", what, quote(name)),
+                   did_you_mean(name, names) + "Use one of: " + name_list(names));
+}
+
+/// Errors of laws are told where the material stands.
+template <class Do>
+void told_at(std::string_view where, const Do& act) {
+  try {
+    act();
+  } catch (const InputError& e) {
+    if (e.where() != "moduli") throw;
+    throw InputError(where, e.what_is_wrong(), e.mend());
+  }
+}
+
+}  // namespace
+
+/// The one that fills a Material.
+struct MaterialMaker {
+  std::string_view where;
+  const MaterialDescription& description;
+
+  std::unique_ptr<const Material> operator()() const {
+    auto m = std::make_unique<Material>();
+    m->kind_ = &find(material_kinds(), where, description.kind, "type");
+    m->law_index_ = static_cast<int>(m->kind_ - material_kinds().data());
+    const ParameterValues values = checked_values(where, *m->kind_, description.values);
+    told_at(where, [&] {
+      with_law(MaterialLaws{}, m->law_index_, values, [&](const auto& law) {
+        static_assert(sizeof law <= sizeof m->law_);
+        std::memcpy(m->law_.data(), &law, sizeof law);
+        m->linear_ = law.linear();
+      });
+    });
+    if (!description.fibre.empty()) add_fibre(*m);
+    m->viscous_ = viscous(*m);
+    return m;
+  }
+
+ private:
+  void add_fibre(Material& m) const {
+    const std::string place = format("{}.fibre", where);
+    const MaterialKind& kind = find(fibre_kinds(), place, description.fibre, "law");
+    m.fibre_index_ = static_cast<int>(&kind - fibre_kinds().data());
+    const ParameterValues values = checked_values(place, kind, description.fibre_values);
+    told_at(place, [&] {
+      with_law(FibreLaws{}, m.fibre_index_, values, [&](const auto& law) {
+        static_assert(sizeof law <= sizeof m.fibre_);
+        std::memcpy(m.fibre_.data(), &law, sizeof law);
+      });
+    });
+  }
+
+  LinearModuli viscous(const Material& m) const {
+    const std::string place = format("{}.viscosity", where);
+    const double tau = description.relaxation_time;
+    const LinearModuli own = description.viscous;
+    const auto check = [&](const char* name, double value, bool good, const char* mend) {
+      if (!std::isfinite(value) || !good)
+        throw InputError(place, format("'{}' is {:g}", name, value), mend);
+    };
+    check("relaxation_time", tau, tau >= 0.0, "Give a time that is not negative");
+    check("shear", own.shear, own.shear >= 0.0, "Give a viscosity that is not negative");
+    check("lame", own.lame, own.lame >= -2.0 / 3.0 * own.shear,
+          "Give at least -2/3 of 'shear': less would create energy");
+    if (tau == 0.0) return own;
+    if (own.lame != 0.0 || own.shear != 0.0)
+      throw InputError(place, "'relaxation_time' and viscous moduli are both given",
+                       "Give one or the other");
+    const double shear = tau * m.linear().shear;
+    return {m.uncoupled() ? -2.0 / 3.0 * shear : tau * m.linear().lame, shear};
+  }
+};
+
+const std::vector<MaterialKind>& material_kinds() {
+  static const std::vector<MaterialKind> kinds = kinds_of(MaterialLaws{});
+  return kinds;
+}
+
+const std::vector<MaterialKind>& fibre_kinds() {
+  static const std::vector<MaterialKind> kinds = kinds_of(FibreLaws{});
+  return kinds;
+}
+
+const MaterialKind& material_kind(std::string_view name) {
+  return find(material_kinds(), "materials", name, "type");
+}
+
+const MaterialKind& fibre_kind(std::string_view name) {
+  return find(fibre_kinds(), "fibre", name, "law");
+}
+
+std::unique_ptr<const Material> make_material(std::string_view where,
+                                              const MaterialDescription& description) {
+  return MaterialMaker{where, description}();
+}
+
+namespace {
+
+/// n scalars in every lane.
+template <int n>
+struct alignas(64) Lanes {
+  static constexpr int kMost = 8;
+  double value[n * kMost];
+
+  Lanes() = default;
+  Lanes(const Eigen::Matrix<double, n, 1>& v, int width) {
+    for (int i = 0; i < n; ++i)
+      for (int l = 0; l < width; ++l) value[i * width + l] = v[i];
+  }
+};
+
+}  // namespace
+
+MaterialPoint discrete_stress(const Material& material, const Vec6& E_0, const Vec6& E_1,
+                              const Vec3& A, bool whole) {
+  const MaterialKernels& kernels = material_kernels("baseline");
+  const int w = kernels.width;
+  const Lanes<6> E0(E_0, w), E1(E_1, w);
+  const Lanes<3> a(A, w);
+  Lanes<6> S;
+  Lanes<36> D;
+  kernels.laws[material.law_index()].stress(material.law(), whole, E0.value, E1.value, S.value,
+                                            D.value);
+  if (material.has_fibres())
+    kernels.fibres[material.fibre_index()].add_stress(
+        material.fibre(), material.uncoupled(), a.value, E0.value, E1.value, S.value, D.value);
+  MaterialPoint point;
+  for (int i = 0; i < 6; ++i) {
+    point.S[i] = S.value[i * w];
+    for (int j = 0; j < 6; ++j) point.D(i, j) = D.value[(6 * i + j) * w];
+  }
+  return point;
+}
+
+double strain_energy(const Material& material, const Vec6& E, const Vec3& A, bool whole) {
+  const MaterialKernels& kernels = material_kernels("baseline");
+  const Lanes<6> e(E, kernels.width);
+  const Lanes<3> a(A, kernels.width);
+  Lanes<1> W;
+  kernels.laws[material.law_index()].energy(material.law(), whole, e.value, W.value);
+  if (material.has_fibres())
+    kernels.fibres[material.fibre_index()].add_energy(material.fibre(), material.uncoupled(),
+                                                      a.value, e.value, W.value);
+  return W.value[0];
+}
+
+}  // namespace polhode

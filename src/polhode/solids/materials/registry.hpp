@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <polhode/solids/materials/material.hpp>
+
+namespace polhode {
+
+/// Every type of material, in the order of the documentation.
+[[nodiscard]] const std::vector<MaterialKind>& material_kinds();
+/// Every law of fibres, which any material may carry.
+[[nodiscard]] const std::vector<MaterialKind>& fibre_kinds();
+
+/// The material type of this name. @throws InputError that lists the names if it is unknown.
+[[nodiscard]] const MaterialKind& material_kind(std::string_view name);
+[[nodiscard]] const MaterialKind& fibre_kind(std::string_view name);
+
+/// A material from its description.
+/// @param where  Path of the material in the user's model, first part of messages.
+/// @throws InputError for an unknown kind or parameter, a missing or forbidden value.
+[[nodiscard]] std::unique_ptr<const Material> make_material(std::string_view where,
+                                                            const MaterialDescription& description);
+
+}  // namespace polhode

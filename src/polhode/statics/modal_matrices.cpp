@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/core/format.hpp>
+#include <polhode/math/exp_map.hpp>
+#include <polhode/math/hat.hpp>
+
+#include <polhode/statics/modal_matrices.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Rows of G whose part normal to the others is smaller count as redundant.
+constexpr double kRedundant = 1e-9;
+constexpr int kSearches = 40;  ///< Factorisations that may be spent on finding a range of ω².
+/// Damping below this part of the stiffness, at frequencies of the model, is rounding.
+constexpr double kNoDamping = 1e-14;
+/// Increment of central differences, of turns and of lengths of the model [-].
+constexpr double kDifference = 1e-5;
+
+double largest(const SaddleMatrix& A, int n) {
+  double most = 0.0;
+  for (std::size_t e = 0; e < A.values().size(); ++e)
+    if (A.row()[e] < n && A.column()[e] < n) most = std::max(most, std::abs(A.values()[e]));
+  return most;
+}
+
+/// Diagonal stiffness over mass, in ascending order [rad²/s²].
+std::vector<double> diagonal_ratios(const SaddleMatrix& K, double s, const SaddleMatrix& M) {
+  const auto n = static_cast<std::size_t>(M.movable());
+  std::vector<double> ratios, k(n, 0.0), mass(n, 0.0);
+  for (std::size_t e = 0; e < K.values().size(); ++e) {
+    const int i = K.row()[e];
+    if (i != K.column()[e] || i >= M.movable()) continue;
+    k[static_cast<std::size_t>(i)] += K.values()[e] / s;
+    mass[static_cast<std::size_t>(i)] += M.values()[e];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (k[i] > 0.0 && mass[i] > 0.0) ratios.push_back(k[i] / mass[i]);
+  std::sort(ratios.begin(), ratios.end());
+  return ratios;
+}
+
+}  // namespace
+
+ModalMatrices::ModalMatrices(const System& system, const State& state, const ModeOptions& options)
+    : system_(system),
+      newton_(system, {.mixed_point = false}),
+      mass_(system, newton_.bodies().topology()),
+      damping_(system, newton_.bodies().topology()),
+      shifted_(system, newton_.bodies().topology()) {
+  newton_.assemble_at(state, options.load_factor);
+  put_masses(state);
+  put_damping(state, options);
+  asymmetry_ = K().asymmetry();
+}
+
+std::vector<int> ModalMatrices::counted() const {
+  std::vector<int> list;
+  for (int i = 0; i < n(); ++i)
+    if (i >= 6 * system_.body_count() || i % 6 < 3 || !system_.bodies()[i / 6].point_mass)
+      list.push_back(i);
+  return list;
+}
+
+KktValues ModalMatrices::nothing() const {
+  KktValues values;
+  KktValues::Pair none;
+  none.K_ab.setZero();
+  none.K_ba.setZero();
+  none.B_a.setZero();
+  none.B_b.setZero();
+  none.G_a.setZero();
+  none.G_b.setZero();
+  none.C.setZero();
+  values.pairs.assign(newton_.bodies().topology().pairs.size(), none);
+  values.diagonal.assign(static_cast<std::size_t>(system_.body_count()), Mat6::Zero());
+  return values;
+}
+
+void ModalMatrices::put_masses(const State& state) {
+  const Nodes& nodes = system_.nodes();
+  KktValues values = nothing();
+  for (int b = 0; b < system_.body_count(); ++b) {
+    const BodyData& body = system_.bodies()[b];
+    const Mat3 Lambda = system_.motion(state, b).Lambda();
+    Mat6& M = values.diagonal[b];
+    M.topLeftCorner<3, 3>().diagonal().setConstant(body.mass);
+    if (!body.point_mass) M.bottomRightCorner<3, 3>() = Lambda * body.inertia * Lambda.transpose();
+  }
+  const KktMap map = kkt_map(system_);
+  for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
+    const InteractionRef& ref = system_.interactions()[i];
+    const double m = system_.group(ref.group).coupled_mass(ref.item);
+    if (m == 0.0) continue;
+    for (int body : {ref.a, ref.b})
+      if (body != kGround) values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= m;
+    if (map.pair[i] < 0) continue;
+    values.pairs[map.pair[i]].K_ab.topLeftCorner<3, 3>().diagonal().array() += m;
+    values.pairs[map.pair[i]].K_ba.topLeftCorner<3, 3>().diagonal().array() += m;
+  }
+  std::vector<double> blocks(9 * nodes.mass().size(), 0.0);
+  for (std::size_t k = 0; k < nodes.mass().size(); ++k)
+    for (int c = 0; c < 3; ++c) blocks[9 * k + 4 * c] = nodes.mass()[k];
+  mass_.place_like(K());
+  damping_.place_like(K());
+  shifted_.place_like(K());
+  mass_.set(values, blocks, nullptr, 1.0);
+}
+
+/// C is what the tangent gains with a rate, at velocities of zero, and what turning adds.
+/// @eq{modes-damped} @eq{modes-gyroscopic}
+void ModalMatrices::put_damping(const State& state, const ModeOptions& options) {
+  const std::vector<double> ratios = diagonal_ratios(K(), s(), mass_);
+  rate_ = ratios.empty() ? 1.0 : std::sqrt(ratios[ratios.size() / 2]);
+  SaddleMatrix still(K());
+  newton_.assemble_with_rates(rate_);
+  damping_.combine(K(), -1.0, still);
+  K() = still;
+  if (!options.spin.empty()) {
+    SaddleMatrix gyroscopic(mass_);
+    if (put_gyroscopic(state, options.spin, gyroscopic)) {
+      damping_.combine(damping_, s() * rate_, gyroscopic);
+      put_circulatory(state, options.spin);
+    }
+  }
+  damped_ = largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
+}
+
+/// The momentum about the centre of mass is L = J ω with ω = ω_0 + θ̇ + θ × ω_0 and J = J_0 turned
+/// by θ: its rate is J θ̈ − L̂ θ̇ + (ω̂ J − J ω̂) θ̇ about a steady spin. @eq{modes-gyroscopic}
+bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
+                                   SaddleMatrix& gyroscopic) const {
+  KktValues values = nothing();
+  bool any = false;
+  for (int b = 0; b < system_.body_count(); ++b) {
+    const BodyData& body = system_.bodies()[b];
+    const Vec3& W = spin[static_cast<std::size_t>(b)];
+    if (body.point_mass || W.isZero(0.0)) continue;
+    any = true;
+    const Mat3 Lambda = system_.motion(state, b).Lambda();
+    const Mat3 D = -hat(body.inertia * W) + hat(W) * body.inertia - body.inertia * hat(W);
+    values.diagonal[b].bottomRightCorner<3, 3>() = Lambda * D * Lambda.transpose();
+  }
+  gyroscopic.set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0), nullptr, 1.0);
+  return any;
+}
+
+/// Forces of dampers that turn with their bodies depend on the configuration as well: stiffness
+/// that does work around a loop. By central differences, of what velocities add to each wrench.
+/// @eq{modes-circulatory}
+void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>& spin) {
+  KktValues values = nothing();
+  const KktMap map = kkt_map(system_);
+  StepContext context;
+  context.load_factor = 1.0;
+  context.t_n = state.t;
+  context.conserving = context.tangents = false;
+  const double length = system_.length_scale();
+  const std::vector<double> none(kMaxRows, 0.0);
+  bool any = false;
+  for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
+    const InteractionRef& ref = system_.interactions()[i];
+    const InteractionGroup& group = system_.group(ref.group);
+    const auto turns = [&](int body) {
+      return body != kGround && !spin[static_cast<std::size_t>(body)].isZero(0.0);
+    };
+    if (ref.rows > 0 || !group.dissipates(ref.item) || (!turns(ref.a) && !turns(ref.b))) continue;
+    any = true;
+    const auto wrenches = [&](int moved, int component, double by, bool turning) {
+      const auto at = [&](int body) {
+        if (body == kGround) return BodyStep::ground(1.0);
+        const BodyMotion m = system_.motion(state, body);
+        Vec3 r = m.r;
+        Mat3 Lambda = m.Lambda();
+        if (body == moved && component < 3) r[component] += by;
+        if (body == moved && component >= 3)
+          Lambda = exp_map(by * Vec3::Unit(component - 3)) * Lambda;
+        const Vec3 W = turning ? spin[static_cast<std::size_t>(body)] : Vec3(Vec3::Zero());
+        return BodyStep::at_instant(r, Lambda, Vec3::Zero(), W);
+      };
+      const BodyStep a = at(ref.a), b = at(ref.b);
+      const PairStep step{a, b, context, none.data(), state.history.data() + ref.first_history};
+      PairTerms terms;
+      terms.set_zero();
+      const int item = ref.item;
+      group.evaluate({&item, 1}, {&step, 1}, {&terms, 1});
+      return std::pair<Vec6, Vec6>(terms.wrench_a, terms.wrench_b);
+    };
+    for (const int moved : {ref.a, ref.b}) {
+      if (moved == kGround) continue;
+      for (int c = 0; c < 6; ++c) {
+        const double h = c < 3 ? kDifference * length : kDifference;
+        Vec6 D_a = Vec6::Zero(), D_b = Vec6::Zero();
+        for (const double side : {1.0, -1.0})
+          for (const bool turning : {true, false}) {
+            const auto [on_a, on_b] = wrenches(moved, c, side * h, turning);
+            const double factor = (turning ? side : -side) / (2.0 * h);
+            D_a -= factor * on_a;
+            D_b -= factor * on_b;
+          }
+        const bool first = moved == ref.a;
+        if (ref.a != kGround)
+          (first ? values.diagonal[ref.a] : values.pairs[map.pair[i]].K_ab).col(c) += D_a;
+        if (ref.b != kGround)
+          (first ? values.pairs[map.pair[i]].K_ba : values.diagonal[ref.b]).col(c) += D_b;
+      }
+    }
+  }
+  if (!any) return;
+  SaddleMatrix more(mass_);
+  more.set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0), nullptr, 1.0);
+  K().combine(K(), s(), more);
+}
+
+bool ModalMatrices::factor(double sigma) {
+  shifted_.combine(K(), -sigma * s(), mass_);
+  return solver_.factor(shifted_, true);
+}
+
+bool ModalMatrices::factor_quadratic(double sigma) {
+  shifted_.combine(K(), sigma / rate_, damping_);
+  shifted_.combine(shifted_, sigma * sigma * s(), mass_);
+  return solver_.factor(shifted_, false);
+}
+
+Vec ModalMatrices::inverse(const Vec& f) const {
+  Vec x = Vec::Zero(mass_.size());
+  x.head(n()) = s() * f.head(n());
+  solver_.solve(x);
+  return x;
+}
+
+Vec ModalMatrices::times(const SaddleMatrix& A, double factor, const Vec& x) const {
+  Vec all = Vec::Zero(mass_.size()), y;
+  all.head(n()) = x.head(n());
+  A.times(all, y);
+  return factor * y.head(n());
+}
+
+Vec ModalMatrices::mass_times(const Vec& x) const { return times(mass_, 1.0, x); }
+Vec ModalMatrices::damping_times(const Vec& x) const {
+  return times(damping_, 1.0 / (s() * rate_), x);
+}
+Vec ModalMatrices::stiffness_times(const Vec& x) const {
+  return times(newton_.tangent(), 1.0 / s(), x);
+}
+
+double ModalMatrices::energy_scale(const Vec& x) const {
+  Vec all = Vec::Zero(mass_.size()), y;
+  all.head(n()) = x.head(n());
+  newton_.tangent().magnitudes(all, y);
+  return y.head(n()).dot(x.head(n()).cwiseAbs()) / s();
+}
+
+ModalMatrices::Dense ModalMatrices::dense() {
+  Dense d;
+  d.K = d.C = d.M = Mat::Zero(n(), n());
+  Mat Gt = Mat::Zero(n(), rows());
+  Vec C = Vec::Zero(rows());
+  const SaddleMatrix& k = K();
+  for (std::size_t e = 0; e < k.values().size(); ++e) {
+    const int i = k.row()[e], j = k.column()[e];
+    if (i < n() && j < n()) {
+      d.K(i, j) += k.values()[e] / s();
+      d.C(i, j) += damping_.values()[e] / (s() * rate_);
+      d.M(i, j) += mass_.values()[e];
+    } else if (i >= n() && j < n()) {
+      Gt(j, i - n()) -= k.values()[e];
+    } else if (i >= n()) {
+      C[i - n()] -= k.values()[e];
+    }
+  }
+  d.Gt.resize(n(), 0);
+  for (int r = 0; r < rows(); ++r) {
+    if (C[r] > kProximal) {  // a compliant row is a spring
+      d.K += Gt.col(r) * Gt.col(r).transpose() / (C[r] * s());
+      continue;
+    }
+    d.Gt.conservativeResize(n(), d.Gt.cols() + 1);
+    d.Gt.rightCols<1>() = Gt.col(r).normalized();
+  }
+  return d;
+}
+
+Mat allowed_motions(const ModalMatrices& m, const Mat& Gt) {
+  const std::vector<int> counted = m.counted();
+  Mat N = Mat::Zero(m.n(), static_cast<Eigen::Index>(counted.size()));
+  for (std::size_t i = 0; i < counted.size(); ++i)
+    N(counted[i], static_cast<Eigen::Index>(i)) = 1.0;
+  if (Gt.cols() == 0) return N;
+  Eigen::ColPivHouseholderQR<Mat> qr(N.cols(), Gt.cols());
+  qr.setThreshold(kRedundant);
+  qr.compute(Gt(counted, Eigen::all));
+  const Mat Q = qr.householderQ();
+  return N * Q.rightCols(N.cols() - qr.rank());
+}
+
+double range_of(ModalMatrices& m, int count) {
+  const std::vector<double> ratios = diagonal_ratios(m.K(), m.s(), m.M());
+  double range = ratios.empty() ? 1.0 : 1e-4 * ratios[ratios.size() / 2];
+  double too_low = 0.0, too_high = 0.0;
+  for (int i = 0; i < kSearches; ++i) {
+    if (!m.factor(range)) {
+      range *= 1.01;
+      continue;
+    }
+    const int below = m.below();
+    if (below >= count && below <= 3 * count + 12) return range;
+    (below < count ? too_low : too_high) = range;
+    if (too_low > 0.0 && too_high > 0.0) {
+      if (too_high < 1.001 * too_low) return too_high;
+      range = std::sqrt(too_low * too_high);
+    } else {
+      range *= below < count ? 30.0 : 1.0 / 30.0;
+    }
+  }
+  return too_high > 0.0 ? too_high : range;
+}
+
+}  // namespace polhode

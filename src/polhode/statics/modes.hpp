@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+struct ModeOptions {
+  int count = 10;            ///< Modes wanted, those next to zero.
+  double load_factor = 1.0;  ///< Of the equilibrium.
+  /// By body: steady angular velocity in body axes, about which vibrations are looked for [rad/s].
+  /// Empty: nothing turns.
+  std::vector<Vec3> spin = {};
+};
+
+/// Behaviour of a motion exp(λt).
+enum class ModeKind {
+  oscillation,  ///< Of constant or decaying amplitude.
+  flutter,      ///< An oscillation that grows.
+  divergence,   ///< Grows without oscillating: the equilibrium is unstable.
+  overdamped,   ///< Decays without oscillating.
+  free          ///< Nothing resists it: λ is zero to rounding.
+};
+/// "oscillation", ...
+[[nodiscard]] const char* kind_name(ModeKind kind);
+
+/// A free vibration about an equilibrium: the motion Re((shape + i shape_imag) exp(λt)).
+struct Mode {
+  std::complex<double> eigenvalue;  ///< λ, of conjugate ones that with Im λ ≥ 0 [rad/s].
+  ModeKind kind = ModeKind::oscillation;
+  double frequency = 0.0;  ///< |λ|/2π [Hz]: without damping that of the oscillation.
+  double damping = 0.0;  ///< −Re λ/|λ| [-]: the damping ratio; negative: grows; of free motions 0.
+  double omega_squared = 0.0;  ///< |λ|² [rad²/s²], negative of divergence.
+  bool rigid = false;          ///< The kind is free.
+  std::string motion;          ///< Of a free motion: "body 'bob' turns about z".
+  Vec shape;  ///< (Δr, Δθ) by body, then the unknowns of nodes; mass-normalised, φᴴMφ = 1.
+  Vec shape_imag;  ///< A quarter of a period later, with the other sign; empty: zero.
+  Vec3 participation = Vec3::Zero();  ///< φᵀM e for translation along x, y, z, its size [√kg].
+  Vec3 effective_mass = Vec3::Zero();  ///< Its square, as part of the mass that moves [-].
+  /// Distance that an inverse iteration moves it, in the metric of M, times (σ² + |λ|²)/|λ|² [-].
+  double residual = 0.0;
+};
+
+struct ModesReport {
+  std::vector<Mode> modes;  ///< Divergence first, the fastest one foremost; then by |λ|.
+  double total_mass = 0.0;  ///< [kg]
+  int freedoms = -1;        ///< 6 bodies + nodes' unknowns − rank of the constraints, if known.
+  bool symmetric = true;    ///< Nothing is damped, turns or follows: λ² is real.
+  bool counted = false;     ///< Modes below a shift were counted, see `complete`.
+  double shift = 0.0;       ///< ω² below which the modes were counted [rad²/s²].
+  int below_shift = 0;      ///< By the inertia of LDLᵀ; modes found must be as many.
+  bool complete = true;     ///< They are: no mode was missed.
+  double unbalanced = 0.0;  ///< Largest unbalanced force of the state, as part of the largest [-].
+  double asymmetry = 0.0;   ///< Of the stiffness [-].
+  std::vector<std::string> warnings;
+};
+
+/// Natural frequencies and shapes about an equilibrium, joints, springs, beams and solids included:
+///
+///   K φ − Gᵀμ = ω² M φ,   G φ = 0,   λ = iω   @eq{modes-saddle}
+///
+/// or, where forces follow, damp or bodies turn,
+///
+///   λ² M φ + λ C φ + K φ − Gᵀμ = 0,   G φ = 0   @eq{modes-damped}
+///
+/// K is the tangent of statics with its geometric terms and those of the multipliers. Few unknowns
+/// are solved for densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted
+/// saddle matrix.
+/// @param equilibrium  Velocities do not count, but for options.spin.
+[[nodiscard]] ModesReport find_modes(const System& system, const State& equilibrium,
+                                     const ModeOptions& options = {});
+
+/// Displacements of all nodes in a shape, three each.
+[[nodiscard]] std::vector<double> node_shape(const System& system, const State& equilibrium,
+                                             const Vec& shape);
+
+}  // namespace polhode

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loads between two equilibria at which stability changes or a branch ends.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/statics/static_branches.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Loads at which stability changes are found to this part of themselves, in so many searches.
+constexpr double kLocated = 1e-6;
+constexpr int kLocations = 40;
+/// Ends of branches, on which Newton's method is slow, are found to this part of the load.
+constexpr double kEnds = 1e-5;
+/// Two equilibria hang together if an interval of an eighth has less than this part of the way.
+constexpr double kShrinks = 0.5;
+constexpr int kTrials = 3;
+/// Left of the way where the interval is as small as it gets: a jump.
+constexpr double kJumps = 0.1;
+
+}  // namespace
+
+double state_distance(const System& system, const State& a, const State& b) {
+  const double per_length = 1.0 / system.length_scale();
+  double most = 0.0;
+  for (int i = 0; i < system.body_count(); ++i) {
+    const BodyMotion m = system.motion(a, i), other = system.motion(b, i);
+    most = std::max(most, per_length * (m.r - other.r).norm());
+    if (!system.bodies()[i].point_mass) most = std::max(most, m.q.angularDistance(other.q));
+  }
+  for (std::size_t k = 0; k < a.node_x.size(); ++k)
+    most = std::max(most, per_length * std::abs(a.node_x[k] - b.node_x[k]));
+  return most;
+}
+
+std::optional<LimitPoint> locate_stability_change(const System& system,
+                                                  const StaticOptions& options, LoadInterval at,
+                                                  int first, int after) {
+  LimitPoint point;
+  point.load_factor = at.high;
+  point.unstable = after;
+  bool seen = false;                     // else the equilibrium above lies on another branch
+  StaticNewton finder(system, options);  // what the other one holds is asked for later
+  finder.assemble_at(at.above, at.high);
+  SoftestMotion soft = finder.softest();
+  point.motion = soft.text;
+  double at_high = -std::abs(soft.stiffness), at_low = std::numeric_limits<double>::quiet_NaN();
+  State trial = at.above;
+  for (int i = 0; i < kLocations && at.high - at.low > kLocated * at.high; ++i) {
+    double part = at_low / (at_low - at_high);
+    if (!(part > 0.02 && part < 0.98) || i % 3 == 2) part = 0.5;
+    const double factor = at.low + part * (at.high - at.low);
+    trial = at.below;
+    const StaticStep step = finder.solve(trial, factor);
+    if (!step.converged || step.unstable < 0) break;
+    soft = finder.softest();
+    if (step.unstable == first) {
+      at.low = factor;
+      at.below = trial;
+      at_low = std::abs(soft.stiffness);
+    } else {
+      at.high = factor;
+      at_high = -std::abs(soft.stiffness);
+      seen = true;
+    }
+    if (!soft.text.empty()) point.motion = soft.text;
+  }
+  point.load_factor = 0.5 * (at.low + at.high);
+  if (!seen) return {};
+  return point;
+}
+
+/// @eq{statics-jump}
+std::optional<LimitPoint> locate_jump(const System& system, const StaticOptions& options,
+                                      LoadInterval at) {
+  StaticNewton finder(system, options);
+  const double whole = state_distance(system, at.below, at.above);
+  double way = whole;
+  LimitPoint point;
+  for (int i = 0; i < kLocations && at.high - at.low > kEnds * at.high; ++i) {
+    const double factor = 0.5 * (at.low + at.high);
+    State middle = at.below;
+    bool found = finder.solve(middle, factor).converged;
+    if (!found) {  // nothing near below: what is there belongs to the branch above, if to any
+      middle = at.above;
+      found = finder.solve(middle, factor).converged;
+    }
+    const bool on_the_first = found && state_distance(system, at.below, middle) <
+                                           state_distance(system, middle, at.above);
+    if (on_the_first) {
+      at.low = factor;
+      at.below = middle;
+    } else {
+      at.high = factor;
+      if (found) at.above = middle;
+    }
+    way = state_distance(system, at.below, at.above);
+    if (i == kTrials - 1 && way < kShrinks * whole) return {};
+  }
+  if (way < kJumps * whole) return {};
+  finder.assemble_at(at.below, at.low);
+  point.motion = finder.softest().text;
+  point.load_factor = at.low;
+  point.jump = true;
+  point.distance = way;
+  return point;
+}
+
+}  // namespace polhode

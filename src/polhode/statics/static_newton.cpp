@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/core/format.hpp>
+#include <polhode/equations/kept_iterate.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/math/quaternion.hpp>
+#include <polhode/statics/static_newton.hpp>
+
+namespace polhode {
+
+namespace {
+
+constexpr double kStaticRoundOff = std::numeric_limits<double>::epsilon();
+/// Rounding of a residual, in units of the products of stiffness and position it is made of.
+constexpr double kFloor = 16.0;
+/// Most a body may turn in one iteration: Cayley vector [-].
+constexpr double kRotationCap = 1.9;
+/// An increment above this, in sizes of the model, is no Newton iteration any more.
+constexpr double kStaticDiverged = 1e6;
+/// An iterate that turns elements inside out is gone back from this often, half the way each time.
+constexpr int kStaticHalvings = 8;
+/// Increments below this that do not fall any more are rounding if the residual is.
+constexpr double kClose = 1e-5;
+/// Residual of a constraint that counts as satisfied [m or -].
+constexpr double kAssembled = 1e-13;
+
+GeneralizedAlpha static_weights() {
+  GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
+  ga.alpha_m = ga.kappa = ga.c = ga.c_A = ga.delta = 0.0;
+  return ga;
+}
+
+}  // namespace
+
+StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
+    : system_(&system),
+      options_(options),
+      newton_(system, MomentumRate::momentum),
+      nodes_(system),
+      matrix_(system, newton_.topology()) {
+  newton_.set_static(true);
+  const Nodes& nodes = system.nodes();
+  mixed_ = options.mixed_point;
+  nodes_.set_static(true, mixed_);
+  here_.assign(nodes.pieces().size(), Mat3::Identity());
+  trial_.context.ga = static_weights();
+  trial_.context.conserving = false;
+  trial_.context.dt = 1.0;
+  trial_.compliance_scale = 1.0;
+  trial_.element_scratch.resize(nodes.scratch_size());
+  rhs_ = x_ = noise_ = Vec::Zero(matrix_.size());
+  moments_.assign(system.body_count(), Vec6::Zero());
+  held_ = nodes_.residual();
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    const InteractionGroup& group = system.group(ref.group);
+    if (group.history_size(ref.item) > 0 && group.lazy_history(ref.item)) turns_.push_back(i);
+  }
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* pattern = dynamic_cast<const MovingPattern*>(&nodes.group(g)))
+      meetings_.push_back({pattern, &dynamic_cast<const BarrierPoints&>(nodes.group(g)),
+                           static_cast<std::size_t>(nodes.first_history(g))});
+}
+
+void StaticNewton::enter(double load_factor) {
+  StepContext& c = trial_.context;
+  c.load_factor = load_factor;
+  c.t_n = load_factor - c.dt;  // so that t_{n+1} is the load factor
+}
+
+void StaticNewton::start_scratch(const State& state) {
+  const Nodes& nodes = system_->nodes();
+  std::fill(trial_.element_scratch.begin(), trial_.element_scratch.end(), 0.0);
+  trial_.node_u.assign(state.node_x.size(), 0.0);
+  trial_.node_v.assign(state.node_x.size(), 0.0);
+  for (int g = 0; g < nodes.group_count(); ++g)
+    nodes.group(g).begin_step(state.element_history.data() + nodes.first_history(g),
+                              trial_.element_scratch.data() + nodes.first_scratch(g));
+}
+
+/// Residual and tangent at work_. @eq{statics-residual}
+ElementReport StaticNewton::assemble() {
+  start_trial(*system_, work_, trial_);
+  trial_.lambda_centre = trial_.lambda;
+  trial_.node_x = work_.node_x;
+  trial_.context.mixed_point = mixed_;
+  ElementReport report;
+  if (!system_->nodes().empty()) {
+    follow_bodies(*system_, work_, trial_);
+    std::fill(trial_.node_u.begin(), trial_.node_u.end(), 0.0);
+    look_for_meetings();
+    report = nodes_.assemble(work_, trial_, true, here_);
+    if (!(report.least_volume > 0.0)) return report;
+    if (matrix_.set_moving(nodes_.moving())) solver_.forget();
+  }
+  newton_.assemble(work_, trial_, true);
+  const double s = scale();
+  matrix_.place(trial_);
+  matrix_.set(newton_.values(), nodes_.tangent(), nodes_.residual().data(), s);
+  matrix_.hold_point_masses(system_->length_scale() * system_->length_scale());
+
+  const int bodies = 6 * system_->body_count(), n = matrix_.movable();
+  rhs_.setZero();
+  matrix_.gather(nodes_.residual(), -s, rhs_);
+  rhs_.head(bodies) += newton_.right_hand_side().head(bodies);
+  rhs_.tail(system_->rows()) = -newton_.right_hand_side().tail(system_->rows());
+  for (int b = 0; b < system_->body_count(); ++b) moments_[b] = -rhs_.segment<6>(6 * b);
+
+  // Rounding: products of stiffness and position, row by row; and the largest force.
+  for (int b = 0; b < system_->body_count(); ++b)
+    x_.segment<6>(6 * b) << system_->motion(work_, b).r, Vec3::Ones();
+  for (int i = 0; i < system_->nodes().count(); ++i)
+    for (int c = 0; c < 3; ++c)
+      if (const int u = matrix_.unknown(i, c); u >= 0) x_[u] = work_.node_x[3 * i + c];
+  for (int row = 0; row < system_->rows(); ++row) x_[n + row] = s * work_.lambda[row];
+  matrix_.magnitudes(x_, noise_);
+  noise_ *= kFloor * kStaticRoundOff;
+  force_ = 0.0;
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const Vec6& f = newton_.body_residual_scale(b);
+    force_ = std::max(
+        {force_, f.head<3>().maxCoeff(), f.tail<3>().maxCoeff() / system_->length_scale()});
+  }
+  for (double f : nodes_.residual()) force_ = std::max(force_, std::abs(f));
+  return report;
+}
+
+/// s = 1/(largest stiffness): then K is of size one, as G is.
+void StaticNewton::choose_scale() {
+  trial_.compliance_scale = 1.0;
+  if (!(assemble().least_volume > 0.0)) return;
+  double stiffest = 0.0;
+  for (const Mat6& K : newton_.values().diagonal)
+    stiffest = std::max(stiffest, K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff());
+  for (double k : nodes_.tangent()) stiffest = std::max(stiffest, std::abs(k));
+  if (stiffest == 0.0) stiffest = force_ / system_->length_scale();
+  if (stiffest > 0.0 && std::isfinite(stiffest)) trial_.compliance_scale = 1.0 / stiffest;
+}
+
+void StaticNewton::measure(StaticStep& step) const {
+  const double s = scale(), length = system_->length_scale();
+  step.residual = 0.0;
+  step.force = force_;
+  int worst = -1;
+  const int bodies = 6 * system_->body_count();
+  for (int i = 0; i < matrix_.movable(); ++i) {
+    const double per = i < bodies && i % 6 >= 3 ? 1.0 / (s * length) : 1.0 / s;
+    const double size = per * std::abs(rhs_[i]);
+    if (size <= step.residual) continue;
+    step.residual = size;
+    worst = i;
+  }
+  if (worst >= 0 && worst < bodies)
+    step.worst = format("body '{}'", system_->bodies()[worst / 6].name);
+  if (worst < bodies) return;
+  for (int i = 0; i < system_->nodes().count(); ++i)
+    for (int c = 0; c < 3; ++c)
+      if (matrix_.unknown(i, c) == worst) step.worst = node_text(i);
+}
+
+/// Is every row balanced, up to the tolerance or to rounding?
+StaticNewton::Balance StaticNewton::balanced(StaticStep& step) const {
+  measure(step);
+  Balance balance = Balance::rounded;
+  const double s = scale(), length = system_->length_scale();
+  const int bodies = 6 * system_->body_count(), n = matrix_.movable();
+  for (int i = 0; i < n; ++i) {
+    const double allowed =
+        options_.residual * s * force_ * (i < bodies && i % 6 >= 3 ? length : 1.0);
+    if (!(std::abs(rhs_[i]) <= std::max(allowed, noise_[i]))) return Balance::off;
+    if (std::abs(rhs_[i]) > noise_[i]) balance = Balance::within;
+  }
+  for (int row = 0; row < system_->rows(); ++row) {
+    const double allowed = std::max(kAssembled * std::max(1.0, length), noise_[n + row]);
+    if (!(std::abs(rhs_[n + row]) <= allowed)) {
+      step.worst.clear();
+      for (const InteractionRef& ref : system_->interactions())
+        if (row >= ref.first_row && row < ref.first_row + ref.rows)
+          step.worst = format("{} '{}'", system_->group(ref.group).kind(), system_->name(ref));
+      return Balance::off;
+    }
+  }
+  return balance;
+}
+
+/// What prescribed components still have to go, three a node.
+void StaticNewton::aim(std::vector<double>& du) const {
+  const Nodes& nodes = system_->nodes();
+  du.assign(work_.node_x.size(), 0.0);
+  const StepContext& c = trial_.context;
+  for (const PrescribedComponent& p : nodes.prescribed()) {
+    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+    const double target = c.load_factor * (*p.displacement)(c.t_n1());
+    du[k] = nodes[p.node].position[p.component] + target - work_.node_x[k];
+  }
+}
+
+/// Moves work_ by part of x_; stresses are extrapolated by the whole of it. @returns the largest
+/// scaled increment of the whole.
+double StaticNewton::apply(double part, StaticStep& step) {
+  const double per_length = 1.0 / system_->length_scale();
+  double most = 0.0;
+  step.worst.clear();
+  int worst_body = -1, worst_node = -1;
+  for (const InteractionRef& ref : system_->interactions()) {
+    if (system_->group(ref.group).history_size(ref.item) == 0) continue;
+    const auto of = [&](int body) -> Vec6 {
+      return body == kGround ? Vec6::Zero() : Vec6(x_.segment<6>(6 * body));
+    };
+    const BodyStep a = body_step(*system_, work_, trial_, ref.a);
+    const BodyStep b = body_step(*system_, work_, trial_, ref.b);
+    double* history = work_.history.data() + ref.first_history;
+    const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row, history};
+    system_->group(ref.group).extrapolate(ref.item, pair, of(ref.a), of(ref.b), history);
+  }
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const Vec3 r = x_.segment<3>(6 * b), theta = x_.segment<3>(6 * b + 3);
+    const double size =
+        std::max(per_length * r.lpNorm<Eigen::Infinity>(), theta.lpNorm<Eigen::Infinity>());
+    if (!(size <= most)) {
+      most = size;
+      worst_body = b;
+    }
+    BodyMotion m = system_->motion(work_, b);
+    m.r += part * r;
+    m.q = (quaternion_from_cayley(part * theta) * m.q).normalized();
+    work_.set_motion(system_->slot(b), m);
+  }
+  for (int row = 0; row < system_->rows(); ++row)
+    work_.lambda[row] += part / scale() * x_[matrix_.movable() + row];
+  const Nodes& nodes = system_->nodes();
+  if (!nodes.empty()) {
+    matrix_.expand(x_, du_);
+    for (std::size_t k = 0; k < du_.size(); ++k) du_[k] = part * (du_[k] + given_[k]);
+    const double per_size = 1.0 / (part * nodes.element_size());
+    for (int i = 0; i < nodes.count(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t k = 3 * static_cast<std::size_t>(i) + c;
+        if (nodes.bonded(i)) continue;
+        work_.node_x[k] += du_[k];
+        const double size = per_size * std::abs(du_[k]);
+        if (size <= most) continue;
+        most = size;
+        worst_node = i;
+      }
+    most = std::max(most, per_size * nodes_.advance(du_.data(), trial_, here_));
+  }
+  for (int i : turns_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    double* history = work_.history.data() + ref.first_history;
+    system_->group(ref.group).commit(
+        ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
+  }
+  if (worst_node >= 0)
+    step.worst = node_text(worst_node);
+  else if (worst_body >= 0)
+    step.worst = format("body '{}'", system_->bodies()[worst_body].name);
+  return most;
+}
+
+StaticStep StaticNewton::solve(State& state, double load_factor, const State* start) {
+  StaticStep step;
+  step.load_factor = load_factor;
+  enter(load_factor);
+  if (start && free_part(state, state.node_x.data(), start->node_x.data()) < 1.0) start = nullptr;
+  work_ = start ? *start : state;
+  x_before_.clear();
+  kinks_.clear();
+  resisted_ = shifted_ = false;
+  start_scratch(work_);
+  choose_scale();
+  const auto fail = [&](std::string reason) {
+    step.reason = std::move(reason);
+    return step;
+  };
+  State before;
+  std::vector<double> unknowns_before;
+  double part = 1.0;
+  int halvings = 0;
+  for (;;) {
+    const ElementReport elements = assemble();
+    if (!(elements.least_volume > 0.0)) {
+      step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
+      if (step.iterations == 0 || ++halvings > kStaticHalvings)
+        return fail(format("an element turns inside out (det F = {:.2g})", elements.least_volume));
+      const std::vector<double> inside =
+          part_way(unknowns_before, element_unknowns(*system_, trial_), 0.5);
+      work_ = before;
+      part *= 0.5;
+      apply(part, step);
+      set_element_unknowns(*system_, inside, trial_);
+      continue;
+    }
+    halvings = 0;
+    const Balance balance = balanced(step);
+    aim(given_);
+    const bool arrived =
+        std::all_of(given_.begin(), given_.end(), [](double d) { return d == 0.0; });
+    const std::size_t n = step.increments.size();
+    if (balance != Balance::off && arrived) {
+      if (n == 0) break;
+      const double e = step.increments[n - 1];
+      // With a shift in the matrix a rate near one is the rate indeed.
+      const double rate = std::min(n > 1 ? e / step.increments[n - 2] : e, shifted_ ? 1.0 : 0.99);
+      if (e <= options_.tolerance || e * rate <= options_.tolerance * (1.0 - rate)) break;
+      if (balance == Balance::rounded && e < kClose) break;  // nothing gets any better
+    }
+    if (arrived && balanced_on_a_kink(step)) break;
+    if (step.iterations == options_.max_iterations)
+      return fail(format("has not converged in {} iterations", options_.max_iterations));
+    ++step.iterations;
+    if (!factor_and_solve(step))
+      return fail("the linear system is singular, or a value is not finite");
+    double turn = 0.0;
+    for (int b = 0; b < system_->body_count(); ++b)
+      turn = std::max(turn, x_.segment<3>(6 * b + 3).norm());
+    part = std::min(turn > kRotationCap ? kRotationCap / turn : 1.0, free_part_of_increment());
+    if (!system_->nodes().empty()) {
+      before = work_;
+      unknowns_before = element_unknowns(*system_, trial_);
+    }
+    const double e = apply(part, step);
+    step.increments.push_back(e);
+    if (!(e < kStaticDiverged)) return fail("diverges");
+  }
+  if (const std::string refusal = refused(step); !refusal.empty()) return fail(refusal);
+  step.converged = true;
+  commit(state, load_factor);
+  count_unstable(step);
+  return step;
+}
+
+/// Residual and tangent at work_ with the stresses that are there, whatever Newton's iterations
+/// went by.
+void StaticNewton::assemble_unmixed() {
+  const bool mixed = mixed_;
+  mixed_ = false;
+  nodes_.set_static(true, false);
+  assemble();
+  mixed_ = mixed;
+  nodes_.set_static(true, mixed_);
+}
+
+/// Configurations that interactions do not accept: mirror images, beams bent too far.
+std::string StaticNewton::refused(StaticStep& step) const {
+  for (const InteractionRef& ref : system_->interactions()) {
+    const InteractionGroup& group = system_->group(ref.group);
+    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    const PairStep pair{a, b, trial_.context, work_.lambda.data() + ref.first_row,
+                        work_.history.data() + ref.first_history};
+    if (group.acceptable(ref.item, pair)) continue;
+    step.worst = format("{} '{}'", group.kind(), system_->name(ref));
+    return group.refusal(ref.item);
+  }
+  return {};
+}
+
+void StaticNewton::commit(State& state, double load_factor) {
+  const Nodes& nodes = system_->nodes();
+  for (const InteractionRef& ref : system_->interactions()) {
+    if (system_->group(ref.group).history_size(ref.item) == 0) continue;
+    const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
+    double* history = work_.history.data() + ref.first_history;
+    system_->group(ref.group).commit(
+        ref.item, {a, b, trial_.context, work_.lambda.data() + ref.first_row, history}, history);
+  }
+  if (!nodes.empty()) {
+    work_.node_x = trial_.node_x;
+    NodeStep instant = node_step(work_, trial_);
+    instant.x_n = instant.x_n1;
+    for (int g = 0; g < nodes.group_count(); ++g)
+      nodes.group(g).commit(instant, work_.element_history.data() + nodes.first_history(g),
+                            trial_.element_scratch.data() + nodes.first_scratch(g));
+  }
+  work_.t = load_factor;
+  held_ = nodes_.residual();
+  state = work_;
+}
+
+void StaticNewton::assemble_at(const State& state, double load_factor) {
+  enter(load_factor);
+  work_ = state;
+  start_scratch(work_);
+  choose_scale();
+  assemble_unmixed();
+  matrix_.make_hessian(moments_);
+}
+
+/// As in a step of dynamics at whose end the rate is Dv/Dx, without inertia. @eq{modes-damped}
+void StaticNewton::assemble_with_rates(double rate) {
+  trial_.context.ga.c = rate * trial_.context.dt;
+  const bool mixed = mixed_;
+  mixed_ = false;
+  nodes_.set_static(false, false);
+  start_scratch(work_);
+  assemble();
+  matrix_.make_hessian(moments_);
+  mixed_ = mixed;
+  nodes_.set_static(true, mixed_);
+  trial_.context.ga.c = 0.0;
+}
+
+std::string StaticNewton::node_text(int node) const {
+  const Nodes& nodes = system_->nodes();
+  for (int g = 0; g < nodes.group_count(); ++g)
+    for (int e = 0; e < nodes.group(g).size(); ++e)
+      for (int i : nodes.group(g).nodes(e))
+        if (i == node) return format("node {}, {}", node, nodes.element_name(g, e));
+  return format("node {}", node);
+}
+
+}  // namespace polhode

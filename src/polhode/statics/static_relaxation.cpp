@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Equilibria of what is slack or gives way at the start: downhill in small steps.
+#include <algorithm>
+#include <cmath>
+
+#include <polhode/statics/static_newton.hpp>
+
+namespace polhode {
+
+namespace {
+
+constexpr int kMostSteps = 2000;
+/// Every step is to move something by this part of the model's size; none moves anything by more
+/// than the second part of it, or turns it by more [-].
+constexpr double kMove = 0.02, kMostMove = 0.1;
+/// Change of the resistance allowed from one step to the next.
+constexpr double kEase = 0.5, kBrake = 1.5;
+/// Newton's method is tried when steps are below this part of the size, and every so many steps.
+constexpr double kSmallSpeed = 1e-3;
+constexpr int kTries = 50;
+
+}  // namespace
+
+/// Stiffness of all unknowns, turns times ℓ².
+std::vector<double> StaticNewton::all_diagonal(double stiffness) const {
+  const double square = system_->length_scale() * system_->length_scale();
+  std::vector<double> diagonal(static_cast<std::size_t>(matrix_.movable()), stiffness);
+  for (int i = 0; i < 6 * system_->body_count(); ++i)
+    if (i % 6 >= 3) diagonal[static_cast<std::size_t>(i)] *= square;
+  return diagonal;
+}
+
+/// @eq{statics-relaxation}
+StaticStep StaticNewton::relax(State& state, double load_factor) {
+  StaticStep step;
+  step.load_factor = load_factor;
+  enter(load_factor);
+  work_ = state;
+  x_before_.clear();
+  kinks_.clear();
+  start_scratch(work_);
+  choose_scale();
+  const bool mixed = mixed_;
+  mixed_ = false;  // no Newton iterations: stresses are those that are there
+  nodes_.set_static(true, false);
+  const auto leave = [&](StaticStep result) {
+    mixed_ = mixed;
+    nodes_.set_static(true, mixed_);
+    result.relaxed = true;
+    return result;
+  };
+  const int bodies = 6 * system_->body_count();
+  const double length = system_->length_scale();
+  double resistance = 0.0;
+  for (int k = 0; k < kMostSteps; ++k) {
+    if (!(assemble().least_volume > 0.0)) break;
+    aim(given_);
+    ++step.iterations;
+    if (k == 0) {  // the largest force moves its place by that
+      for (int i = 0; i < matrix_.movable(); ++i)
+        resistance =
+            std::max(resistance, std::abs(rhs_[i]) / (i < bodies && i % 6 >= 3 ? length : 1.0));
+      resistance /= kMove * length;
+    }
+    if (!(resistance > 0.0)) break;
+    if (!solver_.factor(matrix_, make_symmetric(), all_diagonal(resistance))) {
+      resistance *= kBrake;
+      continue;
+    }
+    x_ = rhs_;
+    solver_.solve(x_);
+    if (!x_.allFinite()) break;
+    double move = 0.0;
+    for (int i = 0; i < matrix_.movable(); ++i)
+      move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));
+    const double part =
+        std::min(move > kMostMove ? kMostMove / move : 1.0, free_part_of_increment());
+    step.increments.push_back(apply(part, step));
+    resistance *= std::clamp(move / kMove, kEase, kBrake);
+    if ((move < kSmallSpeed && k % 5 == 4) || k % kTries == kTries - 1) {
+      const State here = work_;
+      State near = here;
+      mixed_ = mixed;
+      nodes_.set_static(true, mixed_);
+      StaticStep found = solve(near, load_factor);
+      found.iterations += step.iterations;
+      if (found.converged && found.unstable <= 0) {
+        state = near;
+        return leave(found);
+      }
+      mixed_ = false;  // it went elsewhere: on from where it began
+      nodes_.set_static(true, false);
+      work_ = here;
+      start_scratch(work_);
+    }
+  }
+  step.converged = false;
+  step.reason = "relaxation has not come to rest";
+  return leave(step);
+}
+
+}  // namespace polhode

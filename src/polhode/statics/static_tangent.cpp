@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tangent of statics: its factors, what it leaves free, and where it is softest.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/statics/static_newton.hpp>
+#include <polhode/stepping/plain_motions.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Up to this asymmetry a matrix counts as symmetric: what is neglected slows nothing down.
+constexpr double kSymmetric = 1e-7;
+/// Added to stiffnesses where a motion meets none, as part of the largest.
+constexpr double kTangentShift = 1e-6;
+/// A solution that grows to this, out of a right-hand side of size one, may tell of a free motion.
+constexpr double kNearlySingular = 1e10;
+/// Most free motions that are sought and supported; the first of them are named.
+constexpr int kMostSupported = 24;
+/// Corrections of a solution by its own residual.
+constexpr int kRefinements = 3;
+constexpr int kSoftestIterations = 6;
+/// Free motions that are named.
+constexpr int kMostFreeMotions = 6;
+
+}  // namespace
+
+/// Increments of all unknowns; prescribed components move as they must.
+bool StaticNewton::factor_and_solve(StaticStep& step) {
+  // Prescribed components move as they must: K_fp Δu_p goes to the other side.
+  const Nodes& nodes = system_->nodes();
+  aim(given_);
+  if (!nodes.prescribed().empty()) {
+    forces_.assign(given_.size(), 0.0);
+    for (int i = 0; i < nodes.count(); ++i)
+      for (int k = nodes.row_start()[i]; k < nodes.row_start()[i + 1]; ++k) {
+        const double* d = given_.data() + 3 * nodes.column()[k];
+        if (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0) continue;
+        const double* K = nodes_.tangent().data() + 9 * static_cast<std::size_t>(k);
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) forces_[3 * i + r] += K[3 * r + c] * d[c];
+      }
+    matrix_.gather(forces_, -scale(), rhs_);
+  }
+  if (matrix_.size() == 0) return true;  // every component of every node is prescribed
+  if (!factor(make_symmetric(), step)) return false;
+  solve_refined();
+  return x_.allFinite();
+}
+
+/// Factors the tangent. Each free motion gets a support as stiff as the stiffest part where it
+/// moves most: loads in balance leave it without force, so that it changes nothing else. A shift of
+/// all stiffnesses is left for models in which more moves freely. @eq{statics-supports}
+bool StaticNewton::factor(bool symmetric, StaticStep& step) {
+  shifted_ = false;
+  const bool factored = solver_.factor(matrix_, symmetric);
+  if (factored && (resisted_ || !nearly_singular())) return true;
+  const std::vector<Vec> free = name_free_motions(step);
+  if (free.empty() && factored) return resisted_ = true;
+  const double length = system_->length_scale();
+  const auto weight = [&](int unknown) {
+    return unknown < 6 * system_->body_count() && unknown % 6 >= 3 ? length * length : 1.0;
+  };
+  if (!free.empty() && static_cast<int>(free.size()) < kMostSupported) {
+    std::vector<double> supports(matrix_.movable(), 0.0);
+    for (const int unknown : supports_of(free, matrix_, length))
+      supports[unknown] = weight(unknown);
+    if (solver_.factor(matrix_, symmetric, supports)) return true;
+  }
+  shifted_ = true;
+  std::vector<double> shift(matrix_.movable());
+  for (int i = 0; i < matrix_.movable(); ++i) shift[i] = kTangentShift * weight(i);
+  return solver_.factor(matrix_, symmetric, shift);
+}
+
+/// x_ = K⁻¹ rhs_, corrected by its residual while that falls: what rounding of the factors took.
+void StaticNewton::solve_refined() {
+  x_ = rhs_;
+  solver_.solve(x_);
+  if (!resisted_) return;
+  Vec left;
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kRefinements && x_.allFinite(); ++k) {
+    matrix_.times(x_, left);
+    left = rhs_ - left;
+    const double size = left.lpNorm<Eigen::Infinity>();
+    if (!(size < 0.5 * before)) return;
+    before = size;
+    solver_.solve(left);
+    x_ += left;
+  }
+}
+
+/// Off equilibrium the matrix of a system with a potential is symmetric with the unbalanced
+/// moments' part only. @eq{statics-hessian}
+bool StaticNewton::make_symmetric() {
+  if (matrix_.asymmetry() < kSymmetric) return true;
+  matrix_.make_hessian(moments_);
+  if (matrix_.asymmetry() < kSymmetric) return true;
+  for (Vec6& m : moments_) m = -m;
+  matrix_.make_hessian(moments_);
+  for (Vec6& m : moments_) m = -m;
+  return false;
+}
+
+/// After a factorisation: does a solution grow beyond all bounds?
+bool StaticNewton::nearly_singular() const {
+  Vec probe = Vec::Zero(matrix_.size());
+  for (int i = 0; i < matrix_.movable(); ++i) probe[i] = std::sin(1.0 + 3.7 * i);
+  if (probe.size() == 0) return false;
+  solver_.solve(probe);
+  return !(probe.lpNorm<Eigen::Infinity>() < kNearlySingular);
+}
+
+std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
+  std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMostSupported);
+  for (const PlainMotion& motion : plain_motions(*system_, work_, matrix_, free)) {
+    if (static_cast<int>(step.free_motions.size()) == kMostFreeMotions) break;
+    const std::string& text = motion.text;
+    if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
+        step.free_motions.end())
+      step.free_motions.push_back(text);
+  }
+  return free;
+}
+
+/// Free motions that are left at the equilibrium, and directions in which it is unstable.
+void StaticNewton::count_unstable(StaticStep& step) {
+  step.free_motions.clear();
+  if (matrix_.movable() == 0) {
+    step.unstable = 0;
+    return;
+  }
+  start_scratch(work_);
+  assemble_unmixed();
+  const bool symmetric = make_symmetric();
+  const bool factored = solver_.factor(matrix_, symmetric);
+  if (!factored || nearly_singular()) {
+    if (!name_free_motions(step).empty() || !factored) return;
+  }
+  if (symmetric) step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
+}
+
+/// By inverse iterations with the factors of count_unstable().
+SoftestMotion StaticNewton::softest() {
+  SoftestMotion soft;
+  if (matrix_.movable() == 0) return soft;
+  if (!solver_.factor(matrix_, make_symmetric())) return soft;
+  const double length = system_->length_scale();
+  const int n = matrix_.movable(), bodies = 6 * system_->body_count();
+  Vec x(matrix_.size()), force;
+  for (int i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 3.7 * i);
+  for (int k = 0; k < kSoftestIterations; ++k) {
+    x.tail(x.size() - n).setZero();
+    for (int i = 0; i < bodies; ++i)
+      if (i % 6 >= 3) x[i] *= length * length;
+    solver_.solve(x);
+    if (!x.allFinite()) return soft;
+    x /= x.head(n).lpNorm<Eigen::Infinity>();
+  }
+  x.tail(x.size() - n).setZero();
+  matrix_.times(x, force);
+  double square = 0.0;
+  for (int i = 0; i < n; ++i)
+    square += x[i] * x[i] * (i < bodies && i % 6 >= 3 ? length * length : 1.0);
+  soft.stiffness = x.head(n).dot(force.head(n)) / square / scale();
+  soft.text = describe_motion(*system_, matrix_, x);
+  return soft;
+}
+
+}  // namespace polhode

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/stepping/drive_kinks.hpp>
+
+namespace polhode {
+
+void DriveKinks::pass(State& state, LedgerKeeper& ledger) {
+  if (!find(state)) return;
+  const BodySums sums = ledger.sums(state);
+  settle(state);
+  ledger.add_driven_jump(state, sums);
+}
+
+bool DriveKinks::find(const State& state) {
+  given_.clear();
+  rows_.clear();
+  for (const PrescribedComponent& p : system_->nodes().prescribed()) {
+    if (p.displacement->is_constant()) continue;
+    const TimeRates before = p.displacement->rates(state.t, TimeSide::kBefore),
+                    after = p.displacement->rates(state.t, TimeSide::kAfter);
+    const double jump =
+        jump_at(state.t, before.rate, after.rate, std::abs(before.second) + std::abs(after.second));
+    if (jump == 0.0) continue;
+    given_.resize(state.node_x.size(), 0.0);
+    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+    given_[k] = after.rate - state.node_v[k];
+  }
+  for (const int i : system_->drives()) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const InteractionGroup& group = system_->group(ref.group);
+    const PairView view = system_->instant(state, ref, state.lambda.data());
+    const PrescribedRows before = group.prescribed(ref.item, view.step(), TimeSide::kBefore),
+                         after = group.prescribed(ref.item, view.step(), TimeSide::kAfter);
+    for (int k = 0; k < ref.rows; ++k) {
+      const double jump = jump_at(state.t, before.rate[k], after.rate[k],
+                                  std::abs(before.second[k]) + std::abs(after.second[k]));
+      if (jump == 0.0) continue;
+      rows_.resize(static_cast<std::size_t>(system_->rows()), 0.0);
+      rows_[static_cast<std::size_t>(ref.first_row + k)] = jump;
+    }
+  }
+  return !given_.empty() || !rows_.empty();
+}
+
+void DriveKinks::settle(State& state) {
+  if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
+  std::vector<Vec6> bodies;
+  std::vector<double> nodes;
+  if (!solver_->jumps_by_kinks(state, given_, rows_, bodies, nodes)) return;
+  for (std::size_t k = 0; k < nodes.size(); ++k) state.node_v[k] += nodes[k];
+  for (int b = 0; b < system_->body_count(); ++b) {
+    const int slot = system_->slot(b), lane = slot % kLanes;
+    const Vec6& jump = bodies[static_cast<std::size_t>(b)];
+    const Vec3 dW = system_->motion(state, b).q.conjugate() * jump.tail<3>();
+    BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
+    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
+      block.v[c][lane] += jump[c];
+      block.W[c][lane] += dW[c];
+    }
+  }
+  for (const PrescribedComponent& p : system_->nodes().prescribed())
+    state.node_a[3 * static_cast<std::size_t>(p.node) + p.component] =
+        p.displacement->rates(state.t, TimeSide::kAfter).second;
+  state.past_count = 0;  // steps start best from the velocities at t_n then
+}
+
+}  // namespace polhode

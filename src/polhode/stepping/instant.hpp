@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/equations/newton_system.hpp>
+
+namespace polhode {
+
+/// What the assembly of positions did.
+struct PositionReport {
+  bool assembled = true;         ///< False: g = 0 was not reached; see `unsatisfied`.
+  double residual_before = 0.0;  ///< Largest |g| as given [m or -].
+  double residual = 0.0;         ///< Largest |g| now [m or -].
+  double largest_move = 0.0;     ///< Of any body, |Δr|/ℓ or angle [-].
+  int moved_body = -1;           ///< Which; -1 if nothing moved.
+  int iterations = 0;
+  std::vector<int> unsatisfied;  ///< Interactions whose rows contradict one another.
+};
+
+/// What the projection of velocities did.
+struct VelocityReport {
+  double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
+  double scale = 0.0;            ///< Largest sum of magnitudes of the terms of a row of it.
+  double residual = 0.0;         ///< Largest |G v| now.
+  double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
+  int changed_body = -1;
+  int solves = 0;  ///< 0: G v was at round-off already.
+};
+
+/// Accelerations and multipliers at an instant.
+struct InstantSolution {
+  bool solved = true;               ///< False: a value is not finite.
+  std::vector<Vec3> r_ddot, alpha;  ///< By body: of the centre [m/s²], angular, world [rad/s²].
+  std::vector<double> node_a;       ///< Of the nodes of solids, three each [m/s²].
+  std::vector<double> node_force;   ///< What holds the nodes of solids, three each [N].
+  std::vector<double> lambda;       ///< By row; the smallest ones where rows are redundant.
+  double residual = 0.0;            ///< Largest |G q̈ + γ|.
+  bool consistent = true;           ///< False: the velocities fit no motion of a singular position.
+};
+
+/// The linear system of one instant,
+///
+///   [ M  −Gᵀ ] [ x ]   [ f    ]
+///   [ G   ε  ] [ λ ] = [ −γ   ]      with proximal repeats, so that G x = −γ holds to round-off,
+///
+/// and what is done with it: assembling positions, projecting velocities, accelerations. The
+/// matrix is allocated when it is first needed. Compliant rows are forces here, not constraints.
+class InstantSolver {
+ public:
+  explicit InstantSolver(const System& system, std::string solver = "block_lu");
+  ~InstantSolver();
+
+  /// Part of drives and loads that acts [-]; 1 unless it is set.
+  void set_load_factor(double factor);
+  /// Moves bodies onto g = 0, by the least mass-weighted way (Gauss-Newton). Does nothing if g is
+  /// at round-off. Velocities keep their components (v world, W body).
+  /// @param tolerance  |g| that counts as assembled if rounding allows no less [m or -].
+  PositionReport assemble_positions(State& state, double tolerance = 1e-10);
+  /// Changes velocities onto G v = 0 by the least mass-weighted amount.
+  VelocityReport project_velocities(State& state);
+  /// Accelerations and multipliers of the state as it is.
+  /// @param more  Wrenches by body that act beside those of the system, such as contacts'; may be
+  ///              empty. World, about the centres of mass [N, N m].
+  [[nodiscard]] InstantSolution accelerations(const State& state, std::span<const Vec6> more = {});
+  /// From here on velocity jumps at this instant. Solids take part: their free nodes get no
+  /// impulse, but move with those that bodies carry as their mass couples them.
+  /// @returns false if a matrix is singular.
+  [[nodiscard]] bool take_impulses(const State& state);
+  /// M Δv = impulses with G Δv = 0. By body (linear, angular), world, about the centres of mass.
+  [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
+  /// The least change that takes the velocities onto G v = 0.
+  [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
+  /// Jumps of all velocities at this instant where those of drives are given.
+  /// @param given   Of prescribed components, three a node, zero elsewhere [m/s]; may be empty.
+  /// @param rows    Of G v, by row; may be empty.
+  /// @param bodies  Out: by body (linear, angular), world.
+  /// @param nodes   Out: three a node, with those given [m/s].
+  /// @returns false if a matrix is singular.
+  [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
+                                    std::span<const double> rows, std::vector<Vec6>& bodies,
+                                    std::vector<double>& nodes);
+  /// Of the nodes of solids (3 each), for jumps of the bodies.
+  [[nodiscard]] std::vector<double> node_jumps(std::span<const Vec6> bodies);
+
+  /// The part of a field of velocities that the constraints allow, in the mass metric. In and out:
+  /// by body (linear, angular), world.
+  void keep_admissible(const State& state, std::vector<Vec6>& field);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// As InstantSolver::assemble_positions().
+PositionReport assemble_positions(const System& system, State& state, double tolerance = 1e-10);
+/// As InstantSolver::project_velocities().
+VelocityReport project_velocities(const System& system, State& state);
+/// Accelerations and multipliers at t_n for output: velocities are projected on a copy first, as
+/// those of the step carry an error normal to the constraints of the order of the method.
+[[nodiscard]] InstantSolution instant_solution(const System& system, const State& state);
+
+}  // namespace polhode

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/stepping/instant_system.hpp>
+
+namespace polhode {
+
+/// @eq{solid-impulse}
+bool InstantSolver::take_impulses(const State& state) {
+  Impl& s = *impl_;
+  s.take(state);
+  s.put_masses_and_rows(state);
+  return s.add_node_masses(state) && s.factor(state);
+}
+
+std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
+  Impl& s = *impl_;
+  const double per_mass = 1.0 / s.system.mean_mass();
+  s.rhs.setZero();
+  for (std::size_t b = 0; b < impulses.size(); ++b)
+    s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) = per_mass * impulses[b];
+  return s.solution_by_body();
+}
+
+std::vector<Vec6> InstantSolver::jumps_to_admissible(const State& state) {
+  Impl& s = *impl_;
+  Vec given(6 * s.system.body_count());
+  for (int b = 0; b < s.system.body_count(); ++b) {
+    const BodyMotion m = s.system.motion(state, b);
+    given.segment<6>(6 * b) << m.v, m.omega();
+  }
+  s.rhs.setZero();
+  s.rows_times(given, s.rhs.tail(s.system.rows()));
+  s.subtract_rates(state, TimeSide::kBefore, s.rhs.tail(s.system.rows()));
+  s.rhs = -s.rhs;
+  return s.solution_by_body();
+}
+
+/// @eq{prescribed-kink}
+bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> given,
+                                   std::span<const double> rows, std::vector<Vec6>& bodies,
+                                   std::vector<double>& nodes) {
+  Impl& s = *impl_;
+  s.take(state);
+  s.put_masses_and_rows(state);
+  s.rhs.setZero();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    s.rhs[6 * s.system.body_count() + static_cast<Eigen::Index>(k)] = rows[k];
+  if (!s.add_node_masses(state, given) || !s.factor(state)) return false;
+  bodies = s.solution_by_body();
+  nodes = node_jumps(bodies);
+  return true;
+}
+
+std::vector<double> InstantSolver::node_jumps(std::span<const Vec6> bodies) {
+  Impl& s = *impl_;
+  if (!s.nodes) return {};
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    s.x.segment<6>(6 * static_cast<Eigen::Index>(b)) = bodies[b];
+  return s.nodes->accelerations(s.x.data());
+}
+
+}  // namespace polhode

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/engines/tree_engine.hpp>
+#include <polhode/stepping/ledger.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Rounding of a sum of numbers, as a part of them.
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+/// Largest drift that rounding alone reads as.
+constexpr double kReadsAs = 1e-10;
+
+std::vector<int> with_work(const System& system) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
+    if (const InteractionRef& ref = system.interactions()[i];
+        system.group(ref.group).works(ref.item))
+      list.push_back(i);
+  return list;
+}
+
+std::vector<int> on_one_body(const System& system, const NewtonEngine& engine) {
+  std::vector<int> list;
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    if ((ref.a == kGround) != (ref.b == kGround) && !engine.knows_ground(i)) list.push_back(i);
+  }
+  return list;
+}
+
+Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
+
+}  // namespace
+
+LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
+                           const NewtonEngine& engine)
+    : system_(&system),
+      kernels_(&kernels),
+      engine_(&engine),
+      mass_(mass_blocks(system)),
+      working_(with_work(system)),
+      outside_(on_one_body(system, engine)),
+      outside_sweep_(system, on_one_body(system, engine)),
+      nodes_(system) {
+  for (const BodyData& b : system.bodies()) total_mass_ += b.mass;
+  for (int i = 0; i < system.nodes().count(); ++i) total_mass_ += system.nodes().node_mass(i);
+  for (const auto& list : {working_, outside_})
+    for (int i : list)
+      for (int body : {system.interactions()[i].a, system.interactions()[i].b})
+        if (body != kGround) touched_.push_back(body);
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  for (const InteractionRef& ref : system.interactions()) {
+    const double mass = system.group(ref.group).coupled_mass(ref.item);
+    const auto slot = [&](int body) { return body == kGround ? -1 : system.slot(body); };
+    if (mass != 0.0) coupled_.push_back({slot(ref.a), slot(ref.b), mass});
+  }
+  if (!touched_.empty()) steps_.resize(system.body_count() + 1);
+}
+
+BodySums LedgerKeeper::sums(const State& state) const {
+  BodySums s;
+  const double g[3] = {system_->gravity()[0], system_->gravity()[1], system_->gravity()[2]};
+  kernels_->sums(state.blocks.data(), mass_.data(), system_->tree().body_of_slot.data(),
+                 static_cast<int>(state.blocks.size()), g, &s);
+  nodes_.add_sums(state, s);
+  const auto of = [&](const Lane3 BodyBlock::*member, int slot) -> Vec3 {
+    if (slot < 0) return Vec3::Zero();
+    const Lane3& x = state.blocks[static_cast<std::size_t>(slot / kLanes)].*member;
+    return {x[0][slot % kLanes], x[1][slot % kLanes], x[2][slot % kLanes]};
+  };
+  for (const auto& [a, b, mass] : coupled_) {
+    const Vec3 v = of(&BodyBlock::v, b) - of(&BodyBlock::v, a);
+    s.kinetic -= 0.5 * mass * v.squaredNorm();
+    if (a < 0 || b < 0) continue;  // the ground's side is outside: its impulse is counted
+    const Vec3 l = mass * (of(&BodyBlock::r, b) - of(&BodyBlock::r, a)).cross(v);
+    for (int i = 0; i < 3; ++i) s.l[i] -= l[i];
+  }
+  return s;
+}
+
+double LedgerKeeper::stored(const State& state) const {
+  double potential = nodes_.stored(state) + engine_->stored(state);
+  for (int i : working_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const PairView view = system_->instant(state, ref, nullptr);
+    potential += system_->group(ref.group).work(ref.item, view.step()).stored;
+  }
+  return potential;
+}
+
+void LedgerKeeper::begin(State& state) {
+  Ledger& l = state.ledger;
+  l = Ledger{};
+  at_n_ = sums(state);
+  potential_ = stored(state);
+  l.initial_potential = at_n_.gravity_potential + potential_;
+  l.initial_energy = at_n_.kinetic + l.initial_potential;
+  for (int i = 0; i < 3; ++i) {
+    l.initial_p[i] = at_n_.p[i];
+    l.initial_l[i] = at_n_.l[i];
+  }
+  l.energy_scale = at_n_.kinetic;
+  l.p_scale = at_n_.p_scale;
+  l.l_scale = at_n_.l_scale;
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::before_commit(State& state, Trial& trial) {
+  if (!sums_are_of_state_) at_n_ = sums(state);
+  Ledger& l = state.ledger;
+  const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
+  for (int body : touched_) steps_[body] = body_step(*system_, state, trial, body);
+  if (!steps_.empty()) steps_.back() = BodyStep::ground(alpha_f);
+  const auto step_of = [&](int body) -> const BodyStep& {
+    return body == kGround ? steps_.back() : steps_[body];
+  };
+  potential_ = 0.0;
+  for (int i : working_) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const PairStep step{step_of(ref.a), step_of(ref.b), trial.context,
+                        trial.lambda.data() + ref.first_row,
+                        state.history.data() + ref.first_history};
+    const Work w = system_->group(ref.group).work(ref.item, step);
+    potential_ += w.stored;
+    l.dissipated.add(w.dissipated);
+    l.put_in.add(w.put_in);
+  }
+  add_drives(state, trial);
+  Vec3 impulse = Vec3::Zero(), turning = Vec3::Zero();
+  potential_ += nodes_.close(l, state, trial, impulse, turning);
+  engine_->add_ground_wrench(impulse.data(), turning.data());
+  StepContext values_only = trial.context;
+  values_only.tangents = false;
+  outside_sweep_.run(steps_, values_only, trial.lambda.data(), state.history.data(),
+                     [&](int interaction, const PairStep& step, const PairTerms& terms) {
+                       const bool on_a = system_->interactions()[interaction].a != kGround;
+                       const Vec6& w = on_a ? terms.wrench_a : terms.wrench_b;
+                       const BodyStep& body = on_a ? step.a : step.b;
+                       const Vec3 f = w.head<3>();
+                       const Vec3 r_alpha = body.r_n + alpha_f * body.u;
+                       impulse += f;
+                       turning += r_alpha.cross(f) + w.tail<3>();
+                     });
+  for (int i = 0; i < 3; ++i) {
+    l.impulse[i].add(dt * impulse[i]);
+    l.angular_impulse[i].add(dt * turning[i]);
+  }
+  outside_force_ = impulse.norm();
+  outside_moment_ = turning.norm();
+}
+
+/// @eq{drive-work}
+void LedgerKeeper::add_drives(State& state, const Trial& trial) const {
+  for (const int i : system_->drives()) {
+    const InteractionRef& ref = system_->interactions()[i];
+    const PairView view = pair_view(*system_, state, trial, ref);
+    const PrescribedRows rows =
+        system_->group(ref.group).prescribed(ref.item, view.step(), TimeSide::kBefore);
+    for (int k = 0; k < ref.rows; ++k)
+      state.ledger.put_in.add(trial.lambda[ref.first_row + k] * rows.increment[k]);
+  }
+}
+
+void LedgerKeeper::add(State& state, const Work& work) {
+  potential_ += work.stored;
+  state.ledger.dissipated.add(work.dissipated);
+  state.ledger.put_in.add(work.put_in);
+}
+
+void LedgerKeeper::add_jump(State& state, const BodySums& before) {
+  const BodySums after = sums(state);
+  state.ledger.dissipated.add(before.kinetic - after.kinetic);
+  add_impulses(state, before, after);
+}
+
+void LedgerKeeper::add_driven_jump(State& state, const BodySums& before) {
+  at_n_ = sums(state);
+  state.ledger.put_in.add(at_n_.kinetic - before.kinetic);
+  add_impulses(state, before, at_n_);
+  if (!sums_are_of_state_) potential_ = stored(state);
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::add_impulses(State& state, const BodySums& before, const BodySums& after) {
+  for (int i = 0; i < 3; ++i) {
+    state.ledger.impulse[i].add(after.p[i] - before.p[i]);
+    state.ledger.angular_impulse[i].add(after.l[i] - before.l[i]);
+  }
+}
+
+void LedgerKeeper::after_commit(State& state, const Trial& trial) {
+  at_n1_ = sums(state);
+  const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
+  // Gravity: m g at the centres of mass, averaged as all positions are.
+  const Vec3 moment = (1.0 - alpha_f) * vec(at_n_.mr) + alpha_f * vec(at_n1_.mr);
+  const Vec3 f = total_mass_ * system_->gravity(), m = moment.cross(system_->gravity());
+  Ledger& l = state.ledger;
+  for (int i = 0; i < 3; ++i) {
+    l.impulse[i].add(dt * f[i]);
+    l.angular_impulse[i].add(dt * m[i]);
+  }
+  const double p = dt * (f.norm() + outside_force_), g = system_->gravity().norm();
+  const double lever =
+      dt * (g * moment.norm() + f.norm() * system_->length_scale() + outside_moment_);
+  l.p_noise += (kRounding * p) * (kRounding * p);
+  l.l_noise += (kRounding * lever) * (kRounding * lever);
+  at_n_ = at_n1_;
+  sums_are_of_state_ = true;
+}
+
+void LedgerKeeper::close_step(State& state) {
+  if (!sums_are_of_state_) {
+    at_n_ = sums(state);
+    potential_ = stored(state);
+    sums_are_of_state_ = true;
+  }
+  Ledger& l = state.ledger;
+  const BodySums& s = at_n_;
+  const double potential = s.gravity_potential + potential_;
+  const double energy = s.kinetic + potential;
+  l.energy_scale = std::max(l.energy_scale, s.kinetic + std::abs(potential - l.initial_potential));
+  l.p_scale = std::max(l.p_scale, s.p_scale);
+  l.l_scale = std::max(l.l_scale, s.l_scale);
+  l.energy_drift = std::max(l.energy_drift, std::abs(energy - l.initial_energy - l.put_in.value() +
+                                                     l.dissipated.value()));
+  const double g = system_->gravity().norm();
+  l.energy_noise = std::max(l.energy_noise,
+                            kRounding * (s.kinetic + std::abs(potential_) + g * vec(s.mr).norm() +
+                                         total_mass_ * g * system_->length_scale()));
+  double p = 0.0, angular = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double dp = s.p[i] - l.initial_p[i] - l.impulse[i].value();
+    const double dl = s.l[i] - l.initial_l[i] - l.angular_impulse[i].value();
+    p += dp * dp;
+    angular += dl * dl;
+  }
+  l.p_drift = std::max(l.p_drift, std::sqrt(p));
+  l.l_drift = std::max(l.l_drift, std::sqrt(angular));
+}
+
+Drifts drifts(const Ledger& l) {
+  const auto relative = [](double drift, double scale, double noise) {
+    const double floor = std::max(scale, noise / kReadsAs);
+    return floor > 0.0 ? drift / floor : drift;
+  };
+  return {relative(l.energy_drift, l.energy_scale, l.energy_noise),
+          relative(l.p_drift, l.p_scale, std::sqrt(l.p_noise)),
+          relative(l.l_drift, l.l_scale, std::sqrt(l.l_noise))};
+}
+
+Balance LedgerKeeper::balance(const State& state) const {
+  const BodySums s = sums(state);
+  return {.kinetic = s.kinetic,
+          .potential = s.gravity_potential + stored(state),
+          .put_in = state.ledger.put_in.value(),
+          .dissipated = state.ledger.dissipated.value(),
+          .linear_momentum = vec(s.p),
+          .angular_momentum = vec(s.l)};
+}
+
+}  // namespace polhode

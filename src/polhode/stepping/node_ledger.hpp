@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/equations/node_system.hpp>
+#include <polhode/kernels/tree_data.hpp>
+
+namespace polhode {
+
+/// The nodes' part of the balance of energy and momenta: their own Newmark velocities with the
+/// consistent mass, strain energy, and what ground, prescribed motion and loads put in.
+class NodeLedger {
+ public:
+  explicit NodeLedger(const System& system);
+
+  /// Adds the nodes' energies and momenta at a state.
+  void add_sums(const State& state, BodySums& sums) const;
+  /// Potential energy of the elements at a state [J].
+  [[nodiscard]] double stored(const State& state) const;
+  /// Adds work and dissipation of the step just solved to the ledger, and to the outside force [N]
+  /// and moment about the origin [N m] that of loads, ground and prescribed motion at t_{n+αf}.
+  /// @returns the potential energy at t_{n+1} [J].
+  double close(Ledger& ledger, const State& state, Trial& trial, Vec3& force, Vec3& moment);
+
+ private:
+  void add_lag(Ledger& ledger, const State& state, const Trial& trial, Vec3& moment) const;
+
+  const System* system_;
+  NodeSystem nodes_;
+  std::vector<int> held_;      ///< Nodes that the ground or a prescribed motion moves.
+  std::vector<int> external_;  ///< Groups that act from outside.
+  std::vector<double> forces_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <polhode/equations/trial.hpp>
+#include <polhode/stepping/instant.hpp>
+
+namespace polhode {
+
+/// Makes velocities jump at the end of a step in impacts, of contacts and of the stops of joints:
+/// by impulses along their normals and friction across, from bodies that are as heavy as the solids
+/// they hold make them, while G v = 0. They only take energy.
+/// @eq{turn-law} @eq{impact-friction} @eq{routh} @eq{joint-stop-exit}
+class SettleImpacts {
+ public:
+  explicit SettleImpacts(const System& system);
+
+  /// Finds the impacts of interactions in an accepted step, the state and the histories still at
+  /// t_n. Forgets those before.
+  void find(const State& state, const Trial& trial);
+  /// Adds those of contacts, the state having moved to t_{n+1}.
+  /// @returns the change of what contacts store, and what they dissipated by it.
+  Work find(State& state, MovingContacts& contacts);
+  [[nodiscard]] bool any() const { return !rows_.empty(); }
+  /// Changes the velocities of the state, which has moved to t_{n+1}.
+  void settle(State& state);
+
+ private:
+  /// Rows that share bodies, directly or by way of joints and solids.
+  struct Island {
+    std::vector<int> rows, bodies;
+    bool tied = false;  ///< Joints or solids make its bodies answer together.
+  };
+  [[nodiscard]] std::vector<Island> islands() const;
+  [[nodiscard]] Vec6 velocity(const State& state, int body) const;
+  struct Row;
+  /// Rows of an island: one for each normal, two more for each that rubs.
+  [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
+  void settle(State& state, const Island& island);
+  /// Islands that hold a row from that one on.
+  void settle_from(State& state, std::size_t first);
+  /// Lasting contacts of bodies that jumped, pressed on by it, become rows.
+  void press_on(const State& state, const std::vector<Vec6>& before);
+  [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
+  double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
+  void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
+  void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
+  /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
+  ///          tell [J].
+  double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
+
+  const System* system_;
+  std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of tied bodies on.
+  std::vector<int> tie_;    ///< By body: the first of those that joints and solids tie it to.
+  std::vector<bool> tied_;  ///< By body: something ties it, be it to the ground.
+  std::vector<int> place_;  ///< By body: in the island at hand.
+  std::vector<PairImpact> rows_;
+  MovingContacts* contacts_ = nullptr;  ///< Whose impacts the last rows are.
+  std::size_t of_joints_ = 0;           ///< Rows before those.
+  std::vector<int> jumped_;             ///< Bodies of the islands so far, ascending.
+  std::vector<PairImpact> resting_;     ///< Their lasting contacts.
+  std::vector<SettledImpact> settled_;  ///< Of the rows.
+  std::vector<int>
+      numbers_;  ///< Rows of contacts, in the order in which these listed them; −1: none.
+};
+
+}  // namespace polhode

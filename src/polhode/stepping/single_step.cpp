@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <polhode/core/format.hpp>
+#include <polhode/engines/tree_engine.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/kernels/denormals.hpp>
+#include <polhode/stepping/single_step.hpp>
+#include <polhode/stepping/stored_rates.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
+constexpr double kNoMirrorBelow = 0.8;
+/// Degree of the extrapolation of nodes' velocities.
+constexpr int kNodeDegree = 0;
+/// Turns are counted before two bodies can have turned by half a turn against each other in one
+/// more step like the last [rad].
+constexpr double kCountTurnsBefore = 2.5;
+
+/// Weights that extrapolate the remembered mean velocities to the middle of the next step.
+PredictWeights extrapolation(const State& state, double middle, int degree) {
+  PredictWeights w;
+  const int count = std::min(state.past_count, degree + 1);
+  int used[kPast];
+  for (int k = 0; k < count; ++k) used[k] = (state.past_next - 1 - k + 2 * kPast) % kPast;
+  for (int k = 0; k < count; ++k) {
+    double way = 1.0, spread = 1.0;
+    for (int j = 0; j < count; ++j) {
+      if (j == k) continue;
+      way *= middle - state.past_time[used[j]];
+      spread *= state.past_time[used[k]] - state.past_time[used[j]];
+    }
+    if (spread == 0.0) return {};  // two stages about the same middle: start from v_n
+    w.weight[used[k]] = way / spread;
+  }
+  w.count = count;
+  return w;
+}
+
+}  // namespace
+
+SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engine,
+                       const GeneralizedAlpha& ga, const LaneKernels& kernels, bool conserving)
+    : system_(&system),
+      engine_(std::move(engine)),
+      kernels_(&kernels),
+      ledger_(system, kernels, *engine_),
+      impacts_(system),
+      mass_(mass_blocks(system)) {
+  trial_.context.ga = ga;
+  trial_.context.conserving = conserving;
+  size_blocks(system.initial_state(), trial_);
+  trial_.lambda.resize(system.rows());
+  trial_.lambda_centre.resize(system.rows());
+  for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
+    const InteractionRef& ref = system.interactions()[i];
+    const InteractionGroup& group = system.group(ref.group);
+    if (group.always_asked(ref.item)) always_asked_.push_back(i);
+    if (group.history_size(ref.item) > 0)
+      (group.lazy_history(ref.item) ? lazy_ : eager_).push_back(i);
+  }
+}
+
+void SingleStep::predict(const State& state, const Predictor& predictor) {
+  const StepContext& c = trial_.context;
+  const PredictWeights weights = predictor.degree < 0
+                                     ? PredictWeights{}
+                                     : extrapolation(state, c.t_n + 0.5 * c.dt, predictor.degree);
+  // Solids carry undamped vibrations that no polynomial of high degree follows.
+  const PredictWeights node_weights =
+      predictor.degree < 0
+          ? PredictWeights{}
+          : extrapolation(state, c.t_n + 0.5 * c.dt, std::min(predictor.degree, kNodeDegree));
+  kernels_->predict(state.blocks.data(), mass_.data(), trial_.blocks.data(),
+                    static_cast<int>(state.blocks.size()), c.dt, &weights);
+  std::copy(state.lambda.begin(), state.lambda.end(), trial_.lambda.begin());
+  predict_nodes(*system_, state, trial_, node_weights);
+  if (!predictor.remember) return;
+  predicted_ = trial_.blocks;
+  predicted_nodes_ = trial_.node_u;
+  if (weights.count < 2) return;
+  // Nodes start from another prediction than the one that their error is measured by.
+  const std::size_t n = predicted_nodes_.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    double v = 0.0;
+    for (int p = 0; p < kPast; ++p) v += weights.weight[p] * state.node_past[p * n + k];
+    predicted_nodes_[k] = c.dt * v;
+  }
+  for (const PrescribedComponent& p : system_->nodes().prescribed()) {
+    const std::size_t k = 3 * static_cast<std::size_t>(p.node) + p.component;
+    predicted_nodes_[k] = trial_.node_u[k];
+  }
+}
+
+NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& options,
+                              Predictor predictor) {
+  [[maybe_unused]] const DenormalsAreZero tiny_is_zero;
+  const Clock::time_point t0 = Clock::now();
+  trial_.context.t_n = state.t;
+  trial_.context.dt = dt;
+  adapt_stored_rates(state, trial_.context.ga, dt);
+  predict(state, predictor);
+  const Clock::time_point t1 = Clock::now();
+  NewtonOptions scaled = options;
+  scaled.energy_scale = state.ledger.energy_scale;
+  NewtonReport report = solve_newton(*system_, state, trial_, *engine_, scaled);
+  const Clock::time_point t2 = Clock::now();
+  seconds_[0] += seconds(t0, t1);
+  seconds_[1] += seconds(t1, t2);
+  state.ledger.iterations += report.iterations;
+  if (report.converged && refused(state, report)) report.converged = false;
+  if (!report.converged) {
+    restore_stored_rates(state);
+    return report;
+  }
+  if (predictor.remember) {
+    estimate_error();
+    stopped_ = meets_barrier(state);
+  }
+
+  ledger_.before_commit(state, trial_);
+  impacts_.find(state, trial_);
+  ledger_.add(state, engine_->commit(state, trial_));
+  commit_histories(state, report.rotation);
+  std::copy(trial_.lambda.begin(), trial_.lambda.end(), state.lambda.begin());
+  const GeneralizedAlpha& ga = trial_.context.ga;
+  TreeView method;
+  method.dt = dt;
+  method.beta = ga.beta;
+  method.gamma = ga.gamma;
+  method.c = ga.c;
+  method.c_A = ga.c_A;
+  kernels_->commit(state.blocks.data(), mass_.data(), trial_.blocks.data(),
+                   static_cast<int>(state.blocks.size()), &method, state.past_next);
+  commit_nodes(*system_, state, trial_);
+  renew_stored_rates(state, ga, dt);
+  state.past_time[state.past_next] = state.t + 0.5 * dt;
+  state.past_next = (state.past_next + 1) % kPast;
+  state.past_count = std::min(kPast, state.past_count + 1);
+  if (MovingContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
+    ledger_.add(state, impacts_.find(state, *contacts));
+    state.past_count = 0;  // measured: steps start best from the velocities at t_n then
+  }
+  jumped_ = impacts_.any();
+  if (jumped_) {
+    const BodySums before = ledger_.sums(state);
+    impacts_.settle(state);
+    ledger_.add_jump(state, before);
+  }
+  state.t += dt;
+  state.dt_last = dt;
+  state.ledger.constraint_max = std::max(state.ledger.constraint_max, report.constraints.residual);
+  ledger_.after_commit(state, trial_);
+  seconds_[2] += seconds(t2, Clock::now());
+  return report;
+}
+
+bool SingleStep::refused(const State& state, NewtonReport& report) const {
+  const auto refuses = [&](const InteractionRef& ref) {
+    const PairView view = pair_view(*system_, state, trial_, ref);
+    const InteractionGroup& group = system_->group(ref.group);
+    if (group.acceptable(ref.item, view.step())) return false;
+    report.reason =
+        format("{}: {} '{}'", group.refusal(ref.item), group.kind(), system_->name(ref));
+    report.worst.clear();
+    return true;
+  };
+  for (int i : always_asked_)
+    if (refuses(system_->interactions()[i])) return true;
+  if (report.rotation <= kNoMirrorBelow) return false;
+  for (const InteractionRef& ref : system_->interactions())
+    if (ref.rows > 0 && refuses(ref)) return true;
+  return false;
+}
+
+void SingleStep::commit_histories(State& state, double rotation) {
+  const auto commit = [&](int interaction) {
+    const InteractionRef& ref = system_->interactions()[interaction];
+    const PairView view = pair_view(*system_, state, trial_, ref);
+    double* history = state.history.data() + ref.first_history;
+    system_->group(ref.group).commit(ref.item, view.step(), history);
+  };
+  for (int i : eager_) commit(i);
+  if (lazy_.empty()) return;
+  state.turned += 2.0 * rotation;  // two bodies may turn against each other
+  if (state.turned + 2.0 * rotation <= kCountTurnsBefore) return;
+  for (int i : lazy_) commit(i);
+  state.turned = 0.0;
+}
+
+void SingleStep::estimate_error() {
+  double most = 0.0;
+  const double per_length = 1.0 / system_->length_scale();
+  for (int s = 0; s < system_->tree().slots; ++s) {
+    if (system_->tree().body_of_slot[s] < 0) continue;
+    const TrialBlock& t = trial_.blocks[s / kLanes];
+    const TrialBlock& p = predicted_[s / kLanes];
+    const int l = s % kLanes;
+    double moved = 0.0, turned = 0.0, angle = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      moved = std::hypot(moved, t.u[i][l] - p.u[i][l]);
+      turned = std::hypot(turned, t.theta[i][l] - p.theta[i][l]);
+      angle = std::hypot(angle, t.theta[i][l]);
+    }
+    most = std::max({most, per_length * moved, turned + angle * angle * angle});
+  }
+  for (std::size_t k = 0; k < predicted_nodes_.size(); ++k)
+    most = std::max(most, per_length * std::abs(trial_.node_u[k] - predicted_nodes_[k]));
+  error_ = most / 12.0;
+}
+
+bool SingleStep::meets_barrier(const State& state) const {
+  return std::any_of(system_->barriers().begin(), system_->barriers().end(), [&](int i) {
+    const InteractionRef& ref = system_->interactions()[static_cast<std::size_t>(i)];
+    const InteractionGroup& group = system_->group(ref.group);
+    const PairView at_n1 = pair_view(*system_, state, trial_, ref);
+    const PairView at_n = system_->instant(state, ref, nullptr);
+    return group.clearance(ref.item, at_n1.step()) < 1.0 ||
+           group.clearance(ref.item, at_n.step()) < 1.0;
+  });
+}
+
+std::vector<std::pair<std::string, double>> SingleStep::phases() const {
+  return {{"predictor", seconds_[0]}, {"newton", seconds_[1]}, {"acceptance", seconds_[2]}};
+}
+
+}  // namespace polhode

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <polhode/newton/newton.hpp>
+#include <polhode/stepping/ledger.hpp>
+#include <polhode/stepping/settle_impacts.hpp>
+
+namespace polhode {
+
+/// Takes single steps of generalised-α: predict, solve, accept, commit. What compositions and step
+/// control are made of.
+class SingleStep {
+ public:
+  SingleStep(const System& system, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
+             const LaneKernels& kernels, bool conserving);
+
+  /// How the next trial is predicted from the mean velocities of past steps.
+  struct Predictor {
+    int degree = 3;         ///< Of the extrapolation in time; −1: the velocities at t_n.
+    bool remember = false;  ///< Keep the prediction for predictor_difference().
+  };
+  /// One step of length dt. On failure the state is as it was.
+  NewtonReport take(State& state, double dt, const NewtonOptions& options, Predictor predictor);
+  /// Largest difference of the last accepted trial from its prediction, with the phase error of
+  /// the Cayley transform: an estimate of the step's error at order 2 [-].
+  [[nodiscard]] double error_estimate() const { return error_; }
+  /// Velocities jumped at the end of the last accepted trial, in an impact of a joint's stop.
+  [[nodiscard]] bool jumped() const { return jumped_; }
+  /// A stop of a joint acted in the last accepted trial.
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+  LedgerKeeper& ledger() { return ledger_; }
+  [[nodiscard]] const LedgerKeeper& ledger() const { return ledger_; }
+  [[nodiscard]] const NewtonEngine& engine() const { return *engine_; }
+  [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
+
+ private:
+  void predict(const State& state, const Predictor& predictor);
+  /// Whether an interaction does not accept the configuration reached; says which and why.
+  [[nodiscard]] bool refused(const State& state, NewtonReport& report) const;
+  void commit_histories(State& state, double rotation);
+  void estimate_error();
+  [[nodiscard]] bool meets_barrier(const State& state) const;
+
+  const System* system_;
+  std::unique_ptr<NewtonEngine> engine_;
+  const LaneKernels* kernels_;
+  LedgerKeeper ledger_;
+  SettleImpacts impacts_;
+  Trial trial_;
+  std::vector<TrialBlock> predicted_;
+  std::vector<double> predicted_nodes_;
+  std::vector<MassBlock> mass_;
+  std::vector<int> eager_, lazy_;  ///< Interactions with a history of either sort.
+  std::vector<int> always_asked_;  ///< Whether they accept what was reached.
+  double error_ = 0.0;
+  bool jumped_ = false, stopped_ = false;
+  double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.
+};
+
+}  // namespace polhode

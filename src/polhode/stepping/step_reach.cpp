@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/stepping/step_reach.hpp>
+
+#include <algorithm>
+
+#include <polhode/core/format.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// So many tolerances may the errors of all steps add up to: at order 2, which spreads it over the
+/// run, and at the others, which hold each step to it.
+constexpr double kClearly = 2.0, kClearlyComposed = 200.0;
+
+}  // namespace
+
+void StepReach::count(double t, double error, double asked, bool noise) {
+  ++steps_;
+  sum_ += error;
+  if (!noise && error <= asked) return;
+  if (beyond_++ == 0) first_ = t;
+  worst_ = std::max(worst_, error);
+}
+
+std::vector<std::string> StepReach::warnings(double tolerance, int order) const {
+  const bool adds_up = sum_ > (order == 2 ? kClearly : kClearlyComposed) * tolerance;
+  // Order 2 spreads the tolerance over the run; small steps may be below round-off without harm.
+  if (beyond_ == 0 || (order == 2 && !adds_up)) {
+    if (!adds_up) return {};
+    return {
+        format("tolerance: {:.2g} is that of one step; the errors of {} steps add up to {:.1e} "
+               "by their own estimate. Ask for a smaller tolerance if that is too much",
+               tolerance, steps_, sum_)};
+  }
+  return {format(
+      "tolerance: {:.2g} was not reached: {} of {} steps, the first at t = {:.6g} s, err by up to "
+      "{:.1e}, and no shorter step does better; the errors of all steps add up to {:.1e} by their "
+      "own estimate. Ask for a larger tolerance, or look for stiffness and mass ratios that leave "
+      "noise",
+      tolerance, beyond_, steps_, first_, worst_, sum_)};
+}
+
+}  // namespace polhode

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <polhode/core/format.hpp>
+#include <polhode/dynamics/composition.hpp>
+#include <polhode/stepping/drive_kinks.hpp>
+#include <polhode/stepping/local_error.hpp>
+#include <polhode/stepping/single_step.hpp>
+#include <polhode/stepping/start.hpp>
+#include <polhode/stepping/step_error.hpp>
+#include <polhode/stepping/step_reach.hpp>
+#include <polhode/stepping/stepper.hpp>
+#include <polhode/system/time_breaks.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Two times closer than this part of a step are the same.
+constexpr double kSameTime = 1e-9;
+/// Rest of a fixed step, as part of it, that the next one takes along.
+constexpr double kLeftOver = 1e-6;
+/// How much longer a step may be if it ends at a wanted time then [-].
+constexpr double kStretch = 1e-3;
+constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
+/// What the companions' errors say of the error at order 6 and at order 8, measured.
+constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
+/// Round-off of an error estimate, for places at the origin and as part of how far others are:
+/// nothing below can be asked of a step.
+constexpr double kLeastError = 1e-15, kStepRoundOff = 2.2e-16;
+constexpr double kRoundOffComposed = 30.0;  ///< At higher orders stages and companions add to it.
+/// A refused step's error falls with this power of its length at least, or it is noise; and noise
+/// is small.
+constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
+/// Noise that was found counts for the steps after it, less and less.
+constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
+/// Error of an impact allowed in time, times the velocities that jump, as part of the tolerance;
+/// and the part to which a step that holds one is shortened at once at most.
+constexpr double kImpactError = 0.1, kLeastImpactFactor = 0.02;
+/// Highest derivatives of the motion whose jumps end steps.
+constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
+/// Independent samples of loads that a composed step takes, to be on the safe side.
+constexpr double kSamplesComposed = 3.0;
+/// Steps of the search for a first length, and what it may be lengthened by at once. Of so many
+/// fixed steps of higher order one is measured.
+constexpr int kStepProbes = 40, kSampled = 64;
+constexpr double kWorthLonger = 3.0, kLonger = 10.0;
+/// Steps in a row with few iterations after which a halved step grows again.
+constexpr int kEasySteps = 3, kFewIterations = 4;
+/// State::easy_steps of automatic steps: the length is to be found anew.
+constexpr int kFindAnew = -1;
+/// A method with this weight of the end of a step looks at loads there.
+constexpr double kLooksAtEnd = 0.999;
+/// Times just before and just after a break, as parts of it [-].
+constexpr double kJustBeside = 0x1p-47;
+
+}  // namespace
+
+struct Stepper::Impl {
+  const System& system;
+  SingleStep single;
+  DriveKinks kinks;
+  GeneralizedAlpha ga;
+  StepControl control;
+  TimeBreaks breaks;
+  std::vector<double> stages;          ///< Of the order.
+  std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
+  State before, companion;             ///< Copies to return to and to compare with.
+  StepReach reach;
+  double least_error = kLeastError;  ///< What rounding of positions leaves [-].
+
+  Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
+       const StepControl& c, const LaneKernels& kernels)
+      : system(s),
+        single(s, std::move(engine), g, kernels, c.conserving),
+        kinks(s),
+        ga(g),
+        control(c),
+        breaks(s, c.horizon, c.order == 2 ? kBreaksOfTwo : kBreaksComposed) {
+    double far = 0.0;
+    for (int b = 0; b < s.body_count(); ++b)
+      far = std::max(far, s.motion(s.initial_state(), b).r.norm());
+    for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
+    least_error = std::max(kLeastError, kStepRoundOff * far / s.length_scale()) *
+                  (c.order > 2 ? kRoundOffComposed : 1.0);
+    const bool doubled = c.order > 4 && s.rows() > 0;
+    stages = composition_stages(c.order, doubled);
+    // Companions have their stages doubled too: an odd number of single steps would end with the
+    // constraint-normal velocity turned round, and the difference would tell of that alone.
+    check2 = doubled ? std::vector<double>{0.5, 0.5} : std::vector<double>{1.0};
+    check4 = composition_stages(4, doubled);
+  }
+
+  [[nodiscard]] bool automatic() const { return !control.step; }
+  [[nodiscard]] bool composed() const { return stages.size() > 1; }
+  [[nodiscard]] double least_step() const {
+    if (control.min_step > 0.0) return control.min_step;
+    return automatic() ? 1e-9 * control.horizon : 1e-6 * *control.step;
+  }
+  [[nodiscard]] double most_step() const {
+    if (!automatic()) return *control.step;
+    return control.max_step > 0.0 ? control.max_step : control.horizon;
+  }
+
+  /// A first guess of an automatic step: a small part of the run, and of the fastest turn.
+  [[nodiscard]] double first_step(const State& state) const {
+    double omega = 0.0;
+    for (int b = 0; b < system.body_count(); ++b)
+      omega = std::max(omega, system.motion(state, b).W.norm());
+    const double turn = control.order == 2 ? 0.01 : 0.5;
+    return std::min({most_step(), control.horizon / 50.0, turn / std::max(omega, 1e-12)});
+  }
+
+  /// At most so long that the loads are sampled on the way.
+  [[nodiscard]] double sampled(const State& state, double dt) const {
+    if (!automatic() || breaks.empty()) return dt;
+    return breaks.sampled_length(state.t, dt, composed() ? kSamplesComposed : 1.0);
+  }
+
+  /// The step to try from t: not beyond the limit and the break ahead; a fixed step that was cut
+  /// returns to its grid.
+  [[nodiscard]] double next_length(const State& state, double t_limit, double at_break) const {
+    double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
+    if (automatic()) {
+      dt = part_of(std::min(t_limit, at_break) - state.t, sampled(state, dt));
+    } else {
+      const double H = *control.step;
+      const double steps_done = std::floor(state.t / H + kLeftOver);
+      dt = part_of((steps_done + 1.0) * H - state.t, dt);
+      dt = part_of(t_limit - state.t, dt);
+    }
+    const double way = at_break - state.t;
+    if (way > (1.0 + kStretch) * dt) return dt;
+    return std::abs(way - dt) <= kSameTime * dt && !looks_at_end() ? dt : way;
+  }
+
+  /// A length of at most dt, or a thousandth more, equal parts of which make up the way to a time
+  /// that is near: what is left is never a tiny step, in which multipliers, of the size of
+  /// round-off/Δt², would leak energy.
+  static double part_of(double way, double dt) {
+    if (way > 2.0 * dt || std::abs(way - dt) <= kSameTime * dt) return dt;
+    const double parts = std::ceil(way / dt - kStretch);
+    const double part = parts > 1.0 ? way / parts : way;
+    return std::abs(part - dt) <= kSameTime * dt ? dt : part;  // to the last bit, wherever it ends
+  }
+
+  /// The break of a function of time that comes next; one that falls on the grid has passed there.
+  [[nodiscard]] TimeBreak next_break(const State& state) {
+    if (breaks.empty()) return {};
+    return breaks.next(automatic() ? state.t : state.t + kSameTime * *control.step);
+  }
+  [[nodiscard]] bool looks_at_end() const { return ga.alpha_f > kLooksAtEnd; }
+  /// End of the step before a break: a method that looks at the end of a step must not see
+  /// what comes after it.
+  [[nodiscard]] double landing(const TimeBreak& at) const {
+    return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
+  }
+
+  /// A start without a past: after a jump of accelerations or velocities.
+  void begin_anew(State& state) const {
+    state.past_count = 0;
+    state.error_last = 0.0;
+    if (automatic()) state.easy_steps = kFindAnew;
+  }
+  [[nodiscard]] bool stands_at(const TimeBreak& at, double t) const {
+    const double same = automatic() ? kSameBreak * at.t : kSameTime * *control.step;
+    return at.exists() && at.t - t <= same;
+  }
+  void pass_break(State& state, const TimeBreak& at) const {
+    if (at.derivative > 2) return;
+    begin_anew(state);
+    if (!system.contacts())
+      restart_accelerations(system, state, ga, std::max(at.t, state.t) * (1.0 + kJustBeside));
+  }
+
+  /// Runs stages from the state; on failure the state is not restored.
+  NewtonReport run_stages(State& state, const std::vector<double>& list, double H, bool fresh) {
+    NewtonReport report;
+    NewtonOptions newton = control.newton;
+    SingleStep::Predictor predictor;
+    predictor.degree = list.size() > 1 ? 1 : (automatic() ? 1 : 3);
+    predictor.remember = automatic() && control.order == 2 && list.size() == 1;
+    int iterations = 0;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (fresh && i == 0) predictor.degree = -1;
+      report = single.take(state, list[i] * H, newton, predictor);
+      if (fresh && i == 0) predictor.degree = list.size() > 1 ? 1 : 3;
+      iterations += report.iterations;
+      report.iterations = iterations;
+      if (!report.converged) return report;
+    }
+    return report;
+  }
+
+  void land(State& state, double t) const {
+    state.t = t;
+    if (automatic()) return;
+    const double H = *control.step, grid = std::round(t / H) * H;
+    if (std::abs(t - grid) < kSameTime * H) state.t = grid;
+  }
+
+  /// The way of a companion that starts where the step did; nothing if it does not converge.
+  std::optional<double> difference_of(const std::vector<double>& list, const State& from,
+                                      const State& reached, double H, double of_velocities) {
+    companion = from;
+    single.ledger().forget();
+    const NewtonReport r = run_stages(companion, list, H, true);
+    single.ledger().forget();
+    companion_iterations += companion.ledger.iterations - from.ledger.iterations;
+    if (!r.converged) return std::nullopt;
+    return state_difference(system, companion, reached, of_velocities);
+  }
+
+  /// Estimate of the error of a composed step from cheap companions of orders 2 and 4: y4 − y and
+  /// y2 − y shrink by known powers of H, so their ratio leads from one order to the next.
+  std::optional<double> composed_error(const State& from, const State& reached, double H) {
+    const auto e2 = difference_of(check2, from, reached, H, H);
+    const auto e4 = e2 ? difference_of(check4, from, reached, H, H) : std::nullopt;
+    if (!e4) return std::nullopt;
+    if (*e2 == 0.0) return 0.0;
+    const double ratio = *e4 / *e2;
+    return control.order == 6 ? kErrorOfSix * *e4 * ratio : kErrorOfEight * *e4 * ratio * ratio;
+  }
+
+  /// Estimate of the error of a plain step from its two halves, which hangs on nothing that lies
+  /// behind: they err by a quarter. @eq{step-halves}
+  std::optional<double> error_by_halves(const State& from, const State& reached, double H) {
+    const auto difference = difference_of({0.5, 0.5}, from, reached, H, 0.0);
+    if (!difference) return std::nullopt;
+    return 4.0 / 3.0 * *difference;
+  }
+
+  /// Adds an estimate of the accepted step's error to the ledger. Of fixed steps of higher order
+  /// some are taken again in two halves. @eq{step-error}
+  void record(State& state, double H, double verdict) {
+    if (!composed()) return record_last_step(system, state);
+    if (automatic()) return record_error(state, {verdict, -1, -1});
+    if (state.ledger.steps % kSampled != 0) return;
+    std::vector<double> halves = stages;
+    halves.insert(halves.end(), stages.begin(), stages.end());
+    for (double& stage : halves) stage *= 0.5;
+    companion_iterations = 0;
+    const auto difference = difference_of(halves, before, state, H, H);
+    state.ledger.iterations += companion_iterations;
+    if (difference)
+      record_error(state, {*difference / (1.0 - std::pow(0.5, control.order)), -1, -1}, kSampled);
+  }
+
+  std::int64_t companion_iterations = 0;
+
+  /// Finds an automatic step of order 2 whose estimate, known after three steps, is fine: at the
+  /// start and where what lies behind says nothing. @param way  Up to the next break [s].
+  void find_length(State& state, double way) {
+    const double most = sampled(state, std::min(first_step(state), way / 3.0));
+    double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most) : most, good = 0.0;
+    before = state;
+    for (int attempt = 0; attempt < kStepProbes && (dt > least_step() || attempt == 0); ++attempt) {
+      companion = before;
+      single.ledger().forget();
+      bool fine = true;
+      for (int i = 0; i < 3 && fine; ++i)
+        fine = single.take(companion, dt, control.newton, {i == 0 ? -1 : 1, i == 2}).converged;
+      state.ledger.iterations += companion.ledger.iterations - before.ledger.iterations;
+      const double error = fine ? single.error_estimate() : 0.0, allowed = allowed_error(state, dt);
+      if (!fine || error > allowed) {
+        if (good > 0.0) break;
+        dt *= fine ? std::clamp(kSafety * std::sqrt(allowed / error), 0.1, 0.9) : 0.5;
+        continue;
+      }
+      good = dt;
+      const double longer =
+          error > 0.0 ? std::min(kLonger, kSafety * std::sqrt(allowed / error)) : kLonger;
+      if (longer < kWorthLonger || dt >= most) break;
+      dt = std::min(most, longer * dt);
+    }
+    state.dt_next = good > 0.0 ? good : std::max(dt, std::min(most, least_step()));
+    state.easy_steps = 0;
+    single.ledger().forget();
+  }
+
+  /// The least error that a step can have, as was found: State::error_last keeps it at order 2, and
+  /// where it is above the tolerance at the others, which else keep their last estimate there.
+  [[nodiscard]] double noise(const State& state) const {
+    return !composed() || state.error_last > control.tolerance ? state.error_last : 0.0;
+  }
+  /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
+  /// it per step.
+  [[nodiscard]] double asked_error(double dt) const {
+    return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
+                              : control.tolerance;
+  }
+  /// The same, but no less than what noise leaves.
+  [[nodiscard]] double allowed_error(const State& state, double dt) const {
+    return std::max({least_error, asked_error(dt), kNoiseAllowed * noise(state)});
+  }
+
+  /// Verdict of an estimate on a step that converged.
+  struct Verdict {
+    bool fine = true;
+    double factor = 1.0;  ///< Of the length, for the next one or another trial.
+    double error = 0.0;
+    bool noise = false;  ///< It is accepted as no shorter step does better.
+  };
+  /// The last trial that was measured and refused: another one is compared with it.
+  struct Refused {
+    double H = 0.0, error = 0.0;
+    int count = 0;
+
+    /// Shorter, the step hardly errs by less: that is no error of the step.
+    [[nodiscard]] bool leaves_noise(double length, double now) const {
+      return H > 0.0 && now > error * std::pow(length / H, kFalls);
+    }
+  };
+
+  Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
+  /// A step in which a stop acts: what it does may come anywhere within the step, and that hardly
+  /// matters if the step is short enough.
+  [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
+  void accept(State& state, double H, const Verdict& verdict, int iterations, double kept);
+  StepReport advance(State& state, double t_limit);
+};
+
+Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State& reached,
+                                                 double H) const {
+  Verdict v;
+  v.error = jump_difference(system, from, reached, H);
+  const double allowed = kImpactError * control.tolerance;
+  v.fine = v.error <= allowed || H <= least_step();
+  const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMostFactor;
+  // After an impact steps grow from the one that held it.
+  v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMostFactor)
+                    : std::clamp(wanted, kLeastImpactFactor, 0.9);
+  if (v.fine) v.error = 0.0;  // that was a bound for one impact, no error of each of its steps
+  return v;
+}
+
+Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, double H, bool fresh,
+                                            Refused& refused) {
+  Verdict v;
+  companion_iterations = 0;
+  double power = 0.5, safety = kSafety, longest = kMostFactor;
+  const double allowed = allowed_error(from, H);
+  std::optional<double> error;
+  if (composed()) {
+    error = composed_error(from, reached, H);
+    reached.error_last =
+        std::max(std::min(error.value_or(0.0), control.tolerance), kNoiseFades * noise(from));
+    if (error) error = std::max(*error, 0.1 * from.error_last);
+    power = 1.0 / (control.order + 1.0);
+    safety = kSafetyComposed;
+  } else if (from.past_count < 2 && !fresh) {
+    // find_length() has tried these steps, or they are as short as the impact's. Where bodies touch
+    // there is no estimate at all.
+    if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMostFactor);
+    return v;
+  } else {
+    if (!fresh) error = single.error_estimate();
+    // The past may be noise, or say nothing: then the step is measured by itself.
+    if (!system.contacts() && (fresh || (*error > allowed && refused.count > 0))) {
+      const auto halves = error_by_halves(from, reached, H);
+      error = halves && error ? std::min(*error, *halves) : halves;
+      longest = 1.0;  // the past would refuse a longer one
+    }
+    reached.error_last = kNoiseFades * from.error_last;
+  }
+  reached.ledger.iterations += companion_iterations;
+  const bool shortest = H <= least_step();
+  if (!error) return {.fine = shortest, .factor = shortest ? 1.0 : 0.5, .noise = shortest};
+  v.error = *error;
+  v.factor = longest;
+  if (v.error > 0.0)
+    v.factor = std::clamp(safety * std::pow(allowed / v.error, power), kLeastFactor, longest);
+  v.fine = v.error <= allowed;
+  if (v.fine) return v;
+  const double most_noise = composed() ? kMostNoiseComposed : kMostNoise;
+  if (shortest || (v.error < most_noise && refused.leaves_noise(H, v.error))) {
+    v.fine = v.noise = true;
+    // The longer one was as good.
+    v.factor = shortest ? 1.0 : refused.H / H;
+    reached.error_last = std::clamp(refused.error, std::min(v.error, most_noise), most_noise);
+  }
+  if (composed() || refused.count > 0) refused = {H, v.error, refused.count};
+  return v;
+}
+
+/// After an accepted step: what the next one is to be. @param kept  No less than this [s].
+void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int iterations,
+                           double kept) {
+  if (automatic()) {
+    const double shortest = std::min(least_step(), H);
+    state.dt_next = std::min(most_step(), std::max({kept, shortest, verdict.factor * H}));
+    reach.count(state.t, verdict.error, asked_error(H), verdict.noise);
+    return;
+  }
+  const int per_stage = iterations / static_cast<int>(stages.size());
+  state.easy_steps = per_stage <= kFewIterations ? state.easy_steps + 1 : 0;
+  if (state.dt_next > 0.0 && H < *control.step && state.easy_steps >= kEasySteps) {
+    state.dt_next = std::min(*control.step, 2.0 * std::max(H, state.dt_next));
+    state.easy_steps = 0;
+  }
+}
+
+StepReport Stepper::Impl::advance(State& state, double t_limit) {
+  StepReport report;
+  const TimeBreak ahead = next_break(state);
+  const double limit = std::min(t_limit, landing(ahead));
+  if (automatic() && (state.dt_next <= 0.0 || state.easy_steps == kFindAnew)) {
+    if (control.order == 2)
+      find_length(state, landing(ahead) - state.t);
+    else if (state.dt_next <= 0.0)
+      state.dt_next = first_step(state);
+    state.easy_steps = 0;
+  }
+  const double planned = state.dt_next;
+  double wanted = next_length(state, t_limit, landing(ahead));
+  bool fresh = false;
+  Refused refused;
+  for (;;) {
+    const double H = wanted;
+    if (composed() || automatic()) before = state;
+    report.newton = run_stages(state, stages, H, fresh);
+    // Contacts have steps of their own in which velocities jump.
+    const bool stopped = !composed() && !system.contacts() && single.stopped();
+    const bool impact = stopped && single.jumped();
+    Verdict verdict{.fine = report.newton.converged, .factor = 0.5};
+    if (verdict.fine && automatic()) {
+      const Verdict by_stop = stopped ? judge_stop(before, state, H) : Verdict{.fine = false};
+      verdict = impact || by_stop.fine ? by_stop : judge(before, state, H, fresh, refused);
+    }
+    if (verdict.fine) {
+      report.accepted = true;
+      const double t = composed() ? before.t + H : state.t;
+      const bool at_limit = std::abs(t - limit) < kSameTime * std::abs(H);
+      land(state, at_limit ? limit : t);
+      report.t = state.t;
+      report.dt = H;
+      // A step cut short by a limit does not make the next one short.
+      const double kept = refused.count == 0 && verdict.factor >= 1.0 && !impact ? planned : 0.0;
+      accept(state, H, verdict, report.newton.iterations, kept);
+      if (report.newton.hard) record_hard(state);
+      record(state, H, verdict.error);
+      kinks.pass(state, single.ledger());
+      if (stands_at(ahead, state.t)) pass_break(state, ahead);
+      if (impact && automatic()) state.past_count = 0;
+      ++state.ledger.steps;
+      single.ledger().close_step(state);
+      return report;
+    }
+    // Refused: back to t_n with a shorter step; the past says little about the next trial.
+    const std::int64_t iterations = state.ledger.iterations;
+    if (composed() || automatic()) {
+      state = before;
+      single.ledger().forget();
+    }
+    state.ledger.iterations = iterations;
+    ++state.ledger.rejected;
+    ++report.rejected;
+    wanted *= report.newton.converged ? std::min(verdict.factor, 0.9) : 0.5;
+    state.easy_steps = 0;
+    fresh = !report.newton.converged;
+    ++refused.count;
+    if (H > least_step()) {
+      wanted = std::max(wanted, least_step());
+    } else {
+      report.message = format(
+          "{} Steps down to {:.2g} s were tried. Look at what happens there: a body may be "
+          "squeezed into a position its joints cannot leave, a load or spring may be far "
+          "too stiff, or masses may differ by many orders. 'polhode check --tangents' tells "
+          "whether the equations are sound.",
+          report.newton.text(), least_step());
+      return report;
+    }
+  }
+}
+
+Stepper::Stepper(const System& system, std::unique_ptr<NewtonEngine> engine,
+                 const GeneralizedAlpha& ga, const StepControl& control, const LaneKernels& kernels)
+    : impl_(std::make_unique<Impl>(system, std::move(engine), ga, control, kernels)) {}
+
+Stepper::~Stepper() = default;
+
+void Stepper::begin(State& state) { impl_->single.ledger().begin(state); }
+
+StepReport Stepper::advance(State& state, double t_limit) { return impl_->advance(state, t_limit); }
+
+const NewtonEngine& Stepper::engine() const { return impl_->single.engine(); }
+
+Balance Stepper::balance(const State& state) const { return impl_->single.ledger().balance(state); }
+
+std::vector<std::string> Stepper::warnings() const {
+  return impl_->reach.warnings(impl_->control.tolerance, impl_->control.order);
+}
+
+std::vector<std::pair<std::string, double>> Stepper::phases() const {
+  return impl_->single.phases();
+}
+
+}  // namespace polhode

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/contact_laws/stop_force.hpp>
+#include <polhode/surface_contact/nearest_four.hpp>
+
+namespace polhode {
+
+/// Four points over a step.
+struct FourMoves {
+  Vec3 x_n1[4];  ///< [m]
+  Vec3 u[4];     ///< x_{n+1} − x_n [m].
+
+  void at(double alpha, Vec3 (&x)[4]) const {
+    for (int i = 0; i < 4; ++i) x[i] = x_n1[i] - (1.0 - alpha) * u[i];
+  }
+};
+
+/// A distance over a step, between features that are the nearest ones at t_n and others, or the
+/// same, that are at t_{n+1}. A force λ along it acts between pairs of points along their averaged
+/// connections, so that it has neither sum nor moment, and does the work λ Δd exactly:
+///
+///   q = λ/(d_n + d_{n+1}) (ḡ + κ |ḡ| Δs),   κ = (Δ(d²) − ḡ·Δs)/Σ|ḡ| Δs²
+///
+/// with s the squared lengths between the points of both features, ḡ the mean of ∂d²/∂s at both
+/// ends, and the force of length (i, j) on i 2 q_ij (x̄_i − x̄_j). Weighted by |ḡ| the correction
+/// knows only lengths that the distance depends on: it goes over from a face to its edges and
+/// corners without a jump, whichever of the faces around these is looked at. @eq{central-gap}
+/// @tparam kMostSets  Sets of four points, each with six lengths.
+template <int kMostSets>
+class CentralGapOf {
+ public:
+  static constexpr int kMostPoints = 4 * kMostSets,
+                       kMostLengths = kMostSets * NearestFour::kLengths;
+  using Force = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostPoints, 1>;
+  using Stiffness =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMostPoints, 3 * kMostPoints>;
+
+  using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostLengths, 1>;
+  using Square =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, kMostLengths>;
+
+  /// A distance of several sets of four points over a step.
+  struct Over {
+    int sets = 0;
+    FourMoves moves[kMostSets];
+    double d_n = 0.0, d_n1 = 0.0;  ///< [m]
+    Lengths g_n, g_n1;             ///< ∂(d²)/∂s at both ends.
+    Square H_n1;                   ///< ∂g_n1/∂s_n1
+    void resize() {
+      g_n.setZero(NearestFour::kLengths * sets);
+      g_n1.setZero(NearestFour::kLengths * sets);
+      H_n1.setZero(NearestFour::kLengths * sets, NearestFour::kLengths * sets);
+    }
+  };
+  CentralGapOf(const Over& over, double alpha_f, bool conserving);
+  /// @param to  The features at t_{n+1}; null: those at t_n are.
+  CentralGapOf(const FourMoves& from, const NearestFour& at_n, const FourMoves* to,
+               const NearestFour& at_n1, double alpha_f, bool conserving);
+
+  [[nodiscard]] int points() const { return points_; }
+  /// Points at t_{n+αf}, those of t_n's features first.
+  [[nodiscard]] const Vec3& at_alpha(int point) const { return x_alpha_[point]; }
+  [[nodiscard]] Force force(double lambda) const;
+  /// D force / D x_{n+1}.
+  [[nodiscard]] Stiffness stiffness(const contact::ForceAndSlope& lambda) const;
+  /// D d_{n+1} / D x_{n+1}.
+  [[nodiscard]] Force slope() const;
+
+ private:
+  using Slopes =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, 3 * kMostPoints>;
+  [[nodiscard]] Slopes slopes(const Vec3 (&x)[kMostPoints]) const;
+
+  int points_ = 4, lengths_ = NearestFour::kLengths;
+  double alpha_;
+  double d_n_, d_n1_, d_alpha_;
+  Vec3 x_alpha_[kMostPoints], x_n1_[kMostPoints];
+  int ends_[kMostLengths][2];
+  Lengths change_;                             ///< Δs
+  Lengths sign_;                               ///< Of ḡ: pushed apart or drawn together.
+  Lengths g_n1_, g_;                           ///< ∂d²/∂s at t_{n+1}; ḡ + κ |ḡ| Δs
+  Lengths mean_;                               ///< ḡ
+  double kappa_ = 0.0, change_squared_ = 0.0;  ///< The latter: Σ|ḡ| Δs².
+  Square H_n1_;                                ///< ∂g_n1/∂s_n1
+};
+
+/// Between one feature at each end of the step.
+using CentralGap = CentralGapOf<2>;
+/// Triangles about one point, at both ends of a step together.
+inline constexpr int kMostTriangles = 8;
+
+}  // namespace polhode

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/surface_contact/edge_lines.hpp>
+#include <polhode/surface_contact/edge_pair.hpp>
+#include <polhode/surface_contact/meeting_nodes.hpp>
+#include <polhode/surface_contact/surface_totals.hpp>
+#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/element_group.hpp>
+
+namespace polhode {
+
+/// Lines of edges against others: sharp edges of two solids, or of one, that may cross between
+/// their nodes, and cables, which are round edges. See EdgePair for what two of them do.
+///
+/// Each edge remembers the bristles with one other edge; a pair that neither of its edges remembers
+/// rubs all the same, but begins anew in each step. @eq{edge-potential}
+class EdgeContact final : public ElementGroup,
+                          public BarrierPoints,
+                          public MovingPattern,
+                          public TouchingSurface {
+ public:
+  struct Sides {
+    EdgeLines first, second;  ///< Of one surface with itself: the same twice.
+    double area = 1.0;        ///< That a crossing stands for [m²].
+    /// Sum of the radii around the edges; 0: sharp ones, which the tolerance keeps apart [m].
+    double radius = 0.0;
+    double retreat = 0.0, behind = 0.0;  ///< Of round edges, as of EdgePairData.
+    /// Of round edges, by edge of the first lines: ranges of edges of the second that it does not
+    /// meet, first and last.
+    std::vector<std::vector<std::array<int, 2>>> left_out = {};
+  };
+  EdgeContact(std::string name, Sides sides, const SurfaceLaw& law, const SolidContactStart& start);
+
+  static constexpr const char* kKind = "contact of edges";
+  std::string kind() const override { return of_cables() ? "contact of cables" : kKind; }
+  [[nodiscard]] bool of_cables() const { return sides_.retreat > 0.0; }  ///< Round edges.
+  const std::string& name() const override { return name_; }
+  int size() const override { return 0; }  // its blocks are those of MovingPattern
+  int nodes_per_element() const override { return 1; }
+  std::span<const int> nodes(int /*element*/) const override { return {}; }
+  bool has_tangent() const override { return false; }
+  bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
+  bool conservative() const override { return !dissipates(); }
+  std::size_t history_size() const override;
+  void initialize(double* history) const override;
+
+  const std::vector<int>& reach() const override { return nodes_.numbers(); }
+  const NodeBlocks& blocks(const double* history) const override {
+    return search(history).blocks.blocks;
+  }
+  void renew(const NodeStep& step, double* history) const override { nodes_.renew(step, history); }
+  void clearances(const NodeStep& step, const double* history,
+                  std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
+
+  ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
+                         const Mat3& turn, const ElementSink& sink) const override;
+  void commit(const NodeStep& step, double* history, const double* scratch) const override;
+  Work work(const NodeStep& step, const double* history, const double* scratch) const override;
+
+  const SurfaceLaw& law() const override { return law_; }
+  std::size_t places() const override { return sides_.first.edges.size(); }
+  /// Pairs of edges that are looked at.
+  [[nodiscard]] int candidates(const double* history) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
+  [[nodiscard]] SurfaceReport report(const double* history) const override;
+  [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
+                                                              const double* history) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
+
+ private:
+  /// Of an edge: its partner's number and one, or 0; the bristle in the world, whether it slips,
+  /// of the last step the force on the first edge, its tangential part and the normal force; and
+  /// the bristle lengthwise.
+  static constexpr std::size_t kMemory = 13, kAlong = 12;
+  struct Search {
+    std::vector<double> key;  ///< The part of the history that it follows from.
+    std::vector<std::pair<int, int>> pairs;
+    MeetingNodes::Blocks blocks;
+  };
+  /// A pair that acts over a step.
+  struct Touch;
+
+  [[nodiscard]] const Search& search(const double* history) const;
+  void find(Search& s) const;
+  [[nodiscard]] bool may_meet(int e, int f) const;
+  /// Ends 0 and 1 of edge e of the first lines, 2 and 3 of f of the second.
+  [[nodiscard]] const MeshPoint& end(int e, int f, int k) const;
+  [[nodiscard]] EdgePairData data(int e, int f) const;
+  /// Of a slot in the history; behind the last one the totals.
+  template <class Number>
+  [[nodiscard]] Number* memory(Number* history, int slot) const {
+    return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(slot);
+  }
+  [[nodiscard]] int slots() const;
+  [[nodiscard]] int slot_of_second(int f) const;
+  [[nodiscard]] std::vector<Touch> touches(const NodeStep& step, const double* history,
+                                           bool tangent) const;
+  [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
+  void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
+  void note_gap(double* history) const;
+  [[nodiscard]] double least_gap(const double* x, const double* history) const;
+  /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
+  [[nodiscard]] double room(int e, int f, const Vec3 (&x)[4]) const;
+
+  std::string name_;
+  Sides sides_;
+  SurfaceLaw law_;
+  bool self_ = false;
+  double centre_ = 0.0;                               ///< Distance at which the gap is zero [m].
+  std::vector<double> shared_first_, shared_second_;  ///< By vertex.
+  std::vector<double> square_first_, square_second_;  ///< |e|² at the start, by edge [m²].
+  MeetingNodes nodes_;
+  mutable Search search_;  ///< Of the last history asked for.
+};
+
+}  // namespace polhode

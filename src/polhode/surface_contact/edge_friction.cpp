@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Friction of two edges that cross.
+#include <polhode/surface_contact/edge_pair.hpp>
+#include <polhode/surface_contact/nearest_weights.hpp>
+
+namespace polhode {
+
+namespace {
+
+using contact::V3;
+
+/// Squared sines of the angles from which round edges rub across their mean direction, and do so
+/// fully: 10 and 30 degrees.
+constexpr double kRolls = 0.03015, kRubs = 0.25;
+
+template <class T>
+struct EdgeOnEdge {
+  V3<T> force[4], slid;
+  PlaneRub<T> rub;
+};
+
+/// What round edges take of a vector in the plane of contact: the less they cross, the more they
+/// roll on each other instead, all but along their mean direction.
+template <class T>
+struct Rolling {
+  V3<T> t;
+  T w = T(1.0);
+
+  Rolling(const V3<T>& e, const V3<T>& f, bool round) : t(e) {
+    if (!round) return;
+    const T ee = dot(e, e), ff = dot(f, f), ef = dot(e, f);
+    const T square = 1.0 - ef * ef / (ee * ff);
+    const double s = contact::value(square);
+    if (s >= kRubs) return;
+    const T part = (1.0 / (kRubs - kRolls)) * (square - kRolls);
+    w = s > kRolls ? part * part * (3.0 - 2.0 * part) : T(0.0);
+    const double sign = contact::value(ef) < 0.0 ? -1.0 : 1.0;
+    t = unit((1.0 / sqrt(ee)) * e + (sign / sqrt(ff)) * f);
+  }
+  [[nodiscard]] V3<T> of(const V3<T>& x) const {
+    if (contact::value(w) == 1.0) return x;
+    const V3<T> along = dot(t, x) * t;
+    return along + w * (x - along);
+  }
+};
+
+/// The nearest points of the middle of the step slide on each other in the plane of both edges; how
+/// they move as the two edges turn is taken off, with the rotation of the pair
+///
+///   ω = ((n·Δf) e − (n·Δe) f + ½ (f·Δe − e·Δf) n)/|e × f|
+///
+/// so that what turns as a whole does not slide, and the forces conjugate to that leave no moment.
+/// @eq{edge-friction}
+template <class T>
+EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
+                            const T& pressure, const Vec3& kept, bool round, bool seeded) {
+  const FourPoints<T> at(moves, alpha, seeded);
+  Vec3 middle[4];
+  moves.at(alpha, middle);
+  T c[4];
+  nearest_weights(nearest_of_edges(middle), at.x, c);
+  const V3<T> e = at.x[1] - at.x[0], f = at.x[3] - at.x[2];
+  const V3<T> du_e = at.u[1] - at.u[0], du_f = at.u[3] - at.u[2];
+  const V3<T> across = cross(e, f);
+  const T per = 1.0 / norm(across);
+  const V3<T> n = per * across;
+  V3<T> y = c[0] * (at.x[0] - at.x[3]), way = c[0] * at.u[0];
+  for (int k = 1; k < 4; ++k) {
+    y = y + c[k] * (at.x[k] - at.x[3]);
+    way = way + c[k] * at.u[k];
+  }
+  const V3<T> omega =
+      per * (dot(n, du_f) * e - dot(n, du_e) * f + (0.5 * (dot(f, du_e) - dot(e, du_f))) * n);
+  way = way - cross(omega, y);
+  const Rolling<T> rolling(e, f, round);
+  const V3<T> slid = rolling.of(way - dot(n, way) * n);
+  const auto direction = [&](int from, int to) { return contact::v3(at.x_n[to] - at.x_n[from]); };
+  EdgeOnEdge<T> r{{},
+                  slid,
+                  {SlidePlane<T>(e, f), SlidePlane<double>(direction(0, 1), direction(2, 3)), law,
+                   pressure, kept, slid, alpha}};
+  const V3<T> h = rolling.of(r.rub.friction);
+  const V3<T> moment = cross(y, h);
+  const T on_n = dot(n, moment);
+  const V3<T> on_e = per * (dot(f, moment) * n - (0.5 * on_n) * f);
+  const V3<T> on_f = per * ((0.5 * on_n) * e - dot(e, moment) * n);
+  r.force[0] = c[0] * h - on_e;
+  r.force[1] = c[1] * h + on_e;
+  r.force[2] = c[2] * h - on_f;
+  r.force[3] = c[3] * h + on_f;
+  return r;
+}
+
+}  // namespace
+
+FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
+  if (round() && !(pressure_ > 0.0)) return {};
+  const auto rub = [&](const auto& p, bool seeded) {
+    return edge_friction(moves_, alpha_, law_, p, kept, round(), seeded);
+  };
+  const auto& x = moves_.x_n1;
+  return FourSlide(rub, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),
+                   std::max(0.0, pressure_), tangent);
+}
+
+}  // namespace polhode

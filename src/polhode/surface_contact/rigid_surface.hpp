@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include <polhode/surface_contact/rigid_mesh.hpp>
+
+namespace polhode {
+
+/// A rigid surface that points of solids meet, in coordinates y of its own.
+///
+/// Gaps are distances to a convex core (plane, point, segment, disc, box) less
+/// a radius, so they and their gradients are continuous; edges are rounded by
+/// `rounding`. What is not convex is a surface of triangles, see RigidMesh.
+struct RigidSurface {
+  enum class Kind : unsigned char {
+    plane,          ///< z = 0, the free side above.
+    sphere,         ///< About the origin.
+    capsule,        ///< About the z axis, ends of its axis at ±half[2].
+    cylinder,       ///< About the z axis, from −half[2] to half[2].
+    box,            ///< From −half to half.
+    hollow_sphere,  ///< What lies inside a sphere about the origin is free.
+    convex,         ///< `solid`: an ellipsoid, cone or convex hull.
+    mesh            ///< `triangles`: of a closed surface or a field of heights.
+  };
+  Kind kind = Kind::plane;
+  double radius = 0.0;       ///< [m]
+  Vec3 half = Vec3::Zero();  ///< [m]
+  double rounding = 0.0;     ///< Of the edges of boxes and cylinders [m].
+  std::shared_ptr<const contact::Shape> solid = nullptr;
+  std::shared_ptr<const RigidMesh> triangles = nullptr;
+
+  using Gap = SurfaceGap;
+  [[nodiscard]] Gap gap(const Vec3& y, const GapQuestion& question) const;
+  /// How far the surface is: the gap, of several features the least one.
+  /// @param at_most  As in GapQuestion, like `sided`.
+  [[nodiscard]] double distance(const Vec3& y,
+                                double at_most = std::numeric_limits<double>::infinity(),
+                                bool sided = false) const;
+  /// No point of it is farther from the origin [m]; infinite for planes, fields of heights and
+  /// where it is not known.
+  [[nodiscard]] double extent() const;
+
+ private:
+  [[nodiscard]] Gap plain_gap(const Vec3& y) const;
+};
+
+}  // namespace polhode

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/surface_contact/line_stretch.hpp>
+#include <polhode/surface_contact/meeting_nodes.hpp>
+#include <polhode/surface_contact/mesh_gap.hpp>
+#include <polhode/surface_contact/surface_totals.hpp>
+#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/element_group.hpp>
+
+namespace polhode {
+
+/// Points of the surface of a solid against the triangles of another one's, or of its own: the
+/// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
+///
+/// d is never negative: surfaces keep apart, by 2 g_tol where they do not press. Forces act along
+/// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
+/// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet,
+/// see MeetingNodes. @eq{mesh-contact}
+///
+/// Points of a cable keep its radius away, and what they have to triangles is a MeshGap: the gap is
+/// the distance less the radius. @eq{cable-on-mesh}
+class SolidContact final : public ElementGroup,
+                           public BarrierPoints,
+                           public MovingPattern,
+                           public TouchingSurface {
+ public:
+  SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
+               const SurfaceLaw& law, const SolidContactStart& start, RoundLine cable = {});
+
+  std::string kind() const override { return of_cable() ? kCableContact : "contact of solids"; }
+  const std::string& name() const override { return name_; }
+  int size() const override { return 0; }  // its blocks are those of MovingPattern
+  int nodes_per_element() const override { return 1; }
+  std::span<const int> nodes(int /*element*/) const override { return {}; }
+  bool has_tangent() const override { return false; }
+  bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
+  bool conservative() const override { return !dissipates(); }
+  std::size_t history_size() const override;
+  void initialize(double* history) const override;
+
+  const std::vector<int>& reach() const override { return nodes_.numbers(); }
+  const NodeBlocks& blocks(const double* history) const override {
+    return search(history).blocks.blocks;
+  }
+  void renew(const NodeStep& step, double* history) const override { nodes_.renew(step, history); }
+  void clearances(const NodeStep& step, const double* history,
+                  std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
+
+  ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
+                         const Mat3& turn, const ElementSink& sink) const override;
+  void commit(const NodeStep& step, double* history, const double* scratch) const override;
+  Work work(const NodeStep& step, const double* history, const double* scratch) const override;
+
+  const SurfaceLaw& law() const override { return law_; }
+  std::size_t places() const override { return points_.size(); }
+  [[nodiscard]] bool of_cable() const { return cable_.radius > 0.0; }
+  /// Of each point at the start, behind the nearest triangle less than zero; NaN where nothing is
+  /// near [m].
+  [[nodiscard]] std::vector<double> gaps_at_start() const;
+  [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
+  [[nodiscard]] double radius() const { return cable_.radius; }  ///< About its points [m].
+  /// Pairs of a point and a triangle that are looked at.
+  [[nodiscard]] int candidates(const double* history) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
+  [[nodiscard]] SurfaceReport report(const double* history) const override;
+  [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
+                                                              const double* history) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
+
+ private:
+  /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
+  /// its tangential part and the pressure.
+  static constexpr std::size_t kMemory = 11;
+  struct Field;
+  struct Slide;
+
+  /// Triangles by point, found where nodes were; and the blocks of the tangent.
+  struct Search {
+    std::vector<double> key;  ///< The part of the history that it follows from.
+    std::vector<int> first, triangle;
+    MeetingNodes::Blocks blocks;
+  };
+  /// The nearest triangle of a point.
+  struct Nearest {
+    int triangle = -1;
+    NearestFour four;
+  };
+  /// A point that acts, over a step.
+  struct Action {
+    MeshGap at_n, at_n1;
+    contact::ForceAndSlope pressure;   ///< Conjugate to the distance.
+    contact::ForceAndSlope push;       ///< Of what acts on the point: the resultant.
+    double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
+    bool acts = false;
+  };
+  struct Energies {
+    double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
+  };
+
+  [[nodiscard]] const double* memory(const double* history, int point) const {
+    return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(point);
+  }
+  [[nodiscard]] const Search& search(const double* history) const;
+  void find(Search& s) const;
+  [[nodiscard]] bool may_meet(int point, int triangle) const;
+  [[nodiscard]] std::span<const int> found(const Search& s, int point) const;
+  void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
+  [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
+                                int point) const;
+  [[nodiscard]] MeshGap gap(const Field& field, std::span<const int> triangles, int point,
+                            const Nearest& nearest) const;
+  [[nodiscard]] double signed_distance(const Field& field, std::span<const int> triangles,
+                                       int point, const Nearest& nearest) const;
+  [[nodiscard]] Vec3 way_out(const Field& field, const Nearest& nearest, int point,
+                             double signed_distance) const;
+  /// A point and the triangles around it on a straight way.
+  struct Way;
+  [[nodiscard]] FourMoves moves(const Field& x_n1, const Field& u, int point, int triangle) const;
+  template <class Use>
+  void with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point, const Action& a,
+                Use&& use) const;
+  /// How far a point at a distance may come nearer.
+  [[nodiscard]] double room(double distance) const {
+    return distance - centre_ + law_.normal.tolerance;
+  }
+  [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
+  [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
+                           std::span<const int> triangles, int point) const;
+  [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
+                            std::span<const int> triangles, int point, double pressure,
+                            const double* memory, bool tangent) const;
+  [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
+                                  const double* memory) const;
+  void note_gap(double* history) const;
+  [[nodiscard]] Vec3 normal(const Field& field, const MeshGap& gap, int point) const;
+  [[nodiscard]] Vec3 foot(const Field& field, const MeshGap& gap, int point) const;
+
+  std::string name_;
+  std::vector<MeshPoint> points_;
+  MeshSurface surface_;
+  SurfaceLaw law_;
+  bool self_ = false;
+  RoundLine cable_;
+  double centre_ = 0.0;  ///< Distance at which the gap is zero [m].
+  MeetingNodes nodes_;
+  mutable Search search_;  ///< Of the last history asked for.
+};
+
+}  // namespace polhode

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What contact of solids takes, remembers and tells.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <polhode/surface_contact/solid_contact.hpp>
+#include <polhode/surface_contact/solid_contact_field.hpp>
+
+namespace polhode {
+
+SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
+                                              const Slide& slide, const double* memory) const {
+  const Vec3 kept(memory[0], memory[1], memory[2]);
+  const bool stays = a.gap_n1 < law_.normal.reach();
+  const double half_k = 0.5 * law_.bristle;
+  const double bristle_n1 = stays ? half_k * slide.bristle.squaredNorm() : 0.0;
+  const double e_n1 = law_.normal.energy(a.gap_n1);
+  Energies e;
+  e.stored = e_n1 + bristle_n1;
+  e.by_friction =
+      std::max(0.0, -slide.friction.dot(slide.slid) - bristle_n1 + half_k * kept.squaredNorm());
+  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+    e.by_pressure = std::max(
+        0.0, -a.pressure.value * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+  return e;
+}
+
+Work SolidContact::work(const NodeStep& step, const double* history,
+                        const double* /*scratch*/) const {
+  Work w;
+  const bool instant = step.x_n == step.x_n1;
+  const Search& s = search(history);
+  if (s.triangle.empty()) return w;
+  const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1);
+  const Field u(surface_, instant ? step.x_n : step.u);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const std::span<const int> triangles = found(s, p);
+    if (triangles.empty()) continue;
+    const double* kept = memory(history, p);
+    const double area = points_[static_cast<std::size_t>(p)].area;
+    if (instant) {
+      const double gap =
+          this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p)).distance - centre_;
+      w.stored += area * (law_.normal.energy(gap) +
+                          0.5 * law_.bristle * Vec3(kept[0], kept[1], kept[2]).squaredNorm());
+      continue;
+    }
+    const Action a = act(step, x_n, x_n1, triangles, p);
+    if (!a.acts) continue;
+    const Slide slide = law_.mu > 0.0
+                            ? this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false)
+                            : Slide{};
+    const Energies e = energies(step, a, slide, kept);
+    w.stored += area * e.stored;
+    w.dissipated += area * (e.by_friction + e.by_pressure);
+  }
+  return w;
+}
+
+void SolidContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
+  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
+  SurfaceTotals t{};
+  std::copy_n(numbers, 3, &t.impulse);
+  t.gap = std::numeric_limits<double>::infinity();
+  const Search& s = search(history);
+  const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1), u(surface_, step.u);
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    double* kept = history + (memory(history, p) - history);
+    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
+    const std::span<const int> triangles = found(s, p);
+    Action a;
+    Slide slide;
+    Vec3 h = Vec3::Zero();
+    if (!triangles.empty()) {
+      a = act(step, x_n, x_n1, triangles, p);
+      t.gap = std::min(t.gap, a.gap_n1 + centre_ - cable_.radius);
+    }
+    if (a.acts) {
+      if (law_.mu > 0.0)
+        slide = this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false);
+      h = slide.friction;
+      with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& /*at*/) {
+        const auto f = gap.force(a.pressure.value);
+        for (int k = 0; k < gap.points(); k += 4) h += f.template segment<3>(3 * k);
+      });
+      const Energies e = energies(step, a, slide, kept);
+      t.friction_loss += point.area * e.by_friction;
+      t.normal_loss += point.area * e.by_pressure;
+      if (step.x_n != step.x_n1) t.impulse += point.area * a.push.value * step.context.dt;
+    }
+    const double pressure = a.acts ? a.push.value : 0.0;
+    if (pressure > 0.0) {
+      t.normal_force += point.area * pressure;
+      t.area += point.area;
+      t.pressure = std::max(t.pressure, pressure);
+      (slide.slips ? t.slipping : t.sticking) += 1.0;
+      force += point.area * h;
+      friction += point.area * slide.friction;
+      moment += point.area * pressure * foot(x_n1, a.at_n1, p);
+    }
+    const bool stays = a.acts && a.gap_n1 < law_.normal.reach();
+    for (int k = 0; k < 3; ++k) {
+      kept[k] = stays ? slide.bristle_n1[k] : 0.0;
+      kept[4 + k] = h[k];
+      kept[7 + k] = slide.friction[k];
+    }
+    kept[3] = stays && slide.slips ? 1.0 : 0.0;
+    kept[10] = pressure;
+  }
+  if (!std::isfinite(t.gap)) t.gap = std::numeric_limits<double>::quiet_NaN();
+  if (t.normal_force > 0.0) moment /= t.normal_force;
+  for (int k = 0; k < 3; ++k) {
+    t.force[k] = force[k];
+    t.friction[k] = friction[k];
+    t.point[k] = moment[k];
+  }
+  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
+  nodes_.renew(step, history);
+}
+
+/// From the triangles to a point.
+Vec3 SolidContact::normal(const Field& field, const MeshGap& gap, int point) const {
+  Vec3 sum = Vec3::Zero();
+  for (const MeshGap::Part& part : gap.parts) {
+    Vec3 x[4], y = Vec3::Zero();
+    four_points(field, point, part.triangle, x);
+    for (int k = 0; k < 4; ++k) y += part.four.c[k] * (x[k] - x[0]);
+    sum += part.share * y.normalized();
+  }
+  return sum.normalized();
+}
+
+/// Where what is round about a point is nearest to the surface.
+Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const {
+  const Vec3 at = points_[static_cast<std::size_t>(point)].at(field.nodes);
+  return of_cable() ? Vec3(at - cable_.radius * normal(field, gap, point)) : at;
+}
+
+/// Where nodes were looked at last; NaN where nothing is near.
+void SolidContact::note_gap(double* history) const {
+  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
+  const std::vector<double> x = nodes_.positions(history);
+  const Search& s = search(history);
+  const Field start(surface_, x.data());
+  double least = std::numeric_limits<double>::infinity();
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p)
+    least = std::min(least, nearest(start, found(s, p), p).four.distance - cable_.radius);
+  numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
+      std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
+}
+
+SurfaceReport SolidContact::report(const double* history) const {
+  return SurfaceTotals::report(history + nodes_.key_size() + kMemory * points_.size());
+}
+
+std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& instant,
+                                                            const double* history) const {
+  std::vector<SurfacePointReport> list;
+  const Search& s = search(history);
+  const Field x(surface_, instant.x_n1);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const double* kept = memory(history, p);
+    if (!(kept[10] > 0.0)) continue;
+    const MeshPoint& point = points_[static_cast<std::size_t>(p)];
+    const std::span<const int> triangles = found(s, p);
+    const Nearest n = nearest(x, triangles, p);
+    if (n.triangle < 0) continue;
+    const MeshGap gap = this->gap(x, triangles, p, n);
+    list.push_back({.point = foot(x, gap, p),
+                    .normal = normal(x, gap, p),
+                    .force = point.area * Vec3(kept[4], kept[5], kept[6]),
+                    .friction = point.area * Vec3(kept[7], kept[8], kept[9]),
+                    .gap = gap.distance - cable_.radius,
+                    .pressure = kept[10]});
+  }
+  return list;
+}
+
+}  // namespace polhode

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <polhode/surface_contact/line_stretch.hpp>
+#include <polhode/surface_contact/rigid_surface.hpp>
+#include <polhode/surface_contact/surface_points.hpp>
+#include <polhode/surface_contact/surface_totals.hpp>
+#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/element_group.hpp>
+
+namespace polhode {
+
+/// Where the rigid surface stands.
+///
+/// On a body it is carried by four nodes bonded to it: the origin of the
+/// surface's coordinates, and its distance `size` along each of the axes.
+/// Positions of nodes alone then tell everything.
+struct SurfacePlace {
+  Vec3 origin = Vec3::Zero();                ///< On the ground: world [m].
+  Mat3 axes = Mat3::Identity();              ///< Columns, world.
+  std::array<int, 4> nodes{-1, -1, -1, -1};  ///< On a body: their numbers.
+  double size = 1.0;                         ///< [m]
+
+  [[nodiscard]] bool moves() const { return nodes[0] >= 0; }
+};
+
+/// Faces of a solid, or a cable, against a rigid surface: the potential ∫ β(g) dA over the
+/// reference area.
+///
+/// The forces of a point are functions of its coordinates y in the surface's
+/// axes, and y of squared distances between nodes: central forces, so that
+/// energy and both momenta are kept exactly at ρ∞ = 1.
+/// @eq{surface-squared-distances}
+///
+/// The history holds, for each point, bristle, slip and what acted in the last
+/// step, and then sums over the run: all that reports tell goes with the state.
+class SurfaceContact final : public ElementGroup, public BarrierPoints, public TouchingSurface {
+ public:
+  /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
+  ///           that carry it are among them.
+  SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
+                 const RigidSurface& surface, const SurfacePlace& place, const SurfaceLaw& law);
+
+  std::string kind() const override { return of_cable() ? kCableContact : "surface contact"; }
+  const std::string& name() const override { return name_; }
+  int size() const override { return static_cast<int>(points_.points.size()); }
+  int nodes_per_element() const override { return n_ + frame_; }
+  std::span<const int> nodes(int element) const override {
+    const auto width = static_cast<std::size_t>(nodes_per_element());
+    return std::span(nodes_).subspan(static_cast<std::size_t>(element) * width, width);
+  }
+  bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
+  bool conservative() const override { return !dissipates(); }
+  bool external() const override { return frame_ == 0; }
+  std::size_t history_size() const override {
+    return kMemory * points_.points.size() + SurfaceTotals::kCount;
+  }
+  void initialize(double* history) const override;
+  void clearances(const NodeStep& step, const double* history,
+                  std::vector<double>& list) const override;
+  double free_part(const NodeStep& from, const NodeStep& to, const double* history) const override;
+
+  ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
+                         const Mat3& turn, const ElementSink& sink) const override;
+  void commit(const NodeStep& step, double* history, const double* scratch) const override;
+  Work work(const NodeStep& step, const double* history, const double* scratch) const override;
+
+  const SurfaceLaw& law() const override { return law_; }
+  std::size_t places() const override { return points_.points.size(); }
+  [[nodiscard]] bool of_cable() const { return points_.radius > 0.0; }
+  /// Of each point [m]. @param X  See the constructor.
+  [[nodiscard]] std::vector<double> gaps(const std::vector<Vec3>& X) const;
+  void begin_at(const NodeStep& instant, double* history) const override;
+  [[nodiscard]] SurfaceReport report(const double* history) const override;
+  [[nodiscard]] std::vector<SurfacePointReport> point_reports(const NodeStep& instant,
+                                                              const double* history) const override;
+  [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
+
+ private:
+  /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its
+  /// tangential part and the pressure.
+  static constexpr std::size_t kMemory = 11;
+
+  /// The point in the surface's coordinates over the step.
+  struct Place {
+    Vec3 at_n, at_n1;
+  };
+  /// What acts at a point over a step, conjugate to y, per unit of area.
+  struct Action {
+    Vec3 h = Vec3::Zero();
+    Mat3 D = Mat3::Zero();         ///< By y_{n+1}.
+    Vec3 friction = Vec3::Zero();  ///< Part of h.
+    Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
+    Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
+    double lambda = 0.0;           ///< Conjugate to the gap.
+    double pressure = 0.0;         ///< Of the normal force.
+    double gap_n = 0.0, gap_n1 = 0.0;
+    bool acts = false, slips = false;
+  };
+  /// Energy per unit of area: stored at the end, taken over the step.
+  struct Energies {
+    double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
+  };
+  template <class T>
+  struct Terms;
+
+  /// Between what is round about a point and the surface.
+  [[nodiscard]] RigidSurface::Gap gap(const Vec3& y, const GapQuestion& question) const;
+  [[nodiscard]] double distance(const Vec3& y,
+                                double at_most = std::numeric_limits<double>::infinity(),
+                                bool sided = false) const;
+  [[nodiscard]] double radius() const { return points_.radius; }
+  /// Of a cable most is far from most shapes.
+  [[nodiscard]] bool is_far(const Vec3& y, double at_most) const {
+    return of_cable() && y.norm() - extent_ - radius() > at_most;
+  }
+  [[nodiscard]] Vec3 position(const double* x, int point) const;
+  /// Where what is round about a point is nearest to the surface.
+  [[nodiscard]] Vec3 foot(const double* x, int point) const;
+  [[nodiscard]] Vec3 local(const double* x, int point) const;
+  [[nodiscard]] Mat3 axes(const double* x) const;
+  [[nodiscard]] Place place(const NodeStep& step, int point) const {
+    return {local(step.x_n, point), local(step.x_n1, point)};
+  }
+  /// Whether points may get within surfaces, as iterates of statics do, see GapQuestion.
+  [[nodiscard]] bool sided(const NodeStep& step) const {
+    return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
+  }
+  [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
+                           bool tangent) const;
+  [[nodiscard]] bool goes_through(const Vec3& from, const Vec3& to) const;
+  [[nodiscard]] double free_of_stretch(const NodeStep& from, const NodeStep& to) const;
+  [[nodiscard]] Energies energies(const NodeStep& step, const Action& a,
+                                  const double* memory) const;
+
+  std::string name_;
+  RigidSurface surface_;
+  SurfacePlace place_;
+  SurfaceLaw law_;
+  int n_ = 1, frame_ = 0;  ///< Nodes of the face, of the frame.
+  SurfacePoints points_;
+  double extent_ = 0.0;        ///< Of the surface about its origin [m].
+  std::vector<int> nodes_;     ///< Of each point: of its face, then of the frame.
+  double gap_at_start_ = 0.0;  ///< Smallest [m].
+};
+
+}  // namespace polhode

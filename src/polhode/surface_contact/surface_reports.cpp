@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a surface contact lets pass, what it takes, and what it remembers and tells.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/surface_contact/free_way.hpp>
+#include <polhode/surface_contact/line_stretch.hpp>
+#include <polhode/surface_contact/surface_contact.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Clearances beyond this many bands are all alike.
+constexpr double kFarReport = 10.0;
+/// A way shorter than so many times the depth that counts as through does not get so deep.
+constexpr double kThroughBeam = 2.0;
+constexpr int kHalvings = 6;
+
+}  // namespace
+
+void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
+                                std::vector<double>& list) const {
+  if (law_.normal.potential != contact::NormalPotential::barrier) return;
+  const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
+  for (int i = 0; i < size(); ++i)
+    list.push_back((distance(local(step.x_n1, i), floor + kFarReport * band) - floor) / band);
+}
+
+/// Pieces of a cable that an iterate draws out would let the shape pass between points.
+double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to) const {
+  double most = 1.0;
+  if (std::isinf(points_.most_apart)) return most;
+  for (int i = 0; i < size(); ++i) {
+    const std::span<const int> ends = nodes(i);
+    const RoundLine::Span span{ends[0], ends[1], points_.points[static_cast<std::size_t>(i)].span};
+    most = std::min(most, polhode::free_of_stretch(span, points_.most_apart, from, to));
+  }
+  return most;
+}
+
+/// Whether the straight way of a step goes through the shape. A cable has no inside that iterates
+/// could not be led around: one after the other they might find the far side.
+bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
+  const Vec3 way = to - from;
+  const double length = way.norm();
+  if (length < kThroughBeam * points_.through) return false;
+  double part = 0.0;
+  for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
+    const double room = distance(from + part * way) + points_.through;
+    if (room <= kLeave * points_.through) return true;
+    part += room / length;
+  }
+  return false;
+}
+
+/// The gap changes by no more than the way in the surface's coordinates.
+double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
+                                 const double* /*history*/) const {
+  if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
+  double most = free_of_stretch(from, to);
+  const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
+  for (int i = 0; i < size(); ++i) {
+    const Vec3 start = local(from.x_n1, i), way = local(to.x_n1, i) - start;
+    const double length = way.norm();
+    if (of_cable()) {
+      const Vec3 y_n = local(from.x_n, i);
+      const bool beside = !goes_through(y_n, start);
+      for (int k = 0; beside && k < kHalvings && goes_through(y_n, start + most * way); ++k)
+        most *= 0.5;
+    }
+    const auto room_at = [&](const Vec3& y) { return distance(y, floor + length + band) - floor; };
+    const double room = room_at(start);
+    if (room <= 0.0) continue;
+    most = free_way(most, room, kLeave * std::min(room, band), length,
+                    [&](double part) { return room_at(start + part * way); });
+  }
+  return most;
+}
+
+std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) const {
+  double least = -law_.normal.tolerance;
+  int deepest = -1;
+  for (int i = 0; i < size(); ++i) {
+    const double d = distance(local(instant.x_n1, i), least, true);
+    if (!(d < least)) continue;
+    least = d;
+    deepest = i;
+  }
+  if (deepest < 0) return {};
+  const GapQuestion question{.law = law_.normal, .sided = true};
+  const Vec3 normal = gap(local(instant.x_n1, deepest), question).normal;
+  return SurfaceOverlap{-least, axes(instant.x_n1) * normal.normalized()};
+}
+
+SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
+                                                  const double* memory) const {
+  const Vec3 kept(memory[0], memory[1], memory[2]);
+  const bool stays = a.gap_n1 < law_.normal.reach();
+  const double half_k = 0.5 * law_.bristle;
+  const double bristle_n1 = stays ? half_k * a.bristle.squaredNorm() : 0.0;
+  const double e_n1 = law_.normal.energy(a.gap_n1);
+  Energies e;
+  e.stored = e_n1 + bristle_n1;
+  e.by_friction = std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 + half_k * kept.squaredNorm());
+  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+    e.by_pressure =
+        std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+  return e;
+}
+
+Work SurfaceContact::work(const NodeStep& step, const double* history,
+                          const double* /*scratch*/) const {
+  Work w;
+  const bool instant = step.x_n == step.x_n1;
+  const GapQuestion question{law_.normal, law_.normal.reach(), false};
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    if (instant) {
+      const Vec3 kept(memory[0], memory[1], memory[2]);
+      const double now = gap(local(step.x_n1, i), question).value;
+      w.stored += area * (law_.normal.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
+      continue;
+    }
+    const Action a = act(step, place(step, i), memory, false);
+    if (!a.acts) continue;
+    const Energies e = energies(step, a, memory);
+    w.stored += area * e.stored;
+    w.dissipated += area * (e.by_friction + e.by_pressure);
+  }
+  return w;
+}
+
+void SurfaceContact::initialize(double* history) const {
+  std::fill_n(history, history_size(), 0.0);
+  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] =
+      gap_at_start_;
+}
+
+void SurfaceContact::begin_at(const NodeStep& instant, double* history) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size(); ++i)
+    least = std::min(least, distance(local(instant.x_n1, i), least, true));
+  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] = least;
+}
+
+void SurfaceContact::commit(const NodeStep& step, double* history,
+                            const double* /*scratch*/) const {
+  double* const numbers = history + kMemory * points_.points.size();
+  SurfaceTotals t{};
+  std::copy_n(numbers, 3, &t.impulse);
+  t.gap = std::numeric_limits<double>::infinity();
+  const bool instant = step.x_n == step.x_n1;  // in statics nothing moves
+  const Mat3 R = (1.0 - step.alpha_f) * axes(step.x_n) + step.alpha_f * axes(step.x_n1);
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
+  for (int i = 0; i < size(); ++i) {
+    double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    const Action a = act(step, place(step, i), memory, false);
+    t.gap = std::min(t.gap, a.acts ? a.gap_n1 : distance(local(step.x_n1, i), t.gap));
+    if (a.acts && !instant) {
+      const Energies e = energies(step, a, memory);
+      t.friction_loss += area * e.by_friction;
+      t.normal_loss += area * e.by_pressure;
+      t.impulse += area * a.pressure * step.context.dt;
+    }
+    if (a.acts && a.pressure > 0.0) {
+      t.normal_force += area * a.pressure;
+      t.area += area;
+      t.pressure = std::max(t.pressure, a.pressure);
+      (a.slips ? t.slipping : t.sticking) += 1.0;
+      force += area * a.h;
+      friction += area * a.friction;
+      moment += area * a.pressure * foot(step.x_n1, i);
+    }
+    const bool stays = a.gap_n1 < law_.normal.reach();
+    for (int k = 0; k < 3; ++k) {
+      memory[k] = stays ? a.bristle[k] : 0.0;
+      memory[4 + k] = a.h[k];
+      memory[7 + k] = a.friction[k];
+    }
+    memory[3] = stays && a.slips ? 1.0 : 0.0;
+    memory[10] = a.pressure;
+  }
+  if (t.normal_force > 0.0) moment /= t.normal_force;
+  for (int k = 0; k < 3; ++k) {
+    t.force[k] = (R * force)[k];
+    t.friction[k] = (R * friction)[k];
+    t.point[k] = moment[k];
+  }
+  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
+}
+
+SurfaceReport SurfaceContact::report(const double* history) const {
+  return SurfaceTotals::report(history + kMemory * points_.points.size());
+}
+
+std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& instant,
+                                                              const double* history) const {
+  std::vector<SurfacePointReport> list;
+  const Mat3 R = axes(instant.x_n1);
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    if (!(memory[10] > 0.0)) continue;
+    const double area = points_.points[static_cast<std::size_t>(i)].area;
+    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law_.normal});
+    list.push_back({.point = foot(instant.x_n1, i),
+                    .normal = R * here.normal.normalized(),
+                    .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
+                    .friction = area * (R * Vec3(memory[7], memory[8], memory[9])),
+                    .gap = here.value,
+                    .pressure = memory[10]});
+  }
+  return list;
+}
+
+}  // namespace polhode

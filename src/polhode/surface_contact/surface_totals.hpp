@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include <polhode/surface_contact/surface_law.hpp>
+
+namespace polhode {
+
+/// What the contact of a surface keeps behind the numbers of its points: sums since the start, then
+/// what the last step did. All that its report tells.
+struct SurfaceTotals {
+  double impulse, friction_loss, normal_loss;  // since the start
+  double gap, normal_force, area, pressure, sticking, slipping;
+  double force[3], friction[3], point[3];
+
+  static constexpr std::size_t kCount = 18;
+
+  /// @param numbers  kCount of them, in the order above.
+  [[nodiscard]] static SurfaceReport report(const double* numbers) {
+    SurfaceTotals t;
+    std::copy_n(numbers, kCount, &t.impulse);
+    SurfaceReport r;
+    r.least_gap = t.gap;
+    r.normal_force = t.normal_force;
+    r.force = Vec3(t.force);
+    r.friction = Vec3(t.friction);
+    r.point = Vec3(t.point);
+    r.area = t.area;
+    r.largest_pressure = t.pressure;
+    r.sticking = static_cast<int>(t.sticking);
+    r.slipping = static_cast<int>(t.slipping);
+    r.impulse = t.impulse;
+    r.friction_loss = t.friction_loss;
+    r.normal_loss = t.normal_loss;
+    return r;
+  }
+};
+static_assert(sizeof(SurfaceTotals) == SurfaceTotals::kCount * sizeof(double));
+
+}  // namespace polhode

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <polhode/system/interaction.hpp>
+
+namespace polhode {
+
+/// How the force at a point that a and b share changes as they move: as if by a spring C between
+/// the points of both bodies there, symmetric and without negative eigenvalue, and by the friction
+/// that follows the normal force where the point slides. The rest of the tangent is left out.
+struct ContactSpring {
+  int a = kGround, b = kGround;
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass, world [m].
+  Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
+  /// Force on a by the displacement of a against b along the normal: rub (normal·u) [N/m].
+  Vec3 rub = Vec3::Zero(), normal = Vec3::Zero();
+};
+
+/// A point that acts.
+struct ActingPoint {
+  int point = 0;  ///< Its number, ascending.
+  ContactSpring spring;
+  Vec3 force = Vec3::Zero();                              ///< On a; on b the opposite [N].
+  Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< [N m]
+};
+
+/// Contacts seen by iterative solvers of crowds: forces by body and springs by point.
+class PointwiseContacts {
+ public:
+  virtual ~PointwiseContacts() = default;
+  /// The points that act, until the next call.
+  /// @param moved  By body, the ground last: what has moved since the last call of this step; empty
+  ///               for all. Forces between others are those of that call.
+  virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
+                                                          const StepContext& context,
+                                                          std::span<const char> moved) = 0;
+  /// Holds back predicted increments, pair by pair, about where impacts in the step will stop them.
+  /// @param steps  Nobody has moved yet.
+  virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
+                             std::span<Vec6> increments) const = 0;
+};
+
+}  // namespace polhode

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include <polhode/system/interaction.hpp>
+
+namespace polhode {
+
+void PairTerms::set_zero() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
+
+void PairTerms::set_sums_zero() {
+  set_values_zero();
+  D_aa.setZero();
+  D_ab.setZero();
+  D_ba.setZero();
+  D_bb.setZero();
+}
+
+void PairTerms::set_values_zero() {
+  wrench_a.setZero();
+  wrench_b.setZero();
+  g.setZero();
+  compliance.setZero();
+}
+
+void clear_ground_sides(const PairStep& step, PairTerms& t) {
+  if (!step.a.moves) {
+    t.wrench_a.setZero();
+    t.D_aa.setZero();
+    t.D_ab.setZero();
+    t.D_ba.setZero();
+    t.B_a.setZero();
+    t.G_a.setZero();
+  }
+  if (!step.b.moves) {
+    t.wrench_b.setZero();
+    t.D_bb.setZero();
+    t.D_ab.setZero();
+    t.D_ba.setZero();
+    t.B_b.setZero();
+    t.G_b.setZero();
+  }
+}
+
+}  // namespace polhode

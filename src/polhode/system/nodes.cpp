@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/system/moving_pattern.hpp>
+#include <polhode/system/nodes.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Sets of nodes that grow together.
+class UnionFind {
+ public:
+  explicit UnionFind(int n) : parent_(static_cast<std::size_t>(n)) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int i, int j) {
+    i = find(i), j = find(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+bool has_mass(const ElementGroup& g) {
+  if (g.size() == 0) return false;
+  const auto n = static_cast<std::size_t>(g.nodes_per_element());
+  std::vector<double> M(n * n);
+  return g.mass(0, M.data());
+}
+
+}  // namespace
+
+int Nodes::add(const NodeData& node) {
+  data_.push_back(node);
+  return count() - 1;
+}
+
+void Nodes::prescribe(int node, int component, TimeFunctionPtr displacement) {
+  prescribed_.push_back({node, component, std::move(displacement)});
+}
+
+int Nodes::add_elements(std::unique_ptr<ElementGroup> elements) {
+  groups_.push_back(std::move(elements));
+  return group_count() - 1;
+}
+
+std::string Nodes::element_name(int group, int element) const {
+  return format("element {} of '{}' ({})", element, groups_[group]->name(), groups_[group]->kind());
+}
+
+bool Nodes::conservative() const {
+  return prescribed_.empty() && std::all_of(groups_.begin(), groups_.end(),
+                                            [](const auto& g) { return g->conservative(); });
+}
+
+bool Nodes::dissipates() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const auto& g) { return g->dissipates(); });
+}
+
+void Nodes::finish(int body_count) {
+  for (const NodeData& node : data_)
+    if (node.body >= body_count)
+      throw InputError("a node", format("is bonded to body {}, which is not there", node.body),
+                       "Give a body of this system");
+  check();
+  number();
+  build_graph();
+  add_masses();
+  find_pieces();
+}
+
+void Nodes::check() const {
+  for (int g = 0; g < group_count(); ++g)
+    for (int e = 0; e < groups_[g]->size(); ++e)
+      for (int node : groups_[g]->nodes(e))
+        if (node < 0 || node >= count())
+          throw InputError(element_name(g, e), format("names node {}, which is not there", node),
+                           format("Nodes are numbered from 0 to {}", count() - 1));
+}
+
+void Nodes::number() {
+  unknown_.assign(data_.size() * 3, 0);
+  for (int i = 0; i < count(); ++i)
+    if (bonded(i))
+      for (int c = 0; c < 3; ++c) unknown_[3 * i + c] = -1;
+  for (const PrescribedComponent& p : prescribed_) {
+    if (p.node < 0 || p.node >= count() || p.component < 0 || p.component > 2)
+      throw InputError("a prescribed motion", "names a node or component that is not there",
+                       "Give a node of a solid and a component x, y or z");
+    int& u = unknown_[3 * p.node + p.component];
+    if (u < 0)
+      throw InputError("a prescribed motion",
+                       format("moves node {}, whose motion is given already", p.node),
+                       "Prescribe each component once, and only of nodes that are not bonded");
+    u = -1;
+  }
+  for (int& u : unknown_)
+    if (u == 0) u = unknowns_++;
+  first_history_.assign(1, 0);
+  first_scratch_.assign(1, 0);
+  for (const auto& g : groups_) {
+    first_history_.push_back(first_history_.back() + g->history_size());
+    first_scratch_.push_back(first_scratch_.back() + g->scratch_size());
+  }
+}
+
+void Nodes::build_graph() {
+  std::vector<std::vector<int>> neighbours(data_.size());
+  for (int i = 0; i < count(); ++i) neighbours[i].push_back(i);
+  double extents = 0.0;
+  int elements = 0;
+  for (const auto& g : groups_) {
+    const bool massive = has_mass(*g);
+    if (!g->has_tangent() && !massive) continue;
+    for (int e = 0; e < g->size(); ++e) {
+      const auto nodes = g->nodes(e);
+      Vec3 low = data_[nodes[0]].position, high = low;
+      for (int i : nodes) {
+        low = low.cwiseMin(data_[i].position);
+        high = high.cwiseMax(data_[i].position);
+        for (int j : nodes) neighbours[i].push_back(j);
+      }
+      if (massive && nodes.size() > 3) extents += (high - low).mean(), ++elements;
+    }
+  }
+  element_size_ = elements > 0 && extents > 0.0 ? extents / elements : 1.0;
+  row_start_.assign(1, 0);
+  column_.clear();
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    column_.insert(column_.end(), list.begin(), list.end());
+    row_start_.push_back(static_cast<int>(column_.size()));
+  }
+  slots_.assign(groups_.size(), {});
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const ElementGroup& g = *groups_[k];
+    if (!g.has_tangent() && !has_mass(g)) continue;
+    for (int e = 0; e < g.size(); ++e)
+      for (int i : g.nodes(e))
+        for (int j : g.nodes(e)) {
+          const auto first = column_.begin() + row_start_[i],
+                     last = column_.begin() + row_start_[i + 1];
+          slots_[k].push_back(static_cast<int>(std::lower_bound(first, last, j) - column_.begin()));
+        }
+  }
+}
+
+void Nodes::add_masses() {
+  mass_.assign(column_.size(), 0.0);
+  node_mass_.assign(data_.size(), 0.0);
+  std::vector<double> M;
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const ElementGroup& g = *groups_[k];
+    const std::size_t n2 = static_cast<std::size_t>(g.nodes_per_element()) * g.nodes_per_element();
+    M.resize(n2);
+    for (int e = 0; e < g.size() && g.mass(e, M.data()); ++e)
+      for (std::size_t i = 0; i < n2; ++i) mass_[slots_[k][e * n2 + i]] += M[i];
+  }
+  for (int i = 0; i < count(); ++i) {
+    for (int b = row_start_[i]; b < row_start_[i + 1]; ++b) node_mass_[i] += mass_[b];
+    const auto first = column_.begin() + row_start_[i], last = column_.begin() + row_start_[i + 1];
+    const auto own = std::lower_bound(first, last, i) - column_.begin();
+    if (!bonded(i) && !(mass_[own] > 0.0))
+      throw InputError(format("node {}", i), "belongs to no element that has mass",
+                       "Leave it out of the mesh, or give the elements around it a density");
+  }
+}
+
+void Nodes::find_pieces() {
+  UnionFind sets(count());
+  for (const auto& g : groups_)
+    for (int e = 0; e < g->size() && !slots_.empty(); ++e) {
+      int first = -1;
+      for (int i : g->nodes(e)) {
+        if (bonded(i)) continue;
+        if (first < 0) first = i;
+        sets.unite(first, i);
+      }
+    }
+  // What may meet is of one piece.
+  std::vector<const MovingPattern*> moving;
+  for (const auto& g : groups_)
+    if (const auto* pattern = dynamic_cast<const MovingPattern*>(g.get()))
+      moving.push_back(pattern);
+  for (const MovingPattern* pattern : moving) {
+    int first = -1;
+    for (int i : pattern->reach()) {
+      if (bonded(i)) continue;
+      if (first < 0) first = i;
+      sets.unite(first, i);
+    }
+  }
+  piece_.assign(data_.size(), -1);
+  std::vector<int> piece_of_root(data_.size(), -1);
+  std::vector<std::set<int>> bodies;
+  for (int i = 0; i < count(); ++i) {
+    if (bonded(i)) continue;
+    int& p = piece_of_root[sets.find(i)];
+    if (p < 0) {
+      p = static_cast<int>(pieces_.size());
+      pieces_.emplace_back();
+      bodies.emplace_back();
+    }
+    piece_[i] = p;
+    pieces_[p].nodes.push_back(i);
+  }
+  for (const PrescribedComponent& p : prescribed_) pieces_[piece_[p.node]].turns = false;
+  piece_of_group_.assign(groups_.size(), -1);
+  for (int k = 0; k < group_count(); ++k)
+    for (int e = 0; e < groups_[k]->size(); ++e) {
+      int piece = -1;
+      std::set<int> touched;
+      for (int i : groups_[k]->nodes(e)) {
+        if (piece_[i] >= 0) piece = piece_[i];
+        if (data_[i].body >= 0) touched.insert(data_[i].body);
+        if (data_[i].body == kGround && piece >= 0) pieces_[piece].turns = false;
+      }
+      if (piece < 0 && !touched.empty() && !slots_[k].empty()) {  // bodies alone
+        const auto same = std::find(bodies.begin(), bodies.end(), touched);
+        piece = static_cast<int>(same - bodies.begin());
+        if (same == bodies.end() || !pieces_[piece].nodes.empty()) {
+          piece = static_cast<int>(pieces_.size());
+          pieces_.emplace_back();
+          bodies.emplace_back();
+        }
+      }
+      if (piece < 0) continue;
+      bodies[piece].insert(touched.begin(), touched.end());
+      piece_of_group_[k] = piece;
+    }
+  for (const MovingPattern* pattern : moving) {
+    const auto& reach = pattern->reach();
+    const auto free =
+        std::find_if(reach.begin(), reach.end(), [&](int i) { return piece_[i] >= 0; });
+    if (free == reach.end()) continue;
+    pieces_[piece_[*free]].turns = false;  // what touches does not turn as one
+    for (int i : reach)
+      if (data_[i].body >= 0) bodies[piece_[*free]].insert(data_[i].body);
+  }
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    pieces_[p].bodies.assign(bodies[p].begin(), bodies[p].end());
+    if (pieces_[p].bodies.empty()) pieces_[p].turns = false;
+  }
+}
+
+}  // namespace polhode

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+/// Every bit of a state as bytes: little endian, bodies in the order of the system, so that the
+/// bytes do not depend on slots or padding.
+[[nodiscard]] std::string state_bytes(const System& system, const State& state);
+
+/// The state those bytes were made of, with bodies in the slots of this system.
+/// @param where  First part of the message, e.g. the name of the file.
+/// @throws InputError if the bytes belong to a system of other size or end too early.
+[[nodiscard]] State state_from_bytes(const System& system, std::string_view bytes,
+                                     std::string_view where);
+
+/// SHA-256 of state_bytes(), 64 hexadecimal digits.
+[[nodiscard]] std::string state_hash(const System& system, const State& state);
+
+}  // namespace polhode

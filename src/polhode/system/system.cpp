@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/system.hpp>
+
+namespace polhode {
+
+int System::add_body(BodyData body, const BodyMotion& start) {
+  bodies_.push_back(std::move(body));
+  start_.push_back(start);
+  return body_count() - 1;
+}
+
+void System::finish() {
+  const int n = body_count();
+  std::vector<TreeCandidate> candidates;
+  std::vector<int> shapes;
+  int histories = 0;
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g)
+    for (int i = 0; i < groups_[g]->size(); ++i) {
+      const auto [a, b] = groups_[g]->bodies(i);
+      if (a < kGround || a >= n || b < kGround || b >= n || (a == b))
+        throw InputError(
+            format("{} '{}'", groups_[g]->kind(), groups_[g]->name(i)),
+            a == b ? "acts between a body and itself" : "names a body that is not there",
+            "Give two different bodies of this system, or one and the ground");
+      const auto basis = groups_[g]->motion_basis(i);
+      const int index = static_cast<int>(refs_.size());
+      if (groups_[g]->has_barrier(i)) barriers_.push_back(index);
+      if (groups_[g]->prescribes(i)) drives_.push_back(index);
+      stiff_ = stiff_ || (groups_[g]->rows(i) > 0 && groups_[g]->works(i));
+      if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
+      shapes.push_back(shape_code(basis));
+      refs_.push_back({g, i, a, b, groups_[g]->rows(i), rows_, histories});
+      rows_ += refs_.back().rows;
+      histories += groups_[g]->history_size(i);
+      conservative_ = conservative_ && groups_[g]->conservative(i);
+      dissipates_ = dissipates_ || groups_[g]->dissipates(i);
+    }
+  tree_ = build_spanning_tree(n, static_cast<int>(refs_.size()), candidates, shapes);
+  for (int index : tree_.reversed) {
+    InteractionRef& ref = refs_[index];
+    groups_[ref.group]->reverse(ref.item);
+    std::swap(ref.a, ref.b);
+  }
+
+  // Scales: mean mass, and the mean reach of a body (joint arms, radius of gyration).
+  std::vector<double> reach(n);
+  for (int b = 0; b < n; ++b)
+    reach[b] = std::sqrt(0.5 * bodies_[b].inertia.trace() / bodies_[b].mass);
+  for (const InteractionRef& ref : refs_) {
+    const double length = groups_[ref.group]->reach(ref.item);
+    if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], length);
+    if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], length);
+    if (const auto basis = groups_[ref.group]->motion_basis(ref.item)) {
+      if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], basis->Z_a.norm());
+      if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], basis->Z_b.norm());
+    }
+  }
+  nodes_.finish(n);
+  for (int g = 0; g < nodes_.group_count(); ++g)
+    stiff_ = stiff_ || dynamic_cast<const BarrierPoints*>(&nodes_.group(g));
+  conservative_ = conservative_ && nodes_.conservative();
+  dissipates_ = dissipates_ || nodes_.dissipates();
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (const int b = nodes_[i].body; b >= 0) reach[b] = std::max(reach[b], nodes_[i].Z.norm());
+  for (const BodyData& body : bodies_) carried_mass_.push_back(body.mass);
+  for (int i = 0; i < nodes_.count(); ++i) {
+    if (nodes_[i].body >= 0) carried_mass_[nodes_[i].body] += nodes_.node_mass(i);
+    if (nodes_.piece(i) < 0) continue;
+    const std::vector<int>& holders = nodes_.pieces()[nodes_.piece(i)].bodies;
+    for (int b : holders)
+      carried_mass_[b] += nodes_.node_mass(i) / static_cast<double>(holders.size());
+  }
+  double mass = 0.0, length = 0.0;
+  for (int b = 0; b < n; ++b) {
+    mass += bodies_[b].mass;
+    length += reach[b];
+  }
+  mean_mass_ = n > 0 ? mass / n : 1.0;
+  length_ = n > 0 && length > 0.0 ? length / n : 1.0;
+  if (n == 0 && !nodes_.empty()) {  // of the solids alone
+    Vec3 low = nodes_[0].position, high = low;
+    for (int i = 0; i < nodes_.count(); ++i) {
+      low = low.cwiseMin(nodes_[i].position);
+      high = high.cwiseMax(nodes_[i].position);
+    }
+    if (high != low) length_ = (high - low).norm();
+  }
+
+  initial_.blocks.resize(tree_.slots / kLanes);
+  if (!initial_.blocks.empty())
+    std::memset(static_cast<void*>(initial_.blocks.data()), 0,
+                initial_.blocks.size() * sizeof(BodyBlock));
+  for (int s = 0; s < tree_.slots; ++s)
+    initial_.set_motion(s,
+                        tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
+  initial_.lambda.assign(rows_, 0.0);
+  initial_.history.assign(histories, 0.0);
+  for (int i = 0; i < nodes_.count(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      initial_.node_x.push_back(nodes_[i].position[c]);
+      initial_.node_v.push_back(nodes_[i].velocity[c]);
+    }
+  initial_.node_a.assign(initial_.node_x.size(), 0.0);
+  initial_.node_past.assign(kPast * initial_.node_x.size(), 0.0);
+  initial_.element_history.assign(nodes_.history_size(), 0.0);
+  for (int g = 0; g < nodes_.group_count(); ++g)
+    nodes_.group(g).initialize(initial_.element_history.data() + nodes_.first_history(g));
+}
+
+BodyStep System::instant(const State& state, int body) const {
+  if (body == kGround) return BodyStep::ground(1.0);
+  const BodyMotion m = motion(state, body);
+  return BodyStep::at_instant(m.r, m.Lambda(), m.v, m.W);
+}
+
+PairView System::instant(const State& state, const InteractionRef& ref,
+                         const double* lambda) const {
+  StepContext still;
+  still.t_n = state.t;
+  return {instant(state, ref.a), instant(state, ref.b), still,
+          lambda ? lambda + ref.first_row : nullptr, state.history.data() + ref.first_history};
+}
+
+}  // namespace polhode

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/results/results_reader.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <polhode/io/results/write_results.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <support/scratch.hpp>
+
+namespace polhode::results_reader_tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr int kBodies = 40;
+
+/// Frame k, in which every number is known.
+ResultsFrame frame(int k) {
+  ResultsFrame f;
+  f.t = 0.5 * k;
+  for (int i = 0; i < kBodies; ++i) {
+    f.position.emplace_back(k, i, 0.25);
+    f.velocity.emplace_back(-k, 1.0, 2.0);
+    f.angular_velocity.emplace_back(k, 2.0 * k, 3.0 * k);
+    f.orientation.emplace_back(1.0, 0.0, 0.0, 0.0);
+  }
+  f.balance.kinetic = k;
+  return f;
+}
+
+void write(const std::string& path, int frames) {
+  ResultsLayout layout;
+  layout.title = "Test";
+  for (int i = 0; i < kBodies; ++i) layout.bodies.push_back("b" + std::to_string(i));
+  ResultsFile file(path, layout,
+                   {.version = "1.2.3", .model_text = "format: 1\n", .overrides = {"L=2"}});
+  for (int k = 0; k < frames; ++k) file.append(frame(k));
+  file.close();
+}
+
+std::string message_of(const std::string& path) {
+  try {
+    const ResultsReader reader(path);
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ResultsReader, ReadsWhatWasWritten) {
+  const test::Scratch scratch;
+  write(scratch / "results.h5", 7);
+  const ResultsReader reader(scratch / "results.h5");
+  EXPECT_EQ(reader.frames(), 7U);
+  EXPECT_FALSE(reader.cut_short());
+  EXPECT_THAT(reader.read("/time"), ElementsAre(0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0));
+  EXPECT_THAT(reader.read("/time", 3), ElementsAre(0.0, 1.5, 3.0));
+  EXPECT_EQ(reader.read("/packed/bodies/position")[3 * (2 * kBodies + 5)], 2.0);
+  EXPECT_EQ(reader.read("/packed/bodies/position")[3 * (2 * kBodies + 5) + 1], 5.0);
+  EXPECT_EQ(reader.names("/packed/bodies/names")[3], "b3");
+  EXPECT_EQ(reader.attribute("/", "title"), "Test");
+  EXPECT_EQ(reader.attribute("/provenance", "overrides"), "L=2");
+  EXPECT_THAT(reader.names("/provenance/model"), ElementsAre("format: 1\n"));
+  EXPECT_EQ(reader.find("/packed/bodies/position")->unit, "m");
+  EXPECT_EQ(reader.find("/bodies/b0/position"), nullptr) << "views are not stored quantities";
+}
+
+TEST(ResultsReader, ReadsAFileCutShortUpToItsLastWholeFrame) {
+  const test::Scratch scratch;
+  constexpr int kFrames = 600;
+  write(scratch / "results.h5", kFrames);
+  const auto whole = std::filesystem::file_size(scratch / "results.h5");
+  std::size_t before = kFrames;
+  int readable = 0;
+  for (const double part : {0.9, 0.7, 0.5}) {
+    std::filesystem::copy_file(scratch / "results.h5", scratch / "cut.h5",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(scratch / "cut.h5",
+                                 static_cast<std::uintmax_t>(part * static_cast<double>(whole)));
+    const ResultsReader reader(scratch / "cut.h5");
+    EXPECT_TRUE(reader.cut_short());
+    EXPECT_LE(reader.frames(), before);
+    before = reader.frames();
+    const std::vector<double> t = reader.read("/time"), r = reader.read("/packed/bodies/position");
+    const std::vector<double> omega = reader.read("/packed/bodies/angular_velocity");
+    ASSERT_EQ(t.size(), reader.frames());
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      EXPECT_EQ(t[k], 0.5 * static_cast<double>(k));
+      for (std::size_t i = 0; i < kBodies; ++i) {
+        ASSERT_EQ(r[3 * (k * kBodies + i)], static_cast<double>(k)) << "a frame that is not whole";
+        ASSERT_EQ(omega[3 * (k * kBodies + i) + 2], 3.0 * static_cast<double>(k));
+      }
+    }
+    readable += reader.frames() > 0 ? 1 : 0;
+  }
+  EXPECT_GE(readable, 2);
+}
+
+TEST(ResultsReader, SaysWhatIsWrongWithAFile) {
+  const test::Scratch scratch;
+  EXPECT_THAT(message_of(scratch / "missing.h5"), HasSubstr("cannot be read"));
+  std::ofstream(scratch / "text.h5")
+      << "format: 1, and no results at all, in a file with that ending\n";
+  EXPECT_THAT(message_of(scratch / "text.h5"), HasSubstr("is no HDF5 file"));
+  write(scratch / "results.h5", 2);
+  std::filesystem::resize_file(scratch / "results.h5", 600);
+  EXPECT_THAT(message_of(scratch / "results.h5"), HasSubstr("is damaged"));
+}
+
+}  // namespace
+}  // namespace polhode::results_reader_tests

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <polhode/io/schema/field_table.hpp>
+#include <polhode/io/schema/schema.hpp>
+#include <support/paths.hpp>
+
+namespace polhode::schema_tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = test::source_dir();
+
+TEST(Schema, NamesEveryFieldWithItsMeaning) {
+  const std::string schema = json_schema();
+  for (const FieldTable* table : all_field_tables()) {
+    for (const Field& field : table->fields) {
+      EXPECT_NE(schema.find("\"" + field.name + "\""), std::string::npos) << table->title;
+      EXPECT_FALSE(field.meaning.empty()) << table->title << " " << field.name;
+    }
+  }
+}
+
+TEST(Schema, DefinesWhatItRefersTo) {
+  const std::string schema = json_schema();
+  const std::string mark = "\"#/$defs/";
+  for (std::size_t k = schema.find(mark); k != std::string::npos; k = schema.find(mark, k + 1)) {
+    const std::size_t start = k + mark.size();
+    const std::string name = schema.substr(start, schema.find('"', start) - start);
+    EXPECT_NE(schema.find("\n    \"" + name + "\": {"), std::string::npos) << name;
+  }
+}
+
+/// The published schema takes the good models and refuses those whose keys or kinds are wrong.
+TEST(Schema, AgreesWithTheReader) {
+  const fs::path file = fs::temp_directory_path() / "polhode_schema_test.json";
+  std::ofstream(file) << json_schema();
+  const std::string command = "python3 \"" +
+                              (kRoot / "tests/io/schema/validate_schema.py").string() + "\" \"" +
+                              file.string() + "\" \"" + (kRoot / "tests/corpus").string() + "\"";
+  const int status = std::system(command.c_str());
+  fs::remove(file);
+  const int code = status < 0 ? 77 : (status >> 8) & 0xFF;
+  if (code == 77 || code == 127)
+    GTEST_SKIP() << "python3 with jsonschema and yaml is not installed";
+  EXPECT_EQ(code, 0);
+}
+
+/// docs/reference/model_file.md is made from the field tables. To make it anew, run this test with
+/// POLHODE_WRITE_REFERENCE=1 in the environment.
+TEST(Schema, ReferencePageIsUpToDate) {
+  const fs::path page = kRoot / "docs/reference/model_file.md";
+  if (std::getenv("POLHODE_WRITE_REFERENCE")) {
+    fs::create_directories(page.parent_path());
+    std::ofstream(page) << reference_markdown();
+  }
+  std::ifstream stream(page);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  EXPECT_TRUE(text.str() == reference_markdown())
+      << "Run this test with POLHODE_WRITE_REFERENCE=1 to write " << page;
+}
+
+}  // namespace
+}  // namespace polhode::schema_tests

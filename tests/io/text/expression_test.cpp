@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <polhode/io/text/expression.hpp>
+
+namespace polhode::expression_tests {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// SI value at t of a text taken as a value of this dimension; NaN if it is refused.
+double value(const std::string& text, const Dimension& wanted = {}, const UnitSystem& units = {},
+             const Variables& variables = {}, double t = 0.0) {
+  ExpressionFault fault;
+  const auto expression = Expression::parse(text, variables, units, true, fault);
+  if (!expression) return NAN;
+  const auto factor = expression->factor_to_si(wanted, units);
+  return factor ? *factor * (*expression)(t) : NAN;
+}
+
+std::string fault_of(const std::string& text, const Variables& variables = {}) {
+  ExpressionFault fault;
+  EXPECT_FALSE(Expression::parse(text, variables, {}, false, fault)) << text;
+  return fault.what;
+}
+
+Quantity known(double si, const Dimension& d) { return {si, Certainty::kKnown, d}; }
+Quantity bare(double number) { return {number, Certainty::kBare, {}}; }
+
+TEST(Expression, FollowsTheUsualPrecedence) {
+  EXPECT_EQ(value("1 + 2*3"), 7.0);
+  EXPECT_EQ(value("-2^2"), -4.0);
+  EXPECT_EQ(value("2^3^2"), 512.0);
+  EXPECT_EQ(value("2^-1"), 0.5);
+  EXPECT_EQ(value("8/4/2"), 1.0);
+  EXPECT_EQ(value("1 - -1"), 2.0);
+  EXPECT_EQ(value("(1+2)*3"), 9.0);
+  EXPECT_EQ(value("1 < 2 && 3 >= 4 || 1 == 1"), 1.0);
+  EXPECT_EQ(value("0 ? 1 : 2 > 1 ? 3 : 4"), 3.0);
+  EXPECT_EQ(value("!0 + 1"), 2.0);
+  EXPECT_EQ(value("1e-3"), 1e-3);
+  EXPECT_EQ(value(".5"), 0.5);
+}
+
+TEST(Expression, KnowsTheFunctionsItLists) {
+  EXPECT_DOUBLE_EQ(value("sin(pi/6)"), std::sin(kPi / 6));
+  EXPECT_DOUBLE_EQ(value("atan2(1, -1)", dimensions::kAngle), std::atan2(1.0, -1.0));
+  EXPECT_DOUBLE_EQ(value("sqrt(2)*exp(1) + log(3) - log10(5)"),
+                   std::sqrt(2.0) * std::exp(1.0) + std::log(3.0) - std::log10(5.0));
+  EXPECT_EQ(value("min(1, 2) + max(3, 4) + abs(-5) + sign(-2) + floor(2.5)"), 11.0);
+  EXPECT_EQ(value("pow(2, 10)"), 1024.0);
+}
+
+TEST(Expression, TakesAUnitBehindItself) {
+  EXPECT_DOUBLE_EQ(value("30 deg", dimensions::kAngle), kPi / 6);
+  EXPECT_DOUBLE_EQ(value("2*pi rad/s", dimensions::kAngularVelocity), 2 * kPi);
+  EXPECT_DOUBLE_EQ(value("5 N/mm", dimensions::kStiffness), 5e3);
+  EXPECT_DOUBLE_EQ(value("-1 rad/s", dimensions::kAngularVelocity), -1.0);
+}
+
+TEST(Expression, ChecksDimensions) {
+  EXPECT_TRUE(std::isnan(value("3 mm", dimensions::kMass)));
+  EXPECT_TRUE(std::isnan(value("30 deg", dimensions::kNone)));
+  const Variables v = {{"L", known(0.5, dimensions::kLength)},
+                       {"m", known(2.0, dimensions::kMass)},
+                       {"w", known(3.0, dimensions::kAngularVelocity)}};
+  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, {}, v), 1.5);
+  EXPECT_DOUBLE_EQ(value("m*L^2/12", dimensions::kInertia, {}, v), 2.0 * 0.25 / 12);
+  EXPECT_DOUBLE_EQ(value("sqrt(L*L)", dimensions::kLength, {}, v), 0.5);
+  EXPECT_DOUBLE_EQ(value("L/(2*L)", dimensions::kNone, {}, v), 0.5);
+  EXPECT_TRUE(std::isnan(value("m*L", dimensions::kInertia, {}, v)));
+  EXPECT_EQ(fault_of("L + m", v), "'+' joins a length and a mass");
+  EXPECT_EQ(fault_of("exp(L)", v), "exp() is given a length");
+  EXPECT_EQ(fault_of("2^L", v), "the exponent is a length");
+}
+
+TEST(Expression, LetsBareVariablesMeanWhatTheyAreUsedFor) {
+  const UnitSystem mm{.length = 1e-3};
+  const Variables v = {{"L", bare(100.0)},
+                       {"w", known(2.0, dimensions::kAngularVelocity)},
+                       {"d", known(0.02, dimensions::kLength)}};
+  EXPECT_DOUBLE_EQ(value("L/2", dimensions::kLength, mm, v), 0.05);
+  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, mm, v), 0.2);
+  EXPECT_DOUBLE_EQ(value("L + d", dimensions::kLength, mm, v), 0.12);
+  EXPECT_DOUBLE_EQ(value("d + 5", dimensions::kLength, mm, v), 0.025);
+  EXPECT_DOUBLE_EQ(value("5 + d", dimensions::kLength, mm, v), 0.025);
+  EXPECT_DOUBLE_EQ(value("d*L", {2, 0, 0, 0}, mm, v), 0.02 * 0.1);
+}
+
+TEST(Expression, CountsAnglesInRadiansOnceAUnitBringsThemIn) {
+  const UnitSystem deg{.angle = kPi / 180.0};
+  const Variables v = {{"a", bare(30.0)},
+                       {"w", known(2.0, dimensions::kAngularVelocity)},
+                       {"L", bare(3.0)},
+                       {"k", bare(2.0)},
+                       {"q", known(kPi / 6, dimensions::kAngle)}};
+  EXPECT_DOUBLE_EQ(value("2*a", dimensions::kAngle, deg, v), kPi / 3);
+  EXPECT_DOUBLE_EQ(value("w*L", dimensions::kVelocity, deg, v), 6.0);
+  EXPECT_DOUBLE_EQ(value("k*w", dimensions::kAngularVelocity, deg, v), 4.0);
+  EXPECT_DOUBLE_EQ(value("q + 30", dimensions::kAngle, deg, v), kPi / 3);
+  EXPECT_DOUBLE_EQ(value("asin(0.5)", dimensions::kAngle, deg, v), kPi / 6);
+  EXPECT_DOUBLE_EQ(value("sin(q)", dimensions::kNone, deg, v), 0.5);
+}
+
+TEST(Expression, CountsTimeInTheFilesUnit) {
+  const UnitSystem ms{.time = 1e-3};
+  EXPECT_DOUBLE_EQ(value("t", dimensions::kNone, ms, {}, 0.005), 5.0);
+  const Variables v = {{"T", known(1.0, dimensions::kTime)}};
+  EXPECT_DOUBLE_EQ(value("sin(2*pi*t/T)", dimensions::kNone, ms, v, 0.125), std::sin(kPi / 4));
+}
+
+TEST(Expression, TellsWhereItIsWrong) {
+  ExpressionFault fault;
+  EXPECT_FALSE(Expression::parse("1 + foo(2)", {}, {}, false, fault));
+  EXPECT_EQ(fault.offset, 4U);
+  EXPECT_EQ(fault.length, 3U);
+  EXPECT_EQ(fault.what, "unknown name 'foo'");
+  EXPECT_EQ(fault_of("t"), "'t' (the time) has no meaning here");
+  EXPECT_EQ(fault_of("3kg"), "'3kg' lacks a blank before the unit");
+}
+
+TEST(Expression, RefusesWhatIsTooDeepOrTooLong) {
+  EXPECT_EQ(fault_of(std::string(2000, '(') + "1"), "the expression is too deeply nested");
+  EXPECT_EQ(fault_of(std::string(2000, '-') + "1"), "the expression is too deeply nested");
+  EXPECT_EQ(fault_of(std::string(5000, '1')), "the expression is longer than 4096 characters");
+  std::string tower = "1";
+  for (int k = 0; k < 300; ++k) tower += "^1";
+  EXPECT_EQ(fault_of(tower), "the expression is too deeply nested");
+  std::string sum = "1";
+  for (int k = 0; k < 1000; ++k) sum += "+1";
+  EXPECT_EQ(value(sum), 1001.0);
+}
+
+}  // namespace
+}  // namespace polhode::expression_tests

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/LU>
+#include <polhode/linear/block_cg.hpp>
+#include <polhode/math/hat.hpp>
+
+#include "linear/random_kkt.hpp"
+
+namespace polhode::block_cg_tests {
+namespace {
+
+using test::Numbers;
+
+/// Bodies that push each other and the ground at points.
+struct Crowd {
+  std::vector<Mat6> blocks;
+  std::vector<ContactSpring> springs;
+};
+
+Crowd crowd(int bodies, double stiffness, unsigned seed) {
+  Crowd c;
+  Numbers number(seed);
+  const auto vector = [&] {
+    Vec3 x;
+    for (int i = 0; i < 3; ++i) x[i] = number();
+    return x;
+  };
+  c.blocks.assign(static_cast<std::size_t>(bodies), Mat6::Identity());
+  const auto push = [&](int a, int b) {
+    const Vec3 n = vector().normalized();
+    c.springs.push_back(
+        {a, b, vector(), vector(), stiffness * (n * n.transpose() + 0.3 * Mat3::Identity())});
+  };
+  for (int b = 0; b < bodies; ++b) {
+    push(b, kGround);
+    if (b > 0) push(b - 1, b);
+    if (b > 4) push(b, b - 5);
+  }
+  return c;
+}
+
+std::vector<ActingPoint> acting(const Crowd& c) {
+  std::vector<ActingPoint> points;
+  for (const ContactSpring& s : c.springs) points.emplace_back().spring = s;
+  return points;
+}
+
+void set(BlockCg& cg, const Crowd& c) {
+  ASSERT_TRUE(cg.set_bodies(c.blocks));
+  std::vector<int> all(c.blocks.size());
+  std::iota(all.begin(), all.end(), 0);
+  cg.set_springs(acting(c), all);
+}
+
+/// The matrix that BlockCg never writes down.
+Eigen::MatrixXd assembled(const Crowd& c) {
+  const auto n = 6 * static_cast<Eigen::Index>(c.blocks.size());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    A.block<6, 6>(6 * static_cast<Eigen::Index>(b), 6 * static_cast<Eigen::Index>(b)) = c.blocks[b];
+  for (const ContactSpring& s : c.springs) {
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(3, n);  // displacement of a's point from b's
+    if (s.a != kGround) P.middleCols<6>(6 * s.a) << Mat3::Identity(), -hat(s.arm_a);
+    if (s.b != kGround) P.middleCols<6>(6 * s.b) << -Mat3::Identity(), hat(s.arm_b);
+    A += P.transpose() * (s.C - s.rub * s.normal.transpose()) * P;
+  }
+  return A;
+}
+
+std::vector<Vec6> numbers(int bodies, unsigned seed) {
+  Numbers number(seed);
+  std::vector<Vec6> x(static_cast<std::size_t>(bodies));
+  for (Vec6& v : x)
+    for (int i = 0; i < 6; ++i) v[i] = number();
+  return x;
+}
+
+Vec flat(const std::vector<Vec6>& x) {
+  return Eigen::Map<const Vec>(x.data()->data(), 6 * static_cast<Eigen::Index>(x.size()));
+}
+
+/// Single precision: some seven digits, less what the condition of the matrix takes.
+TEST(BlockCg, AgreesWithADirectSolver) {
+  for (const double stiffness : {0.0, 1.0, 100.0}) {
+    const Crowd c = crowd(40, stiffness, 3);
+    BlockCg cg;
+    set(cg, c);
+    const std::vector<Vec6> rhs = numbers(40, 5);
+    std::vector<Vec6> x;
+    cg.solve(rhs, x, 1e-14, 2000, 0);
+    const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
+    EXPECT_LT((flat(x) - reference).norm(), 2e-5 * reference.norm()) << stiffness;
+  }
+}
+
+/// Sliding points whose friction follows their normal forces: with every direction of GMRES more of
+/// the unsymmetric system is solved, and without any of them it is not.
+TEST(BlockCg, FollowsNormalForcesWithFriction) {
+  Crowd c = crowd(40, 100.0, 3);
+  Numbers number(8);
+  for (ContactSpring& s : c.springs) {
+    s.normal = Vec3(number(), number(), number()).normalized();
+    const Vec3 along = s.normal.cross(Vec3(number(), number(), number())).normalized();
+    s.C = 100.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
+    s.rub = 0.5 * 100.0 * along;
+  }
+  BlockCg cg;
+  set(cg, c);
+  const std::vector<Vec6> rhs = numbers(40, 5);
+  const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
+  double before = 1e30;
+  for (const int directions : {0, 1, 2, 4}) {
+    std::vector<Vec6> x;
+    cg.solve(rhs, x, 1e-12, 2000, directions);
+    const double error = (assembled(c) * flat(x) - flat(rhs)).norm() / flat(rhs).norm();
+    EXPECT_LT(error, directions == 4 ? 0.1 * before : before) << directions;
+    if (directions == 0) before = error;
+  }
+}
+
+/// What Newton iterations do: the rest of one solution is what the next one is asked for.
+TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
+  for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness
+    Crowd c = crowd(40, 100.0, 3);
+    for (Mat6& B : c.blocks) B *= unit;
+    for (ContactSpring& s : c.springs) s.C *= unit;
+    const Eigen::MatrixXd A = assembled(c);
+    BlockCg cg;
+    set(cg, c);
+    std::vector<Vec6> rhs = numbers(40, 5), x;
+    for (Vec6& f : rhs) f *= unit;
+    const Vec f = flat(rhs);
+    Vec sum = Vec::Zero(f.size());
+    for (int k = 0; k < 6; ++k) {
+      const Vec rest = f - A * sum;
+      for (std::size_t b = 0; b < rhs.size(); ++b)
+        rhs[b] = rest.segment<6>(6 * static_cast<int>(b));
+      cg.solve(rhs, x, 1e-10, 2000, 0);
+      sum += flat(x);
+    }
+    const Vec reference = A.partialPivLu().solve(f);
+    EXPECT_LT((sum - reference).norm(), 1e-12 * reference.norm()) << unit;
+  }
+}
+
+TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
+  const Crowd c = crowd(60, 50.0, 9);
+  BlockCg cg;
+  set(cg, c);
+  const std::vector<Vec6> rhs = numbers(60, 6);
+  const Vec reference = assembled(c).partialPivLu().solve(flat(rhs));
+  int before = 0;
+  double error = 1e30;
+  for (const double part : {1e-1, 1e-4, 1e-8}) {
+    std::vector<Vec6> x;
+    const int iterations = cg.solve(rhs, x, part, 2000, 0);
+    EXPECT_GT(iterations, before);
+    const double now = (flat(x) - reference).norm();
+    EXPECT_LT(now, error);
+    before = iterations;
+    error = now;
+  }
+}
+
+/// Springs that leave nothing of the bodies in single precision.
+TEST(BlockCg, StandsSpringsOfAnyStiffness) {
+  const Crowd c = crowd(12, 1e12, 7);
+  BlockCg cg;
+  set(cg, c);
+  std::vector<Vec6> x;
+  cg.solve(numbers(12, 5), x, 1e-4, 200, 0);
+  EXPECT_TRUE(flat(x).allFinite());
+}
+
+/// Of A x = f the rows and columns of what moves.
+TEST(BlockCg, LeavesBodiesWhereTheyAre) {
+  const Crowd c = crowd(40, 20.0, 3);
+  const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};
+  BlockCg cg;
+  ASSERT_TRUE(cg.set_bodies(c.blocks));
+  cg.set_springs(acting(c), moving);
+  const std::vector<Vec6> rhs = numbers(40, 5);
+  std::vector<Vec6> x;
+  cg.solve(rhs, x, 1e-14, 2000, 0);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(6 * std::ssize(moving), 6 * 40);
+  for (int k = 0; k < std::ssize(moving); ++k)
+    P.block<6, 6>(6 * k, 6 * moving[k]) = Mat6::Identity();
+  const Eigen::MatrixXd A = P * assembled(c) * P.transpose();
+  const Vec f = P * flat(rhs), reference = P.transpose() * A.partialPivLu().solve(f);
+  EXPECT_LT((flat(x) - reference).norm(), 2e-5 * reference.norm());
+  for (int b = 0; b < 40; ++b) {
+    const bool moves = std::find(moving.begin(), moving.end(), b) != moving.end();
+    EXPECT_EQ(x[b].isZero(0.0), !moves) << b;
+  }
+}
+
+TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
+  Crowd c = crowd(7, 0.0, 1);
+  c.springs.clear();
+  c.blocks[3] *= 5.0;
+  BlockCg cg;
+  set(cg, c);
+  const std::vector<Vec6> rhs = numbers(7, 2);
+  std::vector<Vec6> x;
+  EXPECT_EQ(cg.solve(rhs, x, 1e-10, 100, 0), 1);
+  EXPECT_LT((x[3] - rhs[3] / 5.0).norm(), 1e-7);
+}
+
+TEST(BlockCg, RefusesABlockThatIsNotPositive) {
+  Crowd c = crowd(3, 1.0, 4);
+  c.blocks[1] -= 50.0 * Mat6::Identity();
+  BlockCg cg;
+  EXPECT_FALSE(cg.set_bodies(c.blocks));
+}
+
+}  // namespace
+}  // namespace polhode::block_cg_tests

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <polhode/linear/block_lu.hpp>
+#include <polhode/linear/block_lu_order.hpp>
+
+#include "linear/random_kkt.hpp"
+
+namespace polhode::block_lu_tests {
+namespace {
+
+using test::add_pair;
+
+KktTopology revolute_chain(int n) {
+  KktTopology t;
+  t.bodies = n;
+  for (int i = 0; i < n; ++i) add_pair(t, i == 0 ? kGround : i - 1, i, 5);
+  return t;
+}
+
+TEST(GatherNodes, PutsEachBodyTogetherWithTheJointToItsParent) {
+  const NodeGraph graph = gather_nodes(revolute_chain(4));
+  EXPECT_EQ(graph.width, (std::vector<int>{11, 11, 11, 11}));
+  EXPECT_EQ(graph.row_node, (std::vector<int>{0, 1, 2, 3}));
+}
+
+TEST(GatherNodes, LetsLoopRowsWaitForBothBodies) {
+  KktTopology t = revolute_chain(3);
+  add_pair(t, 2, 0, 1);
+  const NodeGraph graph = gather_nodes(t);
+  ASSERT_EQ(graph.width.size(), 4u);
+  EXPECT_EQ(graph.width[3], 1);
+  const EliminationOrder order = eliminate_least_degree_first(graph);
+  EXPECT_GT(order.position[3], order.position[0]);
+  EXPECT_GT(order.position[3], order.position[2]);
+}
+
+TEST(EliminationOrder, MakesNoFillInATree) {
+  KktTopology t;
+  t.bodies = 63;
+  for (int i = 0; i < 63; ++i) add_pair(t, i == 0 ? kGround : (i - 1) / 2, i, 3);
+  const EliminationOrder order = eliminate_least_degree_first(gather_nodes(t));
+  std::size_t edges = 0;
+  for (const auto& later : order.later) edges += later.size();
+  EXPECT_EQ(edges, 62u);
+}
+
+TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
+  BlockLu short_chain, long_chain;
+  short_chain.analyse(revolute_chain(100));
+  long_chain.analyse(revolute_chain(200));
+  EXPECT_NEAR(long_chain.factor_flops() / short_chain.factor_flops(), 2.0, 0.02);
+}
+
+}  // namespace
+}  // namespace polhode::block_lu_tests
