@@ -108,6 +108,21 @@ output: {paraview: true}
     EXPECT_THAT(json.out, HasSubstr(key));
 }
 
+TEST_F(CommandLine, DrawsTheModesOfSolids) {
+  write("bar.yaml", R"(format: 1
+materials: {m: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  bar: {mesh: {block: {size: [1, 0.1, 0.1], cells: [4, 1, 1]}}, element: hex8, material: m, bonded: {ground: xmin}}
+analysis: {type: modes, count: 3}
+output: {paraview: true}
+)");
+  const auto result = run({"modes", "bar.yaml"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const std::string list = read("bar.results/paraview/modes_solids.pvd");
+  EXPECT_THAT(list, AllOf(HasSubstr("timestep=\"1\""), HasSubstr("timestep=\"3\"")));
+  EXPECT_THAT(list, testing::Not(HasSubstr("timestep=\"4\"")));
+}
+
 // A motor without a limit: the rotor turns faster than the least step can follow.
 TEST_F(CommandLine, EndsWith4NamesTheBodyAndKeepsTheLastStateOfAModelThatRunsAway) {
   write("motor.yaml", R"(format: 1

@@ -122,8 +122,8 @@ def panel():
 
 
 def panel_reaction():
-    return Case("example_flexible_panel_reaction", "What holds a damped panel.", "examples/flexible_panel/model.yaml", 0.1, 2.0, order=1, smooth=True, skip=("tip", "x_tip", "y_tip", "z_tip", "centre.[m]", "centre.[m/s]"), floor=1e-3,
-                open="The force at the root is ten times what it should be at the step of the example, and 400 times with rho_inf: 0.8: modes that viscosity overdamps ring from step to step.")
+    return Case("example_flexible_panel_reaction", "What holds a damped panel, whose viscosity lets no mode of a step oscillate.", "examples/flexible_panel/model.yaml", 0.1, 2.0, order=1.5, smooth=True,
+                skip=("tip", "x_tip", "y_tip", "z_tip", "centre.[m]", "centre.[m/s]"), floor=1e-3)
 
 
 def bushing():

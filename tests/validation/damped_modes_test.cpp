@@ -70,6 +70,44 @@ TEST(DampedModes, OfADamperAloneAreAFreeMotionAndOneThatDies) {
   EXPECT_NEAR(r.modes[1].eigenvalue.real(), -2.0, 1e-9);
 }
 
+/// A block of a material that creeps with 1/τ: its oscillations, λ² + τω²λ + ω² = 0 with the ω of
+/// the elastic block, come first, each of its motions that are overdamped behind them.
+TEST(DampedModes, OfAViscousSolidBeginWithItsOscillations) {
+  const std::string block = R"(
+format: 1
+materials: {m: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000VISCOUS}}
+solids:
+  bar:
+    mesh: {block: {size: [1, 0.1, 0.12], cells: [4, 1, 1]}}
+    element: hex8
+    material: m
+    bonded: {ground: xmin}
+analysis: {type: modes, count: 4}
+)";
+  const auto with = [&](const std::string& viscosity) {
+    std::string text = block;
+    text.replace(text.find("VISCOUS"), 7, viscosity);
+    return modes_of(text.c_str(), {});
+  };
+  const double tau = 0.1;
+  const ModesReport elastic = with(""), viscous = with(", viscosity: {relaxation_time: 0.1 s}");
+  int oscillations = 0;
+  for (const Mode& mode : elastic.modes) {
+    const double w = 2.0 * std::numbers::pi * mode.frequency, zeta = 0.5 * tau * w;
+    if (zeta >= 1.0) break;
+    const Mode& damped = viscous.modes.at(static_cast<std::size_t>(oscillations++));
+    EXPECT_EQ(damped.kind, ModeKind::oscillation);
+    EXPECT_NEAR(damped.frequency, mode.frequency, 1e-6 * mode.frequency);
+    EXPECT_NEAR(damped.damping, zeta, 1e-6);
+  }
+  EXPECT_EQ(oscillations, 2);
+  ASSERT_EQ(viscous.modes.size(), 6u) << "as many overdamped ones behind as were asked for";
+  for (std::size_t i = 2; i < 6; ++i) {
+    EXPECT_EQ(viscous.modes[i].kind, ModeKind::overdamped);
+    EXPECT_LT(viscous.modes[i].eigenvalue.real(), -1.0 / tau);
+  }
+}
+
 /// Chains of n masses with one damper at the end: the eigenvalues of the companion matrix. Longer
 /// ones go by Arnoldi iterations.
 TEST(DampedModes, OfAChainWithADamperAtItsEndAreThoseOfItsCompanionMatrix) {

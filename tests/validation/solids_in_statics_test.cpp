@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
@@ -50,6 +52,53 @@ analysis: {type: statics}
       EXPECT_NEAR(e.cauchy(2, 2) / p, -1.0, 1e-9);
   }
   EXPECT_NEAR(simulation.contact(0).normal_force, p, 1e-9);
+}
+
+/// A block that nothing holds, pulled at one end and, by the body it is bonded to, held back at the
+/// other: it gets as long as one whose body is welded to the ground, and does not move away,
+/// whatever the size of the load. @tests{statics-deflation} @tests{statics-rigid}
+TEST(SolidsInStatics, ThatNothingHoldsStretchWhereTheyAre) {
+  const auto run = [](bool held, const std::string& load) {
+    Simulation s(read_model_text(
+        R"(
+format: 1
+variables: {p: 10 kPa}
+bodies: {hub: {mass: 1, inertia: [1, 1, 1], position: [-2, 0, 0]}}
+joints: {)" +
+            std::string(held ? "weld: {type: fixed, bodies: [ground, hub], at: [-2, 0, 0]}" : "") +
+            R"(}
+materials: {m: {type: elastic, youngs_modulus: 1 MPa, poisson_ratio: 0.3, density: 1000}}
+solids:
+  b:
+    mesh: {block: {size: [4, 1, 1], cells: [4, 1, 1]}}
+    element: hex20
+    material: m
+    bonded: {hub: xmin}
+loads:
+  pull: {type: traction, solid: b, surface: xmax, traction: [p, 0, 0]}
+  back: {type: force, body: hub, force: [-p, 0, 0]}
+analysis: {type: statics}
+output: {hdf5: false}
+)",
+        "free.yaml", {"variables.p=" + load}));
+    const RunSummary r = s.run();
+    EXPECT_EQ(r.end, RunEnd::finished) << r.message;
+    EXPECT_TRUE(r.statics->converged) << r.statics->message;
+    EXPECT_LE(r.newton_iterations, 8) << load;
+    double end = -1e9, start = 1e9, aside = 0.0;
+    for (const Vec3& x : s.solid(0).position) {
+      end = std::max(end, x.x());
+      start = std::min(start, x.x());
+    }
+    for (const Vec3& d : s.solid(0).displacement) aside = std::max(aside, d.norm());
+    return std::pair(end - start, aside);
+  };
+  for (const char* load : {"10", "10000", "50000"}) {
+    const auto [held, stretch] = run(true, load);
+    const auto [length, way] = run(false, load);
+    EXPECT_NEAR(length, held, 1e-7 * (held - 4.0)) << load;
+    EXPECT_LT(way, stretch) << load;
+  }
 }
 
 /// A ball pressed into one twice as stiff: the stiff one's pole rests in a dent of the other, as

@@ -94,6 +94,7 @@ TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
   for (const Case& c : {Case{"1.1", "10", "0.01", "20"}, Case{"1.0", "1", "0.01", "20"},
                         Case{"1.1", "11", "0.01", "20"}, Case{"1.1", "1", "0.01", "20"},
                         Case{"1.1", "10", "0.001", "50"}, Case{"1.1", "10", "0.0001", "50"},
+                        Case{"1.1", "10", "1e-5", "50"}, Case{"1.1", "10", "1e-5", "20"},
                         Case{"0.99", "10", "0.01", "20"}}) {
     const StaticReport r =
         statics_of(kColumn, {"variables.part=" + c.part, "variables.steps=" + c.steps,

@@ -59,10 +59,17 @@ bool SaddleSolver::factor(SaddleMatrix& matrix, bool symmetric,
 
 void SaddleSolver::solve(Vec& x) const { (symmetric_ ? *ldl_ : *lu_).solve(x.data()); }
 
-std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most) {
+std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most,
+                              const std::vector<Vec>& known) {
   const int n = matrix.movable();
   std::vector<Vec> found;
   if (n == 0) return found;
+  for (Vec x : known) {
+    if (static_cast<int>(found.size()) == most) return found;
+    for (const Vec& other : found)
+      x.head(n) -= other.head(n).dot(x.head(n)) / other.head(n).squaredNorm() * other.head(n);
+    found.push_back(x / x.head(n).lpNorm<Eigen::Infinity>());
+  }
   double largest = 0.0;
   for (std::size_t k = 0; k < matrix.values().size(); ++k)
     if (matrix.row()[k] < n && matrix.column()[k] < n)

@@ -33,7 +33,9 @@ class SaddleSolver {
 
 /// Motions that meet no stiffness: x with K x = 0 and G x = 0 to round-off, each of largest
 /// component one, at most `most` of them. Rotations count times ℓ.
-[[nodiscard]] std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most);
+/// @param known  Free motions that come first; others are looked for beside them.
+[[nodiscard]] std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most,
+                                            const std::vector<Vec>& known = {});
 
 /// Unknowns whose supports hold free motions: one for each, where it moves most beside those
 /// before. Rotations count times ℓ.

@@ -23,6 +23,7 @@
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
+#include <polhode/solve/settled_velocities.hpp>
 
 namespace polhode {
 
@@ -393,7 +394,10 @@ struct Simulation::Impl {
       velocity_residual = v.residual_before;
       velocity_time = state.t;
     }
+    std::vector<double> node_v = settled_velocities(system, projected);
+    projected.node_v.swap(node_v);
     instant = instant_solver->accelerations(projected, contacts.wrenches());
+    projected.node_v.swap(node_v);
     instant_step = state.ledger.steps;
     return instant;
   }

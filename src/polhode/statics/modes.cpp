@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -122,6 +123,25 @@ std::vector<Mode> quadratic_modes(ModalMatrices& m, const ModeOptions& options,
     return a.omega_squared < b.omega_squared;  // negative of divergence
   });
   return modes;
+}
+
+/// The first modes by |λ| that do not just decay, up to a count; behind them as many at most that
+/// do, of those below the last one. Viscous materials have one of them for each motion that they
+/// overdamp, all near -1/τ.
+void put_overdamped_last(std::vector<Mode>& modes, int count) {
+  const auto decays = [](const Mode& mode) { return mode.kind == ModeKind::overdamped; };
+  const auto most = static_cast<std::ptrdiff_t>(count);
+  const auto behind = std::stable_partition(modes.begin(), modes.end(), std::not_fn(decays));
+  const std::ptrdiff_t others = behind - modes.begin(), kept = std::min(others, most);
+  if (kept == most)
+    modes.erase(
+        std::remove_if(behind, modes.end(),
+                       [size = std::abs(modes[static_cast<std::size_t>(kept - 1)].eigenvalue)](
+                           const Mode& mode) { return std::abs(mode.eigenvalue) > size; }),
+        modes.end());
+  modes.erase(modes.begin() + kept, modes.begin() + others);
+  if (static_cast<std::ptrdiff_t>(modes.size()) > kept + most)
+    modes.resize(static_cast<std::size_t>(kept + most));
 }
 
 /// Free motions as shifts and turns, in the place of whatever the solver has found of their space.
@@ -276,8 +296,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
         report.freedoms == 0 ? std::string("every freedom of the model is held: there are no modes")
                              : format("{} modes were asked for, but the model has {} only",
                                       options.count, modes.size()));
-  if (static_cast<int>(modes.size()) > options.count)
-    modes.resize(static_cast<std::size_t>(options.count));
+  put_overdamped_last(modes, options.count);
   report.modes = std::move(modes);
   put_participation(system, m, report);
   if (report.modes.empty()) return report;

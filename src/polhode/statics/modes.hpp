@@ -10,7 +10,7 @@
 namespace polhode {
 
 struct ModeOptions {
-  int count = 10;            ///< Modes wanted, those next to zero.
+  int count = 10;            ///< Modes wanted, those next to zero; overdamped ones come besides.
   double load_factor = 1.0;  ///< Of the equilibrium.
   /// By body: steady angular velocity in body axes, about which vibrations are looked for [rad/s].
   /// Empty: nothing turns.
@@ -46,7 +46,8 @@ struct Mode {
 };
 
 struct ModesReport {
-  std::vector<Mode> modes;  ///< Divergence first, the fastest one foremost; then by |λ|.
+  std::vector<Mode> modes;  ///< Divergence first, the fastest foremost; then by |λ|;
+                            ///< behind them what is overdamped.
   double total_mass = 0.0;  ///< [kg]
   int freedoms = -1;        ///< 6 bodies + nodes' unknowns − rank of the constraints, if known.
   bool symmetric = true;    ///< Nothing is damped, turns or follows: λ² is real.

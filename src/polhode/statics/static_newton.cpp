@@ -302,8 +302,9 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
         std::all_of(given_.begin(), given_.end(), [](double d) { return d == 0.0; });
     const std::size_t n = step.increments.size();
     if (balance != Balance::off && arrived) {
-      if (n == 0) break;
-      const double e = step.increments[n - 1];
+      // To rounding only, a slender wire may carry another load still: the iteration goes on.
+      if (n == 0 && step.residual <= options_.residual * force_) break;
+      const double e = n > 0 ? step.increments[n - 1] : 1.0;
       // With a shift in the matrix a rate near one is the rate indeed.
       const double rate = std::min(n > 1 ? e / step.increments[n - 2] : e, shifted_ ? 1.0 : 0.99);
       if (e <= options_.tolerance || e * rate <= options_.tolerance * (1.0 - rate)) break;

@@ -71,6 +71,8 @@ class StaticNewton {
   [[nodiscard]] bool factor(bool symmetric, StaticStep& step);
   [[nodiscard]] std::vector<double> all_diagonal(double stiffness) const;
   void solve_refined();
+  void keep_free(std::vector<Vec> motions);
+  void leave_out_free();
   [[nodiscard]] bool make_symmetric();
   [[nodiscard]] bool nearly_singular() const;
   std::vector<Vec> name_free_motions(StaticStep& step);
@@ -106,6 +108,7 @@ class StaticNewton {
   };
   std::vector<Meeting> meetings_;
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
+  std::vector<Vec> free_;         ///< Orthonormal, see keep_free(); of the last factorisation.
   KinkMixture kinks_;             ///< Residuals of the iterates that hardly move any more.
   double force_ = 0.0;            ///< Largest force of the last assembly [N].
   bool resisted_ = false;         ///< Ill-conditioned in this search, but without free motions.

@@ -47,6 +47,7 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
   if (matrix_.size() == 0) return true;  // every component of every node is prescribed
   if (!factor(make_symmetric(), step)) return false;
   solve_refined();
+  leave_out_free();
   return x_.allFinite();
 }
 
@@ -55,6 +56,7 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
 /// all stiffnesses is left for models in which more moves freely. @eq{statics-supports}
 bool StaticNewton::factor(bool symmetric, StaticStep& step) {
   shifted_ = false;
+  free_.clear();
   const bool factored = solver_.factor(matrix_, symmetric);
   if (factored && (resisted_ || !nearly_singular())) return true;
   const std::vector<Vec> free = name_free_motions(step);
@@ -67,12 +69,41 @@ bool StaticNewton::factor(bool symmetric, StaticStep& step) {
     std::vector<double> supports(matrix_.movable(), 0.0);
     for (const int unknown : supports_of(free, matrix_, length))
       supports[unknown] = weight(unknown);
+    keep_free(free);
     if (solver_.factor(matrix_, symmetric, supports)) return true;
+    free_.clear();
   }
   shifted_ = true;
   std::vector<double> shift(matrix_.movable());
   for (int i = 0; i < matrix_.movable(); ++i) shift[i] = kTangentShift * weight(i);
   return solver_.factor(matrix_, symmetric, shift);
+}
+
+/// Makes free motions orthonormal, turns counted times ℓ.
+void StaticNewton::keep_free(std::vector<Vec> motions) {
+  const int n = matrix_.movable();
+  for (Vec& motion : motions) {
+    Vec x = motion.head(n);
+    for (int b = 0; b < system_->body_count(); ++b)
+      x.segment<3>(6 * b + 3) *= system_->length_scale();
+    for (int twice = 0; twice < 2; ++twice)
+      for (const Vec& other : free_) x -= other.dot(x) * other;
+    free_.push_back(x.normalized());
+  }
+}
+
+/// Takes out of the increment what moves along free motions: where supports stand, and what
+/// rounding makes of motions that nothing resists, moves nothing then. @eq{statics-deflation}
+void StaticNewton::leave_out_free() {
+  if (free_.empty() || !x_.allFinite()) return;
+  const int n = matrix_.movable();
+  const double length = system_->length_scale();
+  const auto scale_turns = [&](double factor) {
+    for (int b = 0; b < system_->body_count(); ++b) x_.segment<3>(6 * b + 3) *= factor;
+  };
+  scale_turns(length);
+  for (const Vec& motion : free_) x_.head(n) -= motion.dot(x_.head(n)) * motion;
+  scale_turns(1.0 / length);
 }
 
 /// x_ = K⁻¹ rhs_, corrected by its residual while that falls: what rounding of the factors took.
@@ -115,7 +146,8 @@ bool StaticNewton::nearly_singular() const {
 }
 
 std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
-  std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMostSupported);
+  std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMostSupported,
+                                       rigid_free_motions(*system_, work_, matrix_));
   for (const PlainMotion& motion : plain_motions(*system_, work_, matrix_, free)) {
     if (static_cast<int>(step.free_motions.size()) == kMostFreeMotions) break;
     const std::string& text = motion.text;

@@ -18,6 +18,10 @@ namespace {
 
 /// A motion of a part counts as free if it is one of those given up to this part of itself.
 constexpr double kEqual = 1e-6;
+/// A rigid motion is free if its force is below this part of the terms it is the sum of: rounding
+/// leaves a hundredth of that, the weight of a steel block on a hinge makes a hundred thousand
+/// times as much.
+constexpr double kFreeRigid = 5e-13;
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
@@ -226,6 +230,35 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
     list.push_back({x, describe_motion(system, matrix, x)});
   }
   return list;
+}
+
+std::vector<Vec> rigid_free_motions(const System& system, const State& state,
+                                    const SaddleMatrix& matrix) {
+  std::vector<Vec> free;
+  const double length = system.length_scale();
+  for (const Part& part : parts_of(system)) {
+    Mat R = rigid_motions(system, state, matrix, part).R;
+    R.rightCols<3>() /= length;
+    Mat forces(matrix.size(), 6);
+    Vec x(matrix.size()), force, terms;
+    double largest = 0.0;
+    for (int k = 0; k < 6; ++k) {
+      x << R.col(k), Vec::Zero(matrix.size() - matrix.movable());
+      matrix.times(x, force);
+      matrix.magnitudes(x, terms);
+      forces.col(k) = force;
+      largest = std::max(largest, terms.lpNorm<Eigen::Infinity>());
+    }
+    if (!(largest > 0.0)) continue;
+    const Eigen::JacobiSVD<Mat> svd(forces / largest, Eigen::ComputeFullV);
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      if (svd.singularValues()[k] > kFreeRigid) continue;
+      x << R * svd.matrixV().col(k), Vec::Zero(matrix.size() - matrix.movable());
+      const double size = x.lpNorm<Eigen::Infinity>();
+      if (size > kEqual) free.push_back(x / size);  // else it is one of a point
+    }
+  }
+  return free;
 }
 
 }  // namespace polhode

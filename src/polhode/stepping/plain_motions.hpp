@@ -23,4 +23,10 @@ struct PlainMotion {
                                                      const SaddleMatrix& matrix,
                                                      const std::vector<Vec>& motions);
 
+/// Shifts and turns of parts of the model that hang together, as far as they meet no stiffness and
+/// no constraint: found without the rounding of a factorisation, so that they are told from motions
+/// that meet little. Independent, each of largest component one. @eq{statics-rigid}
+[[nodiscard]] std::vector<Vec> rigid_free_motions(const System& system, const State& state,
+                                                  const SaddleMatrix& matrix);
+
 }  // namespace polhode

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/results/paraview.hpp>
@@ -34,12 +36,57 @@ std::vector<Channel> channels(std::size_t bodies, std::size_t nodes) {
   return list;
 }
 
+/// Largest displacement of a mode: of bodies, with turns over the model's size, and of nodes.
+double largest_move(const ModalAnalysis& analysis, int mode, double size) {
+  double most = 0.0;
+  for (const bool imaginary : {false, true}) {
+    for (int body = 0; body < static_cast<int>(analysis.model().bodies.size()); ++body) {
+      const Vec6 x = analysis.body_shape(mode, body, imaginary);
+      most = std::max({most, x.head<3>().norm(), size * x.tail<3>().norm()});
+    }
+    const std::vector<double> nodes = analysis.node_shapes(mode, imaginary);
+    for (std::size_t k = 0; k + 2 < nodes.size(); k += 3)
+      most = std::max(most, std::hypot(nodes[k], nodes[k + 1], nodes[k + 2]));
+  }
+  return most;
+}
+
+/// Solids in a mode: nodes moved, stresses those of the equilibrium.
+std::vector<SolidReport> solids_in(const ModalAnalysis& analysis, int mode, bool imaginary,
+                                   double factor) {
+  const Simulation& simulation = analysis.simulation();
+  const std::vector<double> shape = analysis.node_shapes(mode, imaginary);
+  std::vector<SolidReport> reports;
+  for (int i = 0; i < static_cast<int>(simulation.solids().size()); ++i) {
+    SolidReport report = simulation.solid(i);
+    const auto first =
+        static_cast<std::size_t>(simulation.solids()[static_cast<std::size_t>(i)].first_node);
+    for (std::size_t k = 0; k < report.position.size(); ++k) {
+      const Vec3 x = factor * Eigen::Map<const Vec3>(shape.data() + 3 * (first + k));
+      report.position[k] += x;
+      report.displacement[k] = report.velocity[k] = x;
+    }
+    reports.push_back(std::move(report));
+  }
+  return reports;
+}
+
 void write_pictures(const ModalAnalysis& analysis, const std::string& folder) {
   const Model& model = analysis.model();
   const Simulation& simulation = analysis.simulation();
   const double size = simulation.system().length_scale();
   std::vector<BodyPicture> pictures = body_pictures(model, size);
   ParaviewWriter writer(folder + "/paraview", "modes", pictures);
+  std::optional<SolidsWriter> solids;
+  if (!model.solids.empty()) {
+    std::vector<std::string> names;
+    std::vector<const Mesh*> meshes;
+    for (std::size_t i = 0; i < model.solids.size(); ++i) {
+      names.push_back(model.solids[i].name);
+      meshes.push_back(&simulation.solids()[i].plan.mesh);
+    }
+    solids.emplace(folder + "/paraview", "modes_solids", std::move(names), std::move(meshes));
+  }
   const auto append = [&](int mode, bool imaginary, double factor, double time) {
     std::vector<BodyMotion> motions;
     for (const BodyPicture& picture : pictures) {
@@ -53,20 +100,17 @@ void write_pictures(const ModalAnalysis& analysis, const std::string& folder) {
       motions.push_back(m);
     }
     writer.append(time, motions);
+    if (solids) solids->append(time, solids_in(analysis, mode, imaginary, factor));
   };
   for (int mode = 0; mode < static_cast<int>(analysis.report().modes.size()); ++mode) {
-    double most = 0.0;
-    for (const bool imaginary : {false, true})
-      for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
-        const Vec6 x = analysis.body_shape(mode, body, imaginary);
-        most = std::max({most, x.head<3>().norm(), size * x.tail<3>().norm()});
-      }
+    const double most = largest_move(analysis, mode, size);
     const double factor = most > 0.0 ? kShown * size / most : 0.0;
     append(mode, false, factor, mode + 1.0);
     if (analysis.report().modes[static_cast<std::size_t>(mode)].shape_imag.size() > 0)
       append(mode, true, -factor, mode + 1.25);  // a quarter of a period later
   }
   writer.close();
+  if (solids) solids->close();
 }
 
 }  // namespace
