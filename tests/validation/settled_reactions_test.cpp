@@ -8,7 +8,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation.hpp>
-#include <polhode/solve/settled_velocities.hpp>
+#include <polhode/stepping/settled_velocities.hpp>
 
 namespace polhode::settled_reactions_tests {
 namespace {

@@ -23,7 +23,7 @@
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
-#include <polhode/solve/settled_velocities.hpp>
+#include <polhode/stepping/settled_velocities.hpp>
 
 namespace polhode {
 

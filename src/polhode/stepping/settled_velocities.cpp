@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <polhode/solve/settled_velocities.hpp>
+#include <polhode/stepping/settled_velocities.hpp>
 
 namespace polhode {
 
