@@ -22,6 +22,7 @@ from ._native import version as __version__
 
 if TYPE_CHECKING:
     from . import rotations
+    from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes
     from ._result import Result, open
     from ._run import run
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 # Loaded when they are first wanted: NumPy takes longer to import than all the rest.
 _LATER = {
+    "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
     "_result": ["Result", "open"],
     "_run": ["run"],
@@ -40,8 +42,8 @@ _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
     "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
-    "Simulation", "Step", "__version__", "fit", "from_text", "load", "matrices", "modes", "open",
-    "rotations", "run", "sweep",
+    "Simulation", "StateSpace", "Step", "__version__", "fit", "from_text", "inverse_dynamics", "linearize", "load",
+    "matrices", "modes", "open", "rotations", "run", "sweep",
 ]
 
 

@@ -6,7 +6,11 @@ import sys
 
 
 def main() -> None:
-    """Becomes the program, with the arguments given."""
+    """Becomes the program, with the arguments given; sweeps are made in Python."""
+    if sys.argv[1:2] == ["sweep"]:
+        from ._sweep_command import main as sweep
+
+        sys.exit(sweep(sys.argv[2:]))
     program = os.path.join(os.path.dirname(__file__), "bin", "polhode")
     os.execv(program, ["polhode", *sys.argv[1:]])
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import json
 import os
+import tempfile
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
@@ -15,6 +16,7 @@ from ._tree import Named, Section, plain
 
 if TYPE_CHECKING:
     from ._result import Result
+    from ._show import Page
 
 Overrides = Optional[Mapping[str, Any]]
 
@@ -137,6 +139,40 @@ class Model(Section):
         """Adds the law of a pair of bodies or contact materials."""
         return self.contacts.pairs.add(name, **fields)  # type: ignore[no-any-return]
 
+    def attach(
+        self,
+        part: "Union[Model, str, os.PathLike[str]]",
+        name: Optional[str] = None,
+        *,
+        prefix: Optional[str] = None,
+        at: Any = None,
+        orientation: Any = None,
+        mirror: Optional[str] = None,
+        variables: "Optional[Mapping[str, Any]]" = None,
+    ) -> Section:
+        """Adds a part, a model within this one, and returns its entry in `parts`.
+
+        part:        a Model, copied (its file, if it was loaded and not changed since), or the path of a
+                     model file, seen from the folder of this model's file.
+        name:        of the entry; left out: the prefix without its last "_".
+        prefix:      stands before the names of the part here; left out: the name and "_".
+        at:          (3,) where the part's origin stands, in the units of this model.
+        orientation: turn from the part's axes to these, as of a body.
+        mirror:      "x", "y" or "z": this coordinate of the part changes its sign first.
+        variables:   values for variables of the part.
+
+        Joints and loads of this model may name what the part has: m.attach(leg, prefix="l_") gives
+        "l_thigh". Raises ModelError if the name is taken.
+        """
+        if name is None and not prefix:
+            raise fault("parts", "a part needs a name", 'Give prefix="l_" or a name')
+        chosen = name if name is not None else str(prefix).rstrip("_-") or str(prefix)
+        what: "dict[str, Any]" = {"file": os.fspath(part)} if not isinstance(part, Model) else {"model": part.to_dict()}
+        if isinstance(part, Model) and part._source()[2]:  # unchanged: its meshes count from its own folder
+            what = {"file": os.path.abspath(part._source()[1])}
+        return self._add("parts", chosen, {**what, "prefix": prefix, "position": at, "orientation": orientation,
+                                           "mirror": mirror, "variables": variables})
+
     def _add(self, group: str, name: str, fields: "dict[str, Any]") -> Section:
         named: Named = self._wrap(group, None)
         return named.add(name, **fields)
@@ -177,6 +213,26 @@ class Model(Section):
         from ._run import run
 
         return run(self, **options)
+
+    def show(self, height: int = 600) -> "Page":
+        """The model before it runs, in the viewer: a cell of a notebook shows it, height pixels high.
+
+        Raises ModelError for a model with faults or with callables.
+        """
+        from ._show import page_of
+
+        self.check()
+        _, name, in_file = self._source()
+        if in_file:
+            return page_of(name, height)
+        # Beside the meshes, which count from there.
+        handle, file = tempfile.mkstemp(".yaml", ".polhode-", os.path.dirname(name) or ".")
+        os.close(handle)
+        try:
+            self.save(file)
+            return page_of(file, height)
+        finally:
+            os.unlink(file)
 
     def _source(self) -> "tuple[str, str, bool]":
         """Text, name and whether both are those of a file."""

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
 from . import _native
 from ._stores import FileStore, Store
+
+if TYPE_CHECKING:
+    from ._show import Page
 
 _QUANTITIES = {
     "bodies": ("position", "orientation", "velocity", "angular_velocity"),
@@ -101,6 +104,17 @@ class Result:
         self._ledger = ledger
         self._tables: "Optional[dict[str, list[str]]]" = None
         self._columns: "dict[str, dict[str, int]]" = {}
+        self._written = ""  # folder that a run wrote, too
+
+    def show(self, height: int = 600) -> "Page":
+        """The motion in the viewer: a cell of a notebook shows it, height pixels high. It takes a
+        results file: raises ValueError for a result that was computed without `output`."""
+        from ._show import page_of
+
+        file = self._store.file if isinstance(self._store, FileStore) else self._written
+        if not file:
+            raise ValueError("these results are in memory only; run with output=\"folder\" to show them")
+        return page_of(file, height)
 
     # Looking up
 
@@ -323,7 +337,8 @@ class Result:
         return names
 
     def __getstate__(self) -> "dict[str, Any]":
-        return {"_store": self._store, "_ledger": self._ledger, "_tables": None, "_columns": {}}
+        return {"_store": self._store, "_ledger": self._ledger, "_tables": None, "_columns": {},
+                "_written": self._written}
 
     def __setstate__(self, state: "dict[str, Any]") -> None:
         self.__dict__.update(state)

@@ -53,6 +53,8 @@ def run(
     for key in ("exit_code", "results"):
         ledger.pop(key)
     result = Result(MemoryStore(recording.channels(), recording.views(), recording.fixed()), ledger)
+    if output is not None:
+        result._written = os.path.abspath(os.fspath(output))
     _report(ledger)
     if ledger["end"] == "not_converged":
         raise NotConverged(ledger["message"], result)

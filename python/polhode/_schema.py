@@ -24,7 +24,7 @@ def definition(name: str) -> "dict[str, Any]":
 def _reference(entry: "dict[str, Any]") -> Optional[str]:
     """Name of the table that an entry refers to, if it is a map with keys of its own."""
     reference = str(entry.get("$ref", "")).rsplit("/", 1)[-1]
-    return reference if reference and "properties" in definition(reference) else None
+    return reference if reference not in ("", "#") and "properties" in definition(reference) else None
 
 
 def section_of(table: str, key: str) -> Optional[str]:

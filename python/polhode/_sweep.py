@@ -88,6 +88,7 @@ def sweep(
     processes: Optional[int] = None,
     resume: "Union[str, os.PathLike[str], None]" = None,
     seed: int = 0,
+    client: Any = None,
 ) -> Any:
     """Runs a model at many values of its parameters; returns a pandas.DataFrame, a row for each run.
 
@@ -100,9 +101,11 @@ def sweep(
     processes:  how many at once; None: one for each processor. 1 runs in this process.
     resume:     a file that rows are added to as they come; runs that it holds are not run again.
     seed:       of sobol, lhs and normal.
+    client:     a dask.distributed.Client: runs go to its workers, which have Polhode installed; those of
+                a worker that dies go to another.
 
     A run that fails is a row with its "message"; the others have an empty one. Rows are in the order of
-    the points, and their numbers do not depend on the number of processes.
+    the points, and their numbers do not depend on the number of processes or workers.
     """
     import pandas
 
@@ -118,7 +121,7 @@ def sweep(
     if path is not None:
         log = io.open(path, "a", encoding="utf-8")
     try:
-        for i, row in _run_all(tasks, processes):
+        for i, row in _on_workers(tasks, client) if client is not None else _run_all(tasks, processes):
             rows[i] = row
             if log is not None:
                 log.write(json.dumps({"model": identity, "point": points[i], "row": row}) + "\n")
@@ -170,6 +173,18 @@ def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
                 deaths += 1
                 if deaths > 3:
                     raise
+
+
+def _on_workers(tasks: "dict[int, Any]", client: Any) -> Any:
+    """Index and row of each task, as they come from the workers of a Dask cluster."""
+    import importlib
+
+    as_completed: Any = importlib.import_module("distributed").as_completed
+
+    # Not pure: two points that are equal are two runs. The scheduler gives the runs of a lost worker to others.
+    waiting = {client.submit(_one, task, pure=False, retries=3): i for i, task in tasks.items()}
+    for future in as_completed(waiting):
+        yield waiting[future], future.result()
 
 
 class Fit(NamedTuple):

@@ -116,20 +116,25 @@ void Engine::restore(const nb::bytes& bytes) {
   simulation_ = std::make_unique<Simulation>(model(), std::move(state));
 }
 
-void Engine::set_motion(int body, const BodyMotion& motion) {
+void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
+  if (motions.empty()) return;
   const Model& m = model();
+  const std::string where = format("bodies.{}", m.bodies.at(motions.begin()->first).name);
   if (m.analysis.type != "dynamics" || !m.solids.empty() || simulation_->has_contacts())
-    throw InputError(format("bodies.{}", m.bodies.at(body).name),
-                     "cannot be set in a model of statics, with solids or with contacts",
+    throw InputError(where, "cannot be set in a model of statics, with solids or with contacts",
                      "Change the model and start a new simulation");
-  if (m.bodies.at(body).fixed)
-    throw InputError(format("bodies.{}", m.bodies.at(body).name), "is fixed", "Set another body");
+  for (const auto& [body, motion] : motions)
+    if (m.bodies.at(body).fixed)
+      throw InputError(format("bodies.{}", m.bodies[body].name), "is fixed", "Set another body");
   const System& system = simulation_->system();
   State state = system.initial_state();
   int moving = 0;
   for (int i = 0; i < static_cast<int>(m.bodies.size()); ++i)
-    if (!m.bodies[i].fixed)
-      state.set_motion(system.slot(moving++), i == body ? motion : simulation_->body(i));
+    if (!m.bodies[i].fixed) {
+      const auto given = motions.find(i);
+      state.set_motion(system.slot(moving++),
+                       given != motions.end() ? given->second : simulation_->body(i));
+    }
   state.t = simulation_->time();
   Method method = choose_method(system, m.analysis);
   StartOptions options;
@@ -138,8 +143,8 @@ void Engine::set_motion(int body, const BodyMotion& motion) {
   const StartReport report =
       start(system, state, method.ga, m.analysis.step.value_or(0.0), options);
   if (!report.assembled)
-    throw InputError(format("bodies.{}", m.bodies.at(body).name),
-                     "cannot be there: its joints cannot be assembled", "Set it nearer to where it is");
+    throw InputError(where, "cannot be there: its joints cannot be assembled",
+                     "Set it nearer to where it is");
   Stepper stepper(system, std::move(method.engine), method.ga, method.control, *method.kernels);
   stepper.begin(state);
   simulation_ = std::make_unique<Simulation>(m, std::move(state));
@@ -157,6 +162,17 @@ nb::dict body_report(Engine& engine, int body) {
   result["velocity"] = array_of(m.v);
   result["angular_velocity"] = array_of(m.omega());
   result["acceleration"] = array_of(point.acceleration);
+  // Two points off the centre of mass tell the angular acceleration across their arm: of all three
+  // axes, each component twice.
+  const Vec3 omega = m.omega();
+  const Mat3 axes = m.Lambda();
+  Vec3 alpha = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 arm = axes.col(k);
+    const Vec3 a = engine.simulation().point(body, Vec3::Unit(k)).acceleration;
+    alpha += 0.5 * arm.cross(a - point.acceleration - omega.cross(omega.cross(arm)));
+  }
+  result["angular_acceleration"] = array_of(alpha);
   return result;
 }
 
@@ -195,8 +211,9 @@ Vec3 vector(const std::vector<double>& x, const char* what) {
   return {x[0], x[1], x[2]};
 }
 
-void set_body(Engine& engine, int body, const Numbers& position, const Numbers& orientation,
-              const Numbers& velocity, const Numbers& angular_velocity) {
+BodyMotion changed_motion(Engine& engine, int body, const Numbers& position,
+                          const Numbers& orientation, const Numbers& velocity,
+                          const Numbers& angular_velocity) {
   BodyMotion m = engine.simulation().body(body);
   const Vec3 omega = angular_velocity ? vector(*angular_velocity, "angular_velocity") : m.omega();
   if (position) m.r = vector(*position, "position");
@@ -208,7 +225,23 @@ void set_body(Engine& engine, int body, const Numbers& position, const Numbers& 
     m.q = Quat(q[0], q[1], q[2], q[3]).normalized();
   }
   m.W = m.q.conjugate() * omega;
-  engine.set_motion(body, m);
+  return m;
+}
+
+void set_body(Engine& engine, int body, const Numbers& position, const Numbers& orientation,
+              const Numbers& velocity, const Numbers& angular_velocity) {
+  engine.set_motions({{body, changed_motion(engine, body, position, orientation, velocity,
+                                            angular_velocity)}});
+}
+
+/// Several bodies at once: index, position, orientation, velocity, angular velocity of each.
+void set_bodies(Engine& engine,
+                const std::vector<std::tuple<int, std::vector<double>, std::vector<double>,
+                                             std::vector<double>, std::vector<double>>>& motions) {
+  std::map<int, BodyMotion> all;
+  for (const auto& [body, r, q, v, omega] : motions)
+    all.emplace(body, changed_motion(engine, body, r, q, v, omega));
+  engine.set_motions(all);
 }
 
 template <class Specs>
@@ -242,6 +275,13 @@ void bind_engine(nb::module_& m) {
       .def("set_body", &set_body, nb::arg("index"), nb::arg("position").none(),
            nb::arg("orientation").none(), nb::arg("velocity").none(),
            nb::arg("angular_velocity").none())
+      .def("set_bodies", &set_bodies, nb::arg("motions"))
+      .def_prop_ro("fixed",
+                   [](Engine& e) {
+                     std::vector<bool> fixed;
+                     for (const BodySpec& b : e.model().bodies) fixed.push_back(b.fixed);
+                     return fixed;
+                   })
       .def_prop_ro("time", [](Engine& e) { return e.simulation().time(); })
       .def_prop_ro("bodies", [](Engine& e) { return names_of(e.model().bodies); })
       .def_prop_ro("joints", [](Engine& e) { return names_of(e.model().joints); })

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -29,10 +31,10 @@ class Engine {
   [[nodiscard]] nb::bytes state() const;
   void restore(const nb::bytes& bytes);
   [[nodiscard]] Engine copy() const { return {model(), simulation_->state()}; }
-  /// Puts a moving body in another place or motion at the present time. Then joints are assembled
-  /// and velocities projected again, turns counted anew, and the ledger begins anew.
+  /// Puts moving bodies, by index, in other places or motions at the present time. Then joints are
+  /// assembled and velocities projected again, turns counted anew, and the ledger begins anew.
   /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
-  void set_motion(int body, const BodyMotion& motion);
+  void set_motions(const std::map<int, BodyMotion>& motions);
 
  private:
   std::unique_ptr<Simulation> simulation_;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/core/time_sum.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/schema/schema.hpp>
 #include <polhode/io/text/source_tree.hpp>
+#include <polhode/io/read/time_function.hpp>
 
 #include <nanobind/stl/string_view.h>
 
@@ -73,6 +77,24 @@ void set_function(Model& model, const std::string& load, int component, nb::obje
     spec.vector->at(i) = std::make_shared<CalledFunction>(call, i);
 }
 
+/// Adds a constant to what a load depends on: to its drive (component −1) or to a component of its
+/// vector.
+void add_offset(Model& model, const std::string& load, int component, double offset) {
+  LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
+  const auto constant = std::make_shared<ConstantFunction>(offset);
+  const auto raised = [&](const TimeFunctionPtr& f) {
+    return std::make_shared<TimeSum>(TimeVector{f, constant, nullptr}, std::array{1.0, 1.0, 0.0});
+  };
+  if (component < 0 && spec.value)
+    spec.value = raised(spec.value);
+  else if (component >= 0 && component < 3 && spec.vector)
+    spec.vector->at(static_cast<std::size_t>(component)) =
+        raised(spec.vector->at(static_cast<std::size_t>(component)));
+  else
+    throw InputError(format("loads.{}", load), "has no such input",
+                     "Name a component of a force or moment, x, y or z, or the drive of a motor");
+}
+
 }  // namespace
 
 void bind_model(nb::module_& m) {
@@ -90,6 +112,8 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("analysis", [](const Model& model) { return model.analysis.type; })
       .def("set_function", &set_function, nb::arg("load"), nb::arg("component"),
            nb::arg("function"))
+      .def("copy", [](const Model& model) { return Model(model); })
+      .def("add_offset", &add_offset, nb::arg("load"), nb::arg("component"), nb::arg("offset"))
       .def_prop_ro("step", [](const Model& model) { return model.analysis.step; })
       .def_prop_ro("duration", [](const Model& model) { return model.analysis.duration; });
   m.def("compile", &read_model_text, nb::arg("text"), nb::arg("name"), nb::arg("overrides"),

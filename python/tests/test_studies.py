@@ -11,7 +11,7 @@ import pytest
 
 import polhode
 from conftest import make_pendulum
-from polhode import _sweep
+from polhode import _sweep, _sweep_command
 
 
 def oscillator():
@@ -99,3 +99,61 @@ def test_a_fit_finds_stiffness_and_damper_in_noisy_data():
     assert np.std(fit.residuals) == pytest.approx(0.005, rel=0.15)
     with pytest.raises(ValueError, match="values at"):
         polhode.fit(make_pendulum(), {"time": times, "energy.total": [1]}, {"gravity.2": 9})
+
+
+def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setenv("POLHODE_TEST_MARK", str(tmp_path / "mark"))
+    points = {"variables.k": [20, 30, 40, 50, 60]}
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                  host="127.0.0.1") as cluster, distributed.Client(cluster) as client:
+        table = polhode.sweep(oscillator(), points, outputs=die_once, client=client)
+        assert (tmp_path / "mark").exists()  # a worker was killed in the midst of a run
+        address = cluster.scheduler_address
+        file = tmp_path / "model.yaml"
+        oscillator().save(file)
+        command = ["-o", str(tmp_path / "d.csv"), "--dask", address, "--vary", "k=20,40", "--output", "energy.total"]
+        assert _sweep_command.main([str(file), *command]) == 0
+    alone = polhode.sweep(oscillator(), points, outputs=die_once, processes=1)
+    assert table.drop(columns="wall_time_s").equals(alone.drop(columns="wall_time_s"))
+    assert len((tmp_path / "d.csv").read_text().splitlines()) == 3
+
+
+def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path, capsys):
+    import pandas
+
+    file, csv = tmp_path / "model.yaml", tmp_path / "t.csv"
+    oscillator().save(file)
+
+    def command(*words):
+        status = _sweep_command.main([str(file), "-o", str(csv), "--jobs", "1", *words])
+        return status, capsys.readouterr()
+
+    words = ["--vary", "k=20,40", "--vary", "variables.c=0.2..0.4", "-n", "2", "--output", "bodies.b.position"]
+    assert command(*words)[0] == 0
+    table = pandas.read_csv(csv)
+    assert table[["variables.k", "variables.c"]].values.tolist() == [[20, 0.2], [20, 0.4], [40, 0.2], [40, 0.4]]
+    exact = [height(3.0, k, c) for k, c in zip(table["variables.k"], table["variables.c"])]
+    assert table["bodies.b.position.z"].to_numpy() == pytest.approx(exact, abs=2e-3)
+    first = csv.read_text()
+    csv.unlink()
+    assert command(*words)[0] == 0 and csv.read_text() == first  # wall times too: no run was made again
+    status, said = command("--method", "normal", "-n", "4", "--vary", "k=40+-2", "--seed", "3")
+    assert status == 0 and "4 runs" in said.out and pandas.read_csv(csv)["variables.k"].std() > 0.5
+    status, said = command("--vary", "k=40,-1")
+    assert status == 1 and "2 runs, 1 of them failed" in said.out
+
+
+@pytest.mark.parametrize(("words", "message"), [
+    ([], "nothing varies; write --vary"),
+    (["--vary", "k"], "--vary k: write --vary NAME=VALUES"),
+    (["--vary", "k=a,b"], "'a' is no number"),
+    (["--vary", "k=1..2", "--method", "lhs"], "the method lhs takes -n"),
+    (["--vary", "k=1,2", "--method", "lhs", "-n", "2"], "the method lhs takes FROM..TO"),
+    (["--vary", "k=1..2", "--method", "normal", "-n", "2"], "MEAN+-DEVIATION goes with --method normal"),
+    (["--vary", "kk=1,2"], "there is no variable 'kk'"),
+])
+def test_the_command_tells_what_is_wrong(words, message, tmp_path, capsys):
+    oscillator().save(tmp_path / "m.yaml")
+    assert _sweep_command.main([str(tmp_path / "m.yaml"), "-o", str(tmp_path / "t.csv"), *words]) == 2
+    assert message in capsys.readouterr().err

@@ -55,9 +55,21 @@ void check_probe(const ProbeSpec& probe, const SolidPlan& plan, std::vector<Inpu
 }  // namespace
 
 Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path) {
+  const std::vector<std::string> keys = parts_of(path);
+  if (keys.size() > 1)
+    for (const PartSource& part : context.parts) {
+      const SourceNode* things = part.root->find(keys[0]);
+      if (!things || !keys[1].starts_with(part.prefix) ||
+          !things->find(keys[1].substr(part.prefix.size())))
+        continue;
+      std::string own(path);
+      own.erase(keys[0].size() + 1, part.prefix.size());
+      const ReadContext inside{.tree = *part.tree, .diagnostics = context.diagnostics};
+      return place_of_path(inside, *part.root, own);
+    }
   const SourceNode* node = &root;
   Place place = context.tree.place_of(root);
-  for (const std::string& part : parts_of(path)) {
+  for (const std::string& part : keys) {
     if (node->is_map()) {
       const auto key = std::find_if(node->keys.begin(), node->keys.end(),
                                     [&](const auto& k) { return k.name == part; });

@@ -15,6 +15,13 @@
 
 namespace polhode {
 
+/// The file, or the map within one, that a part was read from.
+struct PartSource {
+  std::string prefix;  ///< Of its names in the whole model.
+  const SourceTree* tree = nullptr;
+  const SourceNode* root = nullptr;
+};
+
 /// All that the readers of the parts of one model share.
 struct ReadContext {
   const SourceTree& tree;
@@ -30,6 +37,11 @@ struct ReadContext {
   std::map<std::string, std::optional<int>> cables{};       ///< Index by name, likewise.
   std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
+  std::string source_file{};          ///< The model file, as messages show it.
+  Variables given_variables{};        ///< Of a part: what the whole sets.
+  std::vector<PartSource> parts{};    ///< Parts of parts too.
+  std::vector<std::shared_ptr<const SourceTree>> owned_trees{};  ///< Of the parts' files.
+  std::vector<std::string> files_above{};  ///< The file and those it is a part of, in full.
 
   /// Adds a fault of a value.
   void fault(const SourceNode& node, const std::string& path, std::string what, std::string mend);
@@ -184,7 +196,13 @@ std::optional<FrameMotion> read_motion(ReadContext& context, Section& section,
                                        std::array<bool, 3>& moves);
 std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& node,
                                      const std::string& path);
+/// A number by name: with the dimension of its unit, or of any.
+Quantity read_variable(ReadContext& context, const SourceNode& node, const std::string& path);
 void read_bodies(ReadContext& context, const SourceNode& node);
+/// Parts become bodies, joints and the like: read after the bodies and before what names them.
+void read_parts(ReadContext& context, const SourceNode& node);
+/// Everything of a model that a part gives to a whole. @param path  Of the map, "" for a file.
+void read_things(ReadContext& context, const SourceNode& root, const std::string& path);
 std::vector<ShapeSpec> read_shapes(ReadContext& context, const SourceNode& node,
                                    const std::string& path);
 ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,

@@ -37,6 +37,15 @@ void read_units(ReadContext& context, const SourceNode& node) {
   set("angle", context.units.angle);
 }
 
+Quantity read_variable(ReadContext& context, const SourceNode& node, const std::string& path) {
+  const auto expression = read_expression(context, node, path, false);
+  if (!expression) return {1.0, Certainty::kBare, {}};  // So that its uses give no more faults.
+  Quantity value{(*expression)(0.0), expression->certainty(), expression->dimension()};
+  // A number without a unit means whatever it is used for.
+  if (value.certainty == Certainty::kPure) value.certainty = Certainty::kBare;
+  return value;
+}
+
 void read_variables(ReadContext& context, const SourceNode& node) {
   if (node.kind == SourceNode::Kind::kEmpty) return;
   if (!node.is_map()) {
@@ -62,16 +71,10 @@ void read_variables(ReadContext& context, const SourceNode& node) {
                               "Choose another name.");
       continue;
     }
-    const auto expression = read_expression(context, node.children[k], "variables." + name, false);
-    if (!expression) {
-      context.variables[name] = {
-          1.0, Certainty::kBare, {}};  // So that its uses give no more faults.
-      continue;
-    }
-    Quantity value{(*expression)(0.0), expression->certainty(), expression->dimension()};
-    // A number without a unit means whatever it is used for.
-    if (value.certainty == Certainty::kPure) value.certainty = Certainty::kBare;
-    context.variables[name] = value;
+    const auto given = context.given_variables.find(name);
+    context.variables[name] = given != context.given_variables.end()
+                                  ? given->second
+                                  : read_variable(context, node.children[k], "variables." + name);
   }
 }
 
@@ -96,35 +99,17 @@ void read_root(ReadContext& context, const SourceNode& root) {
                             "A model starts with 'format: 1'.");
     return;
   }
-  Section section(context, root, start, "", model_fields());
+  read_things(context, root, "");
   if (!root.is_map()) return;
   Model& model = context.model;
-  section.integer("format");
-  if (const auto title = section.text("title")) model.title = *title;
-  if (const SourceNode* node = section.find("units")) read_units(context, *node);
-  if (const SourceNode* node = section.find("variables")) read_variables(context, *node);
-  if (const auto gravity = section.vector("gravity")) model.gravity = *gravity;
-  if (const SourceNode* node = named_things(context, section, "bodies"))
-    read_bodies(context, *node);
-  if (const SourceNode* node = named_things(context, section, "materials"))
-    read_materials(context, *node);
-  if (const SourceNode* node = named_things(context, section, "sections"))
-    read_sections(context, *node);
-  if (const SourceNode* node = named_things(context, section, "beams")) read_beams(context, *node);
-  if (const SourceNode* node = named_things(context, section, "cables"))
-    read_cables(context, *node);
-  if (const SourceNode* node = named_things(context, section, "joints"))
-    read_joints(context, *node);
-  if (const SourceNode* node = named_things(context, section, "solids"))
-    read_solids(context, *node);
-  if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);
-  if (const SourceNode* node = section.find("contacts")) read_contacts(context, *node);
-  if (const SourceNode* node = section.find("analysis"))
+  if (const SourceNode* node = root.find("contacts")) read_contacts(context, *node);
+  if (const SourceNode* node = root.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));
-  if (const SourceNode* node = section.find("output"))
+  if (const SourceNode* node = root.find("output"))
     read_output(context, *node, context.tree.place_of(*node));
   if (model.bodies.empty() && model.solids.empty() && context.diagnostics.empty())
-    section.fault("bodies", "the model has no bodies", "Add 'bodies: {name: {...}}'.");
+    context.diagnostics.add(start, "bodies", "the model has no bodies",
+                            "Add 'bodies: {name: {...}}'.");
   check_solids(context, root);
   check_contacts(context, root);
   check_model(context, root);
@@ -143,6 +128,37 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 }
 
 }  // namespace
+
+void read_things(ReadContext& context, const SourceNode& root, const std::string& path) {
+  Section section(
+      context, root,
+      path.empty() ? Place{context.tree.source().name(), 1, 1} : context.tree.place_of(root), path,
+      model_fields());
+  if (!root.is_map()) return;
+  Model& model = context.model;
+  section.integer("format");
+  if (const auto title = section.text("title")) model.title = *title;
+  if (const SourceNode* node = section.find("units")) read_units(context, *node);
+  if (const SourceNode* node = section.find("variables")) read_variables(context, *node);
+  if (const auto gravity = section.vector("gravity")) model.gravity = *gravity;
+  if (const SourceNode* node = named_things(context, section, "bodies"))
+    read_bodies(context, *node);
+  if (const SourceNode* node = named_things(context, section, "parts")) {
+    const std::size_t before = context.diagnostics.size();
+    read_parts(context, *node);
+    if (context.diagnostics.size() != before) return;  // Names of theirs would be unknown.
+  }
+  const auto read = [&](const char* name, void (*reader)(ReadContext&, const SourceNode&)) {
+    if (const SourceNode* node = named_things(context, section, name)) reader(context, *node);
+  };
+  read("materials", read_materials);
+  read("sections", read_sections);
+  read("beams", read_beams);
+  read("cables", read_cables);
+  read("joints", read_joints);
+  read("solids", read_solids);
+  read("loads", read_loads);
+}
 
 void check_model(ReadContext& context, const SourceNode& root) {
   const Model& model = context.model;
@@ -200,6 +216,8 @@ Model read_model_text(std::string text, const std::string& filename, const Overr
   ReadContext context{.tree = tree, .diagnostics = diagnostics};
   context.folder = std::filesystem::path(filename).parent_path().string();
   context.model.source_file = filename;
+  context.source_file = filename;
+  context.files_above = {std::filesystem::weakly_canonical(filename).string()};
   read_root(context, tree.root());
   diagnostics.throw_if_any();
   return std::move(context.model);

@@ -61,6 +61,10 @@ const FieldTable& model_fields() {
            .kind = kNamed,
            .meaning = "Rigid bodies by name. 'ground' exists already.",
            .table = "body"},
+          {.name = "parts",
+           .kind = kNamed,
+           .meaning = "Models within this one by name: sub-assemblies.",
+           .table = "part"},
           {.name = "joints", .kind = kNamed, .meaning = "Joints by name.", .table = "joint"},
           {.name = "loads", .kind = kNamed, .meaning = "Loads by name.", .table = "load"},
           {.name = "materials",
@@ -424,13 +428,21 @@ const FieldTable& law_table_fields() {
 }
 
 std::vector<const FieldTable*> all_field_tables() {
-  std::vector<const FieldTable*> tables = {&model_fields(),        &units_fields(),
-                                           &body_fields(),         &inertia_fields(),
-                                           &orientation_fields(),  &euler_fields(),
-                                           &body_motion_fields(),  &motion_fields(),
-                                           &moving_euler_fields(), &moving_quaternion_fields(),
-                                           &shape_fields(),        &mesh_fields(),
-                                           &hull_fields(),         &height_field_fields(),
+  std::vector<const FieldTable*> tables = {&model_fields(),
+                                           &part_fields(),
+                                           &units_fields(),
+                                           &body_fields(),
+                                           &inertia_fields(),
+                                           &orientation_fields(),
+                                           &euler_fields(),
+                                           &body_motion_fields(),
+                                           &motion_fields(),
+                                           &moving_euler_fields(),
+                                           &moving_quaternion_fields(),
+                                           &shape_fields(),
+                                           &mesh_fields(),
+                                           &hull_fields(),
+                                           &height_field_fields(),
                                            &contact_side_fields()};
   for (const KindTable& kind : joint_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);

@@ -106,6 +106,7 @@ struct KindTable {
 std::string sentence(std::string text);
 
 const FieldTable& model_fields();
+const FieldTable& part_fields();
 const FieldTable& units_fields();
 const FieldTable& body_fields();
 const FieldTable& inertia_fields();

@@ -190,6 +190,7 @@ json field_schema(const FieldTable& table, const Field& field) {
   }
   if (field.table == "mesh")
     return {{"anyOf", json::array({{{"type", "string"}}, reference("mesh")})}};
+  if (field.table == model_fields().title) return {{"$ref", "#"}};
   return reference(definition_name(field.table));
 }
 

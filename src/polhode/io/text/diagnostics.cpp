@@ -137,15 +137,38 @@ void Diagnostics::add(const Place& place, std::string path, std::string what, st
                       int length) {
   if (!mend.empty() && mend.back() != '.') mend += '.';
   Diagnostic d{place, std::move(path), std::move(what), std::move(mend), ""};
-  if (place.line > 0) d.excerpt = source_->excerpt(place.line, place.column, length);
+  const std::size_t file = file_number(place.file);
+  const SourceText& source = file == 0 || file > of_parts_.size() ? *source_ : *of_parts_[file - 1];
+  if (place.line > 0) d.excerpt = source.excerpt(place.line, place.column, length);
   list_.push_back(std::move(d));
+}
+
+std::size_t Diagnostics::file_number(const std::string& name) const {
+  if (name == source_->name()) return 0;
+  std::size_t k = 0;
+  while (k < of_parts_.size() && of_parts_[k]->name() != name) ++k;
+  return k + 1;
+}
+
+void Diagnostics::take(const std::vector<Diagnostic>& faults) {
+  list_.insert(list_.end(), faults.begin(), faults.end());
 }
 
 void Diagnostics::throw_if_any() {
   if (list_.empty()) return;
-  std::stable_sort(list_.begin(), list_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  const auto file = [&](const Diagnostic& d) {
+    return d.place.line == 0 ? 0 : file_number(d.place.file);
+  };
+  std::stable_sort(list_.begin(), list_.end(), [&](const Diagnostic& a, const Diagnostic& b) {
+    return std::tuple(file(a), a.place.line, a.place.column) <
+           std::tuple(file(b), b.place.line, b.place.column);
   });
+  // A file that is a part twice has its faults once.
+  const auto same = [](const Diagnostic& a, const Diagnostic& b) {
+    return a.place.file == b.place.file && a.place.line == b.place.line &&
+           a.place.column == b.place.column && a.path == b.path && a.what == b.what;
+  };
+  list_.erase(std::unique(list_.begin(), list_.end(), same), list_.end());
   throw ModelErrors(std::move(list_));
 }
 

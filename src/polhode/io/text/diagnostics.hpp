@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -58,22 +59,31 @@ class SourceText {
   std::vector<std::size_t> line_starts_;
 };
 
-/// Gathers the faults of one file.
+/// Gathers the faults of one file and of its parts.
 class Diagnostics {
  public:
   explicit Diagnostics(const SourceText& source) : source_(&source) {}
 
+  /// Another file, of a part, to quote from.
+  void know(std::shared_ptr<const SourceText> source) { of_parts_.push_back(std::move(source)); }
+
   /// @param length  Bytes to underline; 0: as far as the value reaches on its line.
   void add(const Place& place, std::string path, std::string what, std::string mend,
            int length = 0);
+  /// Adds faults as they are.
+  void take(const std::vector<Diagnostic>& faults);
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::size_t size() const { return list_.size(); }
-  /// @throws ModelErrors if there is a fault, in the order of the file.
+  /// @throws ModelErrors if there is a fault, in the order of the file, those of parts behind.
   void throw_if_any();
 
  private:
+  /// Number of a file: 0 for the model file, then those of parts.
+  [[nodiscard]] std::size_t file_number(const std::string& name) const;
+
   const SourceText* source_;
   std::vector<Diagnostic> list_;
+  std::vector<std::shared_ptr<const SourceText>> of_parts_;
 };
 
 }  // namespace polhode

@@ -58,6 +58,7 @@ class SourceTree {
   [[nodiscard]] const SourceNode& root() const { return root_; }
   [[nodiscard]] SourceNode& root() { return root_; }
   [[nodiscard]] const SourceText& source() const { return *source_; }
+  [[nodiscard]] std::shared_ptr<const SourceText> shared_source() const { return source_; }
 
   /// Replaces or adds a value as `--set path=value` does.
   /// @param path   Name of a variable, or a path of keys and list indices joined by dots.

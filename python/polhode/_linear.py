@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Linearisation about a state, and what drives a given motion."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Callable, NamedTuple, Union
+
+import numpy as np
+
+from . import _native, rotations
+from ._model import Model, Overrides, load
+from ._simulation import Simulation
+
+#: Change of a coordinate in the differences of the tangent, and of time along the motion, scaled [-].
+_CHANGE, _ALONG = 2e-3, 5e-3
+#: Points and weights of the first derivative, exact for polynomials of degree 4.
+_FIRST = ((1, 2 / 3), (-1, -2 / 3), (2, -1 / 12), (-2, 1 / 12))
+#: The same of the second derivative, degree 5.
+_SECOND = ((1, 4 / 3), (-1, 4 / 3), (2, -1 / 12), (-2, -1 / 12), (0, -5 / 2))
+
+
+class StateSpace(NamedTuple):
+    """x' = A x + B u, y = C x + D u for small changes from a state.
+
+    states: names of x, (2 f,): f joint coordinates [m or rad] or positions [m], then their rates.
+    inputs, outputs: names of u and y, one for each component.
+
+    control.ss(s.A, s.B, s.C, s.D) and scipy.signal.StateSpace take the matrices as they are.
+    """
+
+    A: Any
+    B: Any
+    C: Any
+    D: Any
+    states: "list[str]"
+    inputs: "list[str]"
+    outputs: "list[str]"
+
+
+def _known(name: str, names: "list[str]", what: str) -> int:
+    if name not in names:
+        near = _native.closest(name, names)
+        raise KeyError(f"unknown {what} '{name}'." + (f" Did you mean '{near}'?" if near else ""))
+    return names.index(name)
+
+
+def _quantity(engine: Any, name: str) -> "tuple[Callable[[Any], Any], list[str]]":
+    """What reads an output off an engine, and the names of its components."""
+    parts = name.split(".")
+    if len(parts) < 3 or parts[0] not in ("bodies", "joints"):
+        raise KeyError(f"'{name}' is no output; write joints.A.coordinates, joints.A.force or bodies.b.velocity")
+    is_body = parts[0] == "bodies"
+    component = parts.pop() if len(parts) > 3 else None
+    index = _known(".".join(parts[1:-1]), engine.bodies if is_body else engine.joints, parts[0][:-1].replace("ie", "y"))
+    key = parts[-1]
+
+    def all_of(e: Any) -> Any:
+        return np.atleast_1d(np.asarray((e.body(index) if is_body else e.joint(index))[key], dtype=float))
+
+    found = engine.body(index) if is_body else engine.joint(index)
+    if key not in found:
+        raise KeyError(f"'{name}': there is no '{key}'; there are {', '.join(found)}")
+    size = all_of(engine).size
+    letters = list({3: "xyz", 4: "wxyz"}.get(size, "0123456789")[:size])
+    letters = [str(i) for i in range(size)] if key in ("coordinates", "rates") else letters
+    stem = ".".join(parts)
+    if component is None:
+        return all_of, [f"{stem}.{c}" for c in letters]
+    k = _known(component, letters, "component")
+    return lambda e: all_of(e)[k : k + 1], [name]
+
+
+def _quaternion_product(p: Any, q: Any) -> Any:
+    w, v = p[0], np.asarray(p[1:])
+    return np.concatenate([[w * q[0] - v @ q[1:]], w * q[1:] + q[0] * v + np.cross(v, q[1:])])
+
+
+class _Chart:
+    """Motions near that of an engine."""
+
+    def __init__(self, engine: Any) -> None:
+        self.engine = engine
+        self.moving = [i for i, fixed in enumerate(engine.fixed) if not fixed]
+        self.now = [engine.body(i) for i in self.moving]
+
+    def put(self, displacements: Any, velocities: Any) -> Any:
+        """An engine of the same model with all bodies displaced and faster: both (6 n,), world axes."""
+        engine = self.engine.copy()
+        d, v = displacements.reshape(-1, 6), velocities.reshape(-1, 6)
+        turns = rotations.quaternion_from_rotation_vector(d[:, 3:])
+        spins = rotations.matrix_from_rotation_vector(d[:, 3:])
+        engine.set_bodies([
+            (i, (m["position"] + d[k, :3]).tolist(), _quaternion_product(turns[k], m["orientation"]).tolist(),
+             (m["velocity"] + v[k, :3]).tolist(), (spins[k] @ m["angular_velocity"] + v[k, 3:]).tolist())
+            for k, (i, m) in enumerate(zip(self.moving, self.now))
+        ])
+        return engine
+
+    def free_directions(self) -> Any:
+        """Displacements of all moving bodies that the joints allow, orthonormal columns (6 n, f)."""
+        M, _, _, G = (np.asarray(a) for a in _native.matrices(self.engine))
+        if len(M) != 6 * len(self.moving):
+            raise ValueError("a model with solids cannot be linearised here; use polhode.matrices")
+        kept = np.flatnonzero(np.diag(M) > 0)  # a point mass does not turn
+        free = np.eye(len(kept))
+        if len(G):
+            _, sizes, rows = np.linalg.svd(G[:, kept])
+            free = rows[int(np.sum(sizes > 1e-9 * sizes.max())) :].T
+        T = np.zeros((len(M), free.shape[1]))
+        T[kept] = free
+        return T
+
+
+def _second_rates(engine: Any, coordinates: "Callable[[Any], Any]") -> Any:
+    """Accelerations of coordinates: second differences along the motion of constant acceleration."""
+    chart = _Chart(engine)
+    v = np.concatenate([[*m["velocity"], *m["angular_velocity"]] for m in chart.now])
+    a = np.concatenate([[*m["acceleration"], *m["angular_acceleration"]] for m in chart.now])
+    h = _ALONG / max(1.0, np.abs(v).max(initial=0.0), np.sqrt(np.abs(a).max(initial=0.0)))
+    total = 0.0
+    for at, weight in _SECOND:
+        s = at * h
+        total = total + weight / h**2 * coordinates(chart.put(s * v + 0.5 * s * s * a, np.zeros_like(v)))
+    return total
+
+
+def _joined(readers: "Sequence[Callable[[Any], Any]]") -> "Callable[[Any], Any]":
+    def read(engine: Any) -> Any:
+        return np.concatenate([np.zeros(0), *[r(engine) for r in readers]])
+
+    return read
+
+
+def _choose(slopes: Any, preferred: int, f: int) -> "list[int]":
+    """Rows of slopes (k, f) that are as independent as can be, the first `preferred` before the rest."""
+    left = slopes.copy()
+    chosen: "list[int]" = []
+    for rows in (range(preferred), range(preferred, len(slopes))):
+        while rows and len(chosen) < f:
+            sizes = np.linalg.norm(left[list(rows)], axis=1)
+            best = rows[int(np.argmax(sizes))]
+            if sizes.max() < 1e-5 * max(1e-300, np.abs(slopes).max()):
+                break
+            chosen.append(best)
+            direction = left[best] / np.linalg.norm(left[best])
+            left = left - np.outer(left @ direction, direction)
+    return sorted(chosen)
+
+
+def _input(engine: Any, name: str) -> "tuple[str, int]":
+    """Load and component of "loads.push.force.x", "push.x" or "motor"."""
+    parts = name.split(".")
+    parts = parts[1:] if parts[0] == "loads" else parts
+    letter = "xyz".find(parts[-1]) if len(parts) > 1 else -1
+    _known(parts[0], engine.loads, "load")
+    return parts[0], letter
+
+
+def linearize(
+    simulation: "Union[Simulation, Model, str, os.PathLike[str]]",
+    inputs: "Sequence[str]" = (),
+    outputs: "Sequence[str]" = (),
+    *,
+    overrides: Overrides = None,
+) -> StateSpace:
+    """A, B, C, D of small motions about the present state of a simulation, or the start of a model.
+
+    inputs:  components of forces and moments, and drives of motors that are forces or moments:
+             "push.x", "loads.motor". What they give at the state is the point of u = 0.
+    outputs: "joints.A.coordinates", "joints.A.force.z", "bodies.cart.velocity".
+
+    The state may move: coordinates that nothing depends on may then go on, as the angle of a rotor does.
+    States are coordinates of joints as far as they tell where everything is, then positions of bodies.
+    Loads are taken at the time of the state. Derivatives are differences of fourth order; entries are
+    right to about 1e-7 of the largest. Raises KeyError for unknown names, ValueError if coordinates and
+    positions do not tell where everything is, as with a free body that turns, or for solids.
+    """
+    if not isinstance(simulation, Simulation):
+        simulation = Simulation(simulation, overrides)
+    engine = simulation._engine
+    chart = _Chart(engine)
+    T = chart.free_directions()
+    f = T.shape[1]
+    still = np.zeros(len(T))
+
+    names: "list[str]" = []
+    speeds: "list[str]" = []
+    for joint in engine.joints:
+        count = len(engine.joint(engine.joints.index(joint))["coordinates"])
+        names += [f"joints.{joint}.coordinates.{k}" for k in range(count)]
+        speeds += [f"joints.{joint}.rates.{k}" for k in range(count)]
+    of_joints = len(names)
+    for i in chart.moving:
+        names += [f"bodies.{engine.bodies[i]}.position.{c}" for c in "xyz"]
+        speeds += [f"bodies.{engine.bodies[i]}.velocity.{c}" for c in "xyz"]
+
+    def slope(read: "Callable[[Any], Any]", displaced: Any, faster: Any) -> Any:
+        return sum(w / _CHANGE * read(chart.put(s * _CHANGE * displaced, s * _CHANGE * faster)) for s, w in _FIRST)
+
+    where = _joined([_quantity(engine, name)[0] for name in names])
+    slopes = np.array([slope(where, T[:, k], still) for k in range(f)]).T.reshape(len(names), f)
+    chosen = _choose(slopes, of_joints, f)
+    if len(chosen) < f:
+        raise ValueError(f"{f - len(chosen)} of {f} freedoms are seen by no coordinate of a joint and no position")
+    position = _joined([_quantity(engine, names[k])[0] for k in chosen])
+    speed = _joined([_quantity(engine, speeds[k])[0] for k in chosen])
+    found = [_quantity(engine, name) for name in outputs]
+    seen = _joined([read for read, _ in found])
+
+    def everything(e: Any) -> Any:
+        return np.concatenate([position(e), speed(e), _second_rates(e, position), seen(e)])
+
+    columns = [slope(everything, T[:, k], still) for k in range(f)]
+    columns += [slope(everything, still, T[:, k]) for k in range(f)]
+    J = np.array(columns).T
+    effects = []
+    for name in inputs:
+        load_name, component = _input(engine, name)
+        ends = []
+        for sign in (1.0, -1.0):
+            changed = simulation._compiled.copy()
+            changed.add_offset(load_name, component, sign)
+            other = _native.Engine(changed)
+            other.restore(simulation.state)
+            ends.append(everything(other))
+        effects.append(0.5 * (ends[0] - ends[1]))
+    U = np.array(effects).T.reshape(len(J), len(inputs))
+    to_states = np.linalg.inv(J[: 2 * f])
+    A, B = np.zeros((2 * f, 2 * f)), np.zeros((2 * f, len(inputs)))
+    A[:f, f:] = np.eye(f)
+    A[f:] = J[2 * f : 3 * f] @ to_states
+    B[f:] = U[2 * f : 3 * f]
+    states = [names[k] for k in chosen] + [speeds[k] for k in chosen]
+    return StateSpace(A, B, J[3 * f :] @ to_states, U[3 * f :], states, list(inputs),
+                      [n for _, components in found for n in components])
+
+
+def inverse_dynamics(
+    model: "Union[Model, str, os.PathLike[str]]",
+    time: Any,
+    motion: "Mapping[str, Any]",
+    *,
+    overrides: Overrides = None,
+) -> "dict[str, Any]":
+    """What drives joints along a given motion.
+
+    time:   (n,) from 0 on [s]; the model's own duration and outputs do not count.
+    motion: by joint, (n,) angles [rad] of joints that turn about one axis, or displacements [m] of
+            those that slide: joined by cubics, so they are to be smooth and to begin where, and as
+            fast as, the model does.
+
+    Returns by joint the moments [N m] or forces [N] on its second body (n, 3), world axes. Joints
+    that are not named are free. Raises ModelError if a joint cannot be driven so.
+    """
+    from scipy.interpolate import CubicSpline
+
+    from ._run import run
+
+    whole = (model if isinstance(model, Model) else load(model)).copy()
+    times = np.asarray(time, dtype=float)
+    for joint, values in motion.items():
+        slides = joint in whole.joints and whole.joints[joint].type == "prismatic"
+        along = CubicSpline(times, np.asarray(values, dtype=float))
+        drive = {"displacement" if slides else "angle": lambda t, along=along: float(along(t))}
+        whole.add_load(f"drives-{joint}", "linear_motor" if slides else "rotary_motor", joint=joint, **drive)
+    whole.analysis.duration = f"{float(times[-1])!r} s"
+    whole.output.every = None
+    found = run(whole, overrides=overrides, progress=False)
+    result = {}
+    for joint in motion:
+        report = found.loads[f"drives-{joint}"]
+        vector = report.force if "force" in dir(report) else report.moment
+        result[joint] = CubicSpline(found.time, np.asarray(vector))(times)
+    return result

