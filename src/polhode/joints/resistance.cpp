@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <polhode/contact_laws/bristle.hpp>
 #include <polhode/contact_laws/stop_force.hpp>
@@ -400,11 +401,11 @@ void Resistance::impacts(const View& v, std::vector<Impact>& list) const {
   for_limits([&](const JointLimits& limits, bool slides, int at) {
     const Coordinate& c = m.of[slides ? m.slide : m.turn];
     const Stop stop = stop_of(v, limits, slides, c, at);
-    if (!stop.jumps()) return;
+    if (!stop.jumps() && !stop.carries()) return;
     Impact impact;
     impact.on_a = stop.sign() * c.by_a;
     impact.on_b = stop.sign() * c.by_b;
-    impact.wanted = stop.exit_rate();
+    impact.wanted = stop.jumps() ? stop.exit_rate() : std::numeric_limits<double>::quiet_NaN();
     impact.given = v.step.context.dt * stop_force(stop, v.step).value;
     list.push_back(impact);
   });

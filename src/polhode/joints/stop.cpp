@@ -105,6 +105,11 @@ bool Stop::pressed() const {
   return (force - before) * step_.dt > limits_.inertia * slow;
 }
 
+bool Stop::carries() const {
+  const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
+  return lasts && touched() && !jumps() && limits_.restitution < 1.0 && step_.dt > 0.0;
+}
+
 bool Stop::jumps() const {
   return pressed() || (limits_.restitution < 1.0 && turns() &&
                        (phase_ == ContactPhase::compression || phase_ == ContactPhase::landing));
@@ -158,7 +163,7 @@ void Stop::remember(double force, double* memory) const {
   const double change = step_.dt > 0.0 ? (step_.rate_n1 - step_.rate_n) / step_.dt : 0.0;
   if (!touched())
     memory[kAcceleration] = change;
-  else if (lasts && limits_.inertia > 0.0)
+  else if (lasts && limits_.inertia > 0.0 && !pressed())  // an impact elsewhere is no acceleration
     memory[kAcceleration] = change - sign_ * force / limits_.inertia;
   const contact::NormalLaw law = law_after();
   memory[kPhase] = static_cast<double>(phase_after());

@@ -36,6 +36,8 @@ class Stop {
   [[nodiscard]] bool touched() const;
   /// The rate apart at t_{n+1} is to change.
   [[nodiscard]] bool jumps() const;
+  /// Lasting contact that carries on what impacts elsewhere press on it. @eq{impact-carried}
+  [[nodiscard]] bool carries() const;
   /// Rate apart after the step, an impact or a landing being at its turn.
   [[nodiscard]] double exit_rate() const;
   /// The law from the end of the step on.

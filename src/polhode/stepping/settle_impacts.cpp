@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -71,6 +72,11 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
 Work SettleImpacts::find(State& state, MovingContacts& contacts) {
   contacts_ = &contacts;
   return contacts.impacts(state, rows_);
+}
+
+bool SettleImpacts::any() const {
+  return std::any_of(rows_.begin(), rows_.end(),
+                     [](const PairImpact& row) { return !std::isnan(row.impact.wanted); });
 }
 
 std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
@@ -154,6 +160,8 @@ void SettleImpacts::settle(State& state) {
   if (contacts_)
     for (int body = 0; body < system_->body_count(); ++body)
       before.push_back(velocity(state, body));
+  for (PairImpact& row : rows_)
+    if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
   if (!contacts_) return;
   for (int round = 0; round < kMostCarried; ++round) {

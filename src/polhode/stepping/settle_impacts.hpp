@@ -23,7 +23,7 @@ class SettleImpacts {
   /// Adds those of contacts, the state having moved to t_{n+1}.
   /// @returns the change of what contacts store, and what they dissipated by it.
   Work find(State& state, MovingContacts& contacts);
-  [[nodiscard]] bool any() const { return !rows_.empty(); }
+  [[nodiscard]] bool any() const;
   /// Changes the velocities of the state, which has moved to t_{n+1}.
   void settle(State& state);
 

@@ -70,8 +70,9 @@ struct Work {
 /// A relative velocity J v of an impact at the end of a step, where velocities may jump.
 /// @eq{turn-law} @eq{impact-friction}
 struct Impact {
-  Vec6 on_a, on_b;         ///< J, by (v, ω) of a and b, world.
-  double wanted = 0.0;     ///< J v afterwards.
+  Vec6 on_a, on_b;  ///< J, by (v, ω) of a and b, world.
+  /// J v afterwards. NaN: as it is, of lasting contact that is no impact but carries others on.
+  double wanted = 0.0;
   double given = 0.0;      ///< Normal impulse of the step; no more than this is taken back [N s].
   double mu = 0.0;         ///< Coefficient of friction, along `along` if it depends on direction.
   double mu_across = 0.0;  ///< Across `along` [-].
