@@ -173,7 +173,7 @@ def main():
     options = parser.parse_args()
     shutil.rmtree(options.target / "extra", ignore_errors=True)
     site = Site(options.target)
-    live = {p.stem for p in options.live.glob("*.html")} if options.live else set()
+    live = {p.stem for p in options.live.glob("*.html")} - {"index"} if options.live else set()
     for place in pages():
         if place not in ("docs/README.md", "examples/README.md"):
             site.add(place)
