@@ -29,41 +29,49 @@ class ServedScene {
       if (!error_.empty()) return {422, "text/plain; charset=utf-8", error_};
       return {200, "application/json", scene_.manifest};
     }
-    const std::string prefix = "/chunk/";
-    if (path.rfind(prefix, 0) == 0) {
+    if (path == "/scene-1.json" && !request_.compared.empty())
+      return {200, "application/json", compared_.manifest};
+    for (const auto& [prefix, scene] :
+         {std::pair<std::string, const SceneData*>{"/chunk/", &scene_},
+          {"/chunk-1/", &compared_}}) {
+      if (path.rfind(prefix, 0) != 0) continue;
       std::size_t index = 0;
       const char* begin = path.data() + prefix.size();
       const char* end = path.data() + path.size();
       const auto [stop, fault] = std::from_chars(begin, end, index);
-      if (fault == std::errc() && stop == end && index < scene_.chunks.size())
-        return {200, "application/octet-stream", scene_.chunks[index]};
+      if (fault == std::errc() && stop == end && index < scene->chunks.size())
+        return {200, "application/octet-stream", scene->chunks[index]};
     }
     return {404, "text/plain", "There is no such page.\n"};
   }
   [[nodiscard]] const std::string& error() const { return error_; }
 
  private:
-  /// Changes when the file is saved.
+  /// Changes when a file is saved.
   [[nodiscard]] std::string stamp() const {
-    std::error_code gone;
-    const fs::path file = is_results(request_.input.file)
-                              ? fs::path(results_path(request_.input.file))
-                              : fs::path(request_.input.file);
-    const auto when = fs::last_write_time(file, gone);
-    return gone ? "gone" : format("{}", when.time_since_epoch().count());
+    std::string text;
+    for (const std::string& file : {request_.input.file, request_.compared}) {
+      if (file.empty()) continue;
+      std::error_code gone;
+      const auto when = fs::last_write_time(is_results(file) ? results_path(file) : file, gone);
+      if (gone) return "gone";
+      text += format("{} ", when.time_since_epoch().count());
+    }
+    return text;
   }
   void load() {
     stamp_ = stamp();
     error_.clear();
     try {
       scene_ = scene_of(request_);
+      if (!request_.compared.empty()) compared_ = compared_scene_of(request_);
     } catch (const std::exception& error) {
       error_ = error.what();
     }
   }
 
   ViewRequest request_;
-  SceneData scene_;
+  SceneData scene_, compared_;
   std::string stamp_, error_;
 };
 

@@ -7,12 +7,15 @@
 
 #include <spawn.h>
 
+#include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/results/recorder.hpp>
 #include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/newton/rank_report.hpp>
+#include <polhode/view/shared_player.hpp>
+#include <polhode/view/zip_archive.hpp>
 
 #include "command.hpp"
 #include "run_report.hpp"
@@ -89,6 +92,9 @@ std::string results_path(const std::string& path) {
 SceneData scene_of(const ViewRequest& request) {
   SceneOptions options;
   options.max_frames = request.frames;
+  options.name = request.input.file;
+  options.compared = request.compared;
+  if (!request.compared.empty()) options.max_bytes /= 2;
   if (!is_results(request.input.file)) return scene_of_model(request, options);
   const std::string path = results_path(request.input.file);
   const ResultsReader results(path);
@@ -102,9 +108,18 @@ SceneData scene_of(const ViewRequest& request) {
   return make_scene(results, model ? &*model : nullptr, options);
 }
 
+SceneData compared_scene_of(const ViewRequest& request) {
+  ViewRequest other = request;
+  std::swap(other.input.file, other.compared);
+  other.input.overrides.clear();
+  return scene_of(other);
+}
+
 void write_view(const ViewRequest& request, const std::string& file, bool quiet) {
   const SceneData scene = scene_of(request);
-  const std::string page = scene_page(viewer_text(), scene);
+  std::optional<SceneData> compared;
+  if (!request.compared.empty()) compared = compared_scene_of(request);
+  const std::string page = scene_page(viewer_text(), scene, compared ? &*compared : nullptr);
   write_file_atomically(file, page, false);
   if (quiet) return;
   const std::string part =
@@ -112,6 +127,32 @@ void write_view(const ViewRequest& request, const std::string& file, bool quiet)
   say(format("{}: {}{}, {:.1f} MB. Open it with a browser; it needs no network.", file,
              counted(scene.frames, "frame", "frames"), part,
              static_cast<double>(page.size()) / 1e6));
+}
+
+void write_view_zip(const ViewRequest& request, const std::vector<std::string>& inputs,
+                    const std::string& file, bool quiet) {
+  std::vector<SharedRecording> recordings;
+  for (const std::string& input : inputs) {
+    ViewRequest one = request;
+    one.input.file = input;
+    const SceneData scene = scene_of(one);
+    fs::path name = fs::path(input).lexically_normal();
+    if (!name.has_filename() || name.filename() == results::kFileName) name = name.parent_path();
+    const std::string stem = name.filename().stem().string();
+    for (const SharedRecording& other : recordings)
+      if (other.name == stem)
+        throw InputError("polhode view", format("two recordings are called '{}'", stem),
+                         "Rename one of the folders");
+    recordings.push_back({stem,
+                          format("{}, {}", scene.title, counted(scene.frames, "frame", "frames")),
+                          scene_page(viewer_text(), scene)});
+  }
+  const std::string bytes = zip_archive(shared_pages(recordings));
+  write_file_atomically(file, bytes, false);
+  if (!quiet)
+    say(format("{}: {}, {:.1f} MB. Unpack it and open index.html; it needs no network.", file,
+               counted(recordings.size(), "recording", "recordings"),
+               static_cast<double>(bytes.size()) / 1e6));
 }
 
 bool open_browser(const std::string& address) {

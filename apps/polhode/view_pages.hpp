@@ -15,6 +15,7 @@ const char* viewer_text();
 /// Input of `polhode view`: a results file, a folder of results, or a model.
 struct ViewRequest {
   ModelArguments input;
+  std::string compared;    ///< A second one, shown as a ghost; empty: none.
   std::size_t frames = 0;  ///< At most; 0: what fits into SceneOptions::max_bytes.
 };
 
@@ -25,6 +26,13 @@ struct ViewRequest {
 /// Scene of results, or of a model at its assembled start with its mobility and redundant joints.
 /// @throws FileError, ModelErrors, InputError
 [[nodiscard]] SceneData scene_of(const ViewRequest& request);
+/// Scene of what the request compares with. @throws FileError, ModelErrors, InputError
+[[nodiscard]] SceneData compared_scene_of(const ViewRequest& request);
+
+/// Writes an archive of the pages of several results, which share one player, and says so unless
+/// `quiet`. @throws FileError, InputError if two have the same name
+void write_view_zip(const ViewRequest& request, const std::vector<std::string>& inputs,
+                    const std::string& file, bool quiet);
 
 /// Writes the page of results into one file, and says so unless `quiet`. @throws FileError
 void write_view(const ViewRequest& request, const std::string& file, bool quiet);

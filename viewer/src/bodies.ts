@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, InstancedMesh, Matrix4, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion,
+  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion,
   Vector3,
 } from "three";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
+import { discsFor } from "./balls";
 import type { Four, Scene, Triple } from "./data";
+import { software, surface, type Surface } from "./materials";
 import type { Poses } from "./poses";
 
 export type Showing = "shown" | "ghost" | "hidden";
@@ -18,7 +20,10 @@ export const quaternion = (q: Four | undefined): Quaternion => (q ? new Quaterni
 export const vector = (v: Triple | undefined): Vector3 => (v ? new Vector3(...v) : new Vector3());
 
 interface Part { body: number; local: Matrix4 }
-interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh }
+interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh; discs: InstancedMesh | null }
+
+/** Layer of what rays meet and nobody sees. */
+export const kUnseen = 1;
 
 const kNothing = new Matrix4().makeScale(0, 0, 0);
 
@@ -30,6 +35,8 @@ export class Bodies {
   private readonly planes: { body: number; local: Matrix4; mesh: Mesh }[] = [];
   chosen = -1;
   plain = false;
+  /** One colour for all, of a recording that is compared. */
+  tint: Color | null = null;
 
   private constructor(private readonly scene: Scene, private readonly poses: Poses) {
     this.showing = scene.manifest.bodies.map(() => "shown");
@@ -44,6 +51,7 @@ export class Bodies {
   colour(body: number): Color {
     const entry = this.scene.manifest.bodies[body];
     if (body === this.chosen) return kChosen;
+    if (this.tint) return this.tint;
     return new Color(entry.fixed ? kFixed : kPalette[body % kPalette.length]);
   }
 
@@ -55,7 +63,7 @@ export class Bodies {
         const local = new Matrix4().compose(vector(part.p), quaternion(part.q), new Vector3(1, 1, 1));
         if (part.plane) {
           const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), vector(part.plane).normalize());
-          const mesh = new Mesh(new PlaneGeometry(1, 1), new MeshStandardMaterial({ color: kFixed, transparent: true, opacity: 0.28, side: DoubleSide,
+          const mesh = new Mesh(new PlaneGeometry(1, 1), new (software ? MeshBasicMaterial : MeshStandardMaterial)({ color: kFixed, transparent: true, opacity: 0.28, side: DoubleSide,
             depthWrite: false }));
           mesh.matrixAutoUpdate = false;
           mesh.receiveShadow = true;
@@ -76,7 +84,7 @@ export class Bodies {
       if (smooth) geometry.computeVertexNormals();
       geometry.computeBoundingSphere();
       const make = (ghost: boolean): InstancedMesh => {
-        const material = new MeshStandardMaterial({ roughness: 0.62, metalness: 0.05, side: DoubleSide,
+        const material = surface({ roughness: 0.62, metalness: 0.05, side: FrontSide,
           ...(ghost ? { transparent: true, opacity: 0.16, depthWrite: false } : {}) });
         const mesh = new InstancedMesh(geometry, material, parts[k].length);
         mesh.frustumCulled = false;
@@ -86,11 +94,32 @@ export class Bodies {
         this.group.add(mesh);
         return mesh;
       };
-      this.batches.push({ parts: parts[k], solid: make(false), ghost: make(true) });
+      const batch: Batch = { parts: parts[k], solid: make(false), ghost: make(true), discs: null };
+      if (m.meshes[k].type === "sphere" && (software || m.bodies.length > 500)) this.group.add(batch.discs = discsFor(batch.solid));
+      this.batches.push(batch);
     }
+    this.setOpen(false);
     this.colours();
     this.update();
   }
+
+  /** Whether a section opens the bodies, so that their insides are seen. */
+  setOpen(open: boolean): void {
+    for (const { solid, discs } of this.batches)
+      if (discs) {
+        discs.visible = !open;
+        solid.layers.set(open ? 0 : kUnseen);
+      }
+    for (const { solid, ghost } of this.batches)
+      for (const mesh of [solid, ghost]) {
+        const material = mesh.material as Surface;
+        material.side = open ? DoubleSide : FrontSide;
+        material.needsUpdate = true;
+      }
+  }
+
+  /** How much of what lies behind a ghost it hides. */
+  setGhostOpacity(opacity: number): void { for (const { ghost } of this.batches) (ghost.material as Surface).opacity = opacity; }
 
   /** Box around all bodies now; planes do not count, of ghosts the centre of mass alone. */
   box(): Box3 {
@@ -113,7 +142,7 @@ export class Bodies {
   sizePlanes(size: number): void {
     for (const plane of this.planes) plane.local.scale(new Vector3(1.6 * size, 1.6 * size, 1));
     // A bin has walls on all sides; those that hide the scene are left as outlines of light.
-    if (this.planes.length > 1) for (const plane of this.planes) (plane.mesh.material as MeshStandardMaterial).opacity = 0.07;
+    if (this.planes.length > 1) for (const plane of this.planes) (plane.mesh.material as Surface).opacity = 0.07;
     this.update();
   }
 
@@ -125,7 +154,10 @@ export class Bodies {
         batch.ghost.setColorAt(i, colour);
       });
     for (const batch of this.batches)
-      for (const mesh of [batch.solid, batch.ghost]) if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+      for (const mesh of [batch.solid, batch.ghost]) {
+        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+        if (batch.discs && mesh === batch.solid) batch.discs.instanceColor = mesh.instanceColor;
+      }
   }
 
   update(): void {

@@ -24,14 +24,22 @@ export interface BeamEntry { name: string; line?: number; section?: string; heig
 export interface CableEntry { name: string; line?: number; radius?: number }
 export interface ChannelEntry { path: string; unit: string; dims: number[]; data: Packed }
 export interface Manifest {
-  format: string; version: number; title: string; frames: number; file_frames: number; time: number[]; statics: boolean;
+  format: string; version: number; title: string; name?: string; compared?: string; frames: number; file_frames: number; time: number[]; statics: boolean;
   cut_short: boolean; notes: string[]; gravity?: Triple;
   source: { file: string; text: string; overrides: string[]; version: string; solver: string };
   meshes: MeshEntry[]; bodies: BodyEntry[]; joints: JointEntry[]; loads: LoadEntry[]; solids: SolidEntry[];
   beams: BeamEntry[]; cables: CableEntry[]; contacts: string[]; channels: ChannelEntry[];
 }
 
+/** The player's own element: what stands before it in the page is there, what stands behind it is still being read. */
+const player = document.currentScript;
+
+const readToTheEnd = (): Promise<unknown> =>
+  (document.readyState === "loading" ? new Promise((resolve) => document.addEventListener("DOMContentLoaded", resolve, { once: true })) : Promise.resolve());
+
 function bytesOfBase64(text: string): Uint8Array<ArrayBuffer> {
+  const native = (Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array<ArrayBuffer> }).fromBase64;
+  if (native) return native(text);
   const raw = atob(text);
   const bytes = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
@@ -58,23 +66,23 @@ export class Scene {
   private readonly kept = new Map<number, Promise<Uint32Array<ArrayBuffer>>>();
   private readonly byPath = new Map<string, ChannelEntry>();
 
-  private constructor(readonly manifest: Manifest, readonly served: boolean) {
+  private constructor(readonly manifest: Manifest, readonly served: boolean, private readonly suffix: string) {
     for (const channel of manifest.channels) this.byPath.set(channel.path, channel);
   }
 
-  /** Scene inside the page, or of the server that the page came from. */
-  static async load(): Promise<Scene> {
-    const inside = document.getElementById("polhode-scene");
+  /** Scene inside the page, or of the server that the page came from; the second one is what the first is compared with. */
+  static async load(second = false): Promise<Scene> {
+    const suffix = second ? "-1" : "", inside = document.getElementById(`polhode-scene${suffix}`);
     if (inside) {
       const manifest = JSON.parse(inside.textContent ?? "") as Manifest;
       inside.remove();
-      return new Scene(Scene.checked(manifest), false);
+      return new Scene(Scene.checked(manifest), false, suffix);
     }
     if (location.protocol === "file:") throw new Error("This page holds no results. Make one with 'polhode view RESULTS --html FILE'.");
-    const answer = await fetch("scene.json");
+    const answer = await fetch(`scene${suffix}.json`);
     const text = await answer.text();
     if (!answer.ok) throw new Error(text);
-    return new Scene(Scene.checked(JSON.parse(text) as Manifest), true);
+    return new Scene(Scene.checked(JSON.parse(text) as Manifest), true, suffix);
   }
 
   private static checked(manifest: Manifest): Manifest {
@@ -84,8 +92,13 @@ export class Scene {
   }
 
   private async bytes(index: number): Promise<Uint8Array<ArrayBuffer>> {
-    if (this.served) return new Uint8Array(await (await fetch(`chunk/${index}`)).arrayBuffer());
-    const element = document.getElementById(`chunk-${index}`);
+    if (this.served) return new Uint8Array(await (await fetch(`chunk${this.suffix}/${index}`)).arrayBuffer());
+    const id = `chunk${this.suffix}-${index}`;
+    let element = document.getElementById(id);
+    if (!element || !player || !(element.compareDocumentPosition(player) & Node.DOCUMENT_POSITION_FOLLOWING)) {
+      await readToTheEnd();
+      element = document.getElementById(id);
+    }
     if (!element) throw new Error(`This page is incomplete: part ${index} is missing. Copy the file again.`);
     const bytes = bytesOfBase64(element.textContent ?? "");
     element.remove();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joints by kind, springs, motors, and arrows of forces.
 import {
-  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4, MeshStandardMaterial,
+  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4,
   OctahedronGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Vector3,
 } from "three";
 import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { quaternion } from "./bodies";
 import type { JointEntry, LoadEntry, Scene, Triple } from "./data";
+import { surface } from "./materials";
 import { valuesAt, type Poses } from "./poses";
 
 const kNothing = new Matrix4().makeScale(0, 0, 0);
@@ -47,7 +48,7 @@ function coil(): BufferGeometry {
 class Glyphs {
   readonly mesh: InstancedMesh;
   constructor(geometry: BufferGeometry, colour: string, readonly indices: number[], kind: string) {
-    this.mesh = new InstancedMesh(geometry, new MeshStandardMaterial({ color: colour, roughness: 0.5, side: DoubleSide }), indices.length);
+    this.mesh = new InstancedMesh(geometry, surface({ color: colour, roughness: 0.5, side: DoubleSide }), indices.length);
     this.mesh.frustumCulled = false;
     this.mesh.castShadow = true;
     this.mesh.userData = { pick: (instance: number) => ({ kind, index: indices[instance] }) };
@@ -169,12 +170,13 @@ class Arrows {
       mesh.castShadow = false;
     }
   }
-  set(i: number, at: Vector3 | null, along: Vector3, length: number, thick: number): void {
-    if (!at || !(length > 0)) {
-      this.shaft.mesh.setMatrixAt(i, kNothing);
-      this.head.mesh.setMatrixAt(i, kNothing);
-      return;
-    }
+  begin(): void { this.shaft.mesh.count = this.head.mesh.count = 0; }
+  /** One more arrow, of the force with that index. Arrows that are not there cost nothing. */
+  add(index: number, at: Vector3, along: Vector3, length: number, thick: number): void {
+    if (!(length > 0)) return;
+    const i = this.shaft.mesh.count;
+    this.shaft.mesh.count = this.head.mesh.count = i + 1;
+    this.shaft.indices[i] = this.head.indices[i] = index;
     const turn = new Quaternion().setFromUnitVectors(kZ, along), tip = Math.min(0.35 * length, 5 * thick);
     this.shaft.mesh.setMatrixAt(i, new Matrix4().compose(at, turn, new Vector3(thick, thick, length - tip)));
     this.head.mesh.setMatrixAt(i, new Matrix4().compose(at.clone().addScaledVector(along, length - tip), turn, new Vector3(2.4 * thick, 2.4 * thick, tip)));
@@ -189,25 +191,38 @@ export class Forces {
   largest = 0;
   scale = 1;
   threshold = 0.01;
-  private constructor(private readonly count: number, private readonly width: number, private readonly data: Float32Array,
+  private data: Float32Array | null = null;
+  private filling = false;
+  /** Called when numbers that were not wanted before are there. */
+  onfilled: () => void = () => undefined;
+  private constructor(private readonly count: number, private readonly width: number, private readonly source: () => Promise<Float32Array>,
     private readonly offset: (i: number) => number, private readonly place: (i: number, frame: number, part: number, out: Vector3) => Vector3,
     colour: string, kind: string) {
     this.arrows = new Arrows(count, colour, kind);
     this.group = this.arrows.group;
-    const frames = width > 0 ? data.length / width : 0;
+  }
+  /** Takes the numbers when they are first to be seen: those of large recordings take long. */
+  async fill(): Promise<void> {
+    if (this.filling) return;
+    this.filling = true;
+    const data = await this.source(), { width, count } = this, frames = width > 0 ? data.length / width : 0;
     for (let f = 0; f < frames; f++)
       for (let i = 0; i < count; i++) {
-        const at = f * width + offset(i), size = Math.hypot(data[at], data[at + 1], data[at + 2]);
+        const at = f * width + this.offset(i), size = Math.hypot(data[at], data[at + 1], data[at + 2]);
         if (size > this.largest) this.largest = size;
       }
+    this.data = data;
+    this.onfilled();
   }
   update(size: number, frame: number, part: number): void {
     const at = new Vector3(), force = new Vector3(), longest = 0.16 * size * this.scale;
+    if (!this.data) return void this.fill();
+    this.arrows.begin();
     for (let i = 0; i < this.count; i++) {
       force.fromArray(valuesAt(this.data, this.width, this.offset(i), 3, frame, part));
       const amount = force.length() / (this.largest || 1);
-      if (!(amount > this.threshold)) { this.arrows.set(i, null, kZ, 0, 0); continue; }
-      this.arrows.set(i, this.place(i, frame, part, at), force.normalize(), longest * amount, 0.0025 * size);
+      if (!(amount > this.threshold)) continue;
+      this.arrows.add(i, this.place(i, frame, part, at), force.normalize(), longest * amount, 0.0025 * size);
     }
     this.arrows.done();
   }
@@ -217,21 +232,21 @@ export class Forces {
     const [force, point] = await Promise.all([scene.channel("packed/contacts/force"), scene.channel("packed/contacts/point")]);
     if (!force || !point || n === 0) return null;
     // A point jumps to the origin when a contact opens: no interpolation of places.
-    return new Forces(n, 3 * n, force, (i) => 3 * i, (i, frame, _, out) => out.fromArray(point, frame * 3 * n + 3 * i), "#c2185b", "contact");
+    return new Forces(n, 3 * n, async () => force, (i) => 3 * i, (i, frame, _, out) => out.fromArray(point, frame * 3 * n + 3 * i), "#c2185b", "contact");
   }
   static async reactions(scene: Scene, joints: Joints): Promise<Forces | null> {
-    const n = scene.manifest.joints.length, force = await scene.channel("packed/joints/force");
-    if (!force || n === 0) return null;
-    return new Forces(n, 3 * n, force, (i) => 3 * i, (i, _f, _p, out) => joints.point(i, out), "#6a3fb5", "joint");
+    const n = scene.manifest.joints.length, entry = scene.entry("packed/joints/force");
+    if (!entry || n === 0) return null;
+    return new Forces(n, 3 * n, () => scene.floats(entry.data), (i) => 3 * i, (i, _f, _p, out) => joints.point(i, out), "#6a3fb5", "joint");
   }
   static async loads(scene: Scene, poses: Poses): Promise<Forces | null> {
     const entry = scene.entry("packed/loads/values"), values = await scene.channel("packed/loads/values");
     const loads = scene.manifest.loads.map((load, index) => ({ load, index })).filter(({ load }) => load.columns[0]?.name === "force" && load.columns[0].size === 3 && load.Zb);
     if (!entry || !values || loads.length === 0) return null;
-    const forces = new Forces(loads.length, entry.data.w, values, (i) => loads[i].load.first,
+    const forces = new Forces(loads.length, entry.data.w, async () => values, (i) => loads[i].load.first,
       (i, _f, _p, out) => poses.point(loads[i].load.b ?? -1, loads[i].load.Zb as Triple, out), "#c46a00", "load");
     for (const mesh of [forces.arrows.shaft.mesh, forces.arrows.head.mesh])
-      mesh.userData = { pick: (instance: number) => ({ kind: "load", index: loads[instance].index }) };
+      mesh.userData = { pick: (instance: number) => ({ kind: "load", index: loads[forces.arrows.shaft.indices[instance]].index }) };
     return forces;
   }
 }

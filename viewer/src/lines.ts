@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beams with their sections, cables as ropes.
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, Mesh, Quaternion, Vector3 } from "three";
 import type { Scene } from "./data";
+import { surface } from "./materials";
 import type { Poses } from "./poses";
 import { mapped } from "./solids";
 
@@ -46,7 +47,7 @@ export class Lines {
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * k * nodes), 3).setUsage(DynamicDrawUsage));
     geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * k * nodes), 3).setUsage(DynamicDrawUsage));
     geometry.setIndex(corners);
-    const mesh = new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, flatShading: true, side: DoubleSide, roughness: 0.6 }));
+    const mesh = new Mesh(geometry, surface({ vertexColors: true, flatShading: true, side: DoubleSide, roughness: 0.6 }));
     mesh.frustumCulled = false;
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData = { pick: () => ({ kind, index }) };

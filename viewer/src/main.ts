@@ -2,6 +2,8 @@
 import { bookmarkOf, follow } from "./bookmark";
 import { Scene } from "./data";
 import { figure, h, save } from "./dom";
+import { film } from "./film";
+import { Ghost } from "./ghost";
 import { displayPanel, Legend, ObjectPanel, objectsOf } from "./panels";
 import { Player } from "./player";
 import { Plot, type Mode } from "./plots";
@@ -9,7 +11,7 @@ import { offered, seriesOf } from "./series";
 import { View, type Choice } from "./view";
 
 const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, as at first"],
-  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["/", "search"],
+  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["/", "search"],
   ["d", "dark or light"], ["b", "put camera and time into the address"], ["Esc", "choose nothing"], ["?", "this list"]];
 
 /** Speed at which a recording takes about ten seconds, from 1, 2, 5 times a power of ten; real time if that is near. */
@@ -37,6 +39,8 @@ async function start(app: HTMLElement): Promise<void> {
   if (innerWidth <= 720) app.classList.add("wide");
 
   const view = await View.of(scene, holder);
+  const other = m.compared ? await Scene.load(true) : null;
+  if (other) view.compare(await Ghost.of(other, m.compared ?? ""));
   const canvas = view.stage.renderer.domElement;
   canvas.setAttribute("tabindex", "0");
   canvas.setAttribute("role", "img");
@@ -56,7 +60,7 @@ async function start(app: HTMLElement): Promise<void> {
       open.splice(open.indexOf(p), 1);
       p.element.remove();
       plots.hidden = open.length === 0;
-    }, mode);
+    }, mode, other);
     open.push(plot);
     plots.append(plot.element);
     plots.hidden = false;
@@ -130,11 +134,22 @@ async function start(app: HTMLElement): Promise<void> {
   bar.append(play, scrub, shown, speed, loop);
   if (m.frames < 2) for (const control of [play, scrub, speed, loop]) control.disabled = true;
 
+  // Numbers that are wanted later may be missing, in a page that was cut.
+  addEventListener("unhandledrejection", (event) => {
+    event.preventDefault();
+    const message = event.reason instanceof Error ? event.reason.message : String(event.reason);
+    if (holder.querySelector(".trouble")?.textContent === message) return;
+    holder.append(h("p", { class: "notes trouble", role: "alert" }, message));
+  });
   const notes = [...m.notes];
   if (m.cut_short) notes.unshift(`The results file is cut short: shown up to its last whole frame, ${m.statics ? "load factor" : "t ="} ${figure(player.end)}${m.statics ? "" : " s"}.`);
   if (notes.length > 0) {
     const box = h("div", { class: "notes", role: "note" }, h("button", { type: "button", "aria-label": "Close the notes", onclick: () => box.remove() }, "✕"), h("ul", {}, ...notes.map((note) => h("li", {}, note))));
     holder.append(box);
+  }
+  if (view.ghost) {
+    const { ghost } = view, ends = ghost.end < player.end - 1e-9 * (player.end - player.begin) ? `, which ends at ${figure(ghost.end)}${m.statics ? "" : " s"}` : "";
+    holder.append(h("div", { class: "compared", role: "note" }, h("span", { class: "dot", "aria-hidden": "true" }), `${m.name}, and as a ghost ${ghost.name}${ends}`));
   }
   const ruler = h("div", { class: "measure", role: "status", hidden: true });
   holder.append(ruler);
@@ -178,6 +193,7 @@ async function start(app: HTMLElement): Promise<void> {
     f: () => view.setFollow(!view.follow), m: () => { view.measuring = !view.measuring; view.clearMarks(); tick(); }, t: () => view.setTrails(!view.trailsOn), a: () => view.showAll(), "?": () => help.showModal(), b: () => link(),
     d: () => theme(document.documentElement.dataset.theme !== "dark"), p: () => { if (open.length === 0) openPlot(has("energy/kinetic") ? ["energy.kinetic", "energy.potential"] : [offered(scene)[0]]); else plots.hidden = !plots.hidden; },
     "/": () => { app.classList.remove("wide"); tab(0); objects.focus(); }, o: () => view.stage.setParallel(view.stage.camera !== view.stage.parallel),
+    c: () => { if (view.ghost) display.querySelector<HTMLInputElement>(".ghost input")?.click(); },
     h: () => { if (chosenBody() >= 0) view.show(chosenBody(), "hidden"); }, g: () => { if (chosenBody() >= 0) view.show(chosenBody(), "ghost"); }, i: () => { if (chosenBody() >= 0) view.isolate(chosenBody()); },
   };
   [..."12340"].forEach((key, i) => { keys[key] = () => display.querySelectorAll<HTMLButtonElement>(".buttons button")[i].click(); });
@@ -204,6 +220,7 @@ async function start(app: HTMLElement): Promise<void> {
   view.stage.draw();
   document.documentElement.dataset.ready = String(Math.round(performance.now() - begun));
 
+  Object.assign(window, { polhodeFilm: film(view, player, app) });
   let last = performance.now(), frames = 0, slow = 0;
   const loopFrame = (now: number): void => {
     // Three pictures in a row that took long while it plays: the machine wants less to draw.

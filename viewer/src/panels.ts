@@ -114,7 +114,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
   const update = () => { view.update(); refresh(); };
   const check = (label: string, on: boolean, act: (on: boolean) => void) => {
     const input = h("input", { type: "checkbox", checked: on, onchange: () => { act(input.checked); update(); } });
-    return h("label", {}, input, ` ${label}`);
+    return h("label", { class: label.startsWith("Ghost of ") ? "ghost" : undefined }, input, ` ${label}`);
   };
   const slide = (label: string, low: number, high: number, value: number, act: (x: number) => void) => {
     const input = h("input", { type: "range", min: low, max: high, step: (high - low) / 200, value, "aria-label": label, oninput: () => { act(input.valueAsNumber); update(); } });
@@ -136,10 +136,11 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
     if (k >= 0) plane.normal.setComponent(k, -1);
     plane.constant = k >= 0 ? view.stage.controls.target.getComponent(k) + offset * view.stage.size : 0;
     view.stage.renderer.clippingPlanes = k >= 0 ? [plane] : [];
+    view.bodies.setOpen(k >= 0);
     update();
   };
   return h("div", { class: "panel" }, camera,
-    part("Show", check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
+    part("Show", view.ghost ? check(`Ghost of ${view.ghost.name} (c)`, true, (on) => view.showGhost(on)) : null, check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
       check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }),
       check("Trails", false, (on) => view.setTrails(on)), check("Centres of mass", false, (on) => { view.centres.visible = on; }), check("Body axes", false, (on) => { view.frames.visible = on; }),
       m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),

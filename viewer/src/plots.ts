@@ -2,10 +2,12 @@
 import uPlot from "uplot";
 import type { Scene } from "./data";
 import { figure, h, save } from "./dom";
-import { seriesOf, spectrum, type Series } from "./series";
+import { resampled, seriesOf, spectrum, type Series } from "./series";
 
 const kColours = ["#3b7dc4", "#d1583a", "#3f9561", "#b98a1e", "#8163b8", "#2aa0a8", "#c2538f", "#7c8894"];
-export type Mode = "time" | "spectrum" | "phase" | "stacked";
+export type Mode = "time" | "spectrum" | "phase" | "stacked" | "difference";
+/** A curve: of this recording, or of the one that it is compared with (dashed). */
+interface Curve extends Series { ink: number; other: boolean }
 
 /** Units that people read more easily: factor from SI. */
 const kUnits: Record<string, [string, number]> = {
@@ -14,21 +16,22 @@ const kUnits: Record<string, [string, number]> = {
 
 export interface Clock { time(): number; seek(t: number): void }
 
-/** One diagram: several series over time with the time cursor, their spectrum, or one over the other. */
+/** One diagram: several series over time with the time cursor, their spectrum, one over the other, or the difference of two recordings. */
 export class Plot {
   readonly element: HTMLElement;
   private plot: uPlot | null = null;
-  private series: Series[] = [];
+  private series: Curve[] = [];
   private mode: Mode = "time";
   private otherUnits = false;
   private readonly field = h("div", { class: "field", role: "img" });
   private readonly legend = h("ul", { class: "series", "aria-label": "Series of this plot" });
 
-  constructor(private readonly scene: Scene, private readonly clock: Clock, readonly names: string[], private readonly close: (plot: Plot) => void, mode: Mode = "time") {
+  constructor(private readonly scene: Scene, private readonly clock: Clock, readonly names: string[], private readonly close: (plot: Plot) => void, mode: Mode = "time",
+    private readonly other: Scene | null = null) {
     this.mode = mode;
     const modes = h("select", { "aria-label": "Kind of plot", onchange: () => { this.mode = modes.value as Mode; this.draw(); } },
-      ...(["time", "spectrum", "phase", "stacked"] as Mode[]).map((m) => h("option", { value: m, selected: m === mode }, m)));
-    const button = (label: string, title: string, act: () => void) => h("button", { type: "button", title, "aria-label": title, onclick: act }, label);
+      ...(["time", "spectrum", "phase", "stacked", ...(other ? ["difference"] : [])] as Mode[]).map((m) => h("option", { value: m, selected: m === mode }, m)));
+    const button = (label: string, title: string, act: () => void) => h("button", { type: "button", title, "aria-label": /\w/.test(label) ? `${label}: ${title}` : title, onclick: act }, label);
     this.element = h("section", { class: "plot", "aria-label": `Plot of ${names.join(", ")}` },
       h("div", { class: "plotbar" }, this.legend, modes, button("unit", "Other units", () => { this.otherUnits = !this.otherUnits; this.draw(); }),
         button("1:1", "Whole range", () => this.draw()), button("CSV", "Save as CSV", () => save("plot.csv", this.csv(), "text/csv")),
@@ -48,26 +51,43 @@ export class Plot {
 
   private async load(): Promise<void> {
     const all = await Promise.all(this.names.map((name) => seriesOf(this.scene, name)));
-    this.series = all.flat().slice(0, 24);
+    const own = all.flat().slice(0, 24).map((s, ink): Curve => ({ ...s, ink, other: false }));
+    this.series = [...own, ...(await this.compared(own))];
     this.element.setAttribute("aria-label", `Plot of ${this.names.join(", ")}`);
     this.field.setAttribute("aria-label", `Curves of ${this.series.map((s) => s.name).join(", ") || "nothing"} over time`);
     this.draw();
   }
 
-  private scaled(): Series[] {
+  /** The same quantities of the other recording, at times of this one. */
+  private async compared(own: Curve[]): Promise<Curve[]> {
+    if (!this.other) return [];
+    const found = (await Promise.all(this.names.map((name) => seriesOf(this.other as Scene, name)))).flat();
+    const from = this.other.manifest.time, to = this.scene.manifest.time;
+    return own.flatMap(({ name, ink }) => {
+      const one = found.find((s) => s.name === name);
+      return one ? [{ ...resampled(one, from, to), name: `${name} (${this.scene.manifest.compared})`, ink, other: true }] : [];
+    });
+  }
+
+  private scaled(): Curve[] {
     if (!this.otherUnits) return this.series;
     return this.series.map((s) => {
       const unit = kUnits[s.unit];
-      return unit ? { name: s.name, unit: unit[0], values: s.values.map((v) => v * unit[1]) } : s;
+      return unit ? { ...s, unit: unit[0], values: s.values.map((v) => v * unit[1]) } : s;
     });
   }
 
   /** Abscissa, curves and the name of the abscissa for the present mode. */
-  private table(): { x: ArrayLike<number>; label: string; curves: Series[] } {
-    const time = this.scene.manifest.time, curves = this.scaled();
+  private table(): { x: ArrayLike<number>; label: string; curves: Curve[] } {
+    const time = this.scene.manifest.time, all = this.scaled(), curves = this.mode === "phase" || this.mode === "stacked" ? all.filter((s) => !s.other) : all;
+    if (this.mode === "difference")
+      return { x: time, label: this.timeLabel, curves: all.filter((s) => s.other).map((s) => {
+        const own = all[s.ink];
+        return { ...s, name: `Δ ${own.name}`, other: false, values: s.values.map((v, i) => v - own.values[i]) };
+      }) };
     if (this.mode === "spectrum" && time.length > 3) {
-      const all = curves.map((s) => spectrum(time, s.values));
-      return { x: all[0]?.frequency ?? [], label: "frequency [Hz]", curves: curves.map((s, i) => ({ ...s, values: all[i].amplitude })) };
+      const found = curves.map((s) => spectrum(time, s.values));
+      return { x: found[0]?.frequency ?? [], label: "frequency [Hz]", curves: curves.map((s, i) => ({ ...s, values: found[i].amplitude })) };
     }
     if (this.mode === "phase" && curves.length > 1) return { x: curves[0].values, label: `${curves[0].name} [${curves[0].unit}]`, curves: curves.slice(1) };
     if (this.mode === "stacked") {
@@ -89,9 +109,9 @@ export class Plot {
     this.plot?.destroy();
     this.plot = null;
     const { x, label, curves } = this.table();
-    this.legend.replaceChildren(...curves.map((s, i) => {
-      const dot = h("span", { class: "dot", "aria-hidden": "true" });
-      dot.style.background = kColours[i % kColours.length];
+    this.legend.replaceChildren(...curves.map((s) => {
+      const dot = h("span", { class: s.other ? "dot other" : "dot", "aria-hidden": "true" });
+      dot.style.background = kColours[s.ink % kColours.length];
       return h("li", {}, dot, `${s.name} [${s.unit}]`);
     }));
     const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink").trim() || "#22303c";
@@ -104,8 +124,8 @@ export class Plot {
       width: Math.max(120, this.field.clientWidth), height: Math.max(90, this.field.clientHeight), mode: phase ? 2 : 1, legend: { show: false },
       cursor: { drag: { x: true, y: phase, uni: 20 }, y: false }, scales: { x: { time: false } },
       axes: [{ ...axis(label, 26) }, { ...axis(`[${units}]`, 56), values: (_, ticks) => ticks.map((v) => (v === null ? "" : String(+v.toPrecision(6)))) }],
-      series: [phase ? null as unknown as uPlot.Series : {}, ...curves.map((s, i): uPlot.Series => ({ label: s.name, stroke: kColours[i % kColours.length], width: 1.4, points: { show: false },
-        ...(this.mode === "stacked" ? { fill: kColours[i % kColours.length] + "55" } : {}), ...(phase ? { facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path } : {}) }))],
+      series: [phase ? null as unknown as uPlot.Series : {}, ...curves.map((s): uPlot.Series => ({ label: s.name, stroke: kColours[s.ink % kColours.length], width: 1.4, points: { show: false },
+        ...(s.other ? { dash: [6, 4] } : {}), ...(this.mode === "stacked" ? { fill: kColours[s.ink % kColours.length] + "55" } : {}), ...(phase ? { facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path } : {}) }))],
       hooks: { draw: [(u) => this.cursor(u)], ready: [(u) => this.listen(u)] },
     };
     const data = phase ? [null, ...curves.map((s) => [x, s.values])] : [x, ...curves.map((s) => s.values)];
@@ -116,7 +136,7 @@ export class Plot {
     let down = 0;
     u.over.addEventListener("pointerdown", (e) => { down = e.clientX; });
     u.over.addEventListener("pointerup", (e) => {
-      if (Math.abs(e.clientX - down) < 4 && (this.mode === "time" || this.mode === "stacked"))
+      if (Math.abs(e.clientX - down) < 4 && this.mode !== "spectrum" && this.mode !== "phase")
         this.clock.seek(u.posToVal(e.clientX - u.over.getBoundingClientRect().left, "x"));
     });
   }
@@ -127,6 +147,7 @@ export class Plot {
     ctx.save();
     ctx.strokeStyle = ctx.fillStyle = "#d1281e";
     ctx.lineWidth = 1.5;
+    ctx.setLineDash([]);  // the last curve may have left its own
     if (this.mode === "phase" && this.series.length > 1) {
       const { x, curves } = this.table(), time = this.scene.manifest.time;
       const f = Math.max(0, time.findIndex((s) => s >= t - 1e-12));
@@ -183,8 +204,8 @@ export class Plot {
         d += `${pen}${px(x[k]).toFixed(2)} ${py(s.values[k]).toFixed(2)}`;
         pen = "L";
       }
-      out += `<path clip-path="url(#f)" fill="none" stroke="${kColours[i % kColours.length]}" stroke-width="1.4" d="${d}"/>` +
-        `<rect x="${left}" y="${6 + 16 * i}" width="12" height="3" fill="${kColours[i % kColours.length]}"/>` + text(left + 18, 12 + 16 * i, `${s.name} [${s.unit}]`);
+      out += `<path clip-path="url(#f)" fill="none" stroke="${kColours[s.ink % kColours.length]}" stroke-width="1.4" ${s.other ? 'stroke-dasharray="6 4" ' : ""}d="${d}"/>` +
+        `<rect x="${left}" y="${6 + 16 * i}" width="12" height="3" fill="${kColours[s.ink % kColours.length]}"/>` + text(left + 18, 12 + 16 * i, `${s.name} [${s.unit}]`);
     });
     return out + text((left + width) / 2, height - 8, label, 'text-anchor="middle"') + "</svg>\n";
   }

@@ -99,6 +99,18 @@ export async function seriesOf(scene: Scene, name: string): Promise<Series[]> {
   return wanted.filter((k) => k >= 0).map((k) => ({ name: `${head}.${labels[k]}`, unit: found.unit, values: column(data, width, frames, found.at + k) }));
 }
 
+/** Series of another recording at times of this one: linear between its frames, not a number before and after them. */
+export function resampled(series: Series, from: number[], to: number[]): Series {
+  const values = new Float64Array(to.length), last = from.length - 1, slack = 1e-9 * Math.abs((from[last] ?? 0) - (from[0] ?? 0));
+  let k = 0;
+  to.forEach((t, i) => {
+    while (k + 1 < last && from[k + 1] <= t) k++;
+    const next = Math.min(k + 1, last), span = from[next] - from[k], part = span > 0 ? Math.min(1, Math.max(0, (t - from[k]) / span)) : 0;
+    values[i] = t < from[0] - slack || t > from[last] + slack ? NaN : series.values[k] + part * (series.values[next] - series.values[k]);
+  });
+  return { ...series, values };
+}
+
 /** Quantities of one object, for its list of values. */
 export function quantitiesOf(scene: Scene, kind: string, name: string): string[] {
   if (kind === "body") return kBody.map((q) => `bodies.${name}.${q}`);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial } from "three";
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh } from "three";
 import type { Scene, SolidEntry } from "./data";
+import { surface } from "./materials";
 import type { Poses } from "./poses";
 
 /** Cool to warm (after Moreland, "Diverging color maps for scientific visualization", 2009), in nine colours. */
@@ -25,6 +26,7 @@ export class Solids {
   range: [number, number] = [0, 1];
   fixedRange = false;
   enlarge = 1;
+  plain = "#5b8bb8";
   private readonly own: Own[] = [];
   private fields: (Float32Array | null)[] = [];
 
@@ -59,7 +61,7 @@ export class Solids {
     geometry.setAttribute("position", points);
     geometry.setAttribute("color", new BufferAttribute(new Float32Array(reference.length), 3).setUsage(DynamicDrawUsage));
     geometry.setIndex(new BufferAttribute(await this.scene.integers(entry.triangles), 1));
-    const mesh = new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, side: DoubleSide, roughness: 0.7, flatShading: false,
+    const mesh = new Mesh(geometry, surface({ vertexColors: true, side: DoubleSide, roughness: 0.7, flatShading: false,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
     const outline = new BufferGeometry();
     outline.setAttribute("position", points);
@@ -141,7 +143,7 @@ export class Solids {
         if (data) {
           const now = this.value(data, frame * n + i, size), next = part > 0 ? this.value(data, (frame + 1) * n + i, size) : now;
           mapped((now + part * (next - now) - low) / (high - low), colour);
-        } else colour.set("#5b8bb8");
+        } else colour.set(this.plain);
         colours.setXYZ(i, colour.r, colour.g, colour.b);
       }
       colours.needsUpdate = true;

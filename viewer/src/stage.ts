@@ -3,6 +3,8 @@ import {
   AmbientLight, ArrowHelper, Box3, Color, DirectionalLight, GridHelper, Group, HemisphereLight, OrthographicCamera, PCFShadowMap, PerspectiveCamera,
   Plane, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
 } from "three";
+import { kUnseen } from "./bodies";
+import { software } from "./materials";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 export const kDark = { background: "#14191f", grid: "#34404b", line: "#e6ebef" };
@@ -27,8 +29,9 @@ export class Stage {
   dirty = true;
 
   constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    shadows &&= !software;
+    this.renderer = new WebGLRenderer({ antialias: !software, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     this.renderer.shadowMap.enabled = shadows;
     this.renderer.shadowMap.type = PCFShadowMap;
     holder.prepend(this.renderer.domElement);
@@ -175,6 +178,7 @@ export class Stage {
     const box = this.renderer.domElement.getBoundingClientRect();
     const caster = new Raycaster();
     caster.setFromCamera(new Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
+    caster.layers.enable(kUnseen);
     caster.params.Line = { threshold: 0.004 * this.size };
     return caster;
   }

@@ -3,6 +3,7 @@
 import { Box3, BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, Vector3 } from "three";
 import { Bodies, type Showing } from "./bodies";
 import type { Scene } from "./data";
+import type { Ghost } from "./ghost";
 import { Forces, Joints, Loads } from "./glyphs";
 import { Lines } from "./lines";
 import { Poses } from "./poses";
@@ -17,6 +18,8 @@ export class View {
   readonly trails = new Group();
   readonly centres = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xd1281e, size: 7, sizeAttenuation: false, depthTest: false }));
   readonly frames = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }));
+  ghost: Ghost | null = null;
+  private t = 0;
   chosen: Choice | null = null;
   follow = false;
   trailsOn = false;
@@ -42,7 +45,9 @@ export class View {
     for (const [key, made] of [["contacts", await Forces.contacts(scene)], ["reactions", await Forces.reactions(scene, joints)],
       ["loads", await Forces.loads(scene, poses)]] as const) {
       view.forces[key] = made;
-      if (made) stage.world.add(made.group);
+      if (!made) continue;
+      stage.world.add(made.group);
+      if (key === "reactions") made.onfilled = () => view.update(); else await made.fill();
     }
     if (view.forces.reactions) view.forces.reactions.group.visible = false;
     stage.world.add(bodies.group, joints.group, view.loads.group, solids.group, lines.group, view.trails, view.centres, view.frames, view.markGroup);
@@ -76,8 +81,20 @@ export class View {
   }
 
   set(t: number): void {
+    this.t = t;
     this.poses.set(t);
+    this.ghost?.set(t);
     this.update();
+  }
+
+  /** Draws another recording over this one. */
+  compare(ghost: Ghost): void {
+    this.ghost = ghost;
+    this.stage.world.add(ghost.group);
+  }
+  showGhost(on: boolean): void {
+    this.ghost?.show(on, this.t);
+    this.stage.dirty = true;
   }
 
   update(): void {

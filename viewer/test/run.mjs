@@ -229,6 +229,56 @@ await test("two clicks measure a distance", async () => {
   expect(/\d m/.test(await page.locator(".measure").textContent()), "no distance");
 });
 
+await test("a second recording is a ghost, and plots show the difference", async () => {
+  run("run", "all.yaml", "--quiet", "-o", "other.results", "--set", "bodies.ball.position=[0.6, 0, 0.5]", "--set", "analysis.duration=0.6 s");
+  run("view", "all.results", "other.results", "--html", "compared.html", "--quiet");
+  const { page } = await page_of("compared.html");
+  const steady = async () => {
+    for (let last = ""; ;) {
+      const now = await page.evaluate(() => document.querySelector(".view > canvas").toDataURL());
+      if (now === last) return now;
+      last = now;
+      await page.waitForTimeout(400);
+    }
+  };
+  expect((await page.locator(".compared").textContent()).includes("all.results, and as a ghost other.results, which ends at 0.6000 s"), await page.locator(".compared").textContent());
+  await page.getByLabel("Time", { exact: true }).fill("20");
+  const both = await steady();
+  const becomes = (same) => page.waitForFunction(([was, want]) => (document.querySelector(".view > canvas").toDataURL() === was) === want, [both, same], { timeout: 20000 });
+  await page.keyboard.press("c");
+  await becomes(false).catch(() => expect(false, "the ghost is not seen"));
+  await page.keyboard.press("c");
+  await becomes(true).catch(() => expect(false, "the ghost does not come back"));
+  await page.getByRole("tab", { name: "Plot" }).click();
+  await page.getByLabel("Channel to plot").fill("bodies.ball.position.z");
+  await page.getByRole("button", { name: "New plot" }).click();
+  await page.waitForFunction(() => document.querySelectorAll(".series li").length === 2);
+  await page.getByLabel("Kind of plot").selectOption("difference");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save as CSV" }).click()]);
+  const rows = readFileSync(await download.path(), "utf8").trim().split("\n").map((row) => row.split(","));
+  expect(rows[0][1] === "Δ bodies.ball.position.z [m]", rows[0].join());
+  const z = (name) => { run("convert", `${name}.results`, "z.csv", "--channels", "bodies.ball.position.z"); return readFileSync(join(folder, "z.csv"), "utf8").trim().split("\n").slice(1).map((row) => Number(row.split(",")[1])); };
+  const a = z("all"), b = z("other");
+  for (const k of [0, 7, 30, 60]) expect(Math.abs(Number(rows[k + 1][1]) - (b[k] - a[k])) < 1e-6, `row ${k} is ${rows[k + 1]}, not ${b[k] - a[k]}`);
+  expect(Math.abs(Number(rows[1][1]) - 0.3) < 1e-6 && rows[101][1] === "NaN", `begins with ${rows[1]}, ends with ${rows[101]}`);
+  const found = await violations(page);
+  expect(found.length === 0, found.join(" | "));
+  await shot(page, "compared");
+});
+
+await test("recordings in an archive share the player", async () => {
+  run("view", "all.results", "tyre.results", "--zip", "both.zip", "--quiet");
+  execFileSync("python3", ["-m", "zipfile", "-e", "both.zip", "both"], { cwd: folder });
+  expect(statSync(join(folder, "both.zip")).size < statSync(join(folder, "all.html")).size, "the archive of two is larger than one page");
+  for (const name of ["all", "tyre"]) {
+    const { page } = await page_of(`both/${name}.html`);
+    expect(!(await page.evaluate(() => document.documentElement.dataset.failed)), await page.locator("#app").textContent());
+    expect(await colours(page) > 30, "the picture is empty");
+  }
+  const list = readFileSync(join(folder, "both/index.html"), "utf8");
+  expect(list.includes('<a href="all.html">all</a> Everything, 101 frames') && list.includes('href="tyre.html"'), list);
+});
+
 for (const [name, options] of [["wide and light", {}], ["dark", { colorScheme: "dark" }], ["on a phone", { viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true }]])
   await test(`nothing stands in the way of anyone, ${name}`, async () => {
     const { page } = await page_of("all.html", options);
@@ -266,9 +316,16 @@ await test("results that are cut short are shown up to the last whole frame", as
 
 await test("a page that has lost its end says so", async () => {
   const text = readFileSync(join(folder, "all.html"), "utf8"), last = text.lastIndexOf('<script type="application/octet-stream"');
-  writeFileSync(join(folder, "lost.html"), text.slice(0, text.indexOf('id="chunk-1"') - 40) + text.slice(text.indexOf("</script>", last) + 9));
+  expect(last > text.lastIndexOf("<script>"), "no numbers stand behind the player");
+  writeFileSync(join(folder, "lost.html"), text.slice(0, last));
   const { page } = await page_of("lost.html");
-  expect((await page.locator("[role=alert]").textContent()).includes("incomplete"), "no message");
+  expect(await colours(page) > 40, "what is whole is not shown");
+  await page.getByRole("button", { name: /^hinge/ }).first().click();
+  await page.getByText("This page is incomplete").waitFor({ timeout: 10000 });
+  const chunk = text.indexOf('<script type="application/octet-stream" id="chunk-1"');
+  writeFileSync(join(folder, "lost.html"), text.slice(0, chunk) + text.slice(text.indexOf("</script>", chunk) + 9));
+  const again = await page_of("lost.html");
+  expect((await again.page.locator("[role=alert]").textContent()).includes("incomplete"), "no message");
 });
 
 await test("an animated scene passes the validator of the Khronos Group", async () => {
@@ -277,6 +334,65 @@ await test("an animated scene passes the validator of the Khronos Group", async 
   const bytes = new Uint8Array(readFileSync(join(folder, "all.glb"))), report = await validator.validateBytes(bytes);
   expect(report.issues.numErrors + report.issues.numWarnings === 0, JSON.stringify(report.issues.messages.slice(0, 3)));
   expect(report.info.animationCount === 1 && report.info.totalVertexCount > 100, "no animation or no shapes");
+});
+
+await test("a film has the pictures that were asked for", async () => {
+  const film = (...words) => execFileSync("node", [join(root, "viewer/film.mjs"), "all.html", ...words], { cwd: folder, stdio: "pipe" }).toString();
+  film("film.gif", "--size", "160x120", "--rate", "8", "--to", "0.5", "--turn", "30");
+  const { page } = await page_of("all.html");
+  // Decoded by the browser, which is no work of ours.
+  const found = await page.evaluate(async (text) => {
+    const decoder = new ImageDecoder({ data: Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), type: "image/gif" });
+    await decoder.tracks.ready;
+    await decoder.completed;
+    const pictures = [];
+    for (let k = 0; k < decoder.tracks.selectedTrack.frameCount; k++) {
+      const { image } = await decoder.decode({ frameIndex: k }), canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight), context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      const data = context.getImageData(0, 0, canvas.width, canvas.height).data, seen = new Set();
+      for (let i = 0; i < data.length; i += 4) seen.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+      pictures.push({ size: `${canvas.width}x${canvas.height}`, colours: seen.size, sum: data.reduce((s, v, i) => (s + v * (i % 65521)) % 4294967291, 0) });
+    }
+    return pictures;
+  }, readFileSync(join(folder, "film.gif")).toString("base64"));
+  expect(found.length === 5 && found[0].size === "160x120" && found.every((p) => p.colours > 20), JSON.stringify(found));
+  expect(new Set(found.map((p) => p.sum)).size === 5, "pictures are alike");
+  film("pictures", "--size", "64x48", "--rate", "2");
+  expect(readFileSync(join(folder, "pictures/00002.png")).subarray(1, 4).toString() === "PNG", "no pictures in the folder");
+  let message = "";
+  try { film("film.avi"); } catch (error) { message = error.stderr.toString(); }
+  expect(message.includes("cannot write '.avi'. Name a .gif or .mp4 file, or a folder"), message);
+});
+
+await test("a crowd of balls is drawn as balls, and each is met by a click", async () => {
+  run("examples", "spheres_in_a_bin", "--set", "N=30", "-o", "crowd.yaml");
+  run("run", "crowd.yaml", "--quiet", "--set", "analysis.duration=0.02 s");
+  run("view", "crowd.results", "--html", "crowd.html", "--quiet");
+  const { page } = await page_of("crowd.html");
+  const box = await page.locator(".view > canvas").boundingBox();
+  let name = "";
+  for (let i = 3; i < 8 && !/^b\d+$/.test(name); i++)
+    for (let j = 3; j < 8 && !/^b\d+$/.test(name); j++) {
+      await page.mouse.click(box.x + box.width * i / 10, box.y + box.height * j / 10);
+      name = await page.locator(".details h2").textContent({ timeout: 50 }).catch(() => "");
+    }
+  expect(/^b\d+$/.test(name), `no click meets a ball, the last one met '${name}'`);
+  // Parallel projection and a section draw them another way; all must show pictures full of colours.
+  for (const act of [() => undefined, () => page.keyboard.press("o"), async () => { await page.getByRole("tab", { name: "Display" }).click(); await page.getByLabel("Section plane").selectOption("x"); }]) {
+    await act();
+    await page.waitForTimeout(200);
+    expect(await colours(page) > 60, "the picture has few colours");
+  }
+  await shot(page, "crowd");
+});
+
+await test("two recordings are served", async () => {
+  const server = spawn(polhode, ["view", "all.results", "other.results", "--no-open"], { cwd: folder });
+  try {
+    const address = await new Promise((resolve) => server.stdout.once("data", (data) => resolve(data.toString().trim())));
+    const { page } = await page_of(address);
+    expect((await page.locator(".compared").textContent()).includes("other.results"), "no ghost");
+  } finally { server.kill("SIGINT"); }
 });
 
 await test("a model is served, and loaded again when it is saved", async () => {

@@ -19,6 +19,9 @@ namespace {
 
 /// Place of the data in a page, written by viewer/build.mjs.
 constexpr const char* kPlace = "<!--POLHODE-DATA-->";
+/// Place of numbers that the first picture does without, behind the player: it begins before a
+/// browser has read them.
+constexpr const char* kLaterPlace = "<!--POLHODE-LATER-->";
 
 bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
@@ -27,6 +30,14 @@ bool is_channel(const std::string& path) {
   if (path == results::kTime) return false;
   if (!starts_with(path, results::kSolids)) return true;
   return path.find("/interfaces/") != std::string::npos;
+}
+
+/// Whether the first picture does without a channel.
+bool is_later(const std::string& path) {
+  for (const char* first : {"/packed/bodies/position", "/packed/bodies/orientation",
+                            "/packed/contacts/force", "/packed/contacts/point", "/packed/loads/"})
+    if (starts_with(path, first)) return false;
+  return starts_with(path, "/packed/");
 }
 
 /// Numbers in a frame of everything that the page takes.
@@ -131,10 +142,13 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   ChunkList chunks(scene.chunks);
   const std::vector<double> time = results.read(results::kTime, scene.every);
   scene.frames = time.size();
+  scene.title = results.attribute("/", "title");
   const std::string group = results::kProvenance;
   Json manifest = {{"format", "polhode scene"},
                    {"version", 1},
-                   {"title", results.attribute("/", "title")},
+                   {"title", scene.title},
+                   {"name", options.name},
+                   {"compared", options.compared},
                    {"frames", time.size()},
                    {"file_frames", results.frames()},
                    {"time", time},
@@ -157,12 +171,14 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   manifest["contacts"] = results.names(std::string(results::kPackedContacts) + "/names");
   Json& channels = manifest["channels"] = Json::array();
   for (const ResultsReader::DataSet& set : results.data_sets())
-    if (is_channel(set.path) && set.size() > 0)
+    if (is_channel(set.path) && set.size() > 0) {
+      if (is_later(set.path)) scene.later.insert(scene.chunks.size());
       channels.push_back(
           {{"path", set.path.substr(1)},
            {"unit", set.unit},
            {"dims", set.dims},
            {"data", chunks.floats(results.read(set.path, scene.every), set.size())}});
+    }
   if (const std::vector<double> drift = energy_drift(results, scene.every); !drift.empty())
     channels.push_back({{"path", "energy/drift"},
                         {"unit", "-"},
@@ -173,22 +189,48 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   return scene;
 }
 
-std::string scene_page(const std::string& page, const SceneData& scene) {
-  const std::size_t place = page.find(kPlace);
-  if (place == std::string::npos)
-    throw std::invalid_argument("scene_page: the page has no place for data");
-  std::string data = "<script type=\"application/json\" id=\"polhode-scene\">";
+namespace {
+
+/// Chunks of a recording, those that the first picture does without or the others.
+std::string chunk_elements(const SceneData& scene, const std::string& suffix, bool later) {
+  std::string data;
+  for (std::size_t i = 0; i < scene.chunks.size(); ++i)
+    if (scene.later.contains(i) == later)
+      data += format("<script type=\"application/octet-stream\" id=\"chunk{}-{}\">{}</script>\n",
+                     suffix, i, base64(scene.chunks[i]));
+  return data;
+}
+
+/// Elements of a recording; `suffix` tells a second one from the first.
+std::string scene_elements(const SceneData& scene, const std::string& suffix) {
+  std::string data = format("<script type=\"application/json\" id=\"polhode-scene{}\">", suffix);
   for (char c : scene.manifest) {
     if (c == '<')
       data += "\\u003c";  // No text of a model can end the element.
     else
       data += c;
   }
-  data += "</script>\n";
-  for (std::size_t i = 0; i < scene.chunks.size(); ++i)
-    data += format("<script type=\"application/octet-stream\" id=\"chunk-{}\">{}</script>\n", i,
-                   base64(scene.chunks[i]));
-  return page.substr(0, place) + data + page.substr(place + std::string(kPlace).size());
+  return data + "</script>\n" + chunk_elements(scene, suffix, false);
+}
+
+}  // namespace
+
+std::string scene_page(const std::string& page, const SceneData& scene, const SceneData* compared) {
+  const std::size_t place = page.find(kPlace);
+  if (place == std::string::npos)
+    throw std::invalid_argument("scene_page: the page has no place for data");
+  std::string data = scene_elements(scene, ""), later = chunk_elements(scene, "", true);
+  if (compared != nullptr) {
+    data += scene_elements(*compared, "-1");
+    later += chunk_elements(*compared, "-1", true);
+  }
+  std::string filled = page;
+  const std::size_t behind = filled.find(kLaterPlace);
+  if (behind == std::string::npos)
+    data += later;
+  else
+    filled.replace(behind, std::string(kLaterPlace).size(), later);
+  return filled.replace(place, std::string(kPlace).size(), data);
 }
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct SceneOptions {
   std::size_t max_bytes = std::size_t{160} << 20;  ///< Of numbers before they are deflated.
   std::vector<std::string> notes;                  ///< Shown on the page, e.g. warnings of a check.
   std::map<std::string, std::string> marks;  ///< By joint: a remark, e.g. that it is redundant.
+  std::string name;      ///< What the page calls this recording, beside another one.
+  std::string compared;  ///< Name of the recording that the page shows as a ghost; empty: none.
 };
 
 /// Everything that a page shows: a JSON text that describes bodies, joints, loads, solids, beams,
@@ -24,7 +27,9 @@ struct SceneOptions {
 struct SceneData {
   std::string manifest;
   std::vector<std::string> chunks;
+  std::set<std::size_t> later;        ///< Chunks that the first picture does without.
   std::size_t frames = 0, every = 1;  ///< Frames shown; every so-manyth one of the file.
+  std::string title;
 };
 
 /// The model that results came from, by the text that they keep. Mesh files are looked for in
@@ -39,7 +44,9 @@ struct SceneData {
 
 /// One HTML file that needs no network and no server.
 /// @param page  Text of viewer/dist/viewer.html, the player.
+/// @param compared  Another recording, shown as a ghost; null: none.
 /// @throws std::invalid_argument if the page has no place for data.
-[[nodiscard]] std::string scene_page(const std::string& page, const SceneData& scene);
+[[nodiscard]] std::string scene_page(const std::string& page, const SceneData& scene,
+                                     const SceneData* compared = nullptr);
 
 }  // namespace polhode

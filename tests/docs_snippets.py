@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The models and commands of the quick starts run as they stand.
+
+Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
+after the other in one folder. POLHODE names the program. With page names as arguments only those are run.
+"""
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+POLHODE = os.environ.get("POLHODE", str(ROOT / "build/release/apps/polhode/polhode"))
+BLOCK = re.compile(r"Save this as `(?P<file>[\w.]+)`|^```(?P<language>\w*)\n(?P<text>.*?)^```$", re.M | re.S)
+
+
+def run_page(page):
+    """Faults of a page, and how many commands ran."""
+    count, name, faults = 0, None, []
+    with tempfile.TemporaryDirectory() as folder:
+        for block in BLOCK.finditer(page.read_text()):
+            if block["file"]:
+                name = block["file"]
+            elif block["language"] == "yaml":
+                if name is None:
+                    faults.append(f"{page.name}: a model without a name")
+                    continue
+                (pathlib.Path(folder) / name).write_text(block["text"])
+                name = None
+            elif block["language"] == "sh":
+                for line in block["text"].splitlines():
+                    words = shlex.split(line, comments=True)
+                    if not words:
+                        continue
+                    if words[0] != "polhode":
+                        faults.append(f"{page.name}: '{line}' is no command of polhode")
+                        continue
+                    done = subprocess.run([POLHODE, *words[1:]], cwd=folder, capture_output=True, text=True, check=False, timeout=240)
+                    count += 1
+                    if done.returncode != 0:
+                        faults.append(f"{page.name}: '{line}' ends with {done.returncode}\n{done.stderr[-800:]}")
+    return count, faults
+
+
+def main(wanted):
+    pages = [p for p in sorted((ROOT / "docs/quick_start").glob("*.md")) if not wanted or p.stem in wanted]
+    problems = []
+    for page in pages:
+        count, faults = run_page(page)
+        print(f"{page.name}: {count} commands, {len(faults)} faults")
+        problems += faults + ([f"{page.name} has no commands"] if count == 0 else [])
+    print("\n".join(problems))
+    return bool(problems) or not pages
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

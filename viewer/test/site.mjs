@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The documentation site in a headless Chromium without network: node site.mjs FOLDER. Skipped (77) without Chromium.
+import { existsSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { launch } from "./browser.mjs";
+
+const site = resolve(process.argv[2]), browser = await launch();
+if (!browser) { console.log("skipped: there is no Chromium"); process.exit(77); }
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+let failed = 0;
+const expect = (condition, text) => { if (!condition) { failed++; console.log(`FAILED  ${text}`); } };
+
+async function open(path, options, look) {
+  const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, offline: true, ...options }), page = await context.newPage();
+  const faults = [];
+  page.on("console", (m) => { if (["error", "warning"].includes(m.type()) && !/GL Driver Message|software WebGL/.test(m.text())) faults.push(m.text()); });
+  page.on("pageerror", (e) => faults.push(String(e)));
+  page.on("request", (r) => { if (/^(https?|wss?):/.test(r.url())) faults.push(`asks for ${r.url()}`); });
+  await page.goto(pathToFileURL(join(site, path.split("?")[0])).href + (path.includes("?") ? "?" + path.split("?")[1] : ""));
+  await look(page);
+  expect(faults.length === 0, `${path}: ${faults.slice(0, 2).join(" | ")}`);
+  if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, `site_${path.replace(/\W+/g, "_")}${options.colorScheme ?? ""}${options.isMobile ? "phone" : ""}.png`) });
+  await context.close();
+}
+const phone = { viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true };
+for (const path of ["index.html", "gallery.html", "theory/joints.html", "reference/conventions.html", "quick_start/robot.html", "api/python.html"])
+  for (const options of [{}, { colorScheme: "dark" }, phone])
+    await open(path, options, async (page) => {
+      await page.evaluate(axe);
+      const found = await page.evaluate(() => window.axe.run(document.querySelector("article"), { resultTypes: ["violations"], preload: false, rules: { "scrollable-region-focusable": { enabled: false } } }));
+      const list = found.violations.map((v) => `${v.id}: ${v.nodes[0].html.slice(0, 120)}`);
+      expect(list.length === 0, `${path} ${JSON.stringify(options)}: ${list.join(" | ")}`);
+      if (options.isMobile) expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${path} is wider than a phone`);
+      expect(await page.evaluate(() => [...document.images].every((i) => !i.complete || i.naturalWidth > 0 || i.loading === "lazy")), `${path}: a picture is missing`);
+    });
+await open("theory/joints.html", {}, async (page) => expect(await page.locator("math").count() > 20 && await page.locator("#equation-joint-coincident math").count() === 1, "formulas are no formulas"));
+for (const [words, at] of [["bushing", "reference/connectors.html"], ["quaternion order", "reference/conventions.html"]])
+  await open(`search.html?q=${encodeURIComponent(words)}`, {}, async (page) => {
+    await page.locator("#search-results li a").first().waitFor();
+    await page.waitForTimeout(300);
+    const links = await page.locator("#search-results li a").evaluateAll((all) => all.map((a) => a.getAttribute("href").split("?")[0].split("#")[0]));
+    expect(links.includes(at), `a search for '${words}' does not find ${at}: ${links.slice(0, 5)}`);
+  });
+if (existsSync(join(site, "live")))
+  await open("examples/heavy_top/index.html", {}, async (page) => {
+    await page.locator("iframe.live").scrollIntoViewIfNeeded();
+    const frame = await (await page.locator("iframe.live").elementHandle()).contentFrame();
+    await frame.waitForFunction(() => document.documentElement.dataset.ready, null, { timeout: 60000 });
+  });
+await browser.close();
+console.log(failed ? `${failed} faults` : "the site opens, searches and plays without network");
+process.exit(failed ? 1 : 0);
