@@ -36,7 +36,8 @@ SurfaceContact::SurfaceContact(std::string name, SurfacePoints points, const std
     nodes_.insert(nodes_.end(), first, first + n_);
     if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
   }
-  gaps_at_start_ = gaps(X);
+  gap_at_start_ = std::numeric_limits<double>::infinity();
+  for (const double g : gaps(X)) gap_at_start_ = std::min(gap_at_start_, g);
 }
 
 std::vector<double> SurfaceContact::gaps(const std::vector<Vec3>& X) const {
@@ -192,11 +193,10 @@ struct SurfaceContact::Terms {
 SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& place,
                                            const double* memory, bool tangent) const {
   Action a;
-  const SurfaceLaw law = law_of(memory);
-  const double reach = law.normal.reach();
+  const double reach = law_.normal.reach();
   const Vec3 way = place.at_n1 - place.at_n;
   // Of a gap that acts at the other end of the step only, the value matters as well.
-  const GapQuestion question{law.normal, law_.normal.reach() + way.norm(), sided(step)};
+  const GapQuestion question{law_.normal, reach + way.norm(), sided(step)};
   const RigidSurface::Gap g_n1 = gap(place.at_n1, question);
   const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : gap(place.at_n, question);
   a.gap_n = g_n.value;
@@ -204,7 +204,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
   if (g_n.value >= reach && g_n1.value >= reach) return a;
   a.acts = true;
   if (step.context.dt == 0.0) {  // an instant
-    a.lambda = law.normal.force(g_n1.value);
+    a.lambda = law_.normal.force(g_n1.value);
     a.pressure = a.lambda * g_n1.normal.norm();
     if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory[0], memory[1], memory[2]);
     a.h = a.lambda * g_n1.normal + a.friction;
@@ -212,7 +212,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
     return a;
   }
   if (!tangent) {
-    const Terms<double> t(law, step, place, g_n, g_n1, memory, a.slips);
+    const Terms<double> t(law_, step, place, g_n, g_n1, memory, a.slips);
     a.h = contact::value(t.h);
     a.friction = contact::value(t.friction);
     a.bristle = contact::value(t.bristle);
@@ -221,7 +221,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
     a.pressure = t.pressure;
     return a;
   }
-  const Terms<Dual> t(law, step, place, g_n, g_n1, memory, a.slips);
+  const Terms<Dual> t(law_, step, place, g_n, g_n1, memory, a.slips);
   a.h = contact::value(t.h);
   for (int j = 0; j < 3; ++j) a.D.col(j) << t.h.x.d[j], t.h.y.d[j], t.h.z.d[j];
   a.lambda = t.lambda.v;

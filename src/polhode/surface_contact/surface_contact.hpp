@@ -82,8 +82,8 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
 
  private:
   /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its
-  /// tangential part and the pressure; then by how much its band ends lower as it started within.
-  static constexpr std::size_t kMemory = 12, kLowered = 11;
+  /// tangential part and the pressure.
+  static constexpr std::size_t kMemory = 11;
 
   /// The point in the surface's coordinates over the step.
   struct Place {
@@ -130,10 +130,6 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   [[nodiscard]] bool sided(const NodeStep& step) const {
     return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }
-  [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
-    return law_.with_band_lowered(memory[kLowered]);
-  }
-  void write_start(const std::vector<double>& gaps, double* history) const;
   [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
                            bool tangent) const;
   [[nodiscard]] bool goes_through(const Vec3& from, const Vec3& to) const;
@@ -147,9 +143,9 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   SurfaceLaw law_;
   int n_ = 1, frame_ = 0;  ///< Nodes of the face, of the frame.
   SurfacePoints points_;
-  double extent_ = 0.0;                ///< Of the surface about its origin [m].
-  std::vector<int> nodes_;             ///< Of each point: of its face, then of the frame.
-  std::vector<double> gaps_at_start_;  ///< Of each point [m].
+  double extent_ = 0.0;        ///< Of the surface about its origin [m].
+  std::vector<int> nodes_;     ///< Of each point: of its face, then of the frame.
+  double gap_at_start_ = 0.0;  ///< Smallest [m].
 };
 
 }  // namespace polhode

@@ -17,13 +17,6 @@ struct SurfaceLaw {
                               ///< end: takes energy.
   double mu = 0.0;            ///< Coefficient of friction [-].
   double bristle = 0.0;       ///< Stiffness of the friction bristle [Pa/m].
-
-  /// By how much the band of a barrier ends lower for what starts at a gap: there, so that nothing
-  /// is stored at the start, but a twentieth of the band is left. Zero outside of the band, and for
-  /// NaN, where nothing is near [m]. @eq{surface-start}
-  [[nodiscard]] double lowered_for(double gap_at_start) const;
-  /// The same with a band that ends lower; the pressure in its middle stays.
-  [[nodiscard]] SurfaceLaw with_band_lowered(double by) const;
 };
 
 /// What the contact did over the last step, and since the start.

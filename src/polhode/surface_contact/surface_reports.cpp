@@ -17,7 +17,6 @@ constexpr double kFarReport = 10.0;
 /// A way shorter than so many times the depth that counts as through does not get so deep.
 constexpr double kThroughBeam = 2.0;
 constexpr int kHalvings = 6;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -98,16 +97,16 @@ std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) c
 SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
                                                   const double* memory) const {
   const Vec3 kept(memory[0], memory[1], memory[2]);
-  const contact::NormalLaw law = law_of(memory).normal;
-  const bool stays = a.gap_n1 < law.reach();
+  const bool stays = a.gap_n1 < law_.normal.reach();
   const double half_k = 0.5 * law_.bristle;
   const double bristle_n1 = stays ? half_k * a.bristle.squaredNorm() : 0.0;
-  const double e_n1 = law.energy(a.gap_n1);
+  const double e_n1 = law_.normal.energy(a.gap_n1);
   Energies e;
   e.stored = e_n1 + bristle_n1;
   e.by_friction = std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 + half_k * kept.squaredNorm());
   if (law_.end_share > 0.0 || step.alpha_f != 0.5)
-    e.by_pressure = std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law.energy(a.gap_n));
+    e.by_pressure =
+        std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
   return e;
 }
 
@@ -115,14 +114,14 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
                           const double* /*scratch*/) const {
   Work w;
   const bool instant = step.x_n == step.x_n1;
+  const GapQuestion question{law_.normal, law_.normal.reach(), false};
   for (int i = 0; i < size(); ++i) {
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
       const Vec3 kept(memory[0], memory[1], memory[2]);
-      const contact::NormalLaw law = law_of(memory).normal;
-      const double now = gap(local(step.x_n1, i), {law, law.reach(), false}).value;
-      w.stored += area * (law.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
+      const double now = gap(local(step.x_n1, i), question).value;
+      w.stored += area * (law_.normal.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
       continue;
     }
     const Action a = act(step, place(step, i), memory, false);
@@ -136,23 +135,14 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
 
 void SurfaceContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
-  write_start(gaps_at_start_, history);
+  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] =
+      gap_at_start_;
 }
 
 void SurfaceContact::begin_at(const NodeStep& instant, double* history) const {
-  std::vector<double> gaps;
+  double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size(); ++i)
-    gaps.push_back(distance(local(instant.x_n1, i), kInfinite, true));
-  write_start(gaps, history);
-}
-
-/// @eq{surface-start}
-void SurfaceContact::write_start(const std::vector<double>& gaps, double* history) const {
-  double least = kInfinite;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    least = std::min(least, gaps[i]);
-    history[kMemory * i + kLowered] = law_.lowered_for(gaps[i]);
-  }
+    least = std::min(least, distance(local(instant.x_n1, i), least, true));
   history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] = least;
 }
 
@@ -185,7 +175,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
       friction += area * a.friction;
       moment += area * a.pressure * foot(step.x_n1, i);
     }
-    const bool stays = a.gap_n1 < law_of(memory).normal.reach();
+    const bool stays = a.gap_n1 < law_.normal.reach();
     for (int k = 0; k < 3; ++k) {
       memory[k] = stays ? a.bristle[k] : 0.0;
       memory[4 + k] = a.h[k];
@@ -193,7 +183,6 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
     }
     memory[3] = stays && a.slips ? 1.0 : 0.0;
     memory[10] = a.pressure;
-    if (!(a.gap_n1 < law_.normal.reach())) memory[kLowered] = 0.0;
   }
   if (t.normal_force > 0.0) moment /= t.normal_force;
   for (int k = 0; k < 3; ++k) {
@@ -216,8 +205,7 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     if (!(memory[10] > 0.0)) continue;
     const double area = points_.points[static_cast<std::size_t>(i)].area;
-    const contact::NormalLaw law = law_of(memory).normal;
-    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law});
+    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law_.normal});
     list.push_back({.point = foot(instant.x_n1, i),
                     .normal = R * here.normal.normalized(),
                     .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
