@@ -16,7 +16,7 @@ using Vec2 = PlanarCurve::Vec2;
 
 /// Steps shorter than this part of the curve have the gradient of their middle: what that leaves
 /// of the work is below round-off, and quotients would lose digits.
-constexpr double kShort = 1e-5;
+constexpr double kShortStep = 1e-5;
 
 /// Two numbers with their derivatives.
 struct Dual2 {
@@ -79,7 +79,7 @@ void PointOnCurve::evaluate(const PairStep& step, PairTerms& t) const {
   const DualDistance at_middle(d_middle, between);
   Dual2 gradient{at_middle.x, at_middle.y};
   const Dual square = moved.x * moved.x + moved.y * moved.y;
-  const double least = kShort * curve_.size();
+  const double least = kShortStep * curve_.size();
   if (step.context.conserving && alpha == 0.5 && square.v > least * least) {
     const Dual left = at_end.value - d_n.value - (at_middle.x * moved.x + at_middle.y * moved.y);
     const Dual part = left / square;
