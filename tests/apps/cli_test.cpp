@@ -211,6 +211,35 @@ TEST_F(CommandLine, ChecksMobilityAndTangents) {
   EXPECT_EQ(value(result.out, "passed"), "true");
 }
 
+TEST_F(CommandLine, SaysWhatPrescribesAllMotion) {
+  const auto model = [](const char* shaft) {
+    return std::string(R"(format: 1
+bodies:
+  arm: {mass: 1, inertia: [1, 1, 1]}
+  table: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], motion: {x: "0.1*sin(t)", y: 0, z: 0, rotation_vector: [0, 0, 0]
+  }
+}
+joints : {
+shaft : {
+type: )") +
+           shaft + R"(, bodies: [ground, arm], at: [0, 0, 0], axis: z}}
+loads: {motor: {type: rotary_motor, joint: shaft, coordinate: rz, speed: 1 rad/s}}
+analysis: {type: dynamics, duration: 1 s, step: 1 ms}
+)";
+};
+  write("driven.yaml", model("revolute"));
+  const auto all = run({"check", "driven.yaml"});
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_THAT(all.out + all.err,
+              HasSubstr("The mobility is 0: all motion is prescribed, by joint 'table.motion', "
+                        "rotary_motor 'motor'."));
+  write("slides.yaml", model("cylindrical"));
+  const auto one = run({"check", "slides.yaml"});
+  EXPECT_THAT(one.out, HasSubstr("1  independent motions at the start, besides those of joint "
+                                 "'table.motion', rotary_motor 'motor'"));
+  EXPECT_THAT(one.out + one.err, Not(HasSubstr("all motion is prescribed")));
+}
+
 TEST_F(CommandLine, NamesRedundantJoints) {
   write("door.yaml", R"(format: 1
 bodies:

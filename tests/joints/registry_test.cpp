@@ -10,7 +10,7 @@ namespace polhode::test::registry_tests {
 
 TEST(JointRegistry, SaysWhatEachKindLeavesFree) {
   for (const JointKind& kind : joint_kinds()) {
-    if (kind.takes_free_list || kind.name == "distance") continue;
+    if (kind.takes_free_list || kind.points_apart) continue;
     EXPECT_EQ(free_motions(kind.name), kind.free) << kind.name;
   }
 }
@@ -27,7 +27,8 @@ TEST(JointRegistry, ListsTheNamesWhenOneIsUnknown) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "joints: the type 'hinge' is not known. Use one of: spherical, revolute, "
-                 "prismatic, cylindrical, universal, planar, fixed, distance, point_in_plane, "
+                 "prismatic, cylindrical, universal, constant_velocity, planar, fixed, distance, "
+                 "revolute_spherical, universal_spherical, slack_link, point_in_plane, "
                  "point_on_line, parallel_axes, generic.");
   }
 }

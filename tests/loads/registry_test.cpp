@@ -33,7 +33,8 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
                  "loads: the type 'torque' is not known. Use one of: force, moment, "
                  "spring_damper, axial_force, vector_damper, bushing, attraction, drag, "
                  "torsional_spring, translational_spring, rotary_motor, linear_motor, "
-                 "rotary_servo, linear_servo, gear, screw, point_on_surface.");
+                 "rotary_servo, linear_servo, gear, screw, point_on_surface, "
+                 "point_on_curve, rolling.");
   }
 }
 

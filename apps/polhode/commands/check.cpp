@@ -22,6 +22,16 @@ struct Options {
   bool tangents = false, json = false;
 };
 
+/// Joints, motors and bodies whose motion follows a function of time.
+std::vector<std::string> drives(const Simulation& simulation) {
+  const System& system = simulation.system();
+  std::vector<std::string> names;
+  for (const InteractionRef& ref : system.interactions())
+    if (const InteractionGroup& group = system.group(ref.group); group.prescribes(ref.item))
+      names.push_back(format("{} {}", group.kind(), quote(system.name(ref))));
+  return names;
+}
+
 /// What deserves a look though the model can be run.
 std::vector<std::string> warnings(const Simulation& simulation, const RankReport& rank) {
   std::vector<std::string> list;
@@ -44,7 +54,10 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                rank.redundant, rank.rows, name_list(rank.names, 12)));
   }
   if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
-    list.emplace_back("The mobility is 0: nothing can move.");
+    list.push_back(drives(simulation).empty()
+                       ? "The mobility is 0: nothing can move."
+                       : format("The mobility is 0: all motion is prescribed, by {}.",
+                                name_list(drives(simulation), 12)));
   if (simulation.has_contacts() && simulation.model().analysis.rho_inf < 1.0)
     list.push_back(
         format("rho_inf is {:g}: numerical damping takes energy from every contact; "
@@ -206,6 +219,7 @@ int check(const Options& options) {
                                    {"redundant_rows", rank.redundant},
                                    {"redundant", rank.names},
                                    {"mobility", rank.mobility},
+                                   {"prescribed_by", drives(simulation)},
                                    {"start",
                                     {{"position_residual", start.position_residual},
                                      {"largest_move", start.largest_move},
@@ -225,7 +239,11 @@ int check(const Options& options) {
          format("{} of them move", simulation.system().body_count())},
         {"joints", format("{}", simulation.model().joints.size())},
         {"loads", format("{}", simulation.model().loads.size())},
-        {"mobility", format("{}", rank.mobility), "independent motions at the start"},
+        {"mobility", format("{}", rank.mobility),
+         drives(simulation).empty()
+             ? "independent motions at the start"
+             : format("independent motions at the start, besides those of {}",
+                      name_list(drives(simulation), 3))},
         {"constraint rows", format("{}", rank.rows),
          format("rank {}, {} redundant", rank.rank, rank.redundant)},
         {"start, |g|", format("{:.1e}", start.position_residual),

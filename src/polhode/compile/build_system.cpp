@@ -120,7 +120,7 @@ class Builder {
                              .R_b = axes(joint.b, joint.R_b)};
     JointParameters parameters{.free = joint.free, .values = joint.parameters};
     const JointKind& kind = joint_kind(joint.type);
-    if (kind.name == "distance" && !parameters.values.contains("distance")) {
+    if (kind.points_apart && !kind.parameters.empty() && !parameters.values.contains("distance")) {
       const double distance =
           (start_position(joint.b, joint.Z_b) - start_position(joint.a, joint.Z_a)).norm();
       if (!(distance > 0.0))

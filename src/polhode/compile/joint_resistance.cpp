@@ -68,7 +68,8 @@ JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
   JointResistance r;
   if (!joint.friction && !joint.limits && !joint.angle_limits) return r;
   const Scales s = scales_of(model, joint);
-  const bool slides = joint.type == "prismatic" || joint.type == "cylindrical";
+  const bool slides =
+      joint.type == "prismatic" || joint.type == "cylindrical" || joint.type == "slack_link";
   if (joint.friction) {
     const JointFrictionSpec& spec = *joint.friction;
     JointFriction f;

@@ -46,6 +46,7 @@ Joint::Joint(std::string item_name, std::string type, Participants pair, const J
       parts_(recipe.parts),
       rows_(recipe.parts.rows()),
       shift_(recipe.shift),
+      rod_(recipe.rod),
       user_frames_(recipe.frames),
       type_(std::move(type)) {
   name = std::move(item_name);
@@ -95,12 +96,12 @@ void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration&
   q_alpha.u = (1.0 - af) * u_n + af * q_n1.u;
   q_alpha.z_a = z_a.at_alpha;
   q_alpha.z_b = z_b.at_alpha;
-  if (parts_.planes + parts_.axes > 0) {
+  if (parts_.planes > 0 || parts_.turns()) {
     const CarriedFrame R_a(a, frames_.R_a);
     q_alpha.R_a = R_a.at_alpha;
     q_n1.R_a = R_a.at_n1;
   }
-  if (parts_.axes > 0) {
+  if (parts_.turns()) {
     const CarriedFrame R_b(b, frames_.R_b);
     q_alpha.R_b = R_b.at_alpha;
     q_n1.R_b = R_b.at_n1;
@@ -137,7 +138,7 @@ void Joint::set_resistance(const JointResistance& data) {
 }
 
 void Joint::set_motion(const FrameMotion& motion) {
-  if (parts_.distance)
+  if (parts_.distance || rod_ != RodKind::none)
     throw InputError(format("joints.{}.motion", name), "a distance has no frame that could move",
                      "Prescribe the motion of a spherical joint, or leave it out");
   if (resistance_) refuse_both(name);
@@ -285,6 +286,15 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
 bool Joint::acceptable(const PairStep& step) const {
   // Axes held parallel by right angles could also stand antiparallel: the rows do not see it.
   return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
+    if (parts_.equal_turns) {
+      // Half a turn about any axis across z satisfies the row as well.
+      const Mat3 of_a_n = a.Lambda_n * user_frames_.R_a, of_b_n = b.Lambda_n * user_frames_.R_b;
+      const Mat3 of_a = a.Lambda_n1 * user_frames_.R_a, of_b = b.Lambda_n1 * user_frames_.R_b;
+      const auto turned = [](const Mat3& x, const Mat3& y) {
+        return x.col(kX).dot(y.col(kX)) + x.col(kY).dot(y.col(kY)) > 0.0;
+      };
+      return turned(of_a_n, of_b_n) == turned(of_a, of_b);
+    }
     const auto same_side = [&](int axis) {
       const Carried on_a = a.vector(user_frames_.R_a.col(axis));
       const Carried on_b = b.vector(user_frames_.R_b.col(axis));
@@ -297,7 +307,8 @@ bool Joint::acceptable(const PairStep& step) const {
 std::optional<MotionBasis> Joint::motion_basis() const {
   // Friction depends on the multipliers, and moving frames have work of their own: the tree, which
   // eliminates multipliers, leaves both to loops.
-  if (resistance_ || motion_ || rows_ < 3 || parts_.distance) return std::nullopt;
+  if (resistance_ || motion_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
+    return std::nullopt;
   MotionBasis m;
   m.coincident = parts_.coincident;
   m.slides = parts_.planes;
@@ -339,7 +350,7 @@ void Joint::reverse() {
 }
 
 int Joint::angles() const {
-  if (parts_.distance) return 0;
+  if (rod_ != RodKind::none || parts_.distance) return 0;
   return parts_.axes == 2 ? 1 : parts_.axes == 1 ? 2 : 0;
 }
 
@@ -376,7 +387,7 @@ std::optional<FreeDisplacement> Joint::free_displacement(const std::string& coor
 }
 
 bool Joint::translation_free(int user_axis) const {
-  if (parts_.coincident || parts_.distance) return false;
+  if (parts_.coincident || parts_.distance || rod_ != RodKind::none) return false;
   for (int i = 0; i < parts_.planes; ++i)
     if ((parts_.plane[static_cast<std::size_t>(i)].normal + shift_) % 3 == user_axis) return false;
   return true;
@@ -406,7 +417,9 @@ std::vector<std::string> Joint::coordinate_names() const {
   std::vector<std::string> names;
   for (int k = 0; k < 3; ++k)
     if (translation_free(k)) names.emplace_back(kAxisName[k]);
+  if (rod_ != RodKind::none) return RodCoordinates::names(rod_);
   if (parts_.distance) return names;
+  if (parts_.equal_turns) return {kRotationName[kX], kRotationName[kY]};
   if (parts_.axes == 0) names.insert(names.end(), kRotationName, kRotationName + 3);
   if (parts_.axes == 1)
     for (int i : {kX, kY}) names.emplace_back(kRotationName[(i + shift_) % 3]);
@@ -432,12 +445,24 @@ JointCoordinates Joint::coordinates(const BodyStep& a, const BodyStep& b,
                              user_frames_.R_a.col((k - shift_ + 3) % 3)};
     add(s.at_n1(a, b), s.rate_at_n1(a, b));
   }
+  const Vec3 omega_a = a.Lambda_n1 * a.W_n1, omega_b = b.Lambda_n1 * b.W_n1;
+  const Mat3 R_a = a.Lambda_n1 * user_frames_.R_a;
+  if (rod_ != RodKind::none) {
+    const Vec3 z_a = a.Lambda_n1 * user_frames_.Z_a, z_b = b.Lambda_n1 * user_frames_.Z_b;
+    const Vec3 u = (b.r_n1 - a.r_n1) + (z_b - z_a);
+    const Vec3 u_dot = b.v_n1 + omega_b.cross(z_b) - a.v_n1 - omega_a.cross(z_a);
+    const RodCoordinates rod(rod_, R_a.transpose() * u,
+                             R_a.transpose() * (u_dot - omega_a.cross(u)));
+    for (int k = 0; k < rod.count; ++k) add(rod.value[k], rod.rate[k]);
+    return c;
+  }
   if (parts_.distance) return c;
   if (parts_.axes == 0) {
-    const Mat3 R_a = a.Lambda_n1 * user_frames_.R_a, R_b = b.Lambda_n1 * user_frames_.R_b;
-    const Vec3 chi = log_map(R_a.transpose() * R_b);
-    const Vec3 omega = R_a.transpose() * (b.Lambda_n1 * b.W_n1 - a.Lambda_n1 * a.W_n1);
-    for (int k = 0; k < 3; ++k) add(chi[k], omega[k]);
+    const Vec3 chi = log_map(R_a.transpose() * (b.Lambda_n1 * user_frames_.R_b));
+    const Vec3 omega = R_a.transpose() * (omega_b - omega_a);
+    const Vec3 rate = parts_.equal_turns ? rotation_vector_rate(chi, omega) : omega;
+    for (int k = 0; k < (parts_.equal_turns ? 2 : 3); ++k) add(chi[k], rate[k]);
+    if (parts_.equal_turns) return c;
   }
   for (int i = 0; i < angles(); ++i)
     add(angle(i).at_n1(a, b, history[i]), angle(i).rate_at_n1(a, b));

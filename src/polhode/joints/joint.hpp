@@ -90,7 +90,7 @@ class Joint : public InteractionItem {
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
     return resistance_ || parts_.planes > 0 || parts_.distance ? Coupling::all
-           : parts_.axes > 0                                   ? Coupling::couple
+           : parts_.turns()                                    ? Coupling::couple
                                                                : Coupling::none;
   }
   [[nodiscard]] bool reversible() const;
@@ -109,7 +109,9 @@ class Joint : public InteractionItem {
   // Reports. `step` is in the solver's order; what they read is at t_{n+1}.
   /// Names of the free coordinates: x, y, z for displacements along the axes of a, rx, ry, rz
   /// for rotations. Three free rotations are the components in a's axes of the rotation vector,
-  /// their rates those of the relative angular velocity. A distance joint has none.
+  /// their rates those of the relative angular velocity; the two of equal turns are those of the
+  /// rotation vector, which has none about z. Rods have angles, a link its distance, and a
+  /// distance joint has none.
   [[nodiscard]] std::vector<std::string> coordinate_names() const;
   /// Free coordinates of b's frame seen from a's. @param step  With the history at hand.
   [[nodiscard]] JointCoordinates coordinates(const PairStep& step) const;
@@ -144,6 +146,7 @@ class Joint : public InteractionItem {
   JointFrames frames_;
   JointParts parts_;
   int rows_ = 0, shift_ = 0;
+  RodKind rod_ = RodKind::none;
   bool reversed_ = false;
   JointFrames user_frames_;  ///< As frames_ before any reversal.
   std::string type_;

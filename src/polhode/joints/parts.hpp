@@ -6,26 +6,33 @@
 
 #include <polhode/joints/parts/coincident_points.hpp>
 #include <polhode/joints/parts/distance.hpp>
+#include <polhode/joints/parts/equal_turns.hpp>
 #include <polhode/joints/parts/orthogonal_axes.hpp>
 #include <polhode/joints/parts/point_in_plane.hpp>
 
 namespace polhode {
 
-/// What a joint is composed of: at most one CoincidentPoints, or two planes, or one distance,
-/// and at most three pairs of axes. Translation rows come first.
+/// What a joint is composed of: at most one CoincidentPoints, or two planes, and one distance,
+/// and at most three pairs of axes or one EqualTurns. Translation rows come first.
 struct JointParts {
   bool coincident = false;
+  bool equal_turns = false;
   std::optional<Distance> distance;
   int planes = 0, axes = 0;
   std::array<PointInPlane, 2> plane{};
   std::array<OrthogonalAxes, 3> pair{};
 
   void add(const CoincidentPoints&) { coincident = true; }
+  void add(const EqualTurns&) { equal_turns = true; }
   void add(const Distance& d) { distance = d; }
   void add(const PointInPlane& p) { plane.at(static_cast<std::size_t>(planes++)) = p; }
   void add(const OrthogonalAxes& p) { pair.at(static_cast<std::size_t>(axes++)) = p; }
 
-  [[nodiscard]] int rows() const { return (coincident ? 3 : planes) + (distance ? 1 : 0) + axes; }
+  [[nodiscard]] int rows() const {
+    return (coincident ? 3 : planes) + (distance ? 1 : 0) + (equal_turns ? 1 : axes);
+  }
+  /// Joint axes of both sides are needed.
+  [[nodiscard]] bool turns() const { return axes > 0 || equal_turns; }
 
   /// Calls what(part, first_row) for each part, in the order of the rows.
   template <class What>
@@ -38,6 +45,7 @@ struct JointParts {
     if (coincident) visit(CoincidentPoints{});
     for (int i = 0; i < planes; ++i) visit(plane[static_cast<std::size_t>(i)]);
     if (distance) visit(*distance);
+    if (equal_turns) visit(EqualTurns{});
     for (int i = 0; i < axes; ++i) visit(pair[static_cast<std::size_t>(i)]);
   }
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/joints/parts.hpp>
+#include <polhode/joints/rod_coordinates.hpp>
 
 namespace polhode {
 
@@ -30,13 +31,22 @@ struct JointRecipe {
   JointFrames frames;
   JointParts parts;
   int shift = 0;
+  RodKind rod = RodKind::none;  ///< What it reports of points that are apart.
 };
 
 /// A recipe from parts, rows in the order given.
 template <class... Parts>
 [[nodiscard]] JointRecipe joint_of(const JointFrames& frames, const Parts&... parts) {
-  JointRecipe recipe{.frames = frames, .parts = {}, .shift = 0};
+  JointRecipe recipe{.frames = frames, .parts = {}};
   (recipe.parts.add(parts), ...);
+  return recipe;
+}
+
+/// The same between points that are apart.
+template <class... Parts>
+[[nodiscard]] JointRecipe rod_of(RodKind rod, const JointFrames& frames, const Parts&... parts) {
+  JointRecipe recipe = joint_of(frames, parts...);
+  recipe.rod = rod;
   return recipe;
 }
 

@@ -3,6 +3,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/joints/constant_velocity_joint.hpp>
 #include <polhode/joints/cylindrical_joint.hpp>
 #include <polhode/joints/distance_joint.hpp>
 #include <polhode/joints/fixed_joint.hpp>
@@ -14,10 +15,24 @@
 #include <polhode/joints/prismatic_joint.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/joints/revolute_joint.hpp>
+#include <polhode/joints/rod_joints.hpp>
 #include <polhode/joints/spherical_joint.hpp>
 #include <polhode/joints/universal_joint.hpp>
 
 namespace polhode {
+
+namespace {
+
+Parameter rod_length() {
+  return {"distance",
+          "m",
+          {},
+          std::numeric_limits<double>::min(),
+          std::numeric_limits<double>::max(),
+          "distance of the two points; left out: as at the start"};
+}
+
+}  // namespace
 
 const std::vector<JointKind>& joint_kinds() {
   static const std::vector<JointKind> kinds{
@@ -26,6 +41,8 @@ const std::vector<JointKind>& joint_kinds() {
       {"prismatic", "slider: b moves along z", "Tz", prismatic_joint},
       {"cylindrical", "sleeve: b moves along z and turns about it", "Tz Rz", cylindrical_joint},
       {"universal", "cardan: b turns about x of a and y of b", "Rx Ry", universal_joint},
+      {"constant_velocity", "both shafts, z of a and of b, turn alike at any angle between them",
+       "Rx Ry", constant_velocity_joint},
       {"planar", "b slides in the plane with normal z and turns about it", "Tx Ty Rz",
        planar_joint},
       {"fixed", "weld: nothing is free", "", fixed_joint},
@@ -33,12 +50,30 @@ const std::vector<JointKind>& joint_kinds() {
        "rod with ball ends: the points keep their distance",
        "all but the distance",
        distance_joint,
-       {{"distance",
-         "m",
-         {},
-         std::numeric_limits<double>::min(),
-         std::numeric_limits<double>::max(),
-         "distance of the two points; left out: as at the start"}}},
+       {rod_length()},
+       false,
+       true},
+      {"revolute_spherical",
+       "massless rod: it turns about z of a and has a ball end on b",
+       "all but the distance and the plane of the hinge",
+       revolute_spherical_joint,
+       {rod_length()},
+       false,
+       true},
+      {"universal_spherical",
+       "massless rod: it has a cross on a, with axes x and y, and a ball end on b",
+       "all but the distance",
+       universal_spherical_joint,
+       {rod_length()},
+       false,
+       true},
+      {"slack_link",
+       "link with slack: the distance of the points stays within its limits",
+       "all, within the limits",
+       slack_link_joint,
+       {},
+       false,
+       true},
       {"point_in_plane", "the point of b stays in the plane with normal z of a", "Tx Ty Rx Ry Rz",
        point_in_plane_joint},
       {"point_on_line", "the point of b stays on the line along z of a", "Tz Rx Ry Rz",

@@ -16,6 +16,8 @@ struct JointKind {
   JointRecipe (*recipe)(const JointFrames&, const JointParameters&);
   std::vector<Parameter> parameters = {};
   bool takes_free_list = false;  ///< Wants JointParameters::free.
+  /// Its points are apart: the model file gives both, and "distance" is that at the start.
+  bool points_apart = false;
 };
 
 /// Every joint type; the order is that of the documentation.

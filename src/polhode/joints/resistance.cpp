@@ -6,6 +6,7 @@
 #include <polhode/contact_laws/bristle.hpp>
 #include <polhode/contact_laws/stop_force.hpp>
 #include <polhode/joints/parts.hpp>
+#include <polhode/joints/parts/link_length.hpp>
 #include <polhode/joints/resistance.hpp>
 
 namespace polhode {
@@ -44,10 +45,11 @@ BodyStep start_of(const BodyStep& s) {
   return start;
 }
 
-/// d/dt of the slide z·u at an instant.
-double slide_rate(const Configuration& q, const BodyStep& a, const BodyStep& b) {
+/// d/dt of the slide z·u, or of the distance |u|, at an instant.
+double slide_rate(const Configuration& q, const BodyStep& a, const BodyStep& b, bool distance) {
   const Vec3 omega_a = a.Lambda_n1 * a.W_n1, omega_b = b.Lambda_n1 * b.W_n1;
   const Vec3 u_dot = b.v_n1 + omega_b.cross(q.z_b) - a.v_n1 - omega_a.cross(q.z_a);
+  if (distance) return q.u.norm() > 0.0 ? q.u.normalized().dot(u_dot) : 0.0;
   const Vec3 z = axes_at(q).col(kZ);
   return z.dot(u_dot) + omega_a.cross(z).dot(q.u);
 }
@@ -96,6 +98,7 @@ std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
   if (type == "cylindrical") return Kind::cylindrical;
   if (type == "spherical") return Kind::spherical;
   if (type == "universal") return Kind::universal;
+  if (type == "slack_link") return Kind::link;
   return std::nullopt;
 }
 
@@ -110,13 +113,14 @@ void Resistance::for_limits(What&& what) const {
 }
 
 Stop Resistance::stop_of(const View& v, const JointLimits& limits, bool slides, const Coordinate& c,
-                         int memory) {
+                         int memory) const {
   CoordinateStep step{.at_n = c.at_n, .at_n1 = c.at_n1, .dt = v.step.context.dt};
   if (step.dt != 0.0) {
+    const bool link = kind_ == Kind::link;
     const BodyStep a_n = start_of(v.step.a), b_n = start_of(v.step.b);
-    step.rate_n = slides ? slide_rate(v.q_n, a_n, b_n) : v.angle[0].rate_at_n1(a_n, b_n);
-    step.rate_n1 =
-        slides ? slide_rate(v.q_n1, v.step.a, v.step.b) : v.angle[0].rate_at_n1(v.step.a, v.step.b);
+    step.rate_n = slides ? slide_rate(v.q_n, a_n, b_n, link) : v.angle[0].rate_at_n1(a_n, b_n);
+    step.rate_n1 = slides ? slide_rate(v.q_n1, v.step.a, v.step.b, link)
+                          : v.angle[0].rate_at_n1(v.step.a, v.step.b);
   }
   return {limits, v.memory + memory, step};
 }
@@ -151,6 +155,15 @@ Resistance::Motion Resistance::motion(const View& v, bool tangents) const {
     c.by_b.tail<3>() = gradient;
     return c;
   };
+  if (kind_ == Kind::link) {
+    m.slide = m.count;
+    Coordinate& c = add();
+    const LinkLength length(v.q_n, v.q_n1);
+    c.at_n = length.at_n;
+    c.at_n1 = length.at_n1;
+    LinkLength::row(length.n, v.q_alpha, PairRows{c.on_a.data(), c.on_b.data()});
+    LinkLength::row(length.e, v.q_n1, PairRows{c.by_a.data(), c.by_b.data()});
+  }
   if (kind_ == Kind::prismatic || kind_ == Kind::cylindrical) {
     m.slide = m.count;
     Coordinate& c = add();
@@ -235,6 +248,8 @@ Resistance::Slip Resistance::slip(const View& v, int pin) const {
       add_pair(0, f.mu);
       add_pair(2, f.mu * across);
       break;
+    case Kind::link:
+      break;  // nothing presses together
   }
   return s;
 }
@@ -323,7 +338,10 @@ void Resistance::add(const View& v, PairTerms& t) const {
     t.D_bb += c.on_b * c.D_b.transpose();
     t.B_a += c.on_a * c.by_lambda.transpose();
     t.B_b += c.on_b * c.by_lambda.transpose();
-    if (i == m.slide) PointInPlane{kZ}.add_wrench_tangent(v.q_alpha, v.q_n1, alpha_f, &c.force, t);
+    if (i == m.slide && kind_ == Kind::link)
+      LinkLength(v.q_n, v.q_n1).add_wrench_tangent(v.q_alpha, v.q_n1, alpha_f, c.force, t);
+    else if (i == m.slide)
+      PointInPlane{kZ}.add_wrench_tangent(v.q_alpha, v.q_n1, alpha_f, &c.force, t);
     if (c.angle >= 0) {
       const AngleStep& angle = m.angle[c.angle];
       t.D_aa.bottomRightCorner<3, 3>() -= c.force * angle.D_mu_a;

@@ -42,7 +42,8 @@ struct JointLimits {
 /// What resists the free motion of a joint.
 struct JointResistance {
   std::optional<JointFriction> friction;
-  std::optional<JointLimits> slide, turn;  ///< Of the displacement and the angle about z.
+  /// Of the displacement along z, or the distance of a link, and of the angle about z.
+  std::optional<JointLimits> slide, turn;
 
   [[nodiscard]] bool any() const { return friction || slide || turn; }
 };
@@ -53,15 +54,23 @@ struct ResistanceReport {
   std::array<double, 3> friction{};
   int count = 0;                   ///< Of them.
   bool slips = false;              ///< Over the last step.
-  double slide = 0.0, turn = 0.0;  ///< Of the stops, along +z, on b [N], [N m].
+  double slide = 0.0, turn = 0.0;  ///< Of the stops, along +z or apart, on b [N], [N m].
 };
 
 /// Friction and stops over the free coordinates of a revolute, prismatic, cylindrical, spherical or
-/// universal joint: evaluated beside the joint's parts, with the same multipliers. The cross of a
-/// universal joint turns on two pins, x of a and y of b, each of which slips by itself.
+/// universal joint, and the stops of a link with slack: evaluated beside the joint's parts, with
+/// the same multipliers. The cross of a universal joint turns on two pins, x of a and y of b, each
+/// of which slips by itself.
 class Resistance {
  public:
-  enum class Kind : unsigned char { revolute, prismatic, cylindrical, spherical, universal };
+  enum class Kind : unsigned char {
+    revolute,
+    prismatic,
+    cylindrical,
+    spherical,
+    universal,
+    link  ///< Stops of a distance alone.
+  };
 
   /// The kind of the joint type of this name; nothing if it takes no resistance.
   [[nodiscard]] static std::optional<Kind> kind_of(const std::string& type);
@@ -115,8 +124,8 @@ class Resistance {
   template <class What>
   void for_limits(What&& what) const;
   /// The stop that acts on a coordinate in the step.
-  [[nodiscard]] static Stop stop_of(const View& view, const JointLimits& limits, bool slides,
-                                    const Coordinate& c, int memory);
+  [[nodiscard]] Stop stop_of(const View& view, const JointLimits& limits, bool slides,
+                             const Coordinate& c, int memory) const;
 
   Kind kind_;
   JointResistance data_;

@@ -8,8 +8,10 @@
 #include <polhode/loads/moment.hpp>
 #include <polhode/loads/motor.hpp>
 #include <polhode/loads/point_force.hpp>
+#include <polhode/loads/point_on_curve.hpp>
 #include <polhode/loads/point_on_surface.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/loads/rolling.hpp>
 #include <polhode/loads/servo.hpp>
 #include <polhode/loads/spring_damper.hpp>
 
@@ -352,6 +354,55 @@ const std::vector<LoadKind>& load_kinds() {
          "along x, y, z of the frame on a; 0 makes a cylinder along that axis"}},
        {},
        {"semi_axes"}},
+      {"point_on_curve",
+       "constraint that keeps a point of a body, or a roller around it, on a curve in a plane of "
+       "another one: a cam and its follower, a pin in a groove",
+       LoadPlace::surface,
+       "",
+       {{"period",
+         "-",
+         {},
+         kAboveZero,
+         kMost,
+         "of s: the curve of curve_x and curve_y closes; "
+         "left out: 2 pi"},
+        {"roller_radius", "m", 0.0, 0.0, kMost, "distance of the point from the curve"}},
+       {},
+       false,
+       add_point_on_curve,
+       {{"force", "N", 3}, {"parameter", "-"}, {"normal_force", "N"}, {"place", "m", 3}},
+       report_of<PointOnCurve>,
+       {{"curve_x", "m", "s", "-", "x of the curve over its parameter s"},
+        {"curve_y", "m", "s", "-", "y of the curve over its parameter s"}},
+       {{"side",
+         {"right", "left"},
+         "of the curve's direction as seen against z, on which the roller is; the outside of a "
+         "curve that runs counter-clockwise is its right"},
+        {"holds",
+         {"profile", "point"},
+         "profile: along z the point is free, as a follower has its own guide; point: it stays in "
+         "the plane too"}},
+       {},
+       {},
+       {"points", "curve_x"},
+       true},
+      {"rolling",
+       "constraint that lets a wheel or ball roll without slip on a plane of another body",
+       LoadPlace::wheel,
+       "",
+       {{"radius", "m", {}, kAboveZero, kMost, "of the wheel, from its centre to the tread"},
+        {"edge_radius", "m", 0.0, 0.0, kMost,
+         "of the round edge; 0 is a knife edge, that of the wheel makes a ball"}},
+       {},
+       true,
+       add_rolling,
+       {{"force", "N", 3}, {"point", "m", 3}, {"normal_force", "N"}},
+       report_of<Rolling>,
+       {},
+       {},
+       {},
+       {},
+       {"radius"}},
   };
   return kinds;
 }

@@ -19,4 +19,12 @@ Mat3 exp_map(const Vec3& chi) {
 
 Vec3 log_map(const Mat3& Lambda) { return rotation_vector(Quat(Lambda)); }
 
+Vec3 rotation_vector_rate(const Vec3& chi, const Vec3& omega) {
+  const double angle = chi.norm(), half = 0.5 * angle;
+  const double factor =
+      angle < 1e-4 ? 1.0 / 12.0 : (1.0 - half * std::cos(half) / std::sin(half)) / (angle * angle);
+  const Vec3 across = chi.cross(omega);
+  return omega - 0.5 * across + factor * chi.cross(across);
+}
+
 }  // namespace polhode

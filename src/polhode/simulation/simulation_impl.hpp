@@ -328,7 +328,7 @@ struct Simulation::Impl {
     const std::vector<std::string> names = joint.coordinate_names();
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto& limits =
-          names[k] == "z" ? joint.resistance()->data().slide : joint.resistance()->data().turn;
+          names[k][0] != 'r' ? joint.resistance()->data().slide : joint.resistance()->data().turn;
       const double play = limits ? limits->law.tolerance : 0.0;
       if (!limits || (c.value[k] >= limits->lower - play && c.value[k] <= limits->upper + play))
         continue;

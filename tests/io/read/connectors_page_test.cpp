@@ -30,7 +30,7 @@ TEST(ConnectorsPage, EveryExampleRuns) {
     ++count;
     at = end + close.size();
   }
-  EXPECT_EQ(count, 6);
+  EXPECT_EQ(count, 8);
 }
 
 }  // namespace polhode::test::connectors_page_tests

@@ -75,7 +75,7 @@ class JointReader {
     };
     if (context_.diagnostics.size() != before || !bodies || !sound(joint_.a) || !sound(joint_.b))
       return;
-    if (joint_.type == "distance") complete_distance();
+    if (takes("distance")) complete_distance();
     check_recipe();
     check_start();
   }
@@ -143,9 +143,22 @@ class JointReader {
     const auto axis = section_.direction("axis");
     const auto x = section_.direction("x_axis");
     if (section_.has("axis") && !axis) return;
-    const Vec3 z = axis.value_or(Vec3::UnitZ());
+    const std::optional<Vec3> rod = rod_direction();
+    const Vec3 z = axis.value_or(rod.value_or(Vec3::UnitZ()));
     if (x && !check_x(z, *x)) return;
-    set_axes(axes_about(z, x));
+    set_axes(axes_about(z, x ? x : across(z, rod)));
+  }
+
+  /// From the point of a to that of b at the start, for rods.
+  [[nodiscard]] std::optional<Vec3> rod_direction() const {
+    if (!joint_kind(joint_.type).points_apart) return std::nullopt;
+    const Vec3 u = b_.to_world(joint_.Z_b) - a_.to_world(joint_.Z_a);
+    return u.norm() > 0.0 ? std::optional<Vec3>(u.normalized()) : std::nullopt;
+  }
+
+  /// The direction, unless it is along z.
+  [[nodiscard]] static std::optional<Vec3> across(const Vec3& z, const std::optional<Vec3>& x) {
+    return x && x->cross(z).norm() > 1e-3 ? x : std::nullopt;
   }
 
   bool check_x(const Vec3& z, const Vec3& x) {
@@ -161,7 +174,7 @@ class JointReader {
     if (!z) return;
     const Vec3 z_a = a_.Lambda * (*z)[0], z_b = b_.Lambda * (*z)[1];
     if (x && !check_x(z_a, *x)) return;
-    const Mat3 F = axes_about(z_a, x);
+    const Mat3 F = axes_about(z_a, x ? x : across(z_a, rod_direction()));
     // The shortest turn from one axis to the other keeps the joint's angle at the start near zero.
     const Quat turn = Quat::FromTwoVectors(z_a, z_b);
     joint_.R_a = a_.Lambda.transpose() * F;
@@ -230,9 +243,11 @@ class JointReader {
   std::optional<JointLimitsSpec> read_limits(const char* key) {
     const SourceNode* node = takes(key) ? section_.find(key) : nullptr;
     if (!node) return std::nullopt;
-    const bool turns = table_.at(key).table == angle_limit_fields().title;
+    const std::string& title = table_.at(key).table;
     Section section(context_, *node, context_.tree.place_of(*node), section_.path(key),
-                    turns ? angle_limit_fields() : stroke_limit_fields());
+                    title == angle_limit_fields().title    ? angle_limit_fields()
+                    : title == stroke_limit_fields().title ? stroke_limit_fields()
+                                                           : distance_limit_fields());
     if (!node->is_map()) return std::nullopt;
     JointLimitsSpec l{.lower = section.number("lower"),
                       .upper = section.number("upper"),
@@ -267,6 +282,16 @@ class JointReader {
   /// Joints given with `at` stand at zero; others are looked at when the start is assembled.
   void check_start() {
     if (joint_.assembled_start) return;
+    if (joint_kind(joint_.type).points_apart) {
+      if (!joint_.limits) return;
+      const double start = (a_.to_world(joint_.Z_a) - b_.to_world(joint_.Z_b)).norm();
+      if (start < joint_.limits->lower.value_or(start) ||
+          start > joint_.limits->upper.value_or(start))
+        section_.fault("limits",
+                       format("the points are {:g} m apart at the start, which is outside", start),
+                       "Move the points, or widen the limits.");
+      return;
+    }
     for (const auto& [key, limits] :
          {std::pair("limits", joint_.limits), std::pair("angle_limits", joint_.angle_limits)})
       if (limits && (limits->lower.value_or(0.0) > 0.0 || limits->upper.value_or(0.0) < 0.0))

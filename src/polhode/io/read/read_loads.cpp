@@ -6,6 +6,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/io/read/time_function.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 
@@ -102,6 +103,12 @@ class LoadReader {
         read_points();
         read_axes();
         break;
+      case LoadPlace::wheel:
+        read_bodies();
+        read_points();
+        read_axes();
+        read_axle();
+        break;
       case LoadPlace::centres:
         read_bodies();
         break;
@@ -187,13 +194,20 @@ class LoadReader {
     F.col(2) = z;
     F.col(0) = (x - x.dot(z) * z).normalized();
     F.col(1) = z.cross(F.col(0));
-    const auto axes_on = [&](int body) -> Mat3 {
-      if (body == kGround) return F;
-      const BodySpec& b = context_.model.bodies[static_cast<std::size_t>(body)];
-      return b.orientation.toRotationMatrix().transpose() * F;
-    };
-    load_.R_a = axes_on(load_.a);
-    load_.R_b = axes_on(load_.b);
+    load_.R_a = axes_on(load_.a, F);
+    load_.R_b = axes_on(load_.b, F);
+  }
+
+  /// Axes given in the world at the start, in those of a body.
+  [[nodiscard]] Mat3 axes_on(int body, const Mat3& F) const {
+    if (body == kGround) return F;
+    const BodySpec& b = context_.model.bodies[static_cast<std::size_t>(body)];
+    return b.orientation.toRotationMatrix().transpose() * F;
+  }
+
+  void read_axle() {
+    const Vec3 axle = section_.direction("axle").value_or(Vec3::UnitY());
+    load_.R_b.col(2) = axes_on(load_.b, Mat3::Identity()) * axle;
   }
 
   /// A spring about an axis, where the joint has one such axis or a coordinate says which.
@@ -262,6 +276,7 @@ class LoadReader {
       load_.laws[l.name] = law;
       if (l.variable == "v") check_resistance(l, *law);
     }
+    if (kind.curve) read_curve();
     for (const ChoiceParameter& w : kind.words)
       if (const auto word = section_.choice(w.name)) load_.words[w.name] = *word;
     for (const Parameter& p : kind.vectors)
@@ -269,6 +284,48 @@ class LoadReader {
         for (int i = 0; i < 3; ++i) load_.parameters[p.name + "." + "xyz"[i]] = (*v)[i];
     for (const Parameter& p : kind.matrices)
       if (const SourceNode* node = section_.find(p.name)) read_matrix(p.name, *node);
+  }
+
+  /// A spline through points over their distances from each other, or a curve over s.
+  void read_curve() {
+    section_.refuse_both("points", "curve_x", "Give one of them.");
+    if (section_.misses("points")) {
+      if (load_.laws.size() == 1)
+        section_.fault(
+            format("'{}' is missing", load_.laws.contains("curve_x") ? "curve_y" : "curve_x"),
+            "Give both coordinates of the curve.");
+      return;
+    }
+    const SourceNode* node = section_.find("points");
+    if (!node) return;
+    if (!node->is_list() || node->children.size() < 3) {
+      section_.fault("points", "expects a list of at least three points",
+                     "Write [[0, 0, 0], [0.1, 0.02, 0], [0.2, 0, 0]].");
+      return;
+    }
+    std::vector<double> s, x, y;
+    for (const SourceNode& child : node->children) {
+      const auto point = read_vector(context_, child, section_.path("points"), table_.at("points"));
+      if (!point) return;
+      if (point->z() != 0.0) {
+        section_.fault("points", "leave the plane: z is not 0",
+                       "Turn the frame with axis and x_axis, so that the curve has x and y only.");
+        return;
+      }
+      const double way = s.empty() ? 0.0 : std::hypot(point->x() - x.back(), point->y() - y.back());
+      if (!s.empty() && !(way > 0.0)) {
+        section_.fault("points", "give a point twice in a row", "Leave one of them out.");
+        return;
+      }
+      s.push_back(s.empty() ? 0.0 : s.back() + way);
+      x.push_back(point->x());
+      y.push_back(point->y());
+    }
+    const bool closed = x.front() == x.back() && y.front() == y.back();
+    load_.parameters["period"] = s.back();
+    load_.parameters["open"] = closed ? 0.0 : 1.0;
+    load_.laws["curve_x"] = std::make_shared<TableFunction>(s, x, Interpolation::kCubic, closed);
+    load_.laws["curve_y"] = std::make_shared<TableFunction>(s, y, Interpolation::kCubic, closed);
   }
 
   /// A resistance takes energy at any rate.

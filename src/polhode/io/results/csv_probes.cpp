@@ -99,7 +99,8 @@ void extend_by_resistance(std::vector<std::string>& header, const Joint& joint,
       header.push_back(format("friction {} [{}]", name, unit(name)));
     header.emplace_back("slips [-]");
   }
-  if (resistance->data().slide) header.emplace_back("stop z [N]");
+  if (resistance->data().slide)
+    header.emplace_back(coordinates.front() == "distance" ? "stop distance [N]" : "stop z [N]");
   if (resistance->data().turn) header.emplace_back("stop rz [N m]");
 }
 

@@ -448,6 +448,7 @@ std::vector<const FieldTable*> all_field_tables() {
   for (const KindTable& kind : friction_tables()) tables.push_back(&kind.table);
   tables.push_back(&angle_limit_fields());
   tables.push_back(&stroke_limit_fields());
+  tables.push_back(&distance_limit_fields());
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());

@@ -155,6 +155,7 @@ const std::vector<KindTable>& load_tables();
 const std::vector<KindTable>& friction_tables();
 const FieldTable& angle_limit_fields();
 const FieldTable& stroke_limit_fields();
+const FieldTable& distance_limit_fields();
 /// Every table above, in the order of the reference page.
 std::vector<const FieldTable*> all_field_tables();
 

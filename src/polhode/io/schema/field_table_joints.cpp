@@ -139,4 +139,14 @@ const FieldTable& stroke_limit_fields() {
   return table;
 }
 
+const FieldTable& distance_limit_fields() {
+  static const FieldTable table = [] {
+    FieldTable t = limits("distance limits", "distance of its points", false);
+    for (Field& field : t.fields)
+      if (field.name == "lower" || field.name == "upper") field.range = kNotNegative;
+    return t;
+  }();
+  return table;
+}
+
 }  // namespace polhode

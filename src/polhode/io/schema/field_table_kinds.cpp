@@ -49,8 +49,9 @@ enum class Axis { kRequired, kOptional, kNone };
 
 /// How a joint is given its axes; a kind that is not named here has one that matters.
 Axis axis_of(const std::string& name) {
-  if (name == "universal" || name == "distance") return Axis::kNone;
-  if (name == "spherical" || name == "fixed" || name == "generic") return Axis::kOptional;
+  if (name == "universal" || name == "distance" || name == "slack_link") return Axis::kNone;
+  if (name == "spherical" || name == "fixed" || name == "generic" || name == "universal_spherical")
+    return Axis::kOptional;
   return Axis::kRequired;
 }
 
@@ -87,6 +88,10 @@ void add_resistance(const std::string& name, std::vector<Field>& fields) {
     section("limits", angle_limit_fields().title, "Stops of the joint's angle.");
   if (name == "prismatic" || name == "cylindrical")
     section("limits", stroke_limit_fields().title, "Stops of the joint's displacement.");
+  if (name == "slack_link") {
+    section("limits", distance_limit_fields().title, "Stops of the distance of its points.");
+    fields.back().required = true;
+  }
   if (name == "cylindrical")
     section("angle_limits", angle_limit_fields().title, "Stops of the joint's angle.");
 }
@@ -96,14 +101,17 @@ KindTable joint_table(const JointKind& kind) {
   std::vector<Field>& fields = result.table.fields;
   fields.push_back(type_field("joint", kind.name));
   fields.push_back(kBodies);
-  fields.push_back(kind.name == "distance" ? kPointsAt : kAt);
+  fields.push_back(kind.points_apart ? kPointsAt : kAt);
   fields.push_back(kAtBody);
   const Axis axis = axis_of(kind.name);
   if (axis != Axis::kNone) {
     fields.push_back(kAxis);
-    if (axis == Axis::kOptional) fields.back().standard = "z";
+    if (axis == Axis::kOptional)
+      fields.back().standard = kind.points_apart ? "from the point of a to that of b" : "z";
     if (axis == Axis::kRequired) fields.push_back(kAxisBody);
     fields.push_back(kXAxis);
+    if (axis == Axis::kRequired && kind.points_apart)
+      fields.back().standard = "from the point of a to that of b, made perpendicular to z";
   }
   if (kind.name == "universal")
     fields.push_back({.name = "axes",
@@ -118,7 +126,7 @@ KindTable joint_table(const JointKind& kind) {
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
   add_resistance(kind.name, fields);
-  if (kind.name != "distance")
+  if (!kind.points_apart)
     fields.push_back({.name = "motion",
                       .kind = kSection,
                       .meaning = "Prescribed motion of the joint's frame on the first body.",
@@ -155,6 +163,21 @@ const Field kLoadFrameAt{.name = "at",
                          .kind = kVector,
                          .dimension = kLength,
                          .meaning = "The point at the start on both bodies, world. Or at_body."};
+
+const Field kWheelAt{
+    .name = "at",
+    .kind = kVectorPair,
+    .dimension = kLength,
+    .meaning = "A point of the plane and the wheel's centre at the start, world. Or at_body."};
+const Field kPlaneNormal{
+    .name = "axis",
+    .kind = kDirection,
+    .meaning = "The plane's normal at the start, world; it points to the wheel.",
+    .standard = "z"};
+const Field kAxle{.name = "axle",
+                  .kind = kDirection,
+                  .meaning = "The wheel's axle at the start, world; of no meaning to a ball.",
+                  .standard = "y"};
 
 KindTable load(const std::string& name, const std::string& meaning,
                const std::vector<Field>& more) {
@@ -194,6 +217,10 @@ KindTable load_table(const LoadKind& kind) {
       fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody, kAxis, kXAxis});
       fields[fields.size() - 2].standard = "z";
       break;
+    case LoadPlace::wheel:
+      fields.insert(fields.end(),
+                    {kLoadBodies, kWheelAt, kLoadPointsBody, kPlaneNormal, kXAxis, kAxle});
+      break;
     case LoadPlace::centres:
       fields.push_back(kLoadBodies);
       break;
@@ -213,7 +240,14 @@ KindTable load_table(const LoadKind& kind) {
                       .dimension = read_unit(l.unit).unit.value().dimension,
                       .meaning = sentence(l.meaning),
                       .variable = l.variable,
-                      .of = read_unit(l.of).unit.value().dimension});
+                      .of = l.of == "-" ? kNone : read_unit(l.of).unit.value().dimension});
+  if (kind.curve)
+    fields.push_back(
+        {.name = "points",
+         .kind = kPoints,
+         .dimension = kLength,
+         .meaning = "Points of the curve in the frame on a, z = 0: a cubic spline goes "
+                    "through them, closed if the last is the first. Or curve_x and curve_y."});
   for (const ChoiceParameter& w : kind.words)
     fields.push_back({.name = w.name,
                       .kind = kChoice,
