@@ -10,8 +10,8 @@
 #include <polhode/compile/contact_shapes.hpp>
 #include <polhode/compile/contact_sides.hpp>
 #include <polhode/compile/surface_overlaps.hpp>
-#include <polhode/contact/placement.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/dynamics/placement.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/solids/mesh/selection.hpp>
 #include <polhode/surface_contact/solid_contact.hpp>

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include <polhode/contact/placement.hpp>
+#include <polhode/dynamics/placement.hpp>
 #include <polhode/geometry/shape.hpp>
 
 namespace polhode::contact {

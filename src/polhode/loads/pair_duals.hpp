@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/contact/placement.hpp>
+#include <polhode/dynamics/placement.hpp>
 #include <polhode/system/interaction.hpp>
 
 namespace polhode {
