@@ -186,6 +186,8 @@ class Placer {
                            *load.vector, where);
     }
     if (!mirrored_) return;
+    if (load.type == "rolling" || load.type == "point_on_curve")
+      refuse_mirror(where, format("'{}'", load.type), "Give the mirror image in a part of its own");
     if (load.type == "screw")
       load.parameters["pitch"] *= -1.0;
     else if (!load.joint.empty())

@@ -56,7 +56,10 @@ const std::string kArm =
     "  mount: {type: bushing, bodies: [ground, sleeve], at: [1.6, 0.5, 0.1], stiffness: [5, 6, "
     "7],\n"
     "    stiffness_matrix: [[1, 0, 0, 0.1, 0, 0], [0, 1, 0, 0, 0.2, 0], [0, 0, 1, 0, 0, 0],\n"
-    "      [0.1, 0, 0, 1, 0, 0], [0, 0.2, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]}\n";
+    "      [0.1, 0, 0, 1, 0, 0], [0, 0.2, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]}\n"
+    "cables:\n"
+    "  rope: {through: [[ground, [0.5, 2, 1]], [upper, [0.5, 0.2, -0.1]]], stiffness: 40,\n"
+    "    free_length: 1, damping: 0.3}\n";
 
 const std::string kAnalysis = "analysis: {duration: 0.5, step: 5 ms}\n";
 
