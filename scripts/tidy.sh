@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 
 build=build/tidy
 mkdir -p build
-CC=clang CXX=clang++ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+CC=clang CXX=clang++ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPOLHODE_UNITY=OFF \
   -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DPOLHODE_BUILD_TESTS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"$build.log" 2>&1 ||
   { cat "$build.log"; exit 1; }
 
