@@ -213,20 +213,17 @@ TEST_F(CommandLine, ChecksMobilityAndTangents) {
 
 TEST_F(CommandLine, SaysWhatPrescribesAllMotion) {
   const auto model = [](const char* shaft) {
-    return std::string(R"(format: 1
+    return std::string(R"yaml(format: 1
 bodies:
   arm: {mass: 1, inertia: [1, 1, 1]}
-  table: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], motion: {x: "0.1*sin(t)", y: 0, z: 0, rotation_vector: [0, 0, 0]
-  }
-}
-joints : {
-shaft : {
-type: )") +
-           shaft + R"(, bodies: [ground, arm], at: [0, 0, 0], axis: z}}
+  table: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], motion: {x: "0.1*sin(t)", y: 0, z: 0, rotation_vector: [0, 0, 0]}}
+joints:
+  shaft: {type: )yaml") +
+           shaft + R"yaml(, bodies: [ground, arm], at: [0, 0, 0], axis: z}
 loads: {motor: {type: rotary_motor, joint: shaft, coordinate: rz, speed: 1 rad/s}}
 analysis: {type: dynamics, duration: 1 s, step: 1 ms}
-)";
-};
+)yaml";
+  };
   write("driven.yaml", model("revolute"));
   const auto all = run({"check", "driven.yaml"});
   EXPECT_EQ(all.code, 0) << all.err;
