@@ -330,7 +330,9 @@ TEST_P(EveryJoint, ReportsTheSameCoordinatesWithItsSidesExchanged) {
     const PairStep step{a, b, m.context, m.lambda.data(), m.history.data()};
     const JointCoordinates q = joint.coordinates(step);
     EXPECT_EQ(q.count, static_cast<int>(joint.coordinate_names().size()));
-    if (!joint.parts().distance) EXPECT_EQ(q.count, 6 - joint.rows());
+    if (!joint.parts().distance) {
+      EXPECT_EQ(q.count, 6 - joint.rows());
+    }
     if (!joint.reversible()) return;
     Joint reversed = joint;
     reversed.reverse();

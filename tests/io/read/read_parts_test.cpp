@@ -7,7 +7,7 @@
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation.hpp>
 
-#include "../support/scratch.hpp"
+#include <support/scratch.hpp>
 
 namespace polhode::read_parts_tests {
 namespace {
