@@ -19,11 +19,10 @@ materials: {rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.
 bodies: {hub: {shape: {box: [0.1, 0.1, 0.1]}, density: 1000, position: [-0.05, 0, 0]}}
 solids:
   bar:
-    mesh: {box: {size: [0.5, 0.05, 0.05], cells: [n, 1, 1]}}
+    mesh: {block: {size: [0.5, 0.05, 0.05], cells: [n, 1, 1]}, position: [0.25, 0, 0]}
     element: hex8_eas9
     material: rubber
-    position: [0.25, 0, 0]
-    bonds: {hub: {nodes: x_min}}
+    bonded: {hub: xmin}
 joints: {pin: {type: revolute, bodies: [ground, hub], at: [-0.05, 0, 0], axis: y}}
 analysis: {duration: 0.05, step: 0.005}
 )",

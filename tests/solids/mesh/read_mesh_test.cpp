@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string folder() { return test::source_dir() + "/tests/fe/mesh/data"; }
+std::string folder() { return test::source_dir() + "/tests/solids/mesh/data"; }
 
 std::vector<std::string> files() {
   std::vector<std::string> all;

@@ -72,9 +72,11 @@ void read_variables(ReadContext& context, const SourceNode& node) {
       continue;
     }
     const auto given = context.given_variables.find(name);
-    context.variables[name] = given != context.given_variables.end()
-                                  ? given->second
-                                  : read_variable(context, node.children[k], "variables." + name);
+    // First the value: until it is known the name is not.
+    const auto value = given != context.given_variables.end()
+                           ? given->second
+                           : read_variable(context, node.children[k], "variables." + name);
+    context.variables[name] = value;
   }
 }
 
