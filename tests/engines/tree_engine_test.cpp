@@ -46,7 +46,8 @@ class Mechanism {
     const Vec3 at = vector();
     const Mat3 axes = quaternion().toRotationMatrix();
     place(a, at, axes, j.Z_a, j.R_a);
-    place(b, type == "distance" ? Vec3(at + vector()) : at, axes, j.Z_b, j.R_b);
+    place(b, joint_kind(type).points_apart ? Vec3(at + vector()) : at, axes, j.Z_b, j.R_b);
+    if (type == "slack_link") j.limits = JointLimitsSpec{.upper = 4.0};
     model_.joints.push_back(j);
   }
 

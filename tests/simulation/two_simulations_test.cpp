@@ -34,7 +34,7 @@ Model balls() {
   return read_model_text(R"(
 format: 1
 gravity: [0, 0, -9.81]
-contacts: {law: {friction: 0.3}}
+contacts: {default: {friction: 0.3}}
 bodies:
   floor: {fixed: true, shape: {plane: [0, 0, 1]}}
   a: {shape: {sphere: 0.1}, density: 1000, position: [0, 0, 0.2]}

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include <polhode/compile/joint_resistance.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
 
 namespace polhode {
 
@@ -66,6 +68,9 @@ JointLimits limits_of(const JointLimitsSpec& spec, const AnalysisSpec& analysis,
 
 JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
   JointResistance r;
+  if (joint.type == "slack_link" && !joint.limits)
+    throw InputError(format("joints.{}", joint.name), "a slack_link without limits holds nothing",
+                     "Give limits: {lower, upper}, distances of its points");
   if (!joint.friction && !joint.limits && !joint.angle_limits) return r;
   const Scales s = scales_of(model, joint);
   const bool slides =
