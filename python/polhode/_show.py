@@ -36,7 +36,7 @@ def page_of(what: str, height: int) -> Page:
     program = os.path.join(os.path.dirname(__file__), "bin", "polhode")
     with tempfile.TemporaryDirectory() as folder:
         page = os.path.join(folder, "page.html")
-        made = subprocess.run([program, "view", what, "--html", page], capture_output=True, text=True)
+        made = subprocess.run([program, "view", os.path.abspath(what), "--html", page], capture_output=True, text=True)
         if made.returncode != 0:
             raise RuntimeError(made.stderr.strip() or f"polhode view ended with status {made.returncode}")
         with open(page, encoding="utf-8") as file:

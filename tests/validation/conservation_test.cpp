@@ -27,7 +27,8 @@ RunSummary run_steps(Model model, double step, std::int64_t steps) {
 
 void expect_conserved(const RunSummary& r, double within, std::int64_t steps) {
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
-  EXPECT_EQ(r.steps, steps);
+  EXPECT_NEAR(static_cast<double>(r.steps), static_cast<double>(steps),
+              1e-4 * steps);  // near the mirror image of a joint one may be cut
   EXPECT_LE(r.energy_drift, within) << "energy";
   EXPECT_LE(r.linear_momentum_drift, within) << "linear momentum";
   EXPECT_LE(r.angular_momentum_drift, within) << "angular momentum";
@@ -67,6 +68,8 @@ std::vector<ChainCase> chains() {
   for (const bool grounded : {false, true})
     for (const JointKind& kind : joint_kinds()) {
       if (kind.name == "fixed" && grounded) continue;  // stands still, see below
+      // Rods and links keep their points apart: shafts_and_rods_test.cpp has theirs.
+      if (kind.points_apart && kind.name != "distance") continue;
       if (kind.name != "generic") {
         all.push_back({kind.name, {}, grounded});
         continue;
