@@ -34,9 +34,10 @@ class Page:
 def page_of(what: str, height: int) -> Page:
     """The page of a model file, or of a results file or folder. Raises RuntimeError with the reason."""
     program = os.path.join(os.path.dirname(__file__), "bin", "polhode")
+    what = os.path.abspath(what).removesuffix(os.sep + "results.h5")  # one name for a folder and its file
     with tempfile.TemporaryDirectory() as folder:
         page = os.path.join(folder, "page.html")
-        made = subprocess.run([program, "view", os.path.abspath(what), "--html", page], capture_output=True, text=True)
+        made = subprocess.run([program, "view", what, "--html", page], capture_output=True, text=True)
         if made.returncode != 0:
             raise RuntimeError(made.stderr.strip() or f"polhode view ended with status {made.returncode}")
         with open(page, encoding="utf-8") as file:
