@@ -27,8 +27,8 @@ RunSummary run_steps(Model model, double step, std::int64_t steps) {
 
 void expect_conserved(const RunSummary& r, double within, std::int64_t steps) {
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
-  EXPECT_NEAR(static_cast<double>(r.steps), static_cast<double>(steps),
-              1e-4 * steps);  // near the mirror image of a joint one may be cut
+  EXPECT_GE(r.steps, steps);
+  EXPECT_LE(r.steps, steps + 10) << "near the mirror image of a joint a step may be cut";
   EXPECT_LE(r.energy_drift, within) << "energy";
   EXPECT_LE(r.linear_momentum_drift, within) << "linear momentum";
   EXPECT_LE(r.angular_momentum_drift, within) << "angular momentum";
