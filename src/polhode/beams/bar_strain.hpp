@@ -3,7 +3,7 @@
 
 namespace polhode {
 
-/// How a bar measures its strain.
+/// Strain measure of a bar.
 enum class BarStrain {
   engineering,  ///< (l − L)/L
   green         ///< (l² − L²)/(2L²)

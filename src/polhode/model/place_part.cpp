@@ -143,7 +143,7 @@ class Placer {
     if (joint.motion) mirror(*joint.motion, signs);
   }
 
-  /// Sign of a joint's only displacement or, where it has none or is asked to, of its only angle.
+  /// Sign of a joint's only displacement; of its only angle where it has none or `angle` is set.
   static double sign_of_only(const std::vector<std::string>& free, bool angle, const Signs& signs) {
     for (const std::string& c : free)
       if ((c.size() == 2) == angle) return sign_of(c, signs);
