@@ -58,15 +58,15 @@ TEST(CloudFit, IsExactForQuadraticsWhereTwoCellsMeetInEveryDirection) {
 }
 
 // A lattice of points is turned as a whole: complete polynomials know no axes.
-TEST(CloudFit, IsExactForCubicsOfManyPointsHoweverTheyAreTurned) {
+TEST(CloudFit, IsExactForQuadraticsOfManyPointsHoweverTheyAreTurned) {
   const Mat3 turn = (Mat3() << 0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6).finished();
   const auto field = [](const Vec3& X) {
-    return 1.0 + X[0] * X[1] * X[2] - 2.0 * X[1] * X[1] * X[1] + X[0] * X[0] * X[2] + X[2];
+    return 1.0 + X[0] * X[1] - 2.0 * X[1] * X[1] + X[0] * X[2] + X[2];
   };
   for (const Mat3& shape : {Mat3(Mat3::Identity()), turn}) {
     const std::vector<Vec3> points = cloud(3, 3, 3, shape);
-    const CloudFit fit(points, 3);
-    EXPECT_EQ(fit.terms(), 20);
+    const CloudFit fit(points, 2);
+    EXPECT_EQ(fit.terms(), 10);
     for (const Vec3& x : {Vec3(0, 0, 0), Vec3(3, 3, 3), Vec3(0.3, 1.7, 3)})
       EXPECT_NEAR(fitted(fit, points, field, shape * x), field(shape * x), 1e-10);
   }

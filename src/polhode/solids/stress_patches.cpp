@@ -20,26 +20,22 @@ constexpr double kFlat = 1e-6;
 /// Sine of the angle beyond which a face of the boundary does not continue another one: faces
 /// of a circle of ten elements do.
 constexpr double kNewDirection = 0.6;
-/// Points from which on a complete polynomial is of third order: three for each of its terms.
-constexpr std::size_t kPointsForCubes = 60;
 /// Volume between directions of unit length below which they are too near to a plane.
 constexpr double kFlatCorner = 0.2;
 
 /// Powers of the monomials by degree: of complete polynomials, and of all products of squares.
-constexpr int kComplete[20][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0},
-                                  {0, 2, 0}, {0, 0, 2}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1},
-                                  {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {2, 1, 0}, {2, 0, 1},
-                                  {1, 2, 0}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2}, {1, 1, 1}};
+constexpr int kComplete[10][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0},
+                                  {0, 2, 0}, {0, 0, 2}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
 constexpr int kProducts[27][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0}, {0, 2, 0},
                                   {0, 0, 2}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {2, 1, 0}, {2, 0, 1},
                                   {1, 2, 0}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2}, {1, 1, 1}, {2, 2, 0},
                                   {0, 2, 2}, {2, 0, 2}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {2, 2, 1},
                                   {2, 1, 2}, {1, 2, 2}, {2, 2, 2}};
 /// First monomial of each degree.
-constexpr int kFirstComplete[] = {0, 1, 4, 10, 20};
+constexpr int kFirstComplete[] = {0, 1, 4, 10};
 constexpr int kFirstProduct[] = {0, 1, 4, 10, 17, 23, 26, 27};
 /// By power: its factorial.
-constexpr double kFactorial[] = {1.0, 1.0, 2.0, 6.0};
+constexpr double kFactorial[] = {1.0, 1.0, 2.0};
 
 /// The linear cell with the same corners.
 const CellShape& linear_shape(const CellShape& shape) {
@@ -269,10 +265,7 @@ void StressPatches::find_patches() {
     }
     const std::optional<Mat3> along = directions(vertex);
     // On edges of tetrahedra squares would follow the errors of elements that lie on one side.
-    if (!along && order > 1)
-      order = rank[static_cast<std::size_t>(vertex)] > 1 ? 1
-              : cloud.size() < kPointsForCubes           ? 2
-                                                         : 3;
+    if (!along && rank[static_cast<std::size_t>(vertex)] > 1) order = 1;
     patches_.push_back({elements, CloudFit(cloud, order, along ? &*along : nullptr)});
     return index;
   };

@@ -15,7 +15,7 @@ inline constexpr int kRecovered = 7;
 using RecoveredValues = Eigen::Matrix<double, Eigen::Dynamic, kRecovered, Eigen::RowMajor>;
 
 /// Polynomials that are nearest to values at points scattered in space: complete ones of up to
-/// third order, or all products of up to second powers along three directions.
+/// second order, or all products of up to second powers along three directions.
 ///
 /// Coordinates count from the points' mean along their principal axes, or the directions, in units
 /// of their spread; coefficients that the points do not determine are zero. The fit is independent
@@ -24,7 +24,7 @@ class CloudFit {
  public:
   using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, kRecovered>;
 
-  /// @param order       Of complete polynomials: 1, 2 or 3.
+  /// @param order       Of complete polynomials: 1 or 2.
   /// @param directions  Columns, of any length, not in a plane; null: complete polynomials.
   CloudFit(std::span<const Vec3> points, int order, const Mat3* directions = nullptr);
 
