@@ -13,7 +13,7 @@ quick=no
 sanitize=no
 [ "${1:-}" = --quick ] && quick=yes
 [ "${1:-}" = --sanitize ] && sanitize=yes
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 POLHODE_WERROR=ON
 jobs=$(nproc)
 passed=0
 failed=0

@@ -26,8 +26,8 @@ struct TimeJet {
             x.second * y.value + 2.0 * x.rate * y.rate + x.value * y.second};
   }
   friend TimeJet operator/(const TimeJet& x, const TimeJet& y) {
-    const double value = x.value / y.value, rate = (x.rate - value * y.rate) / y.value;
-    return {value, rate, (x.second - 2.0 * rate * y.rate - value * y.second) / y.value};
+    const double ratio = x.value / y.value, its_rate = (x.rate - ratio * y.rate) / y.value;
+    return {ratio, its_rate, (x.second - 2.0 * its_rate * y.rate - ratio * y.second) / y.value};
   }
   friend bool operator<(const TimeJet& x, const TimeJet& y) { return x.value < y.value; }
   friend bool operator<=(const TimeJet& x, const TimeJet& y) { return x.value <= y.value; }
