@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Python package into a virtual environment under build/ and runs its tests there.
-# More arguments go to pytest.
+# Builds the wheel, installs it into a virtual environment under build/ and runs its tests there; then makes it
+# self-contained and tries that one in an empty environment. More arguments go to pytest, and end it there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 environment=$PWD/build/python-tests
@@ -11,8 +11,13 @@ python=$environment/bin/python
 export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 export OPENBLAS_NUM_THREADS=1
 log=build/python-install.log
-"$python" -m pip install --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall -v . >"$log" 2>&1 ||
+rm -rf build/wheel
+"$python" -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps -w build/wheel -v . >"$log" 2>&1 ||
   { tail -50 "$log"; exit 1; }
+"$python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall build/wheel/polhode-*.whl
 "$python" -m ruff check --quiet python
 (cd "$environment" && bin/mypy --config-file "$OLDPWD/pyproject.toml" --python-executable "$python" -p polhode)
 "$python" -m pytest -q -p no:cacheprovider --timeout 300 "$@"
+[ $# = 0 ] || exit 0
+bash scripts/build_wheel.sh build/wheel/polhode-*.whl
+PYTHON=$python bash scripts/test_wheel.sh

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the wheel of dist/ (scripts/build_wheel.sh) into an empty environment and runs it there: bodies, a solid,
 # results, the command. Fails if anything of the system but Python with its modules and the C and C++ libraries is loaded.
+# Then the same with NumPy 1, where there is one for this Python.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
@@ -10,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 cp examples/rubber_bushing/model.yaml "$work/bushing.yaml"
 cp examples/double_pendulum/model.yaml "$work/pendulum.yaml"
 cd "$work"
-env -i PATH=/nothing HOME="$work" "$work/env/bin/python" - <<'P'
+cat >try.py <<'P'
 import re
 import subprocess
 import sys
@@ -32,5 +33,18 @@ strange = [m for m in of_system if not allowed.search(m)]
 assert not strange, f"of the system: {strange}"
 inside = sorted({re.split(r"[-.]", m.rsplit("/", 1)[-1])[0] for m in maps if "polhode.libs" in m})
 assert "libdmumps_seq" in inside and any("blas" in name for name in inside), inside
-print("inside:", ", ".join(inside))
+import numpy as np
+
+m = polhode.Model(analysis={"duration": 1, "step": 0.01})
+m.add_body("b", mass=1, inertia=[1, 1, 1], position=np.array([1, 0, 0]))
+m.add_load("spring", "force", body="b", at=np.zeros(3), force=lambda t, body: -body.position)
+r = polhode.run(m, progress=False)
+assert abs(r.bodies["b"].position[-1, 0] - np.cos(1)) < 1e-4
+assert polhode.rotations.matrix_from_rotation_vector(np.zeros((2, 3))).shape == (2, 3, 3)
+print("NumPy", np.__version__, "- inside:", ", ".join(inside))
 P
+env -i PATH=/nothing HOME="$work" "$work/env/bin/python" try.py
+rm -rf out
+if "$work/env/bin/python" -m pip install --quiet --disable-pip-version-check --only-binary :all: 'numpy<2' 2>"$work/log"; then
+  env -i PATH=/nothing HOME="$work" "$work/env/bin/python" try.py
+fi

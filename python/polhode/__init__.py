@@ -16,7 +16,9 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from . import _native
 from ._errors import Fault, ModelError, NotConverged
+from ._functions import StateFunction
 from ._model import Model, from_text, load
 from ._native import version as __version__
 
@@ -38,12 +40,14 @@ _LATER = {
     "_simulation": ["Simulation", "Step"],
     "_sweep": ["Fit", "fit", "sweep"],
 }
+for _error in (Fault, ModelError, NotConverged):
+    _error.__module__ = __name__  # as users name them, in tracebacks
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
     "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
-    "Simulation", "StateSpace", "Step", "__version__", "fit", "from_text", "inverse_dynamics", "linearize", "load",
-    "matrices", "modes", "open", "rotations", "run", "sweep",
+    "Simulation", "StateFunction", "StateSpace", "Step", "__version__", "fit", "from_text", "inverse_dynamics",
+    "linearize", "load", "matrices", "modes", "open", "rotations", "run", "sweep",
 ]
 
 
@@ -58,7 +62,8 @@ def __getattr__(name: str) -> Any:
 
         if name in _shapes.kinds():
             return _shapes.shape_class(name)
-    raise AttributeError(f"module 'polhode' has no attribute '{name}'")
+    near = "" if name.startswith("_") else _native.closest(name, __dir__())
+    raise AttributeError(f"module 'polhode' has no attribute '{name}'" + (f". Did you mean '{near}'?" if near else ""))
 
 
 def __dir__() -> "list[str]":

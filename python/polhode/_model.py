@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 from . import _native, _schema, _text
 from ._errors import ModelError, fault
-from ._tree import Named, Section, plain
+from ._functions import LoadCall
+from ._tree import Named, Section, counted, plain
 
 if TYPE_CHECKING:
     from ._result import Result
@@ -101,9 +102,14 @@ class Model(Section):
     def add_load(self, name: str, type: str, **fields: Any) -> Section:
         """Adds a force, moment, spring, motor or load of a solid, and returns it.
 
-        force, moment and the drive of a motor may be Python callables of the time: f(t [s]) gives
-        three numbers, or one for a component or a motor, in SI units. They are called at the times
-        at which the method wants them; what they raise stops the run and is raised.
+        What force, moment, pull and the drive of a motor are, Python may say, in SI units:
+          f(t)           three numbers at a time [s], or one for a component or a motor;
+          f(t, body)     a force or moment on a body that depends on its motion: body.position, .velocity (3,) of
+                         the point the force acts at, .orientation (4,), .angular_velocity (3,);
+          f(t, q, rate)  the force, moment or pull along a coordinate: of a motor the joint's, of an
+                         axial_force the distance of its points.
+        They are called when the method wants them; what they raise stops the run and is raised.
+        polhode.StateFunction(f, tangent=...) adds derivatives.
         """
         return self._add("loads", name, {"type": type, **fields})
 
@@ -180,8 +186,8 @@ class Model(Section):
     # Reading and writing
 
     def to_dict(self) -> "dict[str, Any]":
-        """The model as dicts, lists, numbers and texts: a copy."""
-        return copy.deepcopy(self._tree())
+        """The model as dicts, lists, numbers and texts: a copy. Callables stay what they are."""
+        return dict(plain(self._tree()))
 
     def to_yaml(self) -> str:
         """The text of a model file."""
@@ -194,8 +200,9 @@ class Model(Section):
         the folder of the file.
         """
         name = os.fspath(path)
-        for load, _, call in self._calls()[1]:
-            raise fault(f"loads.{load}", f"{call!r} cannot be written to a file", "Write an expression of t instead")
+        for call in self._calls()[1]:
+            raise fault(f"loads.{call.load}", f"{call.function!r} cannot be written to a file",
+                        "Write an expression of t instead")
         text = json.dumps(self._tree(), indent=2, ensure_ascii=False) if name.endswith(".json") else self.to_yaml()
         with open(name, "w", encoding="utf-8") as file:
             file.write(text if text.endswith("\n") else text + "\n")
@@ -242,32 +249,39 @@ class Model(Section):
         folder = os.path.dirname(origin.file) if origin else ""
         return json.dumps(self._calls()[0], ensure_ascii=False), os.path.join(folder, "model.json"), False
 
-    def _calls(self) -> "tuple[dict[str, Any], list[tuple[str, int, Any]]]":
-        """The tree without callables, and those of loads: name, component or -1, callable."""
-        calls: "list[tuple[str, int, Any]]" = []
+    def _calls(self) -> "tuple[dict[str, Any], list[LoadCall]]":
+        """The tree without callables, and those of loads."""
+        calls: "list[LoadCall]" = []
 
-        def without(value: Any, path: "tuple[Any, ...]") -> Any:
+        def without(value: Any, path: "tuple[Any, ...]", model: "dict[str, Any]", prefix: str, depth: int) -> Any:
+            """`model` is the part that stands `depth` keys up the path, with `prefix` before its names."""
             if isinstance(value, dict):
-                return {k: without(v, (*path, k)) for k, v in value.items()}
+                if len(path) == depth + 3 and path[depth] == "parts" and path[-1] == "model":
+                    part = model["parts"][path[-2]]
+                    model, depth = value, len(path)
+                    prefix += f"{path[-2]}_" if part.get("prefix") is None else str(part["prefix"])
+                return {k: without(v, (*path, k), model, prefix, depth) for k, v in value.items()}
             if isinstance(value, list):
-                return [without(v, (*path, i)) for i, v in enumerate(value)]
+                return [without(v, (*path, i), model, prefix, depth) for i, v in enumerate(value)]
             if not callable(value):
                 return value
-            if len(path) not in (3, 4) or path[0] != "loads":
+            inner = path[depth:]
+            if len(inner) not in (3, 4) or inner[0] != "loads":
                 raise fault(".".join(map(str, path)), "a callable cannot stand here",
-                            "Callables of the time may give vectors and drives of loads")
-            calls.append((path[1], path[3] if len(path) == 4 else -1, value))
-            vector = len(path) == 3 and path[2] in ("force", "moment") and "body" in self._tree()["loads"][path[1]]
-            return ["0*t"] * 3 if vector else "0*t"
+                            "Callables may give vectors and drives of loads")
+            call = LoadCall(prefix + inner[1], model["loads"][inner[1]], inner[2:], value)
+            calls.append(call)
+            zero = "0*t" if not call.of_motion else 0  # what is no function of time has no breaks to look for
+            return [zero] * 3 if call.is_vector and call.component < 0 else zero
 
-        return without(self._tree(), ()), calls
+        return without(self._tree(), (), self._tree(), "", 0), calls
 
     def _compile(self, overrides: Overrides = None) -> "_native.CompiledModel":
         text, name, in_file = self._source()
         try:
             compiled = _native.compile(text, name, overrides_list(overrides))
             for call in () if in_file else self._calls()[1]:
-                compiled.set_function(*call)
+                call.install(compiled)
             return compiled
         except ModelError as error:
             if in_file:
@@ -294,7 +308,7 @@ class Model(Section):
 
     def __repr__(self) -> str:
         tree = self._tree()
-        counts = [f"{len(tree[k])} {k}" for k in tree if _schema.named_of("", k) and tree[k]]
+        counts = [counted(len(tree[k]), k) for k in tree if _schema.named_of("", k) and tree[k]]
         title = f" '{tree['title']}'" if tree.get("title") else ""
         return f"<polhode.Model{title}: {', '.join(counts) or 'empty'}>"
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _native
 from ._stores import FileStore, Store
+from ._tree import counted
 
 if TYPE_CHECKING:
     from ._show import Page
@@ -73,14 +74,60 @@ class Group(Mapping):  # type: ignore[type-arg]
         return f"<{self._path[1:].replace('/', '.')}: {shown}>"
 
 
+class Table(Mapping):  # type: ignore[type-arg]
+    """Rows of a probe by column: `r.probes["tip"].z` (T,), SI units, with times of its own in `t`."""
+
+    def __init__(self, name: str, header: "list[str]", rows: Any) -> None:
+        self.name = name
+        self._units = {cell.split(" [")[0]: cell.split(" [")[1].rstrip("]") for cell in header}
+        self._rows = rows
+
+    def __getitem__(self, name: str) -> Any:
+        names = list(self._units)
+        if name not in self._units:
+            near = _native.closest(name, names)
+            hint = f" Did you mean '{near}'?" if near else f" There are: {', '.join(names)}."
+            raise KeyError(f"probes.{self.name} has no '{name}'.{hint}")
+        return self._rows[..., names.index(name)]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __iter__(self) -> "Iterator[str]":
+        return iter(self._units)
+
+    def __len__(self) -> int:
+        return len(self._units)
+
+    def __dir__(self) -> "list[str]":
+        return [name for name in self if name.isidentifier()] + ["keys", "values", "items", "unit", "name"]
+
+    def _ipython_key_completions_(self) -> "list[str]":
+        return list(self)
+
+    def unit(self, name: str) -> str:
+        """Unit of a column, such as "m/s"."""
+        return self._units[name]
+
+    def __repr__(self) -> str:
+        if np.ndim(self._rows) == 1:
+            return "\n".join(f"{key:18} {self[key]:.6g} {self.unit(key)}" for key in self)
+        return f"<probes.{self.name}: {', '.join(self)}; {len(self._rows)} rows>"
+
+
 class Report(dict):  # type: ignore[type-arg]
     """Figures that a run ends with, as `polhode run --json` names them; items or attributes."""
 
     def __getattr__(self, name: str) -> Any:
-        try:
+        if name in self:
             return self[name]
-        except KeyError:
-            raise AttributeError(name) from None
+        near = "" if name.startswith("__") else _native.closest(name, list(self))
+        raise AttributeError(name + (f". Did you mean '{near}'?" if near else f". There are: {', '.join(self)}."))
 
     def __dir__(self) -> "list[str]":
         return [*self]
@@ -122,6 +169,11 @@ class Result:
     def time(self) -> Any:
         """Times of the frames (T,) [s]; in statics the load factor."""
         return self._store.read("/time")
+
+    @property
+    def probes(self) -> "dict[str, Table]":
+        """Tables of output.probes by name, each with rows at its own rate."""
+        return {name: Table(name, *table) for name, table in self._store.probes().items()}
 
     @property
     def frames(self) -> int:
@@ -346,7 +398,7 @@ class Result:
     def __repr__(self) -> str:
         t = self.time
         span = f"{self.frames} frames from {t[0]:g} to {t[-1]:g} s" if len(t) else "no frames"
-        counts = [f"{len(self._names('/' + g))} {g}" for g in ("bodies", "joints", "loads") if self._names("/" + g)]
+        counts = [counted(len(self._names("/" + g)), g) for g in ("bodies", "joints", "loads") if self._names("/" + g)]
         return f"<polhode.Result: {', '.join([span, *counts, *([self.end] if self.end else [])])}>"
 
 

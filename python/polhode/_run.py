@@ -52,7 +52,8 @@ def run(
     ledger = json.loads(text)
     for key in ("exit_code", "results"):
         ledger.pop(key)
-    result = Result(MemoryStore(recording.channels(), recording.views(), recording.fixed()), ledger)
+    store = MemoryStore(recording.channels(), recording.views(), recording.fixed(), recording.probes())
+    result = Result(store, ledger)
     if output is not None:
         result._written = os.path.abspath(os.fspath(output))
     _report(ledger)

@@ -8,6 +8,8 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import Any, Callable, NamedTuple, Optional, Union
 
+import numpy as np
+
 from . import _native
 from ._errors import NotConverged
 from ._model import Model, Overrides, load
@@ -127,6 +129,19 @@ class Simulation:
         return _Things(self._engine.loads, self._engine.load)
 
     @property
+    def probes(self) -> "_Things":
+        """Probes of output.probes by name: what each records, now, by column: sim.probes["tip"].z."""
+        from ._result import Table
+
+        names = self._engine.probes
+
+        def now(index: int) -> Table:
+            header, row = self._engine.probe(names[index])
+            return Table(names[index], header, np.array(row))
+
+        return _Things(names, now)
+
+    @property
     def energy(self) -> Report:
         """kinetic, potential, total, put_in, dissipated [J]; linear_momentum, angular_momentum."""
         return Report(self._engine.energy())
@@ -174,7 +189,7 @@ class Simulation:
             if self.time >= end * (1 - 1e-9):
                 break
             self.step(end)
-        store = MemoryStore(recording.channels(), recording.views(), recording.fixed())
+        store = MemoryStore(recording.channels(), recording.views(), recording.fixed(), recording.probes())
         return Result(store, {"end": ended, **self.ledger})
 
     @property

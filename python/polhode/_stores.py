@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Union
+import os
+from typing import Any, Optional, Union
 
 from . import _native
 
@@ -11,8 +12,13 @@ from . import _native
 class MemoryStore:
     """Channels that the engine has handed over; views of them share the memory."""
 
-    def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]") -> None:
-        self.channels, self.views, self.fixed = channels, views, fixed
+    def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]",
+                 probes: "Optional[dict[str, Any]]" = None) -> None:
+        self.channels, self.views, self.fixed, self._probes = channels, views, fixed, probes or {}
+
+    def probes(self) -> "dict[str, Any]":
+        """Names of columns and rows of each probe."""
+        return self._probes
 
     def paths(self) -> "list[str]":
         return [*self.channels, *self.views, *self.fixed]
@@ -54,6 +60,21 @@ class FileStore:
         if path not in self._kept:
             self._kept[path] = self._reader.read(path)
         return self._kept[path]
+
+    def probes(self) -> "dict[str, Any]":
+        """Names of columns and rows of each probe, from the tables beside the file."""
+        import numpy as np
+
+        tables = {}
+        folder = os.path.join(os.path.dirname(self.file), "probes")
+        for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
+            if name.endswith(".csv"):
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    header = file.readline().rstrip("\n").split(",")
+                    lines = [line for line in file if line.endswith("\n")]  # a row that is being written is left out
+                rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(header)))
+                tables[name[:-4]] = (header, rows)
+        return tables
 
     def unit(self, path: str) -> str:
         return str(self._reader.attribute(path, "unit") or "")

@@ -35,6 +35,12 @@ def plain(value: Any) -> Any:
     raise TypeError(f"A model holds numbers, texts, lists and maps; {type(value).__name__} is none of them.")
 
 
+def counted(count: int, things: str) -> str:
+    """ "1 body", "2 bodies"."""
+    one = things[:-3] + "y" if things.endswith("ies") else things[:-1]
+    return f"{count} {one if count == 1 and things.endswith('s') else things}"
+
+
 class Section(MutableMapping):  # type: ignore[type-arg]
     """A map of the model with known keys: read and set them as attributes or items.
 
@@ -154,7 +160,8 @@ class Named(Section):
     def __getitem__(self, key: str) -> Section:
         if key not in self._tree():
             near = _native.closest(str(key), list(self._tree()))
-            hint = f" Did you mean '{near}'?" if near else ""
+            names = ", ".join(list(self._tree())[:20]) or "none"
+            hint = f" Did you mean '{near}'?" if near else f" There are: {names}."
             raise KeyError(f"{self._path()}: unknown name '{key}'.{hint}")
         return Section(self, key, self._table, key)
 

@@ -82,6 +82,7 @@ std::string Engine::run(Recording* recording, const std::string& folder,
                             .overrides = overrides});
     file->step(*simulation_);
   }
+  if (recording) recording->step(*simulation_);
   const auto frame = [&](Simulation& s) {
     if (recording) recording->frame(s);
     if (file) file->frame(s);
@@ -90,6 +91,7 @@ std::string Engine::run(Recording* recording, const std::string& folder,
       frame,
       [&](Simulation& s) {
         if (file) file->step(s);
+        if (recording) recording->step(s);
         attention.look(s.time());
       },
       &attention.stop);
@@ -264,13 +266,17 @@ nb::tuple step(Engine& engine, double limit) {
 }  // namespace
 
 void bind_engine(nb::module_& m) {
-  nb::class_<Engine>(m, "Engine", "A compiled model with its state.")
-      .def(nb::init<const Model&>(), nb::arg("model"), nb::call_guard<nb::gil_scoped_release>())
+  nb::class_<Engine>(m, "Engine", "A compiled model with its state.",
+                     nb::type_slots(CallSlots<Engine>::slots))
+      .def(nb::init<const CompiledModel&>(), nb::arg("model"))
       .def("record", [](Engine& e) { return Recording(e.simulation()); })
       .def("run", &Engine::run, nb::arg("recording").none(), nb::arg("folder"),
            nb::arg("model_text"), nb::arg("overrides"), nb::arg("progress").none())
       .def("step", &step, nb::arg("limit"))
-      .def("record_frame", [](Engine& e, Recording& r) { r.frame(e.simulation()); })
+      .def("record_frame", [](Engine& e, Recording& r) {
+             r.frame(e.simulation());
+             r.step(e.simulation());
+           })
       .def("copy", &Engine::copy)
       .def("set_body", &set_body, nb::arg("index"), nb::arg("position").none(),
            nb::arg("orientation").none(), nb::arg("velocity").none(),
@@ -292,6 +298,13 @@ void bind_engine(nb::module_& m) {
       .def("body", &body_report, nb::arg("index"))
       .def("joint", &joint_report, nb::arg("index"))
       .def("load", [](Engine& e, int i) { return e.simulation().load(i); }, nb::arg("index"))
+      .def_prop_ro("probes", [](Engine& e) { return names_of(e.model().output.probes); })
+      .def("probe",
+           [](Engine& e, const std::string& name) {
+             return nb::make_tuple(nb::cast(e.simulation().probe_columns(name)),
+                                   nb::cast(e.simulation().probe(name)));
+           },
+           nb::arg("name"))
       .def("energy", &energy)
       .def("summary", &Engine::summary);
 }

@@ -6,7 +6,7 @@
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
-#include "parts.hpp"
+#include "compiled_model.hpp"
 #include "recording.hpp"
 
 namespace polhode::python {
@@ -14,9 +14,13 @@ namespace polhode::python {
 /// A simulation with its names, as Python steps, runs, reads and sets it.
 class Engine {
  public:
-  explicit Engine(const Model& model) : simulation_(std::make_unique<Simulation>(model)) {}
-  Engine(const Model& model, State state)
-      : simulation_(std::make_unique<Simulation>(model, std::move(state))) {}
+  explicit Engine(const CompiledModel& compiled) : calls(compiled.calls) {
+    const nb::gil_scoped_release unlocked;
+    simulation_ = std::make_unique<Simulation>(compiled.model);
+  }
+  Engine(const Model& model, State state, nb::object owner)
+      : calls(std::move(owner)),
+        simulation_(std::make_unique<Simulation>(model, std::move(state))) {}
 
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
   [[nodiscard]] const Model& model() const { return simulation_->model(); }
@@ -30,11 +34,13 @@ class Engine {
 
   [[nodiscard]] nb::bytes state() const;
   void restore(const nb::bytes& bytes);
-  [[nodiscard]] Engine copy() const { return {model(), simulation_->state()}; }
+  [[nodiscard]] Engine copy() const { return {model(), simulation_->state(), calls}; }
   /// Puts moving bodies, by index, in other places or motions at the present time. Then joints are
   /// assembled and velocities projected again, turns counted anew, and the ledger begins anew.
   /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
   void set_motions(const std::map<int, BodyMotion>& motions);
+
+  nb::object calls;  ///< Owns the callables of the loads, see CompiledModel.
 
  private:
   std::unique_ptr<Simulation> simulation_;

@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/core/time_sum.hpp>
+#include <polhode/loads/registry.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/io/schema/schema.hpp>
@@ -13,7 +14,7 @@
 
 #include <nanobind/stl/string_view.h>
 
-#include "parts.hpp"
+#include "compiled_model.hpp"
 #include "time_call.hpp"
 
 namespace polhode::python {
@@ -60,26 +61,57 @@ nb::object tree(const SourceNode& node) {
 /// Lets a Python callable give what a load depends on: its vector or one component of it, or the
 /// drive of a motor.
 /// @param component  Of the vector; −1: all three, or a motor's number.
-void set_function(Model& model, const std::string& load, int component, nb::object function) {
+///
+/// Functions of a load that a part brought count in the part's axes. Components that are
+/// given one by one are set one after the other, hence added to what the placeholder, zero, gave.
+void set_function(CompiledModel& compiled, const std::string& load, int component,
+                  const nb::object& function) {
+  Model& model = compiled.model;
+  compiled.calls.attr("append")(function);
   LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
   if (spec.value) {
-    spec.value = std::make_shared<CalledFunction>(std::make_shared<TimeCall>(function, 1), 0);
+    const auto call = std::make_shared<TimeCall>(function, 1);
+    spec.value = scaled(std::make_shared<CalledFunction>(call, 0), spec.part_axes.sense);
     return;
   }
+  const bool axial = spec.solid < 0 && load_kind(spec.type).vector == "moment";
+  const Mat3 T = spec.part_axes.vector_map(spec.body_fixed, axial);
   if (!spec.vector) spec.vector.emplace();
-  if (component >= 0) {
-    spec.vector->at(static_cast<std::size_t>(component)) =
-        std::make_shared<CalledFunction>(std::make_shared<TimeCall>(function, 1), 0);
-    return;
+  TimeVector given;
+  const auto call = std::make_shared<TimeCall>(function, component < 0 ? 3 : 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (component < 0)
+      given[i] = std::make_shared<CalledFunction>(call, i);
+    else if (component == static_cast<int>(i))
+      given[i] = std::make_shared<CalledFunction>(call, 0);
   }
-  const auto call = std::make_shared<TimeCall>(function, 3);
-  for (std::size_t i = 0; i < 3; ++i)
-    spec.vector->at(i) = std::make_shared<CalledFunction>(call, i);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    TimeFunctionPtr turned = given[i];
+    if (!T.isIdentity(0.0))
+      turned = std::make_shared<TimeSum>(given, std::array{T(row, 0), T(row, 1), T(row, 2)});
+    TimeFunctionPtr& here = spec.vector->at(i);
+    if (component < 0 || !here)
+      here = turned;
+    else if (turned)
+      here = std::make_shared<TimeSum>(TimeVector{here, turned, nullptr}, std::array{1.0, 1.0, 0.0});
+  }
+}
+
+/// Lets a Python callable of the motion give a force, a moment or the drive of a motor.
+void set_motion_function(CompiledModel& compiled, const std::string& load,
+                         const nb::object& function, const nb::object& tangent, bool coordinate,
+                         bool reads_velocity) {
+  Model& model = compiled.model;
+  compiled.calls.attr("append")(nb::make_tuple(function, tangent));
+  LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
+  spec.of_motion = motion_function(function, tangent, coordinate, reads_velocity);
 }
 
 /// Adds a constant to what a load depends on: to its drive (component −1) or to a component of its
 /// vector.
-void add_offset(Model& model, const std::string& load, int component, double offset) {
+void add_offset(CompiledModel& compiled, const std::string& load, int component, double offset) {
+  Model& model = compiled.model;
   LoadSpec& spec = model.loads.at(static_cast<std::size_t>(model.load_index(load)));
   const auto constant = std::make_shared<ConstantFunction>(offset);
   const auto raised = [&](const TimeFunctionPtr& f) {
@@ -107,17 +139,30 @@ void bind_model(nb::module_& m) {
       nb::arg("text"), nb::arg("name"), "A model text as dicts, lists, numbers and texts.");
   m.def("closest", &closest, nb::arg("word"), nb::arg("candidates"),
         "The candidate nearest to a mistyped word, or an empty text.");
-  nb::class_<Model>(m, "CompiledModel", "A model that was read and checked.")
-      .def_prop_ro("title", [](const Model& model) { return model.title; })
-      .def_prop_ro("analysis", [](const Model& model) { return model.analysis.type; })
+  nb::class_<CompiledModel>(m, "CompiledModel", "A model that was read and checked.",
+                            nb::type_slots(CallSlots<CompiledModel>::slots))
+      .def_prop_ro("title", [](const CompiledModel& c) { return c.model.title; })
+      .def_prop_ro("analysis", [](const CompiledModel& c) { return c.model.analysis.type; })
       .def("set_function", &set_function, nb::arg("load"), nb::arg("component"),
            nb::arg("function"))
-      .def("copy", [](const Model& model) { return Model(model); })
+      .def("set_motion_function", &set_motion_function, nb::arg("load"), nb::arg("function"),
+           nb::arg("tangent").none(), nb::arg("coordinate"), nb::arg("reads_velocity"))
+      .def("copy",
+           [](const CompiledModel& c) {
+             return CompiledModel{c.model, nb::list(c.calls)};
+           })
       .def("add_offset", &add_offset, nb::arg("load"), nb::arg("component"), nb::arg("offset"))
-      .def_prop_ro("step", [](const Model& model) { return model.analysis.step; })
-      .def_prop_ro("duration", [](const Model& model) { return model.analysis.duration; });
-  m.def("compile", &read_model_text, nb::arg("text"), nb::arg("name"), nb::arg("overrides"),
-        nb::call_guard<nb::gil_scoped_release>(), "Reads and checks a model text.");
+      .def_prop_ro("step", [](const CompiledModel& c) { return c.model.analysis.step; })
+      .def_prop_ro("duration", [](const CompiledModel& c) { return c.model.analysis.duration; });
+  m.def(
+      "compile",
+      [](const std::string& text, const std::string& name, const Overrides& overrides) {
+        CompiledModel compiled;
+        const nb::gil_scoped_release unlocked;
+        compiled.model = read_model_text(text, name, overrides);
+        return compiled;
+      },
+      nb::arg("text"), nb::arg("name"), nb::arg("overrides"), "Reads and checks a model text.");
 }
 
 }  // namespace polhode::python

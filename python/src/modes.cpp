@@ -35,10 +35,11 @@ nb::dict mode(const ModalAnalysis& analysis, int index) {
   return result;
 }
 
-nb::dict modes(const Model& model, std::optional<int> count, std::optional<std::string> about) {
-  Model changed = model;
-  changed.analysis.count = count.value_or(model.analysis.count);
-  changed.analysis.about = about.value_or(model.analysis.about);
+nb::dict modes(const CompiledModel& compiled, std::optional<int> count,
+               std::optional<std::string> about) {
+  Model changed = compiled.model;
+  changed.analysis.count = count.value_or(compiled.model.analysis.count);
+  changed.analysis.about = about.value_or(compiled.model.analysis.about);
   std::unique_ptr<ModalAnalysis> analysis;
   {
     const nb::gil_scoped_release unlocked;

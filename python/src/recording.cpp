@@ -6,7 +6,30 @@ namespace polhode::python {
 Recording::Recording(const Simulation& simulation)
     : layout_(results_layout(simulation)),
       plan_(plan_results(layout_)),
-      columns_(plan_.channels.size()) {}
+      columns_(plan_.channels.size()) {
+  const OutputSpec& output = simulation.model().output;
+  for (const ProbeSpec& spec : output.probes)
+    probes_.push_back({probe_target(simulation, spec), ProbeClock(spec, output)});
+}
+
+void Recording::step(const Simulation& simulation) {
+  for (ProbeRows& probe : probes_) {
+    if (!probe.clock.strikes(simulation.time())) continue;
+    const std::vector<double> row = probe_row(probe.target, simulation);
+    probe.numbers.insert(probe.numbers.end(), row.begin(), row.end());
+  }
+}
+
+nb::dict Recording::probes() {
+  nb::dict result;
+  for (ProbeRows& probe : probes_) {
+    const std::size_t columns = probe.target.header.size();
+    const std::size_t rows = probe.numbers.size() / columns;
+    result[probe.target.spec.name.c_str()] = nb::make_tuple(
+        nb::cast(probe.target.header), array_of(std::move(probe.numbers), {rows, columns}));
+  }
+  return result;
+}
 
 void Recording::frame(const Simulation& simulation) {
   if (frames_ > 0 && simulation.time() <= last_) return;
@@ -69,6 +92,7 @@ void bind_recording(nb::module_& m) {
       .def_prop_ro("frames", &Recording::frames)
       .def("channels", &Recording::channels)
       .def("views", &Recording::views)
+      .def("probes", &Recording::probes)
       .def("fixed", &Recording::fixed);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <polhode/io/results/results_plan.hpp>
+#include <polhode/simulation/probe.hpp>
 
 #include "parts.hpp"
 
@@ -14,18 +15,28 @@ class Recording {
 
   /// Adds a frame; one that stands already is not added twice.
   void frame(const Simulation& simulation);
+  /// Adds rows of the probes that are due; after every step, and at the start.
+  void step(const Simulation& simulation);
   [[nodiscard]] std::size_t frames() const { return frames_; }
   /// Path → (array, unit). The arrays take over the numbers: call once.
   [[nodiscard]] nb::dict channels();
   /// Path → (channel, first, count, squeeze, unit).
   [[nodiscard]] nb::dict views() const;
+  /// Name of a probe → (names of its columns, array of its rows). Call once.
+  [[nodiscard]] nb::dict probes();
   /// Path → list of names, or array of numbers.
   [[nodiscard]] nb::dict fixed() const;
 
  private:
+  struct ProbeRows {
+    ProbeTarget target;
+    ProbeClock clock;
+    std::vector<double> numbers{};
+  };
   ResultsLayout layout_;
   FilePlan plan_;
   std::vector<std::vector<double>> columns_;
+  std::vector<ProbeRows> probes_;
   std::vector<double> numbers_;
   std::size_t frames_ = 0;
   double last_ = 0.0;

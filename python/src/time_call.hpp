@@ -5,21 +5,15 @@
 
 #include <polhode/core/time_function.hpp>
 
-#include "parts.hpp"
+#include "motion_call.hpp"
 
 namespace polhode::python {
 
-/// A Python callable of the time that gives one number or three; it is called once for each time.
+/// A Python callable of the time that gives one number or three; it is called once for each time. It is borrowed, see
+/// CompiledModel.
 class TimeCall {
  public:
-  TimeCall(nb::object function, std::size_t size)
-      : function_(std::move(function)), values_(size, 0.0) {}
-  ~TimeCall() {
-    const nb::gil_scoped_acquire locked;
-    function_.reset();
-  }
-  TimeCall(const TimeCall&) = delete;
-  TimeCall& operator=(const TimeCall&) = delete;
+  TimeCall(nb::handle function, std::size_t size) : function_(function), values_(size, 0.0) {}
 
   /// @throws nb::python_error if the function raises.
   double value(double t, std::size_t component) {
@@ -27,10 +21,10 @@ class TimeCall {
       const nb::gil_scoped_acquire locked;
       const nb::object result = function_(t);
       if (values_.size() == 1) {
-        values_[0] = nb::cast<double>(nb::float_(result));
+        values_[0] = number_of(result);
       } else {
-        for (std::size_t i = 0; i < values_.size(); ++i)
-          values_[i] = nb::cast<double>(nb::float_(result[i]));
+        const Vec3 v = three_numbers_of(result);
+        values_.assign(v.begin(), v.end());
       }
       time_ = t;
     }
@@ -38,7 +32,7 @@ class TimeCall {
   }
 
  private:
-  nb::object function_;
+  nb::handle function_;
   std::vector<double> values_;
   double time_ = std::numeric_limits<double>::quiet_NaN();
 };

@@ -41,7 +41,7 @@ def test_values_are_read_and_set_by_name(pendulum):
     assert "angular_velocity" in dir(body) and "add_body" in dir(pendulum) and "Box" in dir(polhode)
     assert body._ipython_key_completions_() == ["shape", "position", "mass"]
     assert repr(body) == "<body 'arm' {shape: {box: [1, 0.05, 0.05]}, position: [0.5, 0, 0.25], mass: 2}>"
-    assert repr(pendulum) == "<polhode.Model: 1 bodies, 1 joints>"
+    assert repr(pendulum) == "<polhode.Model: 1 body, 1 joint>"
 
 
 def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum):

@@ -179,6 +179,9 @@ class Builder {
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
     if (load.solid >= 0) {
+      if (load.of_motion.index() != 0)
+        throw InputError(where, "a load on a solid takes no function of the motion",
+                         "Act on a body that the solid is bonded to");
       add_solid_load(system_, load, map_.solids.at(static_cast<std::size_t>(load.solid)));
       return;
     }
@@ -247,7 +250,34 @@ class Builder {
       d.gear = gear->pair;
     }
     d.start_length = (start_position(b, load.Z_b) - start_position(a, load.Z_a)).norm();
+    if (load.of_motion.index() != 0) add_function(where, load, kind, d);
     kind.add(system_, d);
+  }
+
+  /// What code gives of a load on bodies.
+  static void add_function(const std::string& where, const LoadSpec& load, const LoadKind& kind,
+                           LoadDescription& d) {
+    const std::string key = kind.function_key();
+    if (key.empty())
+      throw InputError(where, format("a '{}' takes no function of the motion", kind.name),
+                       "Use a force, moment, axial_force, rotary_motor or linear_motor");
+    const bool of_point = kind.place == LoadPlace::body;
+    const auto* point = std::get_if<PointFunction>(&load.of_motion);
+    const auto* coordinate = std::get_if<CoordinateFunction>(&load.of_motion);
+    if (of_point != (point != nullptr))
+      throw InputError(format("{}.{}", where, key),
+                       of_point ? "is a function of a coordinate" : "is a function of a point",
+                       of_point ? "Give one of the motion of the point (PointFunction)"
+                                : "Give one of the coordinate and its rate (CoordinateFunction)");
+    if (point ? !point->value : !coordinate->value)
+      throw InputError(format("{}.{}", where, key), "is a function without a value",
+                       "Set its value");
+    if (!load.drive.empty() && load.drive != key)
+      throw InputError(format("{}.{}", where, load.drive),
+                       format("is prescribed, so the {} cannot be given too", key),
+                       "Give one of them");
+    d.of_motion = placed(load.of_motion, load.part_axes, load.body_fixed, kind.vector == "moment");
+    if (!of_point) d.drive = key;
   }
 
   [[nodiscard]] GearGeometry gear_of(const std::string& where,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <polhode/core/time_function.hpp>
+#include <polhode/loads/load_function.hpp>
 #include <polhode/system/free_coordinate.hpp>
 #include <polhode/system/system.hpp>
 
@@ -54,6 +55,7 @@ struct LoadDescription {
   double mass_a = 0.0, mass_b = 0.0;                    ///< Of the bodies; 0 for the ground [kg].
   Mat3 inertia_b = Mat3::Zero();   ///< Of b about its centre of mass, body axes [kg m²].
   std::optional<GearPair> gear{};  ///< Of a gear.
+  LoadFunction of_motion{};        ///< From code, in addition to vector or function; world axes.
 
   /// The free coordinate of the joint that the load acts in.
   [[nodiscard]] std::variant<FreeAngle, FreeDisplacement> coordinate() const {

@@ -11,6 +11,7 @@ Motor::Motor(const LoadDescription& load)
   drive_ = load.drive == "speed"                             ? Drive::speed
            : load.drive == "force" || load.drive == "moment" ? Drive::effort
                                                              : Drive::position;
+  if (const auto* f = std::get_if<CoordinateFunction>(&load.of_motion)) of_motion_ = *f;
 }
 
 CoordinateMotion Motor::coordinate(const PairStep& step) const {
@@ -31,8 +32,20 @@ double Motor::target(const PairStep& step) const {
   return step.history[kTarget] + c.dt * increment;
 }
 
+CoordinateValue Motor::effort(const PairStep& step, const CoordinateMotion& q, const RateStep& rate,
+                              bool tangents) const {
+  const StepContext& c = step.context;
+  CoordinateValue f;
+  if (of_motion_)
+    f = coordinate_value(*of_motion_, {c.t_alpha(), q.at_alpha, rate.value}, tangents);
+  if (function_) f.value += (*function_)(c.t_alpha());
+  return {c.load_factor * f.value, c.load_factor * f.by_value, c.load_factor * f.by_rate};
+}
+
 double Motor::effort(const PairStep& step) const {
-  return step.context.load_factor * (*function_)(step.context.t_alpha());
+  const CoordinateMotion q = of_motion_ ? coordinate(step) : CoordinateMotion{};
+  const RateStep rate = of_motion_ ? rate_step(q, step.a, step.b) : RateStep{};
+  return effort(step, q, rate, false).value;
 }
 
 void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const {
@@ -47,8 +60,16 @@ void Motor::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows
 
 void Motor::evaluate(const PairStep& step, PairTerms& t) const {
   const CoordinateMotion q = coordinate(step);
-  const double force = rows() > 0 ? step.lambda[0] : effort(step);
-  add_force(q, force, step, t);
+  if (of_motion_) {
+    const RateStep rate = rate_step(q, step.a, step.b);
+    const CoordinateValue f = effort(step, q, rate, step.context.tangents);
+    add_force(q, f.value, step, t);
+    if (step.context.tangents)
+      add_force_change(q, f.by_value * q.alpha_a + f.by_rate * rate.by_a,
+                       f.by_value * q.alpha_b + f.by_rate * rate.by_b, t);
+  } else {
+    add_force(q, rows() > 0 ? step.lambda[0] : effort(step), step, t);
+  }
   if (rows() > 0) {
     // Before the start is assembled a rate does not say where the coordinate stands.
     const bool known = drive_ == Drive::position || step.history[kStarted] != 0.0;

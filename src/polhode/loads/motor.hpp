@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/loads/coordinate_motion.hpp>
-#include <polhode/loads/load_description.hpp>
+#include <polhode/loads/load_vector.hpp>
 
 namespace polhode {
 
@@ -11,7 +11,9 @@ namespace polhode {
 ///
 /// A prescribed value c(t) is the row q − c = 0 with the discrete gradient of q, so that at ρ∞ = 1
 /// a step takes exactly λ (c_{n+1} − c_n) from the drive. A prescribed rate is integrated over each
-/// step by Gauss's rule. @eq{drive-row} @eq{drive-work}
+/// step by Gauss's rule. A force may be a function of q and its rate. @eq{drive-row}
+/// @eq{drive-work}
+/// @eq{callable-force}
 class Motor : public InteractionItem {
  public:
   /// Meaning of its function of time.
@@ -23,6 +25,7 @@ class Motor : public InteractionItem {
   [[nodiscard]] int rows() const { return drive_ == Drive::effort ? 0 : 1; }
   [[nodiscard]] int history_size() const { return kHistory; }
   [[nodiscard]] bool conservative() const { return false; }
+  [[nodiscard]] bool dissipates() const { return of_motion_ && of_motion_->reads_velocity; }
   [[nodiscard]] Coupling coupling() const {
     return std::holds_alternative<FreeAngle>(coordinate_) ? Coupling::couple : Coupling::all;
   }
@@ -47,13 +50,16 @@ class Motor : public InteractionItem {
   [[nodiscard]] double at_n1(const PairStep& step) const;
   /// c(t_{n+1}).
   [[nodiscard]] double target(const PairStep& step) const;
-  /// Prescribed force over the step [N or N m].
+  /// Prescribed force over the step [N or N m], with its derivatives.
+  [[nodiscard]] CoordinateValue effort(const PairStep& step, const CoordinateMotion& q,
+                                       const RateStep& rate, bool tangents) const;
   [[nodiscard]] double effort(const PairStep& step) const;
   /// Work over the step [J].
   [[nodiscard]] double work_of_step(const PairStep& step) const;
 
   JointCoordinate coordinate_;
   TimeFunctionPtr function_;
+  std::optional<CoordinateFunction> of_motion_;
   Drive drive_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/loads/load_description.hpp>
+#include <polhode/loads/load_vector.hpp>
 
 namespace polhode {
 
@@ -9,15 +9,17 @@ namespace polhode {
 ///
 /// It is taken at t_{n+αf}, and acts at the averaged arm, so that its work over a step at
 /// ρ∞ = 1 is exactly force times displacement of the point. A constant force in the world has
-/// the potential −f·x; any other puts work in. @eq{ga-moment-arm}
+/// the potential −f·x; any other puts work in. It may be a function of the motion of the point.
+/// @eq{ga-moment-arm}
 class PointForce : public InteractionItem {
  public:
   static constexpr const char* kKind = "force";
   explicit PointForce(const LoadDescription& load);
 
-  [[nodiscard]] bool conservative() const { return potential_; }
+  [[nodiscard]] bool conservative() const { return force_.is_dead(); }
+  [[nodiscard]] bool dissipates() const { return force_.reads_velocity(); }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
-    return {force_.begin(), force_.end()};
+    return force_.time_functions();
   }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
@@ -25,8 +27,7 @@ class PointForce : public InteractionItem {
 
  private:
   Vec3 Z_;
-  TimeVector force_;
-  bool body_fixed_, potential_;
+  LoadVector force_;
 };
 
 /// Adds a PointForce to the system.

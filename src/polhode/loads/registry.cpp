@@ -413,6 +413,12 @@ int LoadKind::report_size() const {
   return size;
 }
 
+std::string LoadKind::function_key() const {
+  for (const DriveParameter& drive : drives)
+    if (drive.name == "force" || drive.name == "moment" || drive.name == "pull") return drive.name;
+  return vector;
+}
+
 const LoadKind& load_kind(std::string_view name) {
   std::string names;
   for (const LoadKind& kind : load_kinds()) {

@@ -76,6 +76,8 @@ struct LoadKind {
   bool curve = false;
 
   [[nodiscard]] int report_size() const;  ///< Numbers in a report.
+  /// Key of the force or moment that code may give as a function of the motion; "" for none.
+  [[nodiscard]] std::string function_key() const;
 };
 
 /// Every load type; the order is that of the documentation.

@@ -41,6 +41,7 @@ SpringDamper::SpringDamper(const LoadDescription& load)
       spring_(load, "spring_force"),
       damper_(load, "damper_force"),
       pull_(load.drive == "pull" ? load.function : nullptr) {
+  if (const auto* f = std::get_if<CoordinateFunction>(&load.of_motion)) of_motion_ = *f;
   name = load.name;
   bodies = load.bodies;
 }
@@ -77,7 +78,8 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
   if (s.has_direction) {
     const LawValue spring = tension(step, s);
     const LawValue damper = damper_.at(s.rate);
-    const double N = spring.value + damper.value + pull(step);
+    const CoordinateValue given = pull(step, s, step.context.tangents);
+    const double N = spring.value + damper.value + given.value;
     const Vec3 n = s.u_alpha / s.l_alpha;
     Row12 D_l = Row12::Zero();
     if (!step.context.conserving)
@@ -85,12 +87,13 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
     else if (s.l_n1 > kNoLength)
       D_l = s.u_n1.transpose() * D_u / s.l_n1;
     // The law's slope is by l_{n+1}; without the discrete gradient by l_α.
-    Row12 D_N = (step.context.conserving ? spring.slope / af : spring.slope) * D_l;
-    if (!damper_.is_zero()) {
+    Row12 D_N =
+        ((step.context.conserving ? spring.slope / af : spring.slope) + given.by_value) * D_l;
+    if (!damper_.is_zero() || of_motion_) {
       Mat3x12 D_u_dot;
       D_u_dot << -af * a.rate * Mat3::Identity(), -point_velocity_by_turn(a, s.z_a),
           af * b.rate * Mat3::Identity(), point_velocity_by_turn(b, s.z_b);
-      D_N += damper.slope / s.l_alpha *
+      D_N += (damper.slope + given.by_rate) / s.l_alpha *
              (s.u_dot.transpose() * D_u + s.u_alpha.transpose() * D_u_dot - s.rate * D_l);
     }
     F = -N * n;
@@ -118,11 +121,15 @@ Work SpringDamper::work(const PairStep& step) const {
   const Stretch s = stretch(step);
   return {.stored = spring_.energy(s.l_n1 - l_0_),
           .dissipated = damper_.at(s.rate).value * s.rate * step.context.dt,
-          .put_in = pull_ ? -pull(step) * (s.l_n1 - s.l_n) : 0.0};
+          .put_in = pull_ || of_motion_ ? -pull(step, s, false).value * (s.l_n1 - s.l_n) : 0.0};
 }
 
-double SpringDamper::pull(const PairStep& step) const {
-  return pull_ ? step.context.load_factor * (*pull_)(step.context.t_alpha()) : 0.0;
+CoordinateValue SpringDamper::pull(const PairStep& step, const Stretch& s, bool tangents) const {
+  const StepContext& c = step.context;
+  CoordinateValue f;
+  if (of_motion_) f = coordinate_value(*of_motion_, {c.t_alpha(), s.l_alpha, s.rate}, tangents);
+  if (pull_) f.value += (*pull_)(c.t_alpha());
+  return {c.load_factor * f.value, c.load_factor * f.by_value, c.load_factor * f.by_rate};
 }
 
 LawValue SpringDamper::tension(const PairStep& step, const Stretch& s) const {
@@ -134,8 +141,8 @@ std::vector<double> SpringDamper::report(const PairStep& step) const {
   const Stretch s = stretch(step);
   Vec3 force = Vec3::Zero();
   if (s.has_direction)
-    force =
-        -(tension(step, s).value + damper_.at(s.rate).value + pull(step)) / s.l_alpha * s.u_alpha;
+    force = -(tension(step, s).value + damper_.at(s.rate).value + pull(step, s, false).value) /
+            s.l_alpha * s.u_alpha;
   else if (l_0_ == 0.0)
     force = -spring_.at(0.0).slope * s.u_alpha;
   return numbers(force, {s.l_n1, s.rate, work(step).stored});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <polhode/loads/force_law.hpp>
+#include <polhode/loads/load_vector.hpp>
 
 namespace polhode {
 
@@ -25,8 +26,10 @@ class SpringDamper : public InteractionItem {
   ///              spring_force of the elongation, damper_force of its rate; the word acts.
   explicit SpringDamper(const LoadDescription& load);
 
-  [[nodiscard]] bool conservative() const { return damper_.is_zero() && !pull_; }
-  [[nodiscard]] bool dissipates() const { return !damper_.is_zero(); }
+  [[nodiscard]] bool conservative() const { return damper_.is_zero() && !pull_ && !of_motion_; }
+  [[nodiscard]] bool dissipates() const {
+    return !damper_.is_zero() || (of_motion_ && of_motion_->reads_velocity);
+  }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {pull_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
@@ -38,7 +41,8 @@ class SpringDamper : public InteractionItem {
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
-  [[nodiscard]] double pull(const PairStep& step) const;
+  /// Given force that draws the points together [N], with its derivatives by length and rate.
+  [[nodiscard]] CoordinateValue pull(const PairStep& step, const Stretch& s, bool tangents) const;
   [[nodiscard]] LawValue tension(const PairStep& step, const Stretch& s) const;
 
   Vec3 Z_a_, Z_b_;
@@ -46,6 +50,7 @@ class SpringDamper : public InteractionItem {
   ForceLaw spring_;
   ResistanceLaw damper_;
   TimeFunctionPtr pull_;  ///< Force that draws the points together [N], or null.
+  std::optional<CoordinateFunction> of_motion_;  ///< Likewise, of length and rate.
 };
 
 /// A given force along the line between two points, positive where it draws them together, with a

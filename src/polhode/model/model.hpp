@@ -13,6 +13,7 @@
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
 #include <polhode/joints/frame_motion.hpp>
+#include <polhode/loads/load_function.hpp>
 #include <polhode/model/beam_spec.hpp>
 #include <polhode/model/contact_spec.hpp>
 #include <polhode/model/material_spec.hpp>
@@ -117,6 +118,10 @@ struct LoadSpec {
   std::map<std::string, Mat6> matrices;                 ///< By key, SI.
   std::string joint_2, coordinate_2;                    ///< Of a gear: its second coordinate.
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing, as Z_a and Z_b.
+  /// From code, in addition to vector or value: of the point of a force or moment, of the
+  /// coordinate of a motor or the distance of an axial force.
+  LoadFunction of_motion{};
+  PartAxes part_axes{};  ///< In which of_motion counts.
 };
 
 /// A channel recorded at its own rate.
@@ -198,6 +203,7 @@ struct Model {
   [[nodiscard]] int load_index(const std::string& name) const;   ///< Likewise.
   [[nodiscard]] int beam_index(const std::string& name) const;   ///< Likewise.
   [[nodiscard]] int cable_index(const std::string& name) const;  ///< Likewise.
+  [[nodiscard]] int probe_index(const std::string& name) const;  ///< In output.probes; likewise.
 };
 
 }  // namespace polhode

@@ -178,13 +178,10 @@ class Placer {
     load.Z_b = carried(load.b, load.Z_b);
     load.R_a = carried(load.a, load.R_a, kAgainst);
     load.R_b = carried(load.b, load.R_b, kAgainst);
-    if (load.vector) {
-      const Mat3 local = axial_vector && mirrored_ ? Mat3(-S_) : S_;
-      load.vector = turned(load.body_fixed ? local
-                           : axial_vector  ? axial()
-                                           : A_,
-                           *load.vector, where);
-    }
+    const PartAxes here{r_, A_, S_};
+    load.part_axes = load.part_axes.within(here);
+    if (load.vector)
+      load.vector = turned(here.vector_map(load.body_fixed, axial_vector), *load.vector, where);
     if (!mirrored_) return;
     if (load.type == "rolling" || load.type == "point_on_curve")
       refuse_mirror(where, format("'{}'", load.type), "Give the mirror image in a part of its own");
@@ -227,6 +224,7 @@ class Placer {
       refuse_mirror(where, "a law of a coordinate whose sense changes",
                     "Use a stiffness and a damping, or a joint with one freedom");
     load.value = scaled(load.value, -1.0);
+    load.part_axes.sense *= -1.0;
     for (const char* rest : {"free_angle", "free_displacement"})
       if (const auto found = load.parameters.find(rest); found != load.parameters.end())
         found->second = -found->second;

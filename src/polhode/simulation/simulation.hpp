@@ -31,6 +31,7 @@ struct SolidMap;
 struct SolidPoint;
 struct ContactMap;
 struct SurfacePointReport;
+struct ProbeTarget;
 namespace contact {
 class ContactSet;
 struct TouchingPoint;
@@ -158,6 +159,10 @@ class Simulation {
   [[nodiscard]] BeamReport beam(std::string_view name) const;
   [[nodiscard]] CableReport cable(int cable) const;  ///< Likewise.
   [[nodiscard]] CableReport cable(std::string_view name) const;
+  /// What a probe of the model's output records, at the present state: the time, then the numbers
+  /// of the columns that probe_columns() names, such as "x [m]".
+  [[nodiscard]] std::vector<double> probe(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> probe_columns(std::string_view name) const;
   /// Energies and momenta, and what was put in and dissipated since the start.
   [[nodiscard]] Balance balance() const;
 
@@ -195,6 +200,7 @@ class Simulation {
 
  private:
   [[nodiscard]] Vec3 node_velocity(int node) const;
+  [[nodiscard]] const ProbeTarget& probe_target_of(std::string_view name) const;
   void watch_stress();
 
   struct Impl;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/simulation/simulation_details.hpp>
+#include <polhode/simulation/simulation_impl.hpp>
 
 namespace polhode {
 
@@ -24,6 +24,20 @@ BeamReport Simulation::beam(std::string_view name) const {
 }
 CableReport Simulation::cable(std::string_view name) const {
   return cable(model().cable_index(std::string(name)));
+}
+/// Found when it is asked for first.
+const ProbeTarget& Simulation::probe_target_of(std::string_view name) const {
+  const int index = model().probe_index(std::string(name));
+  const auto found = impl_->probes.find(index);
+  if (found != impl_->probes.end()) return found->second;
+  const ProbeSpec& spec = model().output.probes[static_cast<std::size_t>(index)];
+  return impl_->probes.emplace(index, probe_target(*this, spec)).first->second;
+}
+std::vector<double> Simulation::probe(std::string_view name) const {
+  return probe_row(probe_target_of(name), *this);
+}
+std::vector<std::string> Simulation::probe_columns(std::string_view name) const {
+  return probe_target_of(name).header;
 }
 const SolidReport& Simulation::solid(std::string_view name) const {
   return solid(model().solid_index(std::string(name)));

@@ -19,6 +19,7 @@
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/simulation/method.hpp>
+#include <polhode/simulation/probe.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
@@ -85,6 +86,7 @@ struct Simulation::Impl {
       return largest_energy > least_energy ? std::sqrt(energy / largest_energy) : 0.0;
     }
   };
+  std::map<int, ProbeTarget> probes;            ///< Those asked for by name.
   std::deque<SolidWatch> solid_watches;         ///< Made when asked for; references to them stay.
   std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
 

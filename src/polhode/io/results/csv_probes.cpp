@@ -11,11 +11,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <polhode/compile/build_system.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
-#include <polhode/loads/registry.hpp>
 
 namespace polhode {
 
@@ -54,192 +52,7 @@ std::string kept_rows(const std::string& text, std::size_t begin, double t,
   return text.substr(begin, end - begin);
 }
 
-std::vector<std::string> vector_header(const std::string& prefix, const std::string& unit) {
-  std::vector<std::string> cells;
-  for (const char* axis : {"x", "y", "z"}) cells.push_back(format("{}{} [{}]", prefix, axis, unit));
-  return cells;
-}
-
-void extend(std::vector<std::string>& list, const std::vector<std::string>& more) {
-  list.insert(list.end(), more.begin(), more.end());
-}
-
-void extend(std::vector<double>& list, const Vec3& x) {
-  list.insert(list.end(), x.begin(), x.end());
-}
-
-std::vector<std::string> body_header() {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("", "m"));
-  extend(header, vector_header("v", "m/s"));
-  extend(header, vector_header("a", "m/s^2"));
-  return header;
-}
-
-/// The joint behind a JointSpec of the model.
-const Joint* joint_item(const Simulation& simulation, int joint) {
-  const System& system = simulation.system();
-  const JointSpec& spec = simulation.model().joints[static_cast<std::size_t>(joint)];
-  const auto& interactions = system.interactions();
-  for (std::size_t i = 0; i < interactions.size(); ++i)
-    if (system.group(interactions[i].group).kind() == Joint::kKind &&
-        system.name(interactions[i]) == spec.name)
-      return &joint_at(system, static_cast<int>(i));
-  return nullptr;
-}
-
-/// Columns of friction and stops.
-void extend_by_resistance(std::vector<std::string>& header, const Joint& joint,
-                          const std::vector<std::string>& coordinates) {
-  const Resistance* resistance = joint.resistance();
-  if (!resistance) return;
-  const auto unit = [](const std::string& name) { return name[0] == 'r' ? "N m" : "N"; };
-  if (resistance->data().friction) {
-    for (const std::string& name : coordinates)
-      header.push_back(format("friction {} [{}]", name, unit(name)));
-    header.emplace_back("slips [-]");
-  }
-  if (resistance->data().slide)
-    header.emplace_back(coordinates.front() == "distance" ? "stop distance [N]" : "stop z [N]");
-  if (resistance->data().turn) header.emplace_back("stop rz [N m]");
-}
-
-std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("m", "N m"));
-  const Joint* item = joint_item(simulation, joint);
-  if (!item) return header;
-  const std::vector<std::string> names = item->coordinate_names();
-  for (const char* quantity : {"", "rate "})
-    for (const std::string& name : names)
-      header.push_back(format("{}{} [{}{}]", quantity, name, name[0] == 'r' ? "rad" : "m",
-                              *quantity == '\0' ? "" : "/s"));
-  extend_by_resistance(header, *item, names);
-  if (item->frame_moves()) header.insert(header.end(), {"power [W]", "work [J]"});
-  return header;
-}
-
-std::vector<std::string> load_header(const Simulation& simulation, int load) {
-  std::vector<std::string> header{"t [s]"};
-  const LoadSpec& spec = simulation.model().loads[static_cast<std::size_t>(load)];
-  for (const LoadChannel& channel : load_kind(spec.type).channels) {
-    if (channel.size == 3)
-      extend(header, vector_header(channel.name.substr(0, 1), channel.unit));
-    else
-      header.push_back(format("{} [{}]", channel.name, channel.unit));
-  }
-  return header;
-}
-
-std::vector<std::string> solid_header(bool interface, bool stress) {
-  std::vector<std::string> header{"t [s]"};
-  if (interface) {
-    extend(header, vector_header("f", "N"));
-    extend(header, vector_header("m", "N m"));
-    return header;
-  }
-  extend(header, vector_header("", "m"));
-  extend(header, vector_header("u", "m"));
-  extend(header, vector_header("v", "m/s"));
-  if (!stress) return header;
-  for (const char* component : {"xx", "yy", "zz", "xy", "yz", "xz"})
-    header.push_back(format("s{} [Pa]", component));
-  header.emplace_back("von_mises [Pa]");
-  return header;
-}
-
-std::vector<std::string> beam_header() {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("m", "N m"));
-  extend(header, vector_header("strain ", "-"));
-  extend(header, vector_header("curvature ", "1/m"));
-  return header;
-}
-
-std::vector<std::string> contact_header() {
-  std::vector<std::string> header{"t [s]", "gap [m]", "normal [N]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("ft", "N"));
-  extend(header, vector_header("p", "m"));
-  extend(header, std::vector<std::string>{"points [-]", "status [-]", "impulse [N s]", "lost [J]"});
-  return header;
-}
-
-void add_stress(std::vector<double>& row, const Mat3& stress) {
-  row.insert(row.end(), {stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2),
-                         stress(0, 2), von_mises(stress)});
-}
-
-ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
-  const std::string where = format("output.probes.{}", spec.name);
-  ProbeTarget target{.spec = spec, .index = simulation.model().solid_index(spec.target)};
-  target.header = solid_header(!spec.reaction_of.empty(), spec.stress);
-  const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
-  if (!spec.reaction_of.empty()) {
-    const std::vector<std::string> names = simulation.interfaces(target.index);
-    const auto found = std::find(names.begin(), names.end(), spec.reaction_of);
-    if (found == names.end())
-      throw InputError(where + ".interface",
-                       format("'{}' has no interface '{}'", spec.target, spec.reaction_of),
-                       "Name a body it is bonded to, or nodes it prescribes");
-    target.interface = static_cast<int>(found - names.begin());
-  } else if (spec.node) {
-    if (*spec.node < 0 || *spec.node >= static_cast<int>(mesh.nodes.size()))
-      throw InputError(where + ".node", format("node {} does not exist", *spec.node),
-                       format("The solid has {} nodes; the first is 0", mesh.nodes.size()));
-    target.point = {{*spec.node}, {1.0}};
-  } else {
-    target.point = solid_point(where + ".point", mesh, spec.point);
-  }
-  return target;
-}
-
-/// An element of a beam or a piece of a cable.
-ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec) {
-  const bool beam = spec.kind == "beam";
-  const int index = beam ? model.beam_index(spec.target) : model.cable_index(spec.target);
-  const auto k = static_cast<std::size_t>(index);
-  const std::size_t count = beam ? model.beams[k].mesh.size() : model.cables[k].pieces.size();
-  if (spec.element < 0 || static_cast<std::size_t>(spec.element) >= count)
-    throw InputError(
-        format("output.probes.{}.element", spec.name),
-        format("{} {} does not exist", beam ? "element" : "piece", spec.element),
-        format("'{}' has {} {}; the first is 0", spec.target, count, beam ? "elements" : "pieces"));
-  if (beam) return {.spec = spec, .index = index, .header = beam_header()};
-  return {.spec = spec, .index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
-}
-
 }  // namespace
-
-ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
-  const Model& model = simulation.model();
-  const std::string where = format("output.probes.{}", spec.name);
-  if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
-  if (spec.kind == "solid") return find_solid_target(simulation, spec);
-  if (spec.kind == "contact")
-    return {.spec = spec,
-            .index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
-            .header = contact_header()};
-  if (spec.kind == "load") {
-    const int load = model.load_index(spec.target);
-    if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
-      throw InputError(where, format("records '{}', a load on a solid", spec.target),
-                       "Record an interface or a point of the solid, or a load on bodies");
-    return {.spec = spec, .index = load, .header = load_header(simulation, load)};
-  }
-  const bool body = spec.kind == "body";
-  if (!body && spec.kind != "joint")
-    throw InputError(where, format("records a '{}', which is not known", spec.kind),
-                     "Name a body, a joint, a load, a solid, a beam, a cable or a contact");
-  const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
-  if (body && index == kGround)
-    throw InputError(where, "records the ground, which stands still", "Name a body");
-  return {.spec = spec,
-          .index = index,
-          .header = body ? body_header() : joint_header(simulation, index)};
-}
 
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& header,
                    std::optional<double> keep)
@@ -299,82 +112,15 @@ CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
   for (const ProbeSpec& spec : model.output.probes) {
     ProbeTarget target = probe_target(simulation, spec);
     CsvTable table(format("{}/{}.csv", folder, spec.name), target.header, keep);
-    const double every = spec.every.value_or(model.output.every.value_or(0.0));
-    std::int64_t next = 0;
-    if (every > 0.0 && table.last_time())
-      next = static_cast<std::int64_t>(std::floor(*table.last_time() / every * (1 + 1e-12))) + 1;
-    probes_.push_back({std::move(target), every, next, std::move(table)});
+    const ProbeClock clock(spec, model.output, table.last_time());
+    probes_.push_back({std::move(target), clock, std::move(table)});
   }
 }
 
 void CsvProbes::record(const Simulation& simulation) {
-  const double t = simulation.time();
-  for (Probe& probe : probes_) {
-    if (probe.table.last_time() && *probe.table.last_time() >= t) continue;
-    if (probe.every > 0.0) {
-      // A step that ends within rounding of the due time ends at it.
-      if (t * (1 + 1e-12) < static_cast<double>(probe.next) * probe.every) continue;
-      probe.next = static_cast<std::int64_t>(std::floor(t / probe.every * (1 + 1e-12))) + 1;
-    }
-    probe.table.append(probe_row(probe.target, simulation));
-  }
-}
-
-namespace {
-
-/// Forces are those on the first body the probe names.
-void add_contact(std::vector<double>& row, const Simulation& simulation, const ProbeTarget& probe) {
-  const ContactReport c = simulation.contact(probe.index);
-  const ContactMap::Pair& pair =
-      simulation.contact_map().pairs[static_cast<std::size_t>(probe.index)];
-  const double sign = pair.a == probe.spec.pair[0] ? 1.0 : -1.0;
-  row.insert(row.end(), {c.gap, c.normal_force});
-  for (const Vec3& x : {Vec3(sign * c.force), Vec3(sign * c.friction), c.point}) extend(row, x);
-  row.insert(row.end(), {static_cast<double>(c.points), static_cast<double>(c.status), c.impulse,
-                         c.energy_lost});
-}
-
-}  // namespace
-
-std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation) {
-  std::vector<double> row{simulation.time()};
-  if (probe.spec.kind == "body") {
-    const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
-    for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
-  } else if (probe.spec.kind == "solid" && probe.interface >= 0) {
-    const InterfaceReport reaction = simulation.interface_reaction(probe.index, probe.interface);
-    extend(row, reaction.force);
-    extend(row, reaction.moment);
-  } else if (probe.spec.kind == "contact") {
-    add_contact(row, simulation, probe);
-  } else if (probe.spec.kind == "load") {
-    const std::vector<double> values = simulation.load(probe.index);
-    row.insert(row.end(), values.begin(), values.end());
-  } else if (probe.spec.kind == "beam") {
-    const BeamReport beam = simulation.beam(probe.index);
-    const auto k = static_cast<std::size_t>(probe.spec.element);
-    row.insert(row.end(), beam.forces[k].begin(), beam.forces[k].end());
-    row.insert(row.end(), beam.strains[k].begin(), beam.strains[k].end());
-  } else if (probe.spec.kind == "cable") {
-    const CableReport cable = simulation.cable(probe.index);
-    const auto k = static_cast<std::size_t>(probe.spec.element);
-    row.insert(row.end(), {cable.tension[k], cable.length[k]});
-  } else if (probe.spec.kind == "solid") {
-    for (const Vec3& x : simulation.solid_point(probe.index, probe.point)) extend(row, x);
-    if (probe.spec.stress) add_stress(row, simulation.solid_stress(probe.index, probe.point));
-  } else {
-    const JointReport joint = simulation.joint(probe.index, probe.spec.axes == "joint");
-    extend(row, joint.force);
-    extend(row, joint.moment);
-    row.insert(row.end(), joint.coordinates.begin(), joint.coordinates.end());
-    row.insert(row.end(), joint.rates.begin(), joint.rates.end());
-    row.insert(row.end(), joint.friction.begin(), joint.friction.end());
-    if (!joint.friction.empty()) row.push_back(joint.slips ? 1.0 : 0.0);
-    row.insert(row.end(), joint.stops.begin(), joint.stops.end());
-    row.insert(row.end(), joint.power.begin(), joint.power.end());
-    row.insert(row.end(), joint.work.begin(), joint.work.end());
-  }
-  return row;
+  for (Probe& probe : probes_)
+    if (probe.clock.strikes(simulation.time()))
+      probe.table.append(probe_row(probe.target, simulation));
 }
 
 void CsvProbes::flush() {

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/compile/solid_point.hpp>
-#include <polhode/simulation/simulation_details.hpp>
+#include <polhode/simulation/probe.hpp>
 
 namespace polhode {
 
@@ -34,20 +33,6 @@ class CsvTable {
   std::chrono::steady_clock::time_point last_write_{};
 };
 
-/// A probe found in its model: what it records, as numbers in columns.
-struct ProbeTarget {
-  ProbeSpec spec{};
-  int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
-  SolidPoint point{};  ///< Of a solid.
-  int interface = -1;  ///< Of a solid; -1: none.
-  std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
-};
-
-/// @throws InputError if the model has no such thing.
-[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec);
-/// The time and the values of a probe at the present state, in the order of its header.
-[[nodiscard]] std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation);
-
 /// The probes of a model (output.probes), each in its own file <name>.csv, each at its own rate:
 /// a row at the first step end at or after each multiple of the interval.
 class CsvProbes {
@@ -65,8 +50,7 @@ class CsvProbes {
  private:
   struct Probe {
     ProbeTarget target;
-    double every;       ///< [s]; 0: every step.
-    std::int64_t next;  ///< The next row is due at next·every.
+    ProbeClock clock;
     CsvTable table;
   };
 

@@ -110,6 +110,8 @@ class Fingerprint {
     add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
         l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
         l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
+    // What code gives shows in nothing but its presence.
+    if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()));
   }
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }

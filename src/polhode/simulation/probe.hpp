@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/compile/solid_point.hpp>
+#include <polhode/simulation/simulation_details.hpp>
+
+namespace polhode {
+
+/// A probe found in its model: what it records, as numbers in columns.
+struct ProbeTarget {
+  ProbeSpec spec{};
+  int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
+  SolidPoint point{};  ///< Of a solid.
+  int interface = -1;  ///< Of a solid; -1: none.
+  std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
+};
+
+/// @throws InputError if the model has no such thing.
+[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec);
+/// Times at which a probe has rows: the first end of a step at or after each multiple of its
+/// interval, or every step.
+class ProbeClock {
+ public:
+  /// @param last  Time of the last row of a table that is continued.
+  ProbeClock(const ProbeSpec& spec, const OutputSpec& output,
+             std::optional<double> last = std::nullopt);
+  /// Whether there is a row at the end of this step; then the next one is waited for.
+  [[nodiscard]] bool strikes(double t);
+
+ private:
+  double every_;           ///< [s]; 0: every step.
+  std::int64_t next_ = 0;  ///< The next row is due at next·every.
+  std::optional<double> last_;
+};
+
+/// The time and the values of a probe at the present state, in the order of its header.
+[[nodiscard]] std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation);
+
+}  // namespace polhode
