@@ -25,6 +25,20 @@ def test_results_and_models_show_in_a_cell(tmp_path, monkeypatch):
     assert sorted(p.name for p in pathlib.Path().iterdir()) == ["page.html", "run"]
 
 
+def test_a_notebook_that_is_exported_shows_the_same_pages(tmp_path, monkeypatch):
+    nbformat, nbclient, nbconvert = (pytest.importorskip(n) for n in ("nbformat", "nbclient", "nbconvert"))
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in (
+        "import polhode\nm = polhode.Model(gravity=[0, 0, -9.81], analysis={'duration': 1, 'step': '5 ms'})\n"
+        "arm = m.add_body('arm', shape=polhode.Box(1, 0.05, 0.05), density=1000)\nm.show()",
+        "r = polhode.run(m, output='run')\nr.show(height=333)")])
+    nbclient.NotebookClient(book, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
+    text = nbconvert.HTMLExporter().from_notebook_node(book)[0]
+    frames = [part.split('"')[1] for part in text.split("<iframe ")[1:]]
+    assert len(frames) == 2 and all(html.unescape(f).startswith("<!doctype html") for f in frames)
+    assert html.unescape(frames[1]) == polhode.open(tmp_path / "run").show().text
+    assert 'height="333"' in text
+
+
 def test_what_cannot_be_shown_is_told():
     with pytest.raises(ValueError, match='run with output="folder"'):
         polhode.run(make_pendulum()).show()
