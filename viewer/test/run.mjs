@@ -280,7 +280,13 @@ await test("recordings in an archive share the player", async () => {
 });
 
 const slide = (page, label, value) => page.getByLabel(label, { exact: true }).evaluate((input, x) => { input.value = x; input.dispatchEvent(new Event("input")); }, value);
-const picture = async (page) => { await page.waitForTimeout(250); return page.evaluate(() => document.querySelector(".view > canvas").toDataURL()); };
+const picture = async (page) => {  // of what is drawn now: the page draws before the second of two frames
+  await page.waitForTimeout(150);
+  return page.evaluate(async () => {
+    for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame);
+    return document.querySelector(".view > canvas").toDataURL();
+  });
+};
 
 await test("elements of solids have colours of their own, and solids may have different fields", async () => {
   const { page } = await page_of("tyre.html");
