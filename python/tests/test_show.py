@@ -2,6 +2,7 @@
 """The viewer's page in notebooks."""
 
 import html
+import html.parser
 import pathlib
 
 import pytest
@@ -31,12 +32,21 @@ def test_a_notebook_that_is_exported_shows_the_same_pages(tmp_path, monkeypatch)
         "import polhode\nm = polhode.Model(gravity=[0, 0, -9.81], analysis={'duration': 1, 'step': '5 ms'})\n"
         "arm = m.add_body('arm', shape=polhode.Box(1, 0.05, 0.05), density=1000)\nm.show()",
         "r = polhode.run(m, output='run')\nr.show(height=333)")])
-    nbclient.NotebookClient(book, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
+    place = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(book, timeout=120, kernel_name="python3", resources=place).execute()
     text = nbconvert.HTMLExporter().from_notebook_node(book)[0]
-    frames = [part.split('"')[1] for part in text.split("<iframe ")[1:]]
-    assert len(frames) == 2 and all(html.unescape(f).startswith("<!doctype html") for f in frames)
-    assert html.unescape(frames[1]) == polhode.open(tmp_path / "run").show().text
-    assert 'height="333"' in text
+    frames = []
+
+    class Frames(html.parser.HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            if tag == "iframe":
+                frames.append(dict(attrs))
+
+    Frames().feed(text)
+    assert len(frames) == 2 and all(f["srcdoc"].startswith("<!doctype html") for f in frames)
+    assert all(f["sandbox"] == "allow-scripts allow-downloads" for f in frames)
+    assert frames[1]["height"] == "333" and frames[1]["srcdoc"] == polhode.open(tmp_path / "run").show().text
+
 
 
 def test_what_cannot_be_shown_is_told():
