@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The models and commands of the quick starts run as they stand.
+"""The models and commands of the quick starts run as they stand, and every whole model of another page is one.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
 after the other in one folder. POLHODE names the program. With page names as arguments only those are run.
@@ -46,6 +46,26 @@ def run_page(page):
     return count, faults
 
 
+def check_models(page):
+    """Faults of the models in a page that `polhode check` is given, and how many there are. Parts of models are no models."""
+    models, name = [], None
+    for block in BLOCK.finditer(page.read_text()):
+        if block["file"]:
+            name = block["file"]
+        elif block["language"] == "yaml" and block["text"].startswith("format:"):
+            models.append((name or f"model{len(models)}.yaml", block["text"]))
+            name = None
+    faults = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in models:
+            (pathlib.Path(folder) / name).write_text(text)
+        for name, text in models:
+            done = subprocess.run([POLHODE, "check", name], cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+            if done.returncode != 0:
+                faults.append(f"{page.relative_to(ROOT)}: a model is refused\n{text[:200]}\n{done.stderr[-800:]}")
+    return len(models), faults
+
+
 def main(wanted):
     pages = [p for p in sorted((ROOT / "docs/quick_start").glob("*.md")) if not wanted or p.stem in wanted]
     problems = []
@@ -53,8 +73,16 @@ def main(wanted):
         count, faults = run_page(page)
         print(f"{page.name}: {count} commands, {len(faults)} faults")
         problems += faults + ([f"{page.name} has no commands"] if count == 0 else [])
+    others = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    checked = 0
+    for page in others:
+        if page.parent.name != "quick_start" and (not wanted or page.stem in wanted):
+            count, faults = check_models(page)
+            checked += count
+            problems += faults
+    print(f"{checked} models of other pages are checked")
     print("\n".join(problems))
-    return bool(problems) or not pages
+    return bool(problems) or not (pages or checked)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,10 @@
 #include "loopback_server.hpp"
 
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <csignal>
+#include <optional>
 
 #include <netinet/in.h>
 #include <poll.h>
@@ -19,17 +22,23 @@ namespace {
 constexpr std::size_t kLongestRequest = 16384;
 constexpr int kPatience = 5000;  ///< For a slow request [ms].
 
-/// The head of a request; empty if it does not come to its end.
+constexpr std::size_t kLargestBody = std::size_t{1} << 30;
+
+/// Adds what comes next. @returns whether anything came.
+bool receive(int connection, std::string& text) {
+  std::array<char, 65536> part{};
+  pollfd waiting{connection, POLLIN, 0};
+  if (::poll(&waiting, 1, kPatience) <= 0) return false;
+  const ssize_t got = ::recv(connection, part.data(), part.size(), 0);
+  if (got > 0) text.append(part.data(), static_cast<std::size_t>(got));
+  return got > 0;
+}
+
+/// The head of a request and what came behind it; empty if the head does not come to its end.
 std::string read_head(int connection) {
   std::string head;
-  std::array<char, 4096> part{};
-  while (head.size() < kLongestRequest && head.find("\r\n\r\n") == std::string::npos) {
-    pollfd waiting{connection, POLLIN, 0};
-    if (::poll(&waiting, 1, kPatience) <= 0) return "";
-    const ssize_t got = ::recv(connection, part.data(), part.size(), 0);
-    if (got <= 0) return "";
-    head.append(part.data(), static_cast<std::size_t>(got));
-  }
+  while (head.find("\r\n\r\n") == std::string::npos)
+    if (head.size() >= kLongestRequest || !receive(connection, head)) return "";
   return head;
 }
 
@@ -42,25 +51,49 @@ void send_all(int connection, const std::string& bytes) {
   }
 }
 
-/// Value of the line "Host:", without its port.
-std::string host_of(const std::string& head) {
-  for (const char* name : {"\r\nHost: ", "\r\nhost: "}) {
-    const std::size_t at = head.find(name);
-    if (at == std::string::npos) continue;
-    const std::string line = head.substr(at + 8, head.find("\r\n", at + 8) - at - 8);
-    return line.substr(0, line.rfind(':'));
+/// Value of a line of the head; `name` has small letters.
+std::string value_of(const std::string& head, const std::string& name) {
+  const std::size_t end = head.find("\r\n\r\n");
+  for (std::size_t at = head.find("\r\n"); at < end; at = head.find("\r\n", at + 2)) {
+    std::string line = head.substr(at + 2, head.find("\r\n", at + 2) - at - 2);
+    const std::size_t colon = line.find(':');
+    if (colon != name.size()) continue;
+    for (std::size_t k = 0; k < colon; ++k)
+      line[k] = static_cast<char>(std::tolower(static_cast<unsigned char>(line[k])));
+    if (line.rfind(name, 0) == 0) return line.substr(std::min(line.size(), colon + 2));
   }
   return "";
 }
 
-WebAnswer answer_to(const std::string& head,
-                    const std::function<WebAnswer(const std::string&)>& answer) {
-  if (head.rfind("GET /", 0) != 0) return {405, "text/plain", "Only GET is answered.\n"};
-  const std::string host = host_of(head);
-  if (host != "127.0.0.1" && host != "localhost")
+/// What was sent behind the head; nothing if it does not come to its end.
+std::optional<std::string> read_body(int connection, const std::string& head) {
+  const std::string length = value_of(head, "content-length");
+  std::size_t size = 0;
+  const auto [stop, fault] = std::from_chars(length.data(), length.data() + length.size(), size);
+  if (fault != std::errc() || size > kLargestBody) return std::nullopt;
+  std::string body = head.substr(head.find("\r\n\r\n") + 4);
+  while (body.size() < size)
+    if (!receive(connection, body)) return std::nullopt;
+  return body;
+}
+
+WebAnswer answer_to(int connection, const std::string& head, int port, bool takes,
+                    const std::function<WebAnswer(const WebRequest&)>& answer) {
+  const bool sent = takes && head.rfind("POST /", 0) == 0;
+  if (head.rfind("GET /", 0) != 0 && !sent) return {405, "text/plain", "Only GET is answered.\n"};
+  const std::string host = value_of(head, "host"), name = host.substr(0, host.rfind(':'));
+  if (name != "127.0.0.1" && name != "localhost")
     return {403, "text/plain", "Only requests to the loopback address are answered.\n"};
-  const std::string path = head.substr(4, head.find_first_of(" ?\r", 4) - 4);
-  return answer(path);
+  if (sent && value_of(head, "origin") != format("http://127.0.0.1:{}", port))
+    return {403, "text/plain", "Only pages of this server may send.\n"};
+  const std::size_t begin = head.find(' ') + 1;
+  WebRequest request{head.substr(begin, head.find_first_of(" ?\r", begin) - begin), sent};
+  if (sent) {
+    std::optional<std::string> body = read_body(connection, head);
+    if (!body) return {400, "text/plain", "What was sent did not come to its end.\n"};
+    request.body = std::move(*body);
+  }
+  return answer(request);
 }
 
 }  // namespace
@@ -86,8 +119,8 @@ LoopbackServer::LoopbackServer(int port) {
 
 LoopbackServer::~LoopbackServer() { ::close(socket_); }
 
-void LoopbackServer::run(const std::function<WebAnswer(const std::string& path)>& answer,
-                         const std::atomic<bool>& stop) const {
+void LoopbackServer::run(const std::function<WebAnswer(const WebRequest& request)>& answer,
+                         const std::atomic<bool>& stop, bool takes) const {
   while (!stop) {
     pollfd waiting{socket_, POLLIN, 0};
     if (::poll(&waiting, 1, 200) <= 0) continue;
@@ -95,7 +128,7 @@ void LoopbackServer::run(const std::function<WebAnswer(const std::string& path)>
     if (connection < 0) continue;
     const std::string head = read_head(connection);
     if (!head.empty()) {
-      const WebAnswer a = answer_to(head, answer);
+      const WebAnswer a = answer_to(connection, head, port_, takes, answer);
       send_all(connection,
                format("HTTP/1.0 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\n"
                       "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"

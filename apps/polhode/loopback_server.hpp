@@ -14,9 +14,16 @@ struct WebAnswer {
   std::string body{};
 };
 
+/// What a page asked for, or sent.
+struct WebRequest {
+  std::string path;
+  bool sent = false;   ///< POST.
+  std::string body{};  ///< What was sent.
+};
+
 /// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one connection at a time. Requests whose Host
 /// is not the loopback address are refused, so that no web site can read results by a name that it
-/// lets point here.
+/// lets point here. POST is answered where it is wanted, and only to pages of this server.
 class LoopbackServer {
  public:
   /// @param port  0: any that is free. @throws FileError if the port cannot be taken.
@@ -24,9 +31,9 @@ class LoopbackServer {
   ~LoopbackServer();
   LoopbackServer(const LoopbackServer&) = delete;
   [[nodiscard]] int port() const { return port_; }
-  /// Answers requests until `stop` is set.
-  void run(const std::function<WebAnswer(const std::string& path)>& answer,
-           const std::atomic<bool>& stop) const;
+  /// Answers requests until `stop` is set. @param takes  POST, too.
+  void run(const std::function<WebAnswer(const WebRequest& request)>& answer,
+           const std::atomic<bool>& stop, bool takes = false) const;
 
  private:
   int socket_ = -1, port_ = 0;

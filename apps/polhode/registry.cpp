@@ -18,7 +18,7 @@ const std::vector<Command>& commands() {
       {"view", "Show results, or a model before it runs, as moving pictures in a browser",
        add_view},
       {"plot", "Draw channels of results over time, as an SVG picture", add_plot},
-      {"convert", "Write results as a table (.csv) or an animated scene (.glb)", add_convert},
+      {"convert", "Write results as a table, a scene for other programs, or a film", add_convert},
       {"check", "Look for faults in a model: mobility, redundant rows, start, tangents", add_check},
       {"info", "Tell what a model holds, or which joints, loads and shapes exist", add_info},
       {"schema", "Write the JSON Schema or the reference page of the model file", add_schema},

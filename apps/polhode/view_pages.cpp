@@ -19,6 +19,7 @@
 
 #include "command.hpp"
 #include "run_report.hpp"
+#include "temporary_folder.hpp"
 
 extern char** environ;
 
@@ -27,24 +28,6 @@ namespace polhode::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that is removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    path_ = (fs::temp_directory_path() / "polhode-view-XXXXXX").string();
-    if (mkdtemp(path_.data()) == nullptr) throw FileError::from_errno(path_, "cannot be made");
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 /// Remarks of `polhode check` that a picture of the start can show.
 void add_remarks(const Simulation& simulation, SceneOptions& options) {
@@ -65,11 +48,28 @@ void add_remarks(const Simulation& simulation, SceneOptions& options) {
                          solid.plan.warnings.end());
 }
 
+/// The start of a model. What overlaps there is refused by a run, but can be shown: it is noted,
+/// its bodies are marked, and nothing touches.
+Simulation start_of(Model model, SceneOptions& options) {
+  try {
+    return Simulation(Model(model));
+  } catch (const InputError& error) {
+    const std::string what = error.what_is_wrong();
+    if (error.where() != "contacts" || what.find(" at the start: ") == std::string::npos) throw;
+    options.notes.push_back(error.what());
+    for (const BodySpec& body : model.bodies)
+      if (what.find(format("'{}'", body.name)) != std::string::npos)
+        options.body_marks[body.name] = "overlaps at the start";
+    model.contacts = ContactsSpec{};
+    return Simulation(std::move(model));
+  }
+}
+
 SceneData scene_of_model(const ViewRequest& request, SceneOptions options) {
   Model model = load_model(request.input);
   model.output.paraview = model.output.csv = false;
   model.output.hdf5 = true;
-  const Simulation simulation(std::move(model));
+  const Simulation simulation = start_of(std::move(model), options);
   const TemporaryFolder folder;
   Recorder recorder(simulation, folder.path(), provenance_of(request.input, simulation.summary()));
   recorder.frame(simulation);

@@ -31,6 +31,8 @@ LABELLED = re.compile(r"\$\$(.+?)\$\$", re.S)
 LABEL = re.compile(r"\s*\\label\{([\w:-]+)\}")
 INDEX_CODE = re.compile(r"\((src|tests)/([\w./-]+)\)")
 
+PDF = '\n<a href="../theory.pdf">All pages of the theory in one PDF.</a>\n'
+
 
 def site_path(path):
     """Place in the site of a page of the repository."""
@@ -169,6 +171,7 @@ def pages():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("target", type=pathlib.Path, help="folder for the pages")
+    parser.add_argument("--pdf", action="store_true", help="a PDF of the theory will be made: link it")
     parser.add_argument("--live", type=pathlib.Path, help="folder of pages of runs, NAME.html, and of their player")
     options = parser.parse_args()
     shutil.rmtree(options.target / "extra", ignore_errors=True)
@@ -176,7 +179,7 @@ def main():
     live = {p.stem for p in options.live.glob("*.html")} - {"index"} if options.live else set()
     for place in pages():
         if place not in ("docs/README.md", "examples/README.md"):
-            site.add(place)
+            site.add(place, PDF if options.pdf and place == "docs/theory/index.md" else "")
     for folder in sorted((ROOT / "examples").iterdir()):
         if (folder / "README.md").exists():
             site.example(folder, folder.name in live)

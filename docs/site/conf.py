@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sphinx's settings of the documentation site; assemble.py makes the pages that it reads."""
 
+import os
 import pathlib
 import re
 import sys
@@ -11,7 +12,7 @@ _ROOT = pathlib.Path(__file__).resolve().parents[2]
 project = "Polhode"
 author = "the Polhode authors"
 project_copyright = author
-version = release = re.search(r"VERSION (\d+\.\d+\.\d+)", (_ROOT / "CMakeLists.txt").read_text())[1]
+version = release = os.environ.get("POLHODE_DOCS_VERSION") or re.search(r"VERSION (\d+\.\d+\.\d+)", (_ROOT / "CMakeLists.txt").read_text())[1]
 language = "en"
 
 extensions = ["myst_parser", "mathml"]
@@ -28,6 +29,8 @@ html_title = f"Polhode {version}"
 html_static_path = ["static"]
 exclude_patterns = ["extra", "static"]
 html_css_files = ["site.css"]
+# Other versions lie beside this one: scripts/docs.sh --version.
+html_js_files = ["versions_menu.js"] if os.environ.get("POLHODE_DOCS_VERSION") else []
 html_math_renderer = "mathml"
 html_copy_source = False
 # The summaries of a search would be fetched, which browsers refuse to pages from a disk.

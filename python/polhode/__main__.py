@@ -11,6 +11,7 @@ def main() -> None:
         from ._sweep_command import main as sweep
 
         sys.exit(sweep(sys.argv[2:]))
+    os.environ.setdefault("POLHODE_PYTHON", sys.executable)  # for `convert` to .parquet
     program = os.path.join(os.path.dirname(__file__), "bin", "polhode")
     os.execv(program, ["polhode", *sys.argv[1:]])
 

@@ -351,6 +351,26 @@ class Result:
         coordinates = {"time": ("time", self.time, {"units": "s"}), "axis": list("xyz"), "quaternion": list("wxyz")}
         return xarray.Dataset(data, coords=coordinates)
 
+    def to_parquet(self, path: "Union[str, os.PathLike[str]]", *channels: str) -> None:
+        """Writes a Parquet file with pyarrow: the time "t" and a column for each component of the
+        channels, of all if none is named, with their units as metadata of the columns."""
+        import pyarrow
+        from pyarrow import parquet
+
+        names, units, columns = ["t"], ["s"], [np.asarray(self.time, dtype=float)]
+        for name in self._expand(channels):
+            if name == "time":
+                continue
+            array = np.asarray(self[name], dtype=float)
+            flat = array.reshape(len(array), -1)
+            for k, label in enumerate(_components(array.shape[1:])):
+                names.append(name + label)
+                units.append(self.unit(name))
+                columns.append(flat[:, k])
+        fields = [pyarrow.field(n, pyarrow.float64(), metadata={"unit": u}) for n, u in zip(names, units)]
+        arrays = [pyarrow.array(column) for column in columns]
+        parquet.write_table(pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields)), path)
+
     def plot(self, *channels: str, axes: Any = None) -> Any:
         """Draws channels over time with matplotlib, one panel each: r.plot("energy", "joints.A.force").
         A group draws all its channels in one panel. Returns the figure."""

@@ -109,6 +109,19 @@ def test_overrides_hold_for_one_run(pendulum):
     assert pendulum.variables["g"] == 9.81
 
 
+def test_a_table_goes_to_parquet_with_units(pendulum, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    r = polhode.run(pendulum)
+    r.to_parquet(tmp_path / "out.parquet", "bodies.arm", "energy.total")
+    table = parquet.read_table(tmp_path / "out.parquet")
+    assert table.column_names[:2] == ["t", "bodies.arm.position.x"] and table.column_names[-1] == "energy.total"
+    assert np.array_equal(table["t"].to_numpy(), r.time)
+    assert np.array_equal(table["bodies.arm.position.z"].to_numpy(), r.bodies["arm"].position[:, 2])
+    assert table.schema.field("bodies.arm.velocity.x").metadata == {b"unit": b"m/s"}
+    r.to_parquet(tmp_path / "all.parquet")
+    assert "joints.hinge.force.z" in parquet.read_table(tmp_path / "all.parquet").column_names
+
+
 def test_results_go_to_other_libraries(pendulum):
     r = polhode.run(pendulum)
     table = r.to_pandas("bodies.arm", "energy.total")

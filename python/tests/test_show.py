@@ -2,6 +2,7 @@
 """The viewer's page in notebooks."""
 
 import html
+import html.parser
 import pathlib
 
 import pytest
@@ -23,6 +24,29 @@ def test_results_and_models_show_in_a_cell(tmp_path, monkeypatch):
     model = make_pendulum().show()
     assert model.text != page.text and len(model.text) > 100_000
     assert sorted(p.name for p in pathlib.Path().iterdir()) == ["page.html", "run"]
+
+
+def test_a_notebook_that_is_exported_shows_the_same_pages(tmp_path, monkeypatch):
+    nbformat, nbclient, nbconvert = (pytest.importorskip(n) for n in ("nbformat", "nbclient", "nbconvert"))
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in (
+        "import polhode\nm = polhode.Model(gravity=[0, 0, -9.81], analysis={'duration': 1, 'step': '5 ms'})\n"
+        "arm = m.add_body('arm', shape=polhode.Box(1, 0.05, 0.05), density=1000)\nm.show()",
+        "r = polhode.run(m, output='run')\nr.show(height=333)")])
+    place = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(book, timeout=120, kernel_name="python3", resources=place).execute()
+    text = nbconvert.HTMLExporter().from_notebook_node(book)[0]
+    frames = []
+
+    class Frames(html.parser.HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            if tag == "iframe":
+                frames.append(dict(attrs))
+
+    Frames().feed(text)
+    assert len(frames) == 2 and all(f["srcdoc"].startswith("<!doctype html") for f in frames)
+    assert all(f["sandbox"] == "allow-scripts allow-downloads" for f in frames)
+    assert frames[1]["height"] == "333" and frames[1]["srcdoc"] == polhode.open(tmp_path / "run").show().text
+
 
 
 def test_what_cannot_be_shown_is_told():

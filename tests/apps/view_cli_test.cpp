@@ -99,5 +99,34 @@ TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
   EXPECT_THAT(r.out, HasSubstr("http://127.0.0.1:" + std::to_string(port)));
 }
 
+TEST_F(ViewCommand, ConvertsByTheEndingOfTheFile) {
+  ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
+  for (const char* file : {"table.csv", "scene.glb", "grids.vtkhdf"}) {
+    const test::ProgramResult r = run({"convert", "model.results", file});
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_TRUE(exists(file)) << file;
+  }
+  EXPECT_EQ(read("grids.vtkhdf").substr(1, 3), "HDF");
+  const test::ProgramResult r = run({"convert", "model.results", "out.xls"});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("cannot write '.xls' files. Name a .csv, .parquet, .vtkhdf, .glb"));
+  const test::ProgramResult there =
+      run({"convert", "model.results", "no/such/folder/grids.vtkhdf"});
+  EXPECT_EQ(there.code, 5);
+  EXPECT_THAT(there.err, HasSubstr("cannot be written"));
+}
+
+TEST_F(ViewCommand, ShowsWhatOverlapsAtTheStart) {
+  write("overlap.yaml",
+        "format: 1\nbodies:\n  one: {shape: {sphere: 1}, density: 1}\n"
+        "  two: {shape: {sphere: 1}, density: 1, position: [0.5, 0, 0]}\n"
+        "contacts: {}\nanalysis: {duration: 1, step: 0.1}\n");
+  EXPECT_EQ(run({"run", "overlap.yaml"}).code, 3);
+  EXPECT_EQ(run({"view", "overlap.yaml", "--html", "page.html"}).code, 0);
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("shapes overlap at the start: 'one' in 'two' by 0.5 m"));
+  EXPECT_THAT(page, HasSubstr("\"name\":\"two\",\"mark\":\"overlaps at the start\""));
+}
+
 }  // namespace
 }  // namespace polhode::view_cli_tests

@@ -143,6 +143,32 @@ TEST_F(SceneTest, HoldsTheNumbersOfTheResults) {
   }
 }
 
+TEST_F(SceneTest, HoldsFieldsOfNodesAndElementsOfSolidsAsSeenFromOutside) {
+  const SceneData data = scene();
+  const json m = json::parse(data.manifest), solid = m["solids"][0];
+  const ResultsReader results(folder_ / "model.results/results.h5");
+  // All eight elements of the cube are seen, in some order: that of the triangles they own.
+  EXPECT_EQ(solid["owners"]["n"], solid["triangles"]["n"]);
+  std::map<std::string, std::size_t> found;
+  for (const json& field : solid["fields"]) {
+    const std::string of = field["of"], name = field["name"];
+    ++found[of];
+    const std::vector<double> all = results.read("/solids/pad/" + of + "/" + name);
+    const std::vector<float> seen = floats(data, field["data"]);
+    const std::size_t entries = of == "nodes" ? 27 : 8, rows = of == "nodes" ? 26 : 8;
+    EXPECT_EQ(seen.size() / rows, all.size() / entries) << name;
+    double sum = 0.0, expected = 0.0;
+    if (of == "elements") {
+      for (const float v : seen) sum += v;
+      for (const double v : all) expected += static_cast<float>(v);
+      EXPECT_NEAR(sum, expected, 1e-6 * (1.0 + std::abs(expected))) << name;
+      EXPECT_TRUE(data.later.contains(field["data"]["c"])) << name;
+    }
+  }
+  EXPECT_GE(found["nodes"], 4U);
+  EXPECT_GE(found["elements"], 3U);
+}
+
 TEST_F(SceneTest, KeepsTheEnergyDriftThatSinglePrecisionWouldHide) {
   const SceneData data = scene();
   const json manifest = json::parse(data.manifest);

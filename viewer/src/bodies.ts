@@ -52,6 +52,7 @@ export class Bodies {
     const entry = this.scene.manifest.bodies[body];
     if (body === this.chosen) return kChosen;
     if (this.tint) return this.tint;
+    if (entry.mark) return new Color("#d9822b");
     return new Color(entry.fixed ? kFixed : kPalette[body % kPalette.length]);
   }
 

@@ -6,7 +6,7 @@ export type Triple = [number, number, number];
 export type Four = [number, number, number, number];
 export interface MeshEntry { points: Packed; triangles: Packed; type: string }
 export interface PartEntry { mesh?: number; plane?: Triple; p: Triple; q?: Four }
-export interface BodyEntry { name: string; line?: number; fixed?: boolean; mass?: number; node?: boolean; parts?: PartEntry[] }
+export interface BodyEntry { name: string; line?: number; fixed?: boolean; mass?: number; node?: boolean; parts?: PartEntry[]; mark?: string }
 export interface JointEntry {
   name: string; type?: string; first?: number; count?: number; line?: number; mark?: string;
   a?: number; b?: number; Za?: Triple; Zb?: Triple; q?: Four;
@@ -15,9 +15,11 @@ export interface LoadEntry {
   name: string; type: string; first: number; columns: { name: string; unit: string; size: number }[];
   line?: number; a?: number; b?: number; Za?: Triple; Zb?: Triple; joint?: string; damping?: number; stiffness?: number;
 }
-export interface FieldEntry { name: string; unit: string; size: number; data: Packed }
+/** Values at nodes or in elements, those that are seen. */
+export interface FieldEntry { name: string; of?: "nodes" | "elements"; unit: string; size: number; data: Packed }
 export interface SolidEntry {
   name: string; nodes: number; elements: number; shown: number[]; reference: Packed; triangles: Packed; edges: Packed;
+  owners?: Packed;  // elements of the triangles, by their rows in fields
   fields: FieldEntry[]; line?: number;
 }
 export interface BeamEntry { name: string; line?: number; section?: string; height?: number; width?: number }
@@ -79,11 +81,17 @@ export class Scene {
       return new Scene(Scene.checked(manifest), false, suffix);
     }
     if (location.protocol === "file:") throw new Error("This page holds no results. Make one with 'polhode view RESULTS --html FILE'.");
+    if (!second) Scene.stamp = await Scene.askStamp();
     const answer = await fetch(`scene${suffix}.json`);
     const text = await answer.text();
-    if (!answer.ok) throw new Error(text);
+    // The server tells what is wrong with a model in plain text.
+    if (!answer.ok || answer.headers.get("content-type")?.startsWith("text/plain")) throw new Error(text);
     return new Scene(Scene.checked(JSON.parse(text) as Manifest), true, suffix);
   }
+
+  /** When the served file was saved, asked before it was read: what is saved meanwhile differs. */
+  static stamp = "";
+  static askStamp(): Promise<string> { return fetch("stamp").then((answer) => answer.text()); }
 
   private static checked(manifest: Manifest): Manifest {
     if (manifest.format !== "polhode scene" || manifest.version !== 1)

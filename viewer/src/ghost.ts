@@ -3,6 +3,7 @@
 import { Color, Group, Mesh, type Object3D, Vector3 } from "three";
 import { Bodies } from "./bodies";
 import type { Scene } from "./data";
+import { Joints, Loads } from "./glyphs";
 import { Lines } from "./lines";
 import type { Surface } from "./materials";
 import { Poses } from "./poses";
@@ -11,43 +12,57 @@ import { Solids } from "./solids";
 const kTint = "#e8590c";
 const kOpacity = 0.42;
 
-function faint(object: Object3D): void {
+function faint(object: Object3D, on: boolean): void {
   object.traverse((part) => {
     if (!(part instanceof Mesh)) return;
     const material = part.material as Surface;
-    material.transparent = true;
-    material.opacity = kOpacity;
-    material.depthWrite = false;
-    part.castShadow = part.receiveShadow = false;
+    material.transparent = on;
+    material.opacity = on ? kOpacity : 1;
+    material.depthWrite = !on;
+    material.needsUpdate = true;
+    part.castShadow = part.receiveShadow = !on;
   });
 }
 
 export class Ghost {
   readonly group = new Group();
   private constructor(readonly scene: Scene, readonly name: string, private readonly poses: Poses, private readonly bodies: Bodies, private readonly solids: Solids,
-    private readonly lines: Lines) {}
+    private readonly lines: Lines, private readonly joints: Joints, private readonly loads: Loads) {}
+  private size = 1;
+  private alone = false;
 
   static async of(scene: Scene, name: string): Promise<Ghost> {
     const m = scene.manifest, poses = await Poses.of(scene), bodies = await Bodies.of(scene, poses), solids = await Solids.of(scene, poses);
     const lines = await Lines.of(scene, poses, () => bodies.box().getSize(new Vector3()).length() || 1);
-    const ghost = new Ghost(scene, name, poses, bodies, solids, lines);
-    bodies.tint = new Color(kTint);
-    bodies.plain = true;
-    bodies.setGhostOpacity(kOpacity);
-    // What never moves is in both; boxes that stand for mass alone would hide what has a shape.
-    const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
-    m.bodies.forEach((body, i) => {
-      const part = body.parts?.[0]?.mesh;
-      if (body.fixed || (shapes && part !== undefined && m.meshes[part].type === "inertia")) bodies.showing[i] = "hidden";
-    });
-    bodies.colours();
-    solids.plain = kTint;
-    await solids.choose(-1);
-    for (const group of [solids.group, lines.group]) faint(group);
-    ghost.group.add(bodies.group, solids.group, lines.group);
+    const joints = new Joints(m.joints, poses), ghost = new Ghost(scene, name, poses, bodies, solids, lines, joints, new Loads(m.loads, m.joints, joints, poses));
+    await ghost.setAlone(false);
+    ghost.group.add(bodies.group, solids.group, lines.group, ghost.joints.group, ghost.loads.group);
     ghost.set(m.time[0]);
     return ghost;
   }
+
+  /** Drawn as a picture of its own, beside the first recording, or as a ghost over it. */
+  async setAlone(on: boolean, field = ""): Promise<void> {
+    const { bodies, solids, lines } = this, m = this.scene.manifest;
+    this.alone = this.joints.group.visible = this.loads.group.visible = on;
+    bodies.tint = on ? null : new Color(kTint);
+    bodies.plain = !on;
+    // What never moves is in both; boxes that stand for mass alone would hide what has a shape.
+    const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
+    m.bodies.forEach((body, i) => {
+      const part = body.parts?.[0]?.mesh, inertia = shapes && part !== undefined && m.meshes[part].type === "inertia";
+      bodies.showing[i] = on ? (inertia ? "ghost" : "shown") : body.fixed || inertia ? "hidden" : "shown";
+    });
+    this.setFaintLight(!on);
+    bodies.colours();
+    solids.plain = on ? "#5b8bb8" : kTint;
+    await solids.choose(on ? solids.choices.findIndex((c) => c.label === field) : -1);
+    for (const group of [solids.group, lines.group]) faint(group, !on);
+  }
+  setRange(range: [number, number]): void { this.solids.range = range; this.solids.fixedRange = true; }
+  setFaintLight(on: boolean): void { this.bodies.setGhostOpacity(on ? kOpacity : 0.16); }
+  /** What rays may meet. */
+  get objects(): Object3D[] { return [this.bodies.group, this.solids.group, this.lines.group]; }
 
   get end(): number { return this.scene.manifest.time[this.scene.manifest.time.length - 1]; }
 
@@ -57,6 +72,15 @@ export class Ghost {
     this.bodies.update();
     this.solids.update();
     this.lines.update();
+    if (!this.alone) return;
+    this.joints.update(this.size);
+    this.loads.update(this.size);
+  }
+
+  /** Extent of what both recordings show, which planes and joints follow. */
+  setSize(size: number): void {
+    this.size = size;
+    this.bodies.sizePlanes(size);
   }
 
   show(on: boolean, t: number): void {

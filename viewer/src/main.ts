@@ -2,7 +2,7 @@
 import { bookmarkOf, follow } from "./bookmark";
 import { Scene } from "./data";
 import { figure, h, save } from "./dom";
-import { film } from "./film";
+import { filmWanted, shoot } from "./film";
 import { Ghost } from "./ghost";
 import { displayPanel, Legend, ObjectPanel, objectsOf } from "./panels";
 import { Player } from "./player";
@@ -11,7 +11,7 @@ import { offered, seriesOf } from "./series";
 import { View, type Choice } from "./view";
 
 const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, as at first"],
-  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["/", "search"],
+  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["v", "compared recording side by side"], ["/", "search"],
   ["d", "dark or light"], ["b", "put camera and time into the address"], ["Esc", "choose nothing"], ["?", "this list"]];
 
 /** Speed at which a recording takes about ten seconds, from 1, 2, 5 times a power of ten; real time if that is near. */
@@ -95,7 +95,7 @@ async function start(app: HTMLElement): Promise<void> {
       + "The ledger stacks energies, each counted from its lowest value if that is below zero."));
   search.addEventListener("keydown", (e) => { if (e.key === "Enter") void tryPlot(false); });
 
-  const display = displayPanel(view, () => { legend.tick(); view.stage.dirty = true; }, theme);
+  const display = displayPanel(view, () => { tick(); view.stage.dirty = true; }, theme);
   const panels = [["Objects", objects.element], ["Display", display], ["Plot", plotPanel]] as const;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Panels" });
   panels.forEach(([label, panel], i) => {
@@ -149,6 +149,7 @@ async function start(app: HTMLElement): Promise<void> {
   }
   if (view.ghost) {
     const { ghost } = view, ends = ghost.end < player.end - 1e-9 * (player.end - player.begin) ? `, which ends at ${figure(ghost.end)}${m.statics ? "" : " s"}` : "";
+    holder.append(h("div", { class: "sides", "aria-hidden": "true", hidden: true }, h("span", {}, m.name ?? ""), h("span", {}, ghost.name)));
     holder.append(h("div", { class: "compared", role: "note" }, h("span", { class: "dot", "aria-hidden": "true" }), `${m.name}, and as a ghost ${ghost.name}${ends}`));
   }
   const ruler = h("div", { class: "measure", role: "status", hidden: true });
@@ -171,6 +172,8 @@ async function start(app: HTMLElement): Promise<void> {
     }
     objects.tick();
     legend.tick();
+    const sides = holder.querySelector<HTMLElement>(".sides"), note = holder.querySelector<HTMLElement>(".compared");
+    if (sides && note) { sides.hidden = !view.beside; note.hidden = view.beside; }
     for (const plot of open) plot.tick();
     const measured = view.measured();
     ruler.hidden = !view.measuring && !measured;
@@ -194,6 +197,7 @@ async function start(app: HTMLElement): Promise<void> {
     d: () => theme(document.documentElement.dataset.theme !== "dark"), p: () => { if (open.length === 0) openPlot(has("energy/kinetic") ? ["energy.kinetic", "energy.potential"] : [offered(scene)[0]]); else plots.hidden = !plots.hidden; },
     "/": () => { app.classList.remove("wide"); tab(0); objects.focus(); }, o: () => view.stage.setParallel(view.stage.camera !== view.stage.parallel),
     c: () => { if (view.ghost) display.querySelector<HTMLInputElement>(".ghost input")?.click(); },
+    v: () => { if (view.ghost) display.querySelector<HTMLInputElement>(".beside input")?.click(); },
     h: () => { if (chosenBody() >= 0) view.show(chosenBody(), "hidden"); }, g: () => { if (chosenBody() >= 0) view.show(chosenBody(), "ghost"); }, i: () => { if (chosenBody() >= 0) view.isolate(chosenBody()); },
   };
   [..."12340"].forEach((key, i) => { keys[key] = () => display.querySelectorAll<HTMLButtonElement>(".buttons button")[i].click(); });
@@ -220,7 +224,7 @@ async function start(app: HTMLElement): Promise<void> {
   view.stage.draw();
   document.documentElement.dataset.ready = String(Math.round(performance.now() - begun));
 
-  Object.assign(window, { polhodeFilm: film(view, player, app) });
+  if (filmWanted()) return shoot(view, player, app, holder);
   let last = performance.now(), frames = 0, slow = 0;
   const loopFrame = (now: number): void => {
     // Three pictures in a row that took long while it plays: the machine wants less to draw.
@@ -237,10 +241,8 @@ async function start(app: HTMLElement): Promise<void> {
 
 /** Loads the page again when the file it shows is saved. */
 function watchFile(): void {
-  let before = "";
-  const look = (): void => void fetch("stamp").then((r) => r.text()).then((stamp) => {
-    if (before && stamp !== before && stamp !== "gone") location.reload();
-    before = stamp;
+  const look = (): void => void Scene.askStamp().then((stamp) => {
+    if (Scene.stamp && stamp !== Scene.stamp && stamp !== "gone") location.reload();
   }).catch(() => undefined);
   look();
   setInterval(look, 1000);

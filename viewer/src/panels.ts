@@ -78,7 +78,7 @@ export class ObjectPanel {
     if (choice.kind === "body" || choice.kind === "joint") button(this.view.follow ? "Do not follow" : "Follow", () => { this.view.setFollow(!this.view.follow); void this.choose(choice); });
     button("Show all", () => this.view.showAll());
     const table = h("table", {}, h("caption", { class: "hidden" }, `Values of ${object.name}`));
-    const mark = choice.kind === "joint" ? this.scene.manifest.joints[choice.index].mark : undefined;
+    const mark = choice.kind === "joint" ? this.scene.manifest.joints[choice.index].mark : choice.kind === "body" ? this.scene.manifest.bodies[choice.index].mark : undefined;
     this.details.replaceChildren(h("h2", {}, object.name), h("p", { class: "faint" }, object.about), ...(mark ? [h("p", { class: "warn" }, mark)] : []), buttons, table, this.source(object));
     const rows: HTMLElement[] = [];
     for (const name of quantitiesOf(this.scene, choice.kind, object.name)) {
@@ -114,7 +114,7 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
   const update = () => { view.update(); refresh(); };
   const check = (label: string, on: boolean, act: (on: boolean) => void) => {
     const input = h("input", { type: "checkbox", checked: on, onchange: () => { act(input.checked); update(); } });
-    return h("label", { class: label.startsWith("Ghost of ") ? "ghost" : undefined }, input, ` ${label}`);
+    return h("label", { class: label.startsWith("Ghost of ") ? "ghost" : label.startsWith("Side by side") ? "beside" : undefined }, input, ` ${label}`);
   };
   const slide = (label: string, low: number, high: number, value: number, act: (x: number) => void) => {
     const input = h("input", { type: "range", min: low, max: high, step: (high - low) / 200, value, "aria-label": label, oninput: () => { act(input.valueAsNumber); update(); } });
@@ -140,16 +140,30 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
     update();
   };
   return h("div", { class: "panel" }, camera,
-    part("Show", view.ghost ? check(`Ghost of ${view.ghost.name} (c)`, true, (on) => view.showGhost(on)) : null, check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
+    part("Show", view.ghost ? check(`Ghost of ${view.ghost.name} (c)`, true, (on) => view.showGhost(on)) : null, view.ghost ? check(`Side by side with ${view.ghost.name} (v)`, false, (on) => void view.setBeside(on).then(update)) : null, check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
       check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }),
       check("Trails", false, (on) => view.setTrails(on)), check("Centres of mass", false, (on) => { view.centres.visible = on; }), check("Body axes", false, (on) => { view.frames.visible = on; }),
       m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
     all.length > 0 ? part("Forces", contacts ? check("Contact forces", true, (on) => { contacts.group.visible = on; }) : null, reactions ? check("Reactions of joints", false, (on) => { reactions.group.visible = on; }) : null,
       loads ? check("Applied and spring forces", true, (on) => { loads.group.visible = on; }) : null, slide("Length of arrows", 0.1, 5, 1, (x) => all.forEach((f) => { f.scale = x; })),
       slide("Smallest shown, part of the largest", 0, 0.5, 0.01, (x) => all.forEach((f) => { f.threshold = x; }))) : null,
-    m.solids.length > 0 ? solidPart(view, part, slide, update) : null,
+    m.bodies.some((b) => !b.fixed) ? helicalPart(view, part, update) : null, m.solids.length > 0 ? solidPart(view, part, slide, update) : null,
     part("Section", sectionAxis, slide("Place of the section", -0.5, 0.5, 0, (x) => { offset = x; section(); })),
     part("Page", check("Dark", document.documentElement.dataset.theme === "dark", theme)));
+}
+
+/** Choice of the two bodies of a helical axis, and its figures now. */
+function helicalPart(view: View, part: (title: string, ...rows: HTMLElement[]) => HTMLElement, update: () => void): HTMLElement {
+  const list = view.scene.manifest.bodies.map((b, i) => ({ ...b, i })).filter((b) => !b.node), options = (first: string, all: typeof list) => [h("option", { value: -1 }, first), ...all.slice(0, 2000).map((b) => h("option", { value: b.i }, b.name))];
+  const choose = () => void view.helical.choose(Number(body.value), Number(from.value)).then(update);
+  const body = h("select", { "aria-label": "Body of the helical axis", onchange: choose }, ...options("none", list.filter((b) => !b.fixed)));
+  const from = h("select", { "aria-label": "Helical axis seen from", onchange: choose }, ...options("ground", list));
+  const text = h("p", { class: "faint helical", role: "status" });
+  view.onupdate = () => {
+    const { now, group } = view.helical;
+    text.textContent = !group.visible ? "" : !now ? "They do not turn against one another." : `${figure(now.rate)} rad/s about ${now.along.toArray().map((x) => x.toFixed(3)).join(", ")} through ${now.point.toArray().map((x) => x.toFixed(4)).join(", ")} m; ${figure(now.pitch)} m along it for a radian`;
+  };
+  return part("Helical axis", h("label", {}, "of ", body), h("label", {}, "seen from ", from), text);
 }
 
 function solidPart(view: View, part: (title: string, ...rows: HTMLElement[]) => HTMLElement, slide: (l: string, a: number, b: number, v: number, act: (x: number) => void) => HTMLElement, update: () => void): HTMLElement {

@@ -55,6 +55,15 @@ export class Poses {
     if (body < 0) return out;
     return out.applyQuaternion(this.q_of(body, scratch)).add(this.r_of(body, scratchPoint));
   }
+  /** Place and turn of a body at another time than the present one; −1: the ground. */
+  placeAt(body: number, frame: number, part: number, out: Vector3): Vector3 {
+    return body < 0 ? out.copy(kGround) : out.fromArray(valuesAt(this.r, 3 * this.count, 3 * body, 3, frame, part));
+  }
+  turnAt(body: number, frame: number, out: Quaternion): Quaternion {
+    if (body < 0) return out.copy(kUnit);
+    const at = 4 * (frame * this.count + body), q = this.q;
+    return out.set(q[at + 1], q[at + 2], q[at + 3], q[at]).normalize();
+  }
   /** Path of a body's centre of mass. */
   path(body: number): Float32Array {
     const frames = this.count > 0 ? this.r.length / 3 / this.count : 0;

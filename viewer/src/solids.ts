@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh } from "three";
-import type { Scene, SolidEntry } from "./data";
+import type { FieldEntry, Scene, SolidEntry } from "./data";
 import { surface } from "./materials";
 import type { Poses } from "./poses";
 
@@ -12,12 +12,17 @@ export function mapped(x: number, out: Color): Color {
   return out.lerpColors(kMap[k], kMap[k + 1], at - k);
 }
 
-interface Choice { label: string; field: number; component: number }  // component −1: size
-interface Own { entry: SolidEntry; reference: Float32Array; displacement: Float32Array | null; mesh: Mesh; lines: LineSegments; geometry: BufferGeometry }
+/** A field by its name, of nodes or elements, which not all solids must have. Component −1: size. */
+interface Choice { label: string; name: string; of: string; unit: string; component: number }
+/** Triangles with corners of their own, each in the colour of its element. */
+interface Cells { mesh: Mesh; corners: Uint32Array; owners: Uint32Array }
+interface Own {
+  entry: SolidEntry; index: number; reference: Float32Array; displacement: Float32Array | null; mesh: Mesh; lines: LineSegments; geometry: BufferGeometry; cells: Cells | null;
+}
 
 const kTensor = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
-/** Deformable solids with a nodal field in colours. */
+/** Deformable solids with a field of nodes or elements in colours. */
 export class Solids {
   readonly group = new Group();
   readonly choices: Choice[] = [];
@@ -32,23 +37,25 @@ export class Solids {
 
   private constructor(private readonly scene: Scene, private readonly poses: Poses) {
     this.hidden = scene.manifest.solids.map(() => false);
-    const first = scene.manifest.solids[0];
-    first?.fields.forEach((field, k) => {
-      if (field.size === 1) this.choices.push({ label: field.name, field: k, component: -1 });
-      else {
-        const parts = field.size === 6 ? kTensor : ["x", "y", "z"];
-        if (field.size === 3) this.choices.push({ label: `${field.name} (size)`, field: k, component: -1 });
-        parts.forEach((part, c) => this.choices.push({ label: `${field.name} ${part}`, field: k, component: c }));
+    for (const { fields } of scene.manifest.solids)
+      for (const { name, of = "nodes", unit, size } of fields) {
+        if (this.choices.some((c) => c.name === name && c.of === of)) continue;
+        const shown = of === "elements" ? `${name} by element` : name, add = (label: string, component: number) => this.choices.push({ label, name, of, unit, component });
+        if (size === 1) { add(shown, -1); continue; }
+        if (size === 3 && !name.startsWith("principal")) add(`${shown} (size)`, -1);
+        const parts = size === 6 ? kTensor : size === 3 ? (name.startsWith("principal") ? ["largest", "middle", "smallest"] : ["x", "y", "z"]) : Array.from({ length: size }, (_, i) => `${i}`);
+        parts.forEach((part, c) => add(`${shown} ${part}`, c));
       }
-    });
   }
-  get unit(): string { return this.choice < 0 ? "" : this.scene.manifest.solids[0].fields[this.choices[this.choice].field].unit; }
+  get unit(): string { return this.choice < 0 ? "" : this.choices[this.choice].unit; }
+  /** Whether the field in colours has a value for each element. */
+  private get byElement(): boolean { return this.choice >= 0 && this.choices[this.choice].of === "elements"; }
 
   static async of(scene: Scene, poses: Poses): Promise<Solids> {
     const solids = new Solids(scene, poses);
     for (const [index, entry] of scene.manifest.solids.entries()) await solids.add(entry, index);
-    const mises = solids.choices.findIndex((c) => c.label === "von_mises");
-    await solids.choose(mises >= 0 ? mises : solids.choices.length - 1);
+    const mises = solids.choices.findIndex((c) => c.label === "von_mises"), displacement = solids.choices.findIndex((c) => c.label.startsWith("displacement"));
+    await solids.choose(mises >= 0 ? mises : displacement);
     return solids;
   }
 
@@ -71,15 +78,33 @@ export class Solids {
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData = { pick: () => ({ kind: "solid", index }) };
     this.group.add(mesh, lines);
-    this.own.push({ entry, reference, displacement, mesh, lines, geometry });
+    this.own.push({ entry, index, reference, displacement, mesh, lines, geometry, cells: null });
   }
 
   async choose(choice: number): Promise<void> {
     this.choice = choice;
-    if (choice < 0) return;
-    const { field } = this.choices[choice];
-    this.fields = await Promise.all(this.own.map(({ entry }) => (entry.fields[field] ? this.scene.floats(entry.fields[field].data) : null)));
+    if (choice < 0) { this.fields = []; return; }
+    const fields = this.own.map(({ entry }) => this.fieldOf(entry));
+    this.fields = await Promise.all(fields.map((field) => (field ? this.scene.floats(field.data) : null)));
+    if (this.byElement) for (const own of this.own) own.cells ??= await this.cellsOf(own);
     if (!this.fixedRange) this.range = this.fullRange();
+  }
+
+  private fieldOf(entry: SolidEntry): FieldEntry | undefined {
+    const { name, of } = this.choices[this.choice];
+    return entry.fields.find((field) => field.name === name && (field.of ?? "nodes") === of);
+  }
+
+  private async cellsOf({ entry, mesh, index }: Own): Promise<Cells | null> {
+    if (!entry.owners) return null;
+    const corners = await this.scene.integers(entry.triangles), owners = await this.scene.integers(entry.owners), geometry = new BufferGeometry();
+    for (const name of ["position", "color"]) geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * corners.length), 3).setUsage(DynamicDrawUsage));
+    const own = new Mesh(geometry, mesh.material);
+    own.frustumCulled = false;
+    own.castShadow = own.receiveShadow = true;
+    own.userData = { pick: () => ({ kind: "solid", index }) };
+    this.group.add(own);
+    return { mesh: own, corners, owners };
   }
 
   /** Range of nearly all values of all frames: the highest half per cent, peaks at edges, are left out unless `peaks`. */
@@ -96,10 +121,11 @@ export class Solids {
     });
     if (all.length === 0) return [0, 1];
     const sorted = Float64Array.from(all).sort(), cut = peaks ? 0 : Math.floor(0.005 * sorted.length);
-    const low = sorted[0] >= 0 ? 0 : sorted[cut], high = sorted[sorted.length - 1 - cut];
+    // Sizes are counted from zero, unless all are far from it, as stretches are.
+    const high = sorted[sorted.length - 1 - cut], low = sorted[0] >= 0 && sorted[cut] < 0.5 * high ? 0 : sorted[cut];
     return [low, high > low ? high : low + 1e-30];
   }
-  private width(entry: SolidEntry): number { return entry.fields[this.choices[this.choice].field].size; }
+  private width(entry: SolidEntry): number { return this.fieldOf(entry)?.size ?? 1; }
   private value(data: Float32Array, i: number, size: number): number {
     const { component } = this.choices[this.choice];
     if (size === 1) return data[i];
@@ -107,13 +133,6 @@ export class Solids {
     let sum = 0;
     for (let k = 0; k < size; k++) sum += data[size * i + k] ** 2;
     return Math.sqrt(sum);
-  }
-
-  /** Value and place of the node nearest to a point of a picked face. */
-  nodeValue(solid: number, shown: number): { node: number; value: number } {
-    const own = this.own[solid], data = this.fields[solid];
-    const n = own.entry.shown.length;
-    return { node: own.entry.shown[shown], value: data ? this.value(data, this.poses.frame * n + shown, this.width(own.entry)) : NaN };
   }
 
   box(out: { expandByPoint(p: { x: number; y: number; z: number }): unknown }): void {
@@ -124,10 +143,13 @@ export class Solids {
   }
 
   update(): void {
-    const colour = new Color(), { frame, part } = this.poses;
-    this.own.forEach(({ entry, reference, displacement, mesh, lines, geometry }, s) => {
-      mesh.visible = lines.visible = !this.hidden[s];
-      if (this.hidden[s]) return;
+    const { frame, part } = this.poses;
+    this.own.forEach((own, s) => {
+      const { reference, displacement, mesh, lines, geometry, cells } = own, on = !this.hidden[s], split = on && this.byElement && cells !== null && (this.fields[s] ?? null) !== null;
+      lines.visible = on;
+      mesh.visible = on && !split;
+      if (cells) cells.mesh.visible = split;
+      if (!on) return;
       const points = geometry.getAttribute("position") as BufferAttribute, at = points.array, width = reference.length;
       if (displacement) {
         const a = frame * width, b = part > 0 ? a + width : a;
@@ -135,18 +157,39 @@ export class Solids {
           at[i] = reference[i] + this.enlarge * ((1 - part) * displacement[a + i] + part * displacement[b + i]);
         points.needsUpdate = true;
       }
-      geometry.computeVertexNormals();
       geometry.boundingSphere = null;
-      const colours = geometry.getAttribute("color") as BufferAttribute, data = this.fields[s], n = entry.shown.length;
-      const size = data ? this.width(entry) : 1, [low, high] = this.range;
-      for (let i = 0; i < n; i++) {
-        if (data) {
-          const now = this.value(data, frame * n + i, size), next = part > 0 ? this.value(data, (frame + 1) * n + i, size) : now;
-          mapped((now + part * (next - now) - low) / (high - low), colour);
-        } else colour.set(this.plain);
-        colours.setXYZ(i, colour.r, colour.g, colour.b);
-      }
+      const rows = this.colours(own, s);
+      if (split && cells) { this.spread(cells, at, rows); return; }
+      geometry.computeVertexNormals();
+      const colours = geometry.getAttribute("color") as BufferAttribute;
+      colours.array.set(rows);
       colours.needsUpdate = true;
     });
+  }
+
+  /** Colours of all rows of the field, nodes or elements, at this moment; plain where there is none. */
+  private colours({ entry, reference }: Own, s: number): Float32Array {
+    const { frame, part } = this.poses, colour = new Color(this.plain), data = this.fields[s] ?? null, size = data ? this.width(entry) : 1;
+    const n = data && this.byElement ? (this.fieldOf(entry)?.data.w ?? 0) / size : reference.length / 3, rows = new Float32Array(3 * n), [low, high] = this.range;
+    for (let i = 0; i < n; i++) {
+      if (data && this.choice >= 0) {
+        const now = this.value(data, frame * n + i, size), next = part > 0 ? this.value(data, (frame + 1) * n + i, size) : now;
+        mapped((now + part * (next - now) - low) / (high - low), colour);
+      }
+      colour.toArray(rows, 3 * i);
+    }
+    return rows;
+  }
+
+  private spread({ mesh, corners, owners }: Cells, at: ArrayLike<number>, rows: Float32Array): void {
+    const points = mesh.geometry.getAttribute("position") as BufferAttribute, colours = mesh.geometry.getAttribute("color") as BufferAttribute;
+    for (let i = 0; i < corners.length; i++)
+      for (let k = 0; k < 3; k++) {
+        points.array[3 * i + k] = at[3 * corners[i] + k];
+        colours.array[3 * i + k] = rows[3 * owners[(i / 3) | 0] + k];
+      }
+    points.needsUpdate = colours.needsUpdate = true;
+    mesh.geometry.computeVertexNormals();
+    mesh.geometry.boundingSphere = null;
   }
 }

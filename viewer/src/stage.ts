@@ -27,11 +27,16 @@ export class Stage {
   looking: Vector3 | null = null;
   size = 1;
   dirty = true;
+  /** Size of the picture that a film has; null: that of the window. */
+  fixedSize: [number, number] | null = null;
+  /** Two pictures side by side with one camera; called with 0 and 1 before each is drawn, and with −1 behind. */
+  halves: ((half: number) => void) | null = null;
 
   constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
     shadows &&= !software;
     this.renderer = new WebGLRenderer({ antialias: !software, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
+    this.renderer.debug.checkShaderErrors = false;  // to ask for them waits until all are compiled
     this.renderer.shadowMap.enabled = shadows;
     this.renderer.shadowMap.type = PCFShadowMap;
     holder.prepend(this.renderer.domElement);
@@ -40,7 +45,9 @@ export class Stage {
     this.sun.castShadow = shadows;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.controls = new OrbitControls(this.perspective, this.renderer.domElement);
-    this.controls.addEventListener("start", () => { this.looking = null; });
+    const before = new Vector3();  // a click alone moves no camera
+    this.controls.addEventListener("start", () => { before.copy(this.camera.position); });
+    this.controls.addEventListener("end", () => { if (this.camera.position.distanceTo(before) > 1e-9 * this.size) this.looking = null; });
     this.controls.addEventListener("change", () => { this.dirty = true; });
     new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
   }
@@ -157,8 +164,8 @@ export class Stage {
   }
 
   resize(): void {
-    const width = Math.max(1, this.holder.clientWidth), height = Math.max(1, this.holder.clientHeight);
-    this.renderer.setSize(width, height);
+    const [all, height] = this.fixedSize ?? [Math.max(1, this.holder.clientWidth), Math.max(1, this.holder.clientHeight)], width = this.halves ? Math.max(1, all / 2) : all;
+    this.renderer.setSize(all, height);
     this.perspective.aspect = width / height;
     this.perspective.updateProjectionMatrix();
     const half = 0.6 * this.size, wide = half * width / height;
@@ -176,16 +183,35 @@ export class Stage {
 
   ray(x: number, y: number): Raycaster {
     const box = this.renderer.domElement.getBoundingClientRect();
-    const caster = new Raycaster();
-    caster.setFromCamera(new Vector2(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
+    const caster = new Raycaster(), width = this.halves ? box.width / 2 : box.width;
+    caster.setFromCamera(new Vector2(2 * ((x - box.left) % width) / width - 1, 1 - 2 * (y - box.top) / box.height), this.camera);
     caster.layers.enable(kUnseen);
     caster.params.Line = { threshold: 0.004 * this.size };
     return caster;
   }
 
+  /** Which half of the window a point is in: 0, or 1 for the right one of two. */
+  halfAt(x: number): number {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    return this.halves && x - box.left > box.width / 2 ? 1 : 0;
+  }
+
   draw(): void {
-    this.renderer.render(this.world, this.camera);
+    const { renderer } = this, { width, height } = renderer.getSize(new Vector2());
     this.dirty = false;
+    renderer.setScissorTest(this.halves !== null);
+    if (!this.halves) {
+      renderer.setViewport(0, 0, width, height);
+      renderer.render(this.world, this.camera);
+      return;
+    }
+    for (const half of [0, 1]) {
+      this.halves(half);
+      renderer.setViewport(half * width / 2, 0, width / 2, height);
+      renderer.setScissor(half * width / 2, 0, width / 2, height);
+      renderer.render(this.world, this.camera);
+    }
+    this.halves(-1);
   }
 }
 

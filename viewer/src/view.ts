@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The moving picture: what stands in the scene, what is chosen, hidden, measured and followed.
-import { Box3, BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, Vector3 } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, type Object3D, Points, PointsMaterial, SphereGeometry, Vector3 } from "three";
+import { Axes } from "./axes";
 import { Bodies, type Showing } from "./bodies";
-import type { Scene } from "./data";
+import type { Manifest, Scene } from "./data";
 import type { Ghost } from "./ghost";
 import { Forces, Joints, Loads } from "./glyphs";
 import { Lines } from "./lines";
@@ -18,7 +19,11 @@ export class View {
   readonly trails = new Group();
   readonly centres = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xd1281e, size: 7, sizeAttenuation: false, depthTest: false }));
   readonly frames = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }));
+  readonly helical: Axes;
   ghost: Ghost | null = null;
+  beside = false;
+  /** Called when something has moved. */
+  onupdate: () => void = () => undefined;
   private t = 0;
   chosen: Choice | null = null;
   follow = false;
@@ -29,7 +34,9 @@ export class View {
   private readonly followed = new Vector3();
 
   private constructor(readonly scene: Scene, readonly stage: Stage, readonly poses: Poses, readonly bodies: Bodies, readonly joints: Joints,
-    readonly loads: Loads, readonly solids: Solids, readonly lines: Lines) {}
+    readonly loads: Loads, readonly solids: Solids, readonly lines: Lines) {
+    this.helical = new Axes(scene, poses, () => stage.size);
+  }
 
   static async of(scene: Scene, holder: HTMLElement): Promise<View> {
     const m = scene.manifest, g = m.gravity ?? [0, 0, -1];
@@ -50,7 +57,7 @@ export class View {
       if (key === "reactions") made.onfilled = () => view.update(); else await made.fill();
     }
     if (view.forces.reactions) view.forces.reactions.group.visible = false;
-    stage.world.add(bodies.group, joints.group, view.loads.group, solids.group, lines.group, view.trails, view.centres, view.frames, view.markGroup);
+    stage.world.add(bodies.group, joints.group, view.loads.group, solids.group, lines.group, view.trails, view.centres, view.frames, view.markGroup, view.helical.group);
     view.centres.visible = view.frames.visible = false;
     for (const object of [view.centres, view.frames]) object.frustumCulled = false;
     view.centres.renderOrder = 5;
@@ -90,11 +97,34 @@ export class View {
   /** Draws another recording over this one. */
   compare(ghost: Ghost): void {
     this.ghost = ghost;
+    ghost.setSize(this.stage.size);
     this.stage.world.add(ghost.group);
   }
   showGhost(on: boolean): void {
-    this.ghost?.show(on, this.t);
+    this.ghost?.show(on || this.beside, this.t);
     this.stage.dirty = true;
+  }
+  /** The other recording in a picture of its own to the right, seen from the same place, or as a ghost over this one. */
+  async setBeside(on: boolean): Promise<void> {
+    const { ghost, stage, solids } = this;
+    if (!ghost) return;
+    this.beside = on;
+    await ghost.setAlone(on, solids.choices[solids.choice]?.label);
+    if (on) ghost.setRange(solids.range);
+    const own = [this.bodies, this.joints, this.loads, this.solids, this.lines, ...Object.values(this.forces)].flatMap((part) => (part ? [part.group] : []))
+      .concat([this.trails, this.markGroup, this.helical.group]), others = [this.centres, this.frames];
+    let shown: boolean[] = [];
+    const all = [...own, ...others];
+    stage.halves = !on ? null : (half) => {
+      if (half === 0) shown = all.map((object) => object.visible);
+      if (half === 1) for (const object of all) object.visible = false;
+      if (half === -1) all.forEach((object, i) => { object.visible = shown[i]; });
+      ghost.group.visible = half !== 0;
+    };
+    ghost.show(true, this.t);
+    stage.resize();
+    if (stage.looking) stage.view(stage.looking);
+    this.update();
   }
 
   update(): void {
@@ -108,6 +138,7 @@ export class View {
     if (this.centres.visible) this.updateCentres();
     if (this.frames.visible) this.updateFrames();
     if (this.trailsOn) this.updateTrails();
+    this.helical.update();
     if (this.marks.length > 0) this.updateMarks();
     if (this.follow && this.chosen) {
       const at = this.placeOf(this.chosen);
@@ -119,6 +150,7 @@ export class View {
         stage.controls.update();
       }
     }
+    this.onupdate();
     stage.dirty = true;
   }
 
@@ -161,9 +193,20 @@ export class View {
     this.update();
   }
 
+  /** What is at a point of the window; in the picture of the other recording, what has the same name here. */
   pick(x: number, y: number): { choice: Choice; point: Vector3 } | null {
-    const hits = this.stage.ray(x, y).intersectObjects([this.bodies.group, this.joints.group, this.loads.group, this.solids.group, this.lines.group,
-      ...Object.values(this.forces).filter((f) => f?.group.visible).map((f) => f!.group)], true);
+    if (this.ghost && this.stage.halfAt(x) === 1) {
+      const met = this.met(x, y, this.ghost.objects);
+      if (!met) return null;
+      const named = ({ bodies, solids, beams, cables }: Manifest): { name: string }[] => ({ body: bodies, solid: solids, beam: beams, cable: cables, joint: [], load: [], contact: [] })[met.choice.kind];
+      const name = named(this.ghost.scene.manifest)[met.choice.index]?.name, index = named(this.scene.manifest).findIndex((own) => own.name === name);
+      return index < 0 ? null : { choice: { ...met.choice, index }, point: met.point };
+    }
+    return this.met(x, y, [this.bodies.group, this.joints.group, this.loads.group, this.solids.group, this.lines.group,
+      ...Object.values(this.forces).filter((f) => f?.group.visible).map((f) => f!.group)]);
+  }
+  private met(x: number, y: number, objects: Object3D[]): { choice: Choice; point: Vector3 } | null {
+    const hits = this.stage.ray(x, y).intersectObjects(objects, true);
     let plane: { choice: Choice; point: Vector3 } | null = null;
     for (const hit of hits) {
       const pick = hit.object.userData.pick as ((instance: number) => Choice) | undefined;

@@ -49,6 +49,14 @@ if (existsSync(join(site, "live")))
     const frame = await (await page.locator("iframe.live").elementHandle()).contentFrame();
     await frame.waitForFunction(() => document.documentElement.dataset.ready, null, { timeout: 60000 });
   });
+if (existsSync(join(site, "../versions.js")))
+  await open("theory/joints.html", {}, async (page) => {
+    await page.locator(".versions select").waitFor();
+    const name = site.split("/").at(-1), names = await page.locator(".versions option").allTextContents();
+    expect(await page.locator(".versions select").inputValue() === name && names.includes(name), `version ${name} is not chosen out of ${names}`);
+    await page.locator(".versions select").evaluate((select) => select.dispatchEvent(new Event("change")));
+    await page.waitForURL(/index\.html$/);
+  });
 await browser.close();
 console.log(failed ? `${failed} faults` : "the site opens, searches and plays without network");
 process.exit(failed ? 1 : 0);

@@ -5,7 +5,6 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/text/file_error.hpp>
 #include <polhode/view/channels.hpp>
-#include <polhode/view/glb.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
@@ -51,32 +50,6 @@ Action add_plot(CLI::App& command) {
     write_file_atomically(file, channels_svg(results, options->channels, time_label(results, path)),
                           false);
     say(format("{}: {} frames.", file, results.frames()));
-    return static_cast<int>(kOk);
-  };
-}
-
-Action add_convert(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
-  command.add_option("RESULTS", options->results, "Results (results.h5 or their folder)")
-      ->required();
-  command.add_option("OUTPUT", options->output, "A .csv or .glb file")->required();
-  command
-      .add_option("--channels", options->channels,
-                  "Columns of a .csv file, named as for 'plot'; left out: all")
-      ->type_name("CHANNEL");
-  return [options] {
-    const std::string ending = std::filesystem::path(options->output).extension().string();
-    if (ending == ".csv") {
-      const ResultsReader results(results_path(options->results));
-      write_file_atomically(options->output, channels_csv(results, options->channels), false);
-    } else if (ending == ".glb") {
-      ViewRequest request;
-      request.input.file = options->results;
-      write_file_atomically(options->output, scene_glb(scene_of(request)), false);
-    } else {
-      say(format("polhode convert: cannot write '{}' files. Name a .csv or .glb file.", ending));
-      return static_cast<int>(kUsage);
-    }
     return static_cast<int>(kOk);
   };
 }

@@ -153,13 +153,8 @@ std::vector<ChannelColumn> channel_columns(const ResultsReader& results, const s
   return Columns(results).find(name);
 }
 
-std::vector<std::string> channel_names(const ResultsReader& results) {
-  std::vector<std::string> names;
-  for (const Slice& slice : slices_of(results)) names.push_back(slice.head);
-  return names;
-}
-
-std::string channels_csv(const ResultsReader& results, const std::vector<std::string>& names) {
+std::vector<ChannelColumn> all_columns(const ResultsReader& results,
+                                       const std::vector<std::string>& names) {
   Columns all(results);
   std::vector<ChannelColumn> columns;
   if (names.empty())
@@ -167,6 +162,17 @@ std::string channels_csv(const ResultsReader& results, const std::vector<std::st
       for (ChannelColumn& c : all.find(slice.head)) columns.push_back(std::move(c));
   for (const std::string& name : names)
     for (ChannelColumn& c : all.find(name)) columns.push_back(std::move(c));
+  return columns;
+}
+
+std::vector<std::string> channel_names(const ResultsReader& results) {
+  std::vector<std::string> names;
+  for (const Slice& slice : slices_of(results)) names.push_back(slice.head);
+  return names;
+}
+
+std::string channels_csv(const ResultsReader& results, const std::vector<std::string>& names) {
+  const std::vector<ChannelColumn> columns = all_columns(results, names);
   std::string text = "t [s]";
   for (const ChannelColumn& c : columns) text += "," + quoted(format("{} [{}]", c.name, c.unit));
   text += "\n";

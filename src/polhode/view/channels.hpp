@@ -22,6 +22,10 @@ struct ChannelColumn {
 [[nodiscard]] std::vector<ChannelColumn> channel_columns(const ResultsReader& results,
                                                          const std::string& name);
 
+/// Columns of channels, one after the other; of all of them if none is named. @throws InputError
+[[nodiscard]] std::vector<ChannelColumn> all_columns(const ResultsReader& results,
+                                                     const std::vector<std::string>& names);
+
 /// Names of everything in the results: motion, joints, loads, contacts, energy, momentum, solver.
 [[nodiscard]] std::vector<std::string> channel_names(const ResultsReader& results);
 

@@ -25,7 +25,7 @@ constexpr const char* kLaterPlace = "<!--POLHODE-LATER-->";
 
 bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
-/// Fields of solids go with add_solids(), and fields of elements are left out.
+/// Fields of solids go with add_solids().
 bool is_channel(const std::string& path) {
   if (path == results::kTime) return false;
   if (!starts_with(path, results::kSolids)) return true;
@@ -44,7 +44,7 @@ bool is_later(const std::string& path) {
 std::size_t frame_size(const ResultsReader& results) {
   std::size_t size = 0;
   for (const ResultsReader::DataSet& set : results.data_sets())
-    if (is_channel(set.path) || set.path.find("/nodes/") != std::string::npos) size += set.size();
+    if (set.path != results::kTime) size += set.size();
   return size;
 }
 
@@ -139,7 +139,7 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
                      const SceneOptions& options) {
   SceneData scene;
   scene.every = choose_every(results, options);
-  ChunkList chunks(scene.chunks);
+  ChunkList chunks(scene);
   const std::vector<double> time = results.read(results::kTime, scene.every);
   scene.frames = time.size();
   scene.title = results.attribute("/", "title");
@@ -164,7 +164,7 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   if (model != nullptr) manifest["gravity"] = json_of(model->gravity);
   if (model == nullptr && !model_text(results).empty())
     manifest["notes"].push_back("The model of these results cannot be read: shapes are not known.");
-  add_bodies(manifest, chunks, results, model);
+  add_bodies(manifest, chunks, results, model, options);
   add_connections(manifest, results, model, options);
   add_solids(manifest, chunks, results, scene.every);
   add_lines(manifest, results, model);
@@ -172,7 +172,7 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
   Json& channels = manifest["channels"] = Json::array();
   for (const ResultsReader::DataSet& set : results.data_sets())
     if (is_channel(set.path) && set.size() > 0) {
-      if (is_later(set.path)) scene.later.insert(scene.chunks.size());
+      if (is_later(set.path)) chunks.later();
       channels.push_back(
           {{"path", set.path.substr(1)},
            {"unit", set.unit},

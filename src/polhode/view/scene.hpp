@@ -17,6 +17,7 @@ struct SceneOptions {
   std::size_t max_bytes = std::size_t{160} << 20;  ///< Of numbers before they are deflated.
   std::vector<std::string> notes;                  ///< Shown on the page, e.g. warnings of a check.
   std::map<std::string, std::string> marks;  ///< By joint: a remark, e.g. that it is redundant.
+  std::map<std::string, std::string> body_marks;  ///< By body: a remark, e.g. that it overlaps.
   std::string name;      ///< What the page calls this recording, beside another one.
   std::string compared;  ///< Name of the recording that the page shows as a ghost; empty: none.
 };

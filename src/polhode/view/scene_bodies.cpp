@@ -109,8 +109,8 @@ Json parts_of(const BodySpec& body, double size, int segments, Meshes& meshes) {
 
 }  // namespace
 
-void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results,
-                const Model* model) {
+void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results, const Model* model,
+                const SceneOptions& options) {
   manifest["meshes"] = Json::array();
   Json& bodies = manifest["bodies"] = Json::array();
   Meshes meshes(manifest["meshes"], chunks);
@@ -126,6 +126,8 @@ void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results,
   const int segments = segments_for(names.size());
   for (const std::string& name : names) {
     Json entry = {{"name", name}};
+    if (const auto mark = options.body_marks.find(name); mark != options.body_marks.end())
+      entry["mark"] = mark->second;
     const auto found = index.find(name);
     if (found == index.end()) {
       BodySpec cube;

@@ -9,10 +9,7 @@
 
 namespace polhode {
 
-namespace {
-
-/// The mesh of a solid as the results keep it; only topology is filled in.
-Mesh mesh_of(const ResultsReader& results, const std::string& group) {
+Mesh mesh_of_results(const ResultsReader& results, const std::string& group) {
   Mesh mesh;
   const std::vector<std::int64_t> nodes = results.numbers(group + "/elements/connectivity"),
                                   offsets = results.numbers(group + "/elements/offsets"),
@@ -30,6 +27,8 @@ Mesh mesh_of(const ResultsReader& results, const std::string& group) {
   }
   return mesh;
 }
+
+namespace {
 
 /// Triangles of a face in its own node numbers: between corners, middles of edges and of the face.
 std::vector<std::array<int, 3>> triangles_of(const std::string& type) {
@@ -59,13 +58,15 @@ std::vector<std::array<int, 2>> edges_of(const CellShape& shape) {
 
 /// Visible part of a mesh, in numbers of the nodes that are seen.
 struct Outside {
-  std::vector<int> nodes;  ///< Of the mesh, by number here.
+  std::vector<int> nodes, elements;  ///< Of the mesh, by number here.
   std::vector<std::uint32_t> triangles, edges;
+  std::vector<std::uint32_t> owners;  ///< Elements of the triangles, by number here.
 };
 
 Outside outside_of(const Mesh& mesh) {
   Outside out;
-  std::vector<int> number(mesh.nodes.size(), -1);
+  std::vector<int> number(mesh.nodes.size(), -1),
+      element(static_cast<std::size_t>(mesh.element_count()), -1);
   std::set<std::pair<std::uint32_t, std::uint32_t>> known;
   for (const FaceBlock& block : boundary(mesh).blocks) {
     const CellShape& shape = block.shape();
@@ -82,8 +83,15 @@ Outside outside_of(const Mesh& mesh) {
         }
         return static_cast<std::uint32_t>(n);
       };
-      for (const auto& t : triangles)
+      int& owner = element[static_cast<std::size_t>(block.owners[f])];
+      if (owner < 0) {
+        owner = static_cast<int>(out.elements.size());
+        out.elements.push_back(block.owners[f]);
+      }
+      for (const auto& t : triangles) {
         for (int corner : t) out.triangles.push_back(seen(corner));
+        out.owners.push_back(static_cast<std::uint32_t>(owner));
+      }
       for (const auto& [i, j] : edges) {
         const std::uint32_t a = seen(i), b = seen(j);
         if (known.insert(std::minmax(a, b)).second) out.edges.insert(out.edges.end(), {a, b});
@@ -93,7 +101,7 @@ Outside outside_of(const Mesh& mesh) {
   return out;
 }
 
-/// Rows of the nodes that are seen, out of those of all nodes of each frame.
+/// Rows of the nodes or elements that are seen, out of those of all of each frame.
 std::vector<double> seen_rows(const std::vector<double>& values, std::size_t all,
                               const std::vector<int>& nodes, std::size_t width) {
   std::vector<double> rows;
@@ -115,7 +123,7 @@ void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
   Json& solids = manifest["solids"] = Json::array();
   for (const std::string& name : results.groups(results::kSolids)) {
     const std::string group = format("{}/{}", results::kSolids, name);
-    const Mesh mesh = mesh_of(results, group);
+    const Mesh mesh = mesh_of_results(results, group);
     const Outside outside = outside_of(mesh);
     Json entry = {{"name", name},
                   {"nodes", mesh.nodes.size()},
@@ -126,17 +134,26 @@ void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results,
         3);
     entry["triangles"] = chunks.integers(outside.triangles, 3);
     entry["edges"] = chunks.integers(outside.edges, 2);
+    entry["owners"] = chunks.integers(outside.owners, 1);
     Json fields = Json::array();
-    const std::string prefix = group + "/nodes/";
-    for (const ResultsReader::DataSet& set : results.data_sets()) {
-      if (set.path.rfind(prefix, 0) != 0 || set.dims.empty()) continue;
-      const std::size_t width = set.size() / std::max<std::size_t>(1, mesh.nodes.size());
-      const std::vector<double> rows =
-          seen_rows(results.read(set.path, every), mesh.nodes.size(), outside.nodes, width);
-      fields.push_back({{"name", set.path.substr(prefix.size())},
-                        {"unit", set.unit},
-                        {"size", width},
-                        {"data", chunks.floats(rows, outside.nodes.size() * width)}});
+    for (const auto& [part, all, seen] :
+         {std::tuple<const char*, std::size_t, const std::vector<int>&>{"nodes", mesh.nodes.size(),
+                                                                        outside.nodes},
+          {"elements", static_cast<std::size_t>(mesh.element_count()), outside.elements}}) {
+      const std::string prefix = format("{}/{}/", group, part);
+      for (const ResultsReader::DataSet& set : results.data_sets()) {
+        if (set.path.rfind(prefix, 0) != 0 || set.dims.empty()) continue;
+        const std::size_t width = set.size() / std::max<std::size_t>(1, all);
+        const bool later = part[0] == 'e';
+        if (later) chunks.later();
+        fields.push_back(
+            {{"name", set.path.substr(prefix.size())},
+             {"of", part},
+             {"unit", set.unit},
+             {"size", width},
+             {"data", chunks.floats(seen_rows(results.read(set.path, every), all, seen, width),
+                                    seen.size() * width)}});
+      }
     }
     entry["fields"] = fields;
     solids.push_back(std::move(entry));

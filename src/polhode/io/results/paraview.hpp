@@ -54,6 +54,9 @@ class ParaviewWriter {
   std::vector<BodyPicture> pictures_;
 };
 
+/// Nodes of a cell in the order of VTK, by their places in ours.
+[[nodiscard]] std::vector<std::size_t> vtk_order(const CellShape& shape);
+
 /// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points stand where the nodes
 /// are at the time. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
 /// "von_mises" [Pa], "strain_energy_density" [J/m³]. Cell data: these three by element,

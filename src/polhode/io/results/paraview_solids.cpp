@@ -44,10 +44,7 @@ struct Cells {
   void add(const Mesh& mesh, std::int64_t first, int owner) {
     for (const ElementBlock& block : mesh.blocks) {
       const CellShape& shape = block.shape();
-      std::vector<std::size_t> order(static_cast<std::size_t>(shape.size()));
-      std::iota(order.begin(), order.end(), 0);
-      // VTK sees the triangle 0 1 2 of a wedge from outside, we see it from inside.
-      if (shape.name == "wedge6") order = {0, 2, 1, 3, 5, 4};
+      const std::vector<std::size_t> order = vtk_order(shape);
       for (std::size_t at = 0; at < block.nodes.size(); at += order.size()) {
         for (const std::size_t k : order) corners.push_back(first + block.nodes[at + k]);
         ends.push_back(static_cast<std::int64_t>(corners.size()));
@@ -59,6 +56,14 @@ struct Cells {
 };
 
 }  // namespace
+
+std::vector<std::size_t> vtk_order(const CellShape& shape) {
+  // VTK sees the triangle 0 1 2 of a wedge from outside, we see it from inside.
+  if (shape.name == "wedge6") return {0, 2, 1, 3, 5, 4};
+  std::vector<std::size_t> order(static_cast<std::size_t>(shape.size()));
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
 
 void SolidsWriter::append(double t, const std::vector<SolidReport>& reports) {
   std::vector<float> points, displacements, velocities, stretches, errors;

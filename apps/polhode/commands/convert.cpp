@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/text/file_error.hpp>
+#include <polhode/view/channels.hpp>
+#include <polhode/view/glb.hpp>
+#include <polhode/view/vtkhdf.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "film.hpp"
+#include "parquet.hpp"
+#include "view_pages.hpp"
+
+namespace polhode::cli {
+
+namespace {
+
+struct Options {
+  FilmRequest film;  ///< With the names of both files.
+  std::vector<std::string> channels;
+  std::string size;
+};
+
+void write_table(const Options& options, const std::string& ending) {
+  const ResultsReader results(results_path(options.film.results));
+  if (ending == ".csv")
+    write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
+  else
+    write_parquet(results, options.channels, options.film.output);
+}
+
+void write_grids(const Options& options) {
+  const std::string path = results_path(options.film.results);
+  const ResultsReader results(path);
+  std::optional<Model> model;
+  try {
+    model = model_of_results(results, std::filesystem::absolute(path).parent_path().string());
+  } catch (const std::exception& error) {
+    say(format("The model that {} keeps cannot be read; bodies are left out. {}", path,
+               error.what()));
+  }
+  write_vtkhdf(results, model ? &*model : nullptr, options.film.output);
+}
+
+/// "640x400". @returns whether it is one
+bool read_size(const std::string& text, FilmRequest& film) {
+  char behind = 0;
+  return text.empty() ||
+         (std::sscanf(text.c_str(), "%dx%d%c", &film.width, &film.height, &behind) == 2 &&
+          film.width >= 16 && film.height >= 16 && film.width <= 8192 && film.height <= 8192);
+}
+
+int convert(Options& options) {
+  const std::string ending = std::filesystem::path(options.film.output).extension().string();
+  if (ending == ".csv" || ending == ".parquet") {
+    write_table(options, ending);
+  } else if (ending == ".vtkhdf") {
+    write_grids(options);
+  } else if (ending == ".glb") {
+    ViewRequest request;
+    request.input.file = options.film.results;
+    write_file_atomically(options.film.output, scene_glb(scene_of(request)), false);
+  } else if (ending == ".gif" || ending == ".mp4" || ending.empty()) {
+    if (!read_size(options.size, options.film)) {
+      say(format("polhode convert: --size is '{}'. Write it as 640x400.", options.size));
+      return kUsage;
+    }
+    write_film(options.film);
+  } else {
+    say(
+        format("polhode convert: cannot write '{}' files. Name a .csv, .parquet, .vtkhdf, .glb, "
+               ".gif or .mp4 file, or a folder for pictures.",
+               ending));
+    return kUsage;
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Action add_convert(CLI::App& command) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("RESULTS", options->film.results, "Results (results.h5 or their folder)")
+      ->required();
+  command
+      .add_option("OUTPUT", options->film.output,
+                  "A table (.csv, .parquet), a scene (.vtkhdf for ParaView, .glb), a film (.gif, "
+                  ".mp4) or a folder for its pictures")
+      ->required();
+  command
+      .add_option("--channels", options->channels,
+                  "Columns of a table, named as for 'plot'; left out: all")
+      ->type_name("CHANNEL");
+  const char* film = "Film";
+  command.add_option("--size", options->size, "Pixels; left out: 640x400")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(film);
+  command.add_option("--rate", options->film.rate, "Pictures a second; left out: 20")
+      ->check(CLI::Range(0.1, 240.0))
+      ->group(film);
+  command
+      .add_option("--speed", options->film.speed,
+                  "Seconds of the recording in one of the film; left out: 1")
+      ->check(CLI::PositiveNumber)
+      ->group(film);
+  command.add_option("--from", options->film.from, "Where it begins [s]")->group(film);
+  command.add_option("--to", options->film.to, "Where it ends [s]")->group(film);
+  command.add_option("--turn", options->film.turn, "Degrees that the camera goes round")
+      ->group(film);
+  command
+      .add_option("--link", options->film.link,
+                  "Where the camera begins: what 'Link' of the page puts into the address")
+      ->type_name("#eye=...")
+      ->group(film);
+  return [options] { return convert(*options); };
+}
+
+}  // namespace polhode::cli

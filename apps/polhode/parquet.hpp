@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/io/results/results_reader.hpp>
+
+namespace polhode::cli {
+
+/// Writes channels as a Parquet file, a column for each number and "t" first, with units as
+/// metadata of the columns. Python's pyarrow does it, as a library for C++ brings some hundred
+/// megabytes along: $POLHODE_PYTHON names the Python, else it is python3.
+/// @param names  As for channels_csv(). @throws FileError, InputError if there is no pyarrow.
+void write_parquet(const ResultsReader& results, const std::vector<std::string>& names,
+                   const std::string& file);
+
+}  // namespace polhode::cli
