@@ -29,7 +29,7 @@ test_with() {
     matplotlib tqdm h5py pytest pytest-timeout hypothesis
   log=$environment/install.log
   "$python" -m pip install --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall -v \
-    -C "build-dir=build/python-$version/build" . >"$log" 2>&1 || { tail -50 "$log"; exit 1; }
+    --config-settings="build-dir=build/python-$version/build" . >"$log" 2>&1 || { tail -50 "$log"; exit 1; }
   "$python" -c 'import sys, numpy, polhode; print("Python", sys.version.split()[0], "NumPy", numpy.__version__, "polhode", polhode.__version__)'
   # Notebooks, the cluster and the documents are the same Python code in all: test_python.sh runs them.
   "$python" -m pytest -q -p no:cacheprovider --timeout 600 python/tests --ignore python/tests/test_notebooks.py \
