@@ -27,9 +27,9 @@ test_with() {
   [ -x "$python" ] || "$1" -m venv "$environment"
   "$python" -m pip install --quiet --disable-pip-version-check 'scikit-build-core>=0.10' 'nanobind>=2.4' ninja "$2" scipy pandas xarray \
     matplotlib tqdm h5py pytest pytest-timeout hypothesis
-  log=$environment/install.log
+  log=$environment/install.log  # the build lies as deep as the others, so that a compiler cache serves it
   "$python" -m pip install --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall -v \
-    -C "build-dir=build/python-$version/build" . >"$log" 2>&1 || { tail -50 "$log"; exit 1; }
+    --config-settings="build-dir=build/wheel-$version" . >"$log" 2>&1 || { tail -50 "$log"; exit 1; }
   "$python" -c 'import sys, numpy, polhode; print("Python", sys.version.split()[0], "NumPy", numpy.__version__, "polhode", polhode.__version__)'
   # Notebooks, the cluster and the documents are the same Python code in all: test_python.sh runs them.
   "$python" -m pytest -q -p no:cacheprovider --timeout 600 python/tests --ignore python/tests/test_notebooks.py \

@@ -29,15 +29,17 @@ maps = {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line.sp
 of_system = sorted(m for m in maps if not m.startswith(sys.prefix) and "/python3" not in m)
 # The C and C++ libraries, and what the modules of Python itself bring along.
 allowed = re.compile(r"/(ld-linux|lib(c|m|dl|rt|pthread|util|resolv|stdc\+\+|gcc_s|python3|z|bz2|lzma|ffi))[-.]")
-strange = [m for m in of_system if not allowed.search(m)]
-assert not strange, f"of the system: {strange}"
 inside = sorted({re.split(r"[-.]", m.rsplit("/", 1)[-1])[0] for m in maps if "polhode.libs" in m})
+strange = [m for m in of_system if not allowed.search(m)]
+if "_hashlib" in sys.modules and "libcrypto" in inside:  # NumPy 1 loads that module of Python; ours is inside
+    strange = [m for m in strange if not re.search(r"/lib(crypto|ssl)[.]", m)]
+assert not strange, f"of the system: {strange}"
 assert "libdmumps_seq" in inside and any("blas" in name for name in inside), inside
 import numpy as np
 
 m = polhode.Model(analysis={"duration": 1, "step": 0.01})
 m.add_body("b", mass=1, inertia=[1, 1, 1], position=np.array([1, 0, 0]))
-m.add_load("spring", "force", body="b", at=np.zeros(3), force=lambda t, body: -body.position)
+m.add_load("spring", "force", body="b", at=np.array([1, 0, 0]), force=lambda t, body: -body.position)
 r = polhode.run(m, progress=False)
 assert abs(r.bodies["b"].position[-1, 0] - np.cos(1)) < 1e-4
 assert polhode.rotations.matrix_from_rotation_vector(np.zeros((2, 3))).shape == (2, 3, 3)
