@@ -468,6 +468,40 @@ await test("two recordings stand side by side", async () => {
   await page.waitForFunction((was) => document.querySelector(".view > canvas").toDataURL() === was, ghost, { timeout: 20000 }).catch(() => expect(false, "the ghost does not come back"));
 });
 
+await test("a page in the frame of a notebook plays", async () => {
+  // As python/polhode/_show.py writes it: no origin of its own, scripts and downloads only.
+  const text = readFileSync(join(folder, "all.html"), "utf8").replaceAll("&", "&amp;").replaceAll('"', "&quot;");
+  writeFileSync(join(folder, "notebook.html"), `<!doctype html><title>Notebook</title><iframe srcdoc="${text}" width="100%" height="600" sandbox="allow-scripts allow-downloads"></iframe><script>document.documentElement.dataset.ready = "1"</script>`);
+  const { page } = await page_of("notebook.html");
+  const frame = page.frameLocator("iframe");
+  await frame.getByRole("button", { name: "Play", exact: true }).click({ timeout: 60000 });
+  await frame.locator("output.clock").filter({ hasText: /0\.0[2-9]|0\.[1-9]/ }).waitFor({ timeout: 20000 });
+});
+
+await test("a hundred bodies with ten thousand frames load in three seconds of processors", async () => {
+  const n = 100, all = (make) => Array.from({ length: n }, (_, i) => make(i)).join("\n");
+  writeFileSync(join(folder, "chain.yaml"), `format: 1
+gravity: [0, 0, -9.81]
+bodies:
+${all((i) => `  b${i}: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [${i + 0.5}, 0, 0]}`)}
+joints:
+${all((i) => `  j${i}: {type: revolute, bodies: [${i ? `b${i - 1}` : "ground"}, b${i}], at: [${i}, 0, 0], axis: y}`)}
+analysis: {duration: 10 s, step: 1 ms}
+output: {every: 1 ms}
+`);
+  run("run", "chain.yaml", "--quiet");
+  run("view", "chain.results", "--html", "chain.html", "--quiet");
+  expect(statSync(join(folder, "chain.html")).size > 20e6, "a small page");
+  const session = await browser.newBrowserCDPSession();
+  // Of the pages, not of the software that stands for a graphics processor: what a recording costs.
+  const spent = async () => (await session.send("SystemInfo.getProcessInfo")).processInfo.reduce((sum, { type, cpuTime }) => sum + (type === "renderer" ? cpuTime : 0), 0);
+  const before = await spent(), { page } = await page_of("chain.html"), took = await spent() - before;
+  console.log(`        ${took.toFixed(2)} s of processors, ready after ${(Number(await page.evaluate(() => document.documentElement.dataset.ready)) / 1000).toFixed(2)} s`);
+  expect(took < 3, `it takes ${took} s`);
+  await page.keyboard.press("End");
+  expect(await clock(page) === 10, `the last frame is at ${await clock(page)}`);
+});
+
 await test("a model that overlaps is shown with what overlaps", async () => {
   writeFileSync(join(folder, "overlap.yaml"), `format: 1
 bodies:
