@@ -119,6 +119,8 @@ void read_root(ReadContext& context, const SourceNode& root) {
     read_solids(context, *node);
   if (const SourceNode* node = named_things(context, section, "loads")) read_loads(context, *node);
   if (const SourceNode* node = section.find("contacts")) read_contacts(context, *node);
+  if (const SourceNode* node = named_things(context, section, "events"))
+    read_events(context, *node);
   if (const SourceNode* node = section.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));
   if (const SourceNode* node = section.find("output"))
