@@ -68,3 +68,149 @@ def shaking_table(tools):
     plot.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.6, 1), ncol=2)
     tools.label(plot, "velocities", "t [s]", "[m/s]")
     return figure
+
+
+def stewart_platform(tools):
+    m = tools.Motion("stewart_platform")
+    figure, scene, plot = tools.sheet((14, -60), wide=0.9)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 0.5, 3)):
+        tools.draw(scene, m.points("platform", tools.circle(0.55), k), tools.BLUE, alpha, 2)
+        for i in range(1, 7):
+            tools.draw(scene, m.points(f"cylinder_{i}", [[0, 0, -0.3], [0, 0, 0.3]], k), tools.INK, alpha, 3)
+            tools.draw(scene, m.points(f"rod_{i}", [[0, 0, -0.3], [0, 0, 0.3]], k), tools.RED, alpha, 1.5)
+    tools.draw(scene, m.place["platform"], tools.GOLD, 1, 1)
+    floor = tools.circle(0.85)
+    tools.draw(scene, floor, tools.PALE, 1, 2)
+    tools.fit(scene, (-0.85, -0.85, 0), (0.85, 0.85, 1.2), 1.25)
+    for i, colour in zip((1, 2, 3), (tools.RED, tools.BLUE, tools.GOLD)):
+        motor = m.probe(f"motor_{i}")
+        force = motor["power"] / motor["rate"]
+        force[abs(motor["rate"]) < 2e-2] = np.nan
+        plot.plot(motor["t"], force, color=colour, label=f"leg {i}")
+    plot.legend(frameon=False, ncol=3)
+    tools.label(plot, "forces along three of the legs", y="[N]")
+    return figure
+
+
+def excavator(tools):
+    m = tools.Motion("excavator")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.1)
+    start = np.array([[0.2, 1.6], [3.7, 3.6], [5.0, 1.4], [4.6, 0.2]])
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 6.0, 3)):
+        for name, a, b, colour in (("boom", 0, 1, tools.GOLD), ("stick", 1, 2, tools.GOLD), ("bucket", 2, 3, tools.INK)):
+            half = 0.5 * np.linalg.norm(start[b] - start[a])
+            line = m.points(name, [[-half, 0, 0], [half, 0, 0]], k)
+            scene.plot(line[:, 0], line[:, 2], color=colour, alpha=alpha, lw=5, solid_capstyle="round")
+        for name, half in (("boom", 1.1), ("stick", 0.83), ("bucket", 1.3)):
+            for part, colour, width, ends in (("barrel", tools.BLUE, 4, (-0.6, 0.6)), ("rod", tools.RED, 2, (-0.6, 0.6))):
+                length = np.linalg.norm(m.place[f"{name}_barrel"][0] - m.place[f"{name}_rod"][0]) / 0.4
+                line = m.points(f"{name}_{part}", [[0, 0, e * 0.5 * length] for e in ends], k)
+                scene.plot(line[:, 0], line[:, 2], color=colour, alpha=alpha, lw=width)
+    tip = m.probe("tip")
+    scene.plot(tip["x"], tip["z"], color=tools.GREEN, lw=1)
+    scene.axhline(0, color=tools.PALE, lw=2)
+    tools.label(scene, "at the start, half way, at the end", "x [m]", "z [m]")
+    for name, colour in (("boom", tools.BLUE), ("stick", tools.RED), ("bucket", tools.INK)):
+        motor = m.probe(f"{name}_motor")
+        along = m.place[f"{name}_rod"] - m.place[f"{name}_barrel"]
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        force = np.column_stack([motor["fx"], motor["fy"], motor["fz"]])
+        plot.plot(motor["t"], 1e-3 * (force * along).sum(axis=1), color=colour, label=name)
+    plot.legend(frameon=False, ncol=3)
+    tools.label(plot, "forces of the cylinders", y="[kN]")
+    return figure
+
+
+def trebuchet(tools):
+    m = tools.Motion("trebuchet", "output.every=5 ms", "analysis.duration=1.4")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.1)
+    events = {e["event"]: e["time"] for e in m.run.figures["events"]}
+    for k, alpha in tools.fades([int(np.argmin(abs(m.t - t))) for t in (0.2, events["lift"], 0.75, 0.92, events["throw"])]):
+        arm = m.points("arm", [[-2, 0, 0], [2, 0, 0]], k)
+        scene.plot(arm[:, 0], arm[:, 2], color=tools.GOLD, lw=3, alpha=alpha)
+        block = m.points("counterweight", tools.box(0.6, 0.0, 0.6)[[0, 1, 5, 4, 0]], k)
+        scene.plot(block[:, 0], block[:, 2], color=tools.INK, lw=1.5, alpha=alpha)
+        ball = m.place["ball"][k]
+        scene.plot([arm[1, 0], ball[0]], [arm[1, 2], ball[2]], color=tools.BLUE, lw=1, alpha=alpha)
+        scene.plot(ball[0], ball[2], color=tools.RED, marker="o", ms=5, alpha=alpha)
+    path = m.place["ball"][m.t < events["throw"] + 0.1]
+    scene.plot(path[:, 0], path[:, 2], color=tools.RED, lw=0.8)
+    scene.plot([0, 0], [0, 3], color=tools.PALE, lw=4)
+    tools.label(scene, "until the sling opens", "x [m]", "z [m]")
+    for name, column, colour in (("sling", "sling", tools.BLUE), ("trough", "trough", tools.GREEN)):
+        probe = m.probe(name)
+        force = 1e-3 * np.sqrt(probe["fx"] ** 2 + probe["fy"] ** 2 + probe["fz"] ** 2)
+        plot.plot(probe["t"], force, color=colour, label=column)
+    for name, t in events.items():
+        if name != "land":
+            plot.axvline(t, color=tools.PALE, lw=1)
+            plot.annotate(name, (t, plot.get_ylim()[1]), ha="right", va="top", rotation=90, fontsize=8)
+    plot.legend(frameon=False, loc="center left")
+    tools.label(plot, "forces of sling and trough, and the events", y="[kN]")
+    return figure
+
+
+def cable_crane(tools):
+    m = tools.Motion("cable_crane")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.8)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 5.0, 4)):
+        jib = m.points("jib", [[-3, 0, 0], [3, 0, 0]], k)
+        scene.plot(jib[:, 0], jib[:, 2], color=tools.GOLD, lw=3, alpha=alpha)
+        winch, hook = m.place["winch"][k], m.place["hook"][k]
+        rope = np.array([winch, [0, 0, 8], jib[1], hook])
+        scene.plot(rope[:, 0], rope[:, 2], color=tools.RED, lw=1.2, alpha=alpha)
+        scene.plot(hook[0], hook[2], color=tools.INK, marker="s", ms=7, alpha=alpha)
+        scene.plot(winch[0], winch[2], color=tools.BLUE, marker="s", ms=6, alpha=alpha)
+    scene.plot([0, 0], [0, 8], color=tools.PALE, lw=4, zorder=0)
+    scene.plot(m.place["hook"][:, 0], m.place["hook"][:, 2], color=tools.INK, lw=0.7)
+    tools.label(scene, "the lift and the swing after it", "x [m]", "z [m]")
+    rope = m.probe("rope")
+    plot.plot(rope["t"], rope["tension"], color=tools.RED)
+    plot.axhline(500 * 9.81 / 2, color=tools.PALE, lw=1)
+    tools.label(plot, "tension of the rope, half the weight", y="[N]")
+    return figure
+
+
+def arm_with_muscles(tools):
+    m = tools.Motion("arm_with_muscles")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.8)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 0.8, 4)):
+        bone = m.points("forearm", [[-0.15, 0, 0], [0.18, 0, 0]], k)
+        scene.plot(bone[:, 0], bone[:, 2], color=tools.GOLD, lw=4, alpha=alpha)
+        weight = m.place["weight"][k]
+        scene.plot(weight[0], weight[2], color=tools.INK, marker="o", ms=13, alpha=alpha)
+        end, back = m.points("forearm", [[-0.105, 0, 0.01], [-0.18, 0, -0.005]], k)
+        scene.plot([0.02, end[0]], [0.3, end[2]], color=tools.RED, lw=2.5, alpha=alpha)
+        scene.plot([-0.02, -0.025, back[0]], [0.28, 0.02, back[2]], color=tools.BLUE, lw=2.5, alpha=alpha)
+    scene.plot([0, 0], [0, 0.32], color=tools.PALE, lw=5, zorder=0)
+    tools.label(scene, "biceps, triceps", "x [m]", "z [m]")
+    for name, colour in (("biceps", tools.RED), ("triceps", tools.BLUE)):
+        probe = m.probe(name)
+        plot.plot(probe["t"], probe["tension"], color=colour, label=name)
+    elbow = m.probe("elbow")
+    plot.plot(elbow["t"], 2 * np.degrees(elbow["rz"]), color=tools.INK, lw=0.8, label="elbow [deg], twice")
+    plot.legend(frameon=False)
+    tools.label(plot, "tensions", y="[N]")
+    return figure
+
+
+def bicycle(tools):
+    figure, scene, plot = tools.sheet((24, -60), wide=1.1)
+    m = tools.Motion("bicycle")
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 1.6, 5)):
+        for wheel, radius in (("rear_wheel", 0.3), ("front_wheel", 0.35)):
+            tools.draw(scene, m.points(wheel, tools.circle(radius, 1), k), tools.INK, alpha, 1.5)
+        rear, front = m.place["rear_wheel"][k], m.place["front_wheel"][k]
+        head, seat = m.points("frame", [[0.55, 0, -0.1], [-0.1, 0, 0.1]], k)
+        for line in ([rear, head], [rear, seat], [seat, head], [head, front]):
+            tools.draw(scene, line, tools.BLUE, alpha, 2)
+    tools.draw(scene, m.place["rear_wheel"][m.t < 2] * [1, 1, 0], tools.RED, 1, 0.8)
+    low, high = np.array([-0.5, -2, 0]), np.array([9, 1, 1.2])
+    tools.fit(scene, low, high, 1.35)
+    for v, colour in ((3.5, tools.GOLD), (4.6, tools.BLUE), (6.5, tools.RED)):
+        frame = tools.Motion("bicycle", f"variables.v={v}", "analysis.duration=2.5").probe("frame") if v != 4.6 else m.probe("frame")
+        plot.plot(frame["t"], np.degrees(frame["euler2x"]), color=colour, label=f"{v} m/s")
+    plot.set_xlim(0, 2.5), plot.set_ylim(-40, 40)
+    plot.legend(frameon=False)
+    tools.label(plot, "lean after the gust", y="[deg]")
+    return figure

@@ -137,6 +137,17 @@ std::string summary_table(const RunSummary& s) {
       rows.push_back({"  sweeps", format("{:.1f} a step", c.sweeps->first),
                       format("{} of the steps ended above sweep_tolerance", c.sweeps->second)});
   }
+  for (const RunSummary::Event& e : s.events) {
+    if (e.count == 0) {
+      rows.push_back({"event " + e.name, "did not come"});
+      continue;
+    }
+    std::string more = e.count > 1 ? format("the last of {}", e.count) : "";
+    if (e.lost > 0.0 || e.impulse > 0.0)
+      more += format("{}lost {:.6g} J, largest impulse {:.6g}", more.empty() ? "" : "; ", e.lost,
+                     e.impulse);
+    rows.push_back({"event " + e.name, format("{:.9g} s", e.time), more});
+  }
   rows.push_back({"time", seconds(s.wall_time_s),
                   format("{} of one processor, {} a step", seconds(s.cpu_time_s),
                          seconds(s.cpu_time_s / steps))});

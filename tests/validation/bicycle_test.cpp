@@ -23,7 +23,7 @@ using Complex = std::complex<double>;
 /// fourth order, whose roots are exp(λ Δ).
 std::vector<Complex> eigenvalues(double v, double delta = 0.04, int samples = 60) {
   Simulation s(read_model(
-      test::test_data_dir() + "/bicycle.yaml",
+      test::source_dir() + "/examples/bicycle/model.yaml",
       {"variables.v=" + std::to_string(v), "variables.push=1e-4", "variables.h=5 ms",
        "analysis.order=6", "analysis.duration=" + std::to_string(delta * samples) + " s"}));
   std::vector<Eigen::Vector2d> y;

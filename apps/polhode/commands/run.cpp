@@ -139,7 +139,7 @@ int run(const Options& options) {
   save();
 
   int code = exit_code(summary, limit_reached);
-  if (code == kNotConverged) say(summary.message);
+  if (!summary.message.empty() && (code == kNotConverged || code == 0)) say(summary.message);
   for (const std::string& warning : summary.warnings) say("warning: " + warning);
   if (code == kInterrupted || code == kLimit)
     say(format("Stopped at t = {:.6g} s{}. Continue with:  polhode run {} --restart {}", summary.t,

@@ -211,6 +211,10 @@ int add_cable(Model& model, CableLineSpec cable) {
     const BodySpec& body = model.bodies.at(static_cast<std::size_t>(a.body));
     return body.velocity + body.angular_velocity.cross(body.orientation * a.Z);
   };
+  if (cable.slides && (cable.mass_per_length > 0.0 || cable.contact))
+    throw InputError(where + ".slides",
+                     format("does not go with {}", cable.contact ? "contact" : "mass_per_length"),
+                     "What slides has neither mass nor contact: leave one of them out");
   std::vector<double> lengths;
   for (std::size_t i = 1; i < cable.through.size(); ++i) {
     lengths.push_back((position(cable.through[i]) - position(cable.through[i - 1])).norm());
@@ -218,7 +222,7 @@ int add_cable(Model& model, CableLineSpec cable) {
     if (!(lengths.back() > 0.0) && !cable.free_length)
       throw InputError(where + ".through", format("points {} and {} coincide", i, i + 1),
                        "Give points that are apart, or a free_length");
-    if (cable.mass_per_length == 0.0 && a.body == b.body)
+    if (cable.mass_per_length == 0.0 && a.body == b.body && !cable.slides)
       throw InputError(where + ".through",
                        format("points {} and {} are on the same body", i, i + 1),
                        "Leave one out: nothing can change their distance");

@@ -5,6 +5,7 @@
 
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/beams/cable.hpp>
+#include <polhode/beams/running_cable.hpp>
 #include <polhode/compile/beam_mesh.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/build_system.hpp>
@@ -39,6 +40,7 @@ class Builder {
     map_.contacts = build_contacts(model_, map_.body, map_.contact);
     add_surface_contacts(system_, model_, map_.body, map_.solids, map_.contact);
     system_.set_contacts(map_.contacts);
+    add_switching();
     system_.finish();
     if (map) fill(*map);
     return std::move(system_);
@@ -317,7 +319,39 @@ class Builder {
     }
   }
 
+  /// A node on a body, or on the ground.
+  int add_bonded_node(const AttachmentSpec& at) {
+    NodeData node{.position = start_position(at.body, at.Z)};
+    node.body = system_body(at.body);
+    node.Z = node.body == kGround ? node.position : at.Z;
+    return system_.add_node(node);
+  }
+
+  void add_running_cable(const CableLineSpec& cable) {
+    const std::string where = format("cables.{}", cable.name);
+    RunningCableSpec r;
+    r.name = cable.name;
+    r.damping = cable.damping;
+    bool moves = false;
+    for (const AttachmentSpec& at : cable.through) {
+      if (is_point_mass(at.body) && !at.Z.isZero(0.0)) refuse_turning(where, at.body);
+      r.nodes.push_back(add_bonded_node(at));
+      moves = moves || system_body(at.body) != kGround;
+    }
+    if (!moves)
+      throw InputError(where, "connects nothing that moves",
+                       "Name at least one body that is not fixed, or leave it out");
+    r.free_length = cable.length();
+    r.stiffness = cable.stiffness / r.free_length;
+    r.tension_only = cable.tension_only;
+    r.tension = cable.tension;
+    r.muscle = cable.muscle;
+    map_.running_cable.back() = system_.add_elements(std::make_unique<RunningCable>(std::move(r)));
+  }
+
   void add_cable(const CableLineSpec& cable) {
+    map_.running_cable.push_back(-1);
+    if (cable.slides) return add_running_cable(cable);
     const std::string where = format("cables.{}", cable.name);
     auto& items = system_.group<Cable>().items;
     const auto pieces = static_cast<double>(cable.pieces.size());
@@ -344,6 +378,41 @@ class Builder {
                                 Vec3::Zero(), Vec3::Zero());
   }
 
+  /// Lets what events switch be switched; those at the start tell what is off there.
+  void add_switching() {
+    map_.events = all_events(model_);
+    if (map_.events.empty()) return;
+    if (model_.analysis.type != "dynamics")
+      throw InputError("events", "come in time, but in statics and modes there is none",
+                       "Leave what they switch off out of the model, or use type: dynamics");
+    system_.set_memory(EventMemory::kSize * static_cast<int>(map_.events.size()));
+    const auto each = [&](const EventSpec& event, const std::vector<std::string>& names,
+                          Switching how) {
+      for (const std::string& name : names) {
+        try {
+          const SwitchTarget target = switch_target(model_, name);
+          const auto index = static_cast<std::size_t>(target.index);
+          const std::string kind = target.joint ? Joint::kKind : model_.loads[index].type;
+          int item = target.index;
+          if (!target.joint)
+            item = static_cast<int>(std::count_if(
+                model_.loads.begin(), model_.loads.begin() + target.index,
+                [&](const LoadSpec& load) { return load.solid < 0 && load.type == kind; }));
+          system_.set_switching(kind, item, how);
+        } catch (const InputError& e) {
+          throw InputError("events." + event.name, e.what_is_wrong(), e.mend());
+        }
+      }
+    };
+    for (const EventSpec& event : map_.events)
+      for (const auto* names : {&event.on, &event.off}) each(event, *names, Switching::starts_on);
+    for (const EventSpec& event : map_.events) {
+      if (!event.at || *event.at > 0.0) continue;
+      each(event, event.off, Switching::starts_off);
+      each(event, event.on, Switching::starts_on);
+    }
+  }
+
   /// Items keep the user's order within their group; loads are found by kind and count.
   void fill(SystemMap& map) {
     std::map<std::string, std::vector<int>> interactions;
@@ -366,8 +435,8 @@ class Builder {
         BeamElement::kKind, model_.beams, [](const BeamSpec& b) { return b.mesh.size(); },
         map_.beam);
     take(
-        Cable::kKind, model_.cables, [](const CableLineSpec& c) { return c.pieces.size(); },
-        map_.cable);
+        Cable::kKind, model_.cables,
+        [](const CableLineSpec& c) { return c.slides ? 0 : c.pieces.size(); }, map_.cable);
     map = std::move(map_);
   }
 

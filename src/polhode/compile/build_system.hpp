@@ -12,15 +12,24 @@
 
 namespace polhode {
 
+/// What the state remembers of each event, see System::memory(): how often it came, when last [s],
+/// whether it came while its condition still holds, and of the last time energy lost [J] and the
+/// largest impulse [N s or N m s].
+struct EventMemory {
+  enum Entry : int { kCount, kTime, kSpent, kLost, kImpulse, kSize };
+};
+
 /// Where the things of a Model went in its System.
 struct SystemMap {
   std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
   /// By Model::loads: likewise; of a load on a solid -1.
   std::vector<int> load;
-  std::vector<SolidMap> solids;                   ///< By Model::solids.
-  std::vector<std::vector<int>> beam;             ///< By Model::beams and element: likewise.
-  std::vector<std::vector<int>> cable;            ///< By Model::cables and piece: likewise.
+  std::vector<SolidMap> solids;         ///< By Model::solids.
+  std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
+  std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
+  std::vector<int> running_cable;  ///< By Model::cables: group of elements; −1: it does not slide.
+  std::vector<EventSpec> events;   ///< With those of joints that break.
   std::shared_ptr<contact::ContactSet> contacts;  ///< Null if nothing touches.
   ContactMap contact;
 };

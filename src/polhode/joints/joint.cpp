@@ -87,7 +87,9 @@ auto Joint::with_view(const PairStep& step, What&& what) const {
 
 void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration& q_n1) const {
   const BodyStep &a = step.a, &b = step.b;
-  const Carried z_a = a.vector(frames_.Z_a), z_b = b.vector(frames_.Z_b);
+  JointFrames own;
+  const JointFrames& frames = held_frames(step, own);
+  const Carried z_a = a.vector(frames.Z_a), z_b = b.vector(frames.Z_b);
   const double af = a.alpha_f;
   const Vec3 u_n = (b.r_n - a.r_n) + (z_b.at_n - z_a.at_n);
   q_n1.u = (b.r_n1 - a.r_n1) + (z_b.at_n1 - z_a.at_n1);
@@ -97,12 +99,12 @@ void Joint::arrange(const PairStep& step, Configuration& q_alpha, Configuration&
   q_alpha.z_a = z_a.at_alpha;
   q_alpha.z_b = z_b.at_alpha;
   if (parts_.planes > 0 || parts_.turns()) {
-    const CarriedFrame R_a(a, frames_.R_a);
+    const CarriedFrame R_a(a, frames.R_a);
     q_alpha.R_a = R_a.at_alpha;
     q_n1.R_a = R_a.at_n1;
   }
   if (parts_.turns()) {
-    const CarriedFrame R_b(b, frames_.R_b);
+    const CarriedFrame R_b(b, frames.R_b);
     q_alpha.R_b = R_b.at_alpha;
     q_n1.R_b = R_b.at_n1;
   }
@@ -163,24 +165,9 @@ Work Joint::work(const PairStep& step) const {
 
 /// As the arms of a joint that the tree holds: it has no MotionBasis to tell them.
 double Joint::reach() const {
-  if (!resistance_) return 0.0;
+  if (!resistance_ && switching == Switching::never) return 0.0;
   return std::max(bodies.a == kGround ? 0.0 : frames_.Z_a.norm(),
                   bodies.b == kGround ? 0.0 : frames_.Z_b.norm());
-}
-
-Configuration Joint::at_n1(const PairStep& step) const {
-  const BodyStep &a = step.a, &b = step.b;
-  const Vec3 z_a = a.Lambda_n1 * frames_.Z_a, z_b = b.Lambda_n1 * frames_.Z_b;
-  Configuration q{.u = (b.r_n1 - a.r_n1) + (z_b - z_a),
-                  .z_a = z_a,
-                  .z_b = z_b,
-                  .R_a = a.Lambda_n1 * frames_.R_a,
-                  .R_b = b.Lambda_n1 * frames_.R_b};
-  if (motion_) {
-    Configuration unused = q;
-    move_frame(*motion_, frames_, step, unused, q);
-  }
-  return q;
 }
 
 Vec6 Joint::velocity_terms(const PairStep& step, const FrameRates& frame) const {
@@ -284,6 +271,8 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
 }
 
 bool Joint::acceptable(const PairStep& step) const {
+  JointFrames own;
+  const Mat3& R_b = anchors() ? held_frames(step, own).R_b : user_frames_.R_b;
   // Axes held parallel by right angles could also stand antiparallel: the rows do not see it.
   return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
     if (parts_.equal_turns) {
@@ -297,7 +286,7 @@ bool Joint::acceptable(const PairStep& step) const {
     }
     const auto same_side = [&](int axis) {
       const Carried on_a = a.vector(user_frames_.R_a.col(axis));
-      const Carried on_b = b.vector(user_frames_.R_b.col(axis));
+      const Carried on_b = b.vector(R_b.col(axis));
       return (on_a.at_n.dot(on_b.at_n) > 0.0) == (on_a.at_n1.dot(on_b.at_n1) > 0.0);
     };
     return (parts_.axes < 2 || same_side(kZ)) && (parts_.axes < 3 || same_side(kX));
@@ -408,6 +397,10 @@ void Joint::commit(const PairStep& step, double* history) const {
     const Vec6 increments = drive_increments(step);
     for (int k = 0; k < rows_; ++k) history[angles()] += step.lambda[k] * increments[k];
   }
+  count_turns(step, history);
+}
+
+void Joint::count_turns(const PairStep& step, double* history) const {
   with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
     for (int i = 0; i < angles(); ++i) history[i] = angle(i).at_n1(a, b, step.history[i]);
   });

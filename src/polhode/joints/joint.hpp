@@ -64,9 +64,7 @@ class Joint : public InteractionItem {
 
   // The contract of an interaction.
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] int history_size() const {
-    return angles() + (resistance_ ? resistance_->memory_size() : 0) + (motion_ ? 1 : 0);
-  }
+  [[nodiscard]] int history_size() const { return anchor() + (anchors() ? kAnchorSize : 0); }
   [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
@@ -86,6 +84,9 @@ class Joint : public InteractionItem {
   void prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
+  void commit_off(const PairStep& step, double* history) const { count_turns(step, history); }
+  /// A fixed joint holds its sides as they stand then.
+  void switch_on(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
@@ -122,6 +123,18 @@ class Joint : public InteractionItem {
   [[nodiscard]] Reaction reaction(const PairStep& step, bool joint_axes) const;
 
  private:
+  /// History of a joint that may be switched on elsewhere: whether it was, and the frame on b.
+  enum Anchor : int { kAnchored, kAnchorZ, kAnchorR = kAnchorZ + 3, kAnchorSize = kAnchorR + 9 };
+  [[nodiscard]] bool anchors() const {
+    return switching != Switching::never && parts_.coincident && parts_.axes == 3 && !motion_;
+  }
+  /// Where the anchor is in the history.
+  [[nodiscard]] int anchor() const {
+    return angles() + (resistance_ ? resistance_->memory_size() : 0) + (motion_ ? 1 : 0);
+  }
+  /// Frames as they hold in this step. @param own  Room for them.
+  [[nodiscard]] const JointFrames& held_frames(const PairStep& step, JointFrames& own) const;
+  void count_turns(const PairStep& step, double* history) const;
   [[nodiscard]] int angles() const;            ///< Coordinates whose turns are counted.
   [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
   [[nodiscard]] bool translation_free(int user_axis) const;

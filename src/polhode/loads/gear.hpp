@@ -28,6 +28,8 @@ class Gear : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
+  /// Its coordinates count from where they stand then.
+  void switch_on(const PairStep& step, double* history) const { initialize(step, history); }
 
  private:
   /// Coordinates at t_n and at the start, the radii they are seen at, and 1 once these are known.

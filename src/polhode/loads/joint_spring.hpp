@@ -29,6 +29,8 @@ class JointSpring : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
+  void commit_off(const PairStep& step, double* history) const { commit(step, history); }
+  void switch_on(const PairStep& step, double* history) const { commit(step, history); }
 
  private:
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;

@@ -125,6 +125,10 @@ void Motor::commit(const PairStep& step, double* history) const {
   history[kWork] += work;
 }
 
+void Motor::commit_off(const PairStep& step, double* history) const {
+  history[kCoordinate] = history[kTarget] = at_n1(step);
+}
+
 void add_rotary_motor(System& system, const LoadDescription& load) {
   system.group<RotaryMotor>().items.emplace_back(load);
 }

@@ -41,6 +41,8 @@ class Motor : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
+  void commit_off(const PairStep& step, double* history) const;
+  void switch_on(const PairStep& step, double* history) const { commit_off(step, history); }
 
  private:
   /// Coordinate and prescribed value at t_n, work since the start, and 1 once these are known.

@@ -97,6 +97,15 @@ void Servo::commit(const PairStep& step, double* history) const {
   history[kWork] += work;
 }
 
+void Servo::commit_off(const PairStep& step, double* history) const {
+  history[kCoordinate] = coordinate_at_n1(coordinate_, step.a, step.b, step.history[kCoordinate]);
+}
+
+void Servo::switch_on(const PairStep& step, double* history) const {
+  commit_off(step, history);
+  history[kError] = history[kIntegral] = 0.0;
+}
+
 void add_rotary_servo(System& system, const LoadDescription& load) {
   system.group<RotaryServo>().items.emplace_back(load);
 }

@@ -36,6 +36,9 @@ class Servo : public InteractionItem {
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
+  void commit_off(const PairStep& step, double* history) const;
+  /// What was integrated before is forgotten.
+  void switch_on(const PairStep& step, double* history) const;
 
  private:
   /// Coordinate and, of a speed, error at t_n; integral of the error, work since the start.

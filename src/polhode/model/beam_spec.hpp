@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polhode/beams/bar_strain.hpp>
+#include <polhode/beams/hill_muscle.hpp>
 #include <polhode/beams/section.hpp>
 #include <polhode/core/place.hpp>
 #include <polhode/core/types.hpp>
@@ -94,6 +95,10 @@ struct CableLineSpec {
   double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then pieces go from point to point.
   int elements = 1;              ///< With mass: pieces from one point to the next.
   std::optional<CableContactSpec> contact;  ///< None: bodies pass through the cable.
+  /// It slides without friction over its points: one tension in all pieces.
+  bool slides = false;
+  TimeFunctionPtr tension;           ///< Of one that slides, beside its elastic one [N].
+  std::optional<HillMuscle> muscle;  ///< It pulls as one; slides.
 
   /// Filled in by add_cable(): the pieces.
   struct Piece {

@@ -16,6 +16,7 @@
 #include <polhode/loads/load_function.hpp>
 #include <polhode/model/beam_spec.hpp>
 #include <polhode/model/contact_spec.hpp>
+#include <polhode/model/event_spec.hpp>
 #include <polhode/model/material_spec.hpp>
 #include <polhode/model/solid_spec.hpp>
 
@@ -89,6 +90,7 @@ struct JointSpec {
   std::optional<JointLimitsSpec> limits;        ///< Of the angle; with a displacement, of that.
   std::optional<JointLimitsSpec> angle_limits;  ///< Of the angle beside a displacement.
   std::optional<FrameMotion> motion;            ///< Prescribed, of the frame on a.
+  JointStrengthSpec breaks;                     ///< None: it never does.
   bool assembled_start = false;  ///< Given with at_body or moving: the start must be assembled.
 };
 
@@ -140,6 +142,11 @@ struct ProbeSpec {
   bool stress = false;          ///< Of a point or node of a solid: stress too.
   std::optional<double> every;  ///< [s]; else output.every.
   std::string axes = "world";   ///< Of reactions: world or joint.
+  // Of a body probe: further columns.
+  std::string rotation;     ///< quaternion, vector, matrix or an Euler sequence; "" for none.
+  bool angular = false;     ///< Angular velocity and acceleration.
+  std::string helical;      ///< instantaneous or finite; "" for none.
+  int seen_from = kGround;  ///< Body from which all is seen: index into Model::bodies.
 };
 
 struct OutputSpec {
@@ -188,6 +195,7 @@ struct Model {
   std::vector<BeamSpec> beams;        ///< Meshed: their nodes are among the bodies.
   std::vector<CableLineSpec> cables;  ///< Divided into pieces.
   ContactsSpec contacts;
+  std::vector<EventSpec> events;
   AnalysisSpec analysis;
   OutputSpec output;
 

@@ -3,6 +3,8 @@
 
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/beams/cable.hpp>
+#include <polhode/beams/running_cable.hpp>
+#include <polhode/equations/node_motion.hpp>
 #include <polhode/simulation/beam_report.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -44,9 +46,9 @@ BeamReport beam_report(const Simulation& simulation, const BeamSpec& spec,
   return report;
 }
 
-CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
-                         const std::vector<int>& pieces) {
-  CableReport report;
+namespace {
+
+void add_ends(CableReport& report, const Simulation& simulation, const CableLineSpec& spec) {
   const auto add = [&](const AttachmentSpec& at) {
     Simulation::PointMotion end{at.Z, Vec3::Zero(), Vec3::Zero()};
     if (at.body != kGround) end = simulation.point(at.body, at.Z);
@@ -55,6 +57,30 @@ CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec
   };
   add(spec.pieces.front().a);
   for (const CableLineSpec::Piece& piece : spec.pieces) add(piece.b);
+}
+
+}  // namespace
+
+CableReport running_cable_report(const Simulation& simulation, const CableLineSpec& spec,
+                                 int group) {
+  CableReport report;
+  add_ends(report, simulation, spec);
+  StepContext still;
+  still.t_n = simulation.time();
+  const auto& cable = dynamic_cast<const RunningCable&>(simulation.system().nodes().group(group));
+  report.whole = cable.report(node_instant(simulation.system(), simulation.state(), still));
+  for (std::size_t k = 0; k < spec.pieces.size(); ++k) {
+    report.tension.push_back(report.whole->tension);
+    report.length.push_back((report.position[k + 1] - report.position[k]).norm());
+    report.strain.push_back(report.whole->length / spec.length() - 1.0);
+  }
+  return report;
+}
+
+CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
+                         const std::vector<int>& pieces) {
+  CableReport report;
+  add_ends(report, simulation, spec);
   report.tension =
       of_each<Cable>(simulation.system(), simulation.state(), pieces,
                      [](const Cable& item, const PairStep& step) { return item.tension(step); });

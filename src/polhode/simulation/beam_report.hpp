@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include <polhode/beams/running_cable_report.hpp>
 #include <polhode/core/types.hpp>
 #include <polhode/model/beam_spec.hpp>
 
@@ -28,6 +30,7 @@ struct CableReport {
   std::vector<double> tension;  ///< Elastic, of the pieces; of rods below zero when pressed [N].
   std::vector<double> length;   ///< Of the pieces [m].
   std::vector<double> strain;   ///< Of the pieces, elongation over free length [-].
+  std::optional<RunningCableReport> whole;  ///< Of one that slides.
 };
 
 /// At the present state of a simulation. @param elements  Interactions of the beam's elements.
@@ -36,5 +39,8 @@ struct CableReport {
 /// Likewise, of a cable's pieces.
 [[nodiscard]] CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
                                        const std::vector<int>& pieces);
+/// Likewise, of a cable that slides. @param group  Its group of elements.
+[[nodiscard]] CableReport running_cable_report(const Simulation& simulation,
+                                               const CableLineSpec& spec, int group);
 
 }  // namespace polhode

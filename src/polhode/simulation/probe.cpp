@@ -8,6 +8,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/simulation/body_columns.hpp>
 
 namespace polhode {
 
@@ -27,11 +28,9 @@ void extend(std::vector<double>& list, const Vec3& x) {
   list.insert(list.end(), x.begin(), x.end());
 }
 
-std::vector<std::string> body_header() {
+std::vector<std::string> body_header(const ProbeSpec& spec) {
   std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("", "m"));
-  extend(header, vector_header("v", "m/s"));
-  extend(header, vector_header("a", "m/s^2"));
+  extend(header, body_columns(spec));
   return header;
 }
 
@@ -167,7 +166,12 @@ ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec) {
         format("{} {} does not exist", beam ? "element" : "piece", spec.element),
         format("'{}' has {} {}; the first is 0", spec.target, count, beam ? "elements" : "pieces"));
   if (beam) return {.spec = spec, .index = index, .header = beam_header()};
-  return {.spec = spec, .index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
+  ProbeTarget target{
+      .spec = spec, .index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
+  if (model.cables[k].slides) extend(target.header, {"rate [m/s]", "energy [J]"});
+  if (model.cables[k].muscle)
+    extend(target.header, {"fibre_length [m]", "activation [-]", "passive [N]"});
+  return target;
 }
 
 }  // namespace
@@ -197,7 +201,7 @@ ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
     throw InputError(where, "records the ground, which stands still", "Name a body");
   return {.spec = spec,
           .index = index,
-          .header = body ? body_header() : joint_header(simulation, index)};
+          .header = body ? body_header(spec) : joint_header(simulation, index)};
 }
 
 ProbeClock::ProbeClock(const ProbeSpec& spec, const OutputSpec& output, std::optional<double> last)
@@ -236,8 +240,8 @@ void add_contact(std::vector<double>& row, const Simulation& simulation, const P
 std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simulation) {
   std::vector<double> row{simulation.time()};
   if (probe.spec.kind == "body") {
-    const Simulation::PointMotion motion = simulation.point(probe.index, probe.spec.point);
-    for (const Vec3& x : {motion.position, motion.velocity, motion.acceleration}) extend(row, x);
+    const std::vector<double> numbers = body_numbers(simulation, probe.spec, probe.index);
+    row.insert(row.end(), numbers.begin(), numbers.end());
   } else if (probe.spec.kind == "solid" && probe.interface >= 0) {
     const InterfaceReport reaction = simulation.interface_reaction(probe.index, probe.interface);
     extend(row, reaction.force);
@@ -255,7 +259,13 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
   } else if (probe.spec.kind == "cable") {
     const CableReport cable = simulation.cable(probe.index);
     const auto k = static_cast<std::size_t>(probe.spec.element);
-    row.insert(row.end(), {cable.tension[k], cable.length[k]});
+    if (const auto& whole = cable.whole) {
+      row.insert(row.end(), {whole->tension, whole->length, whole->rate, whole->energy});
+      if (simulation.model().cables[static_cast<std::size_t>(probe.index)].muscle)
+        row.insert(row.end(), {whole->fibre_length, whole->activation, whole->passive});
+    } else {
+      row.insert(row.end(), {cable.tension[k], cable.length[k]});
+    }
   } else if (probe.spec.kind == "solid") {
     for (const Vec3& x : simulation.solid_point(probe.index, probe.point)) extend(row, x);
     if (probe.spec.stress) add_stress(row, simulation.solid_stress(probe.index, probe.point));

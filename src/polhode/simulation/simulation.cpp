@@ -39,7 +39,7 @@ const StartReport& Simulation::start_report() const { return impl_->start_report
 
 StepReport Simulation::step(double t_limit) {
   const double wall = wall_clock(), cpu = cpu_clock();
-  StepReport report = impl_->advance(t_limit);
+  StepReport report = advance(t_limit);
   impl_->figures.wall_time_s += wall_clock() - wall;
   impl_->figures.cpu_time_s += cpu_clock() - cpu;
   return report;
@@ -67,12 +67,12 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   if (s.state.ledger.steps == 0) look();
   s.figures.end = RunEnd::finished;
   double next = output_after(s.state.t);
-  while (s.state.t < end * (1.0 - kSameTime)) {
+  while (s.state.t < end * (1.0 - kSameTime) && !s.stopped()) {
     if (stop && stop->load()) {
       s.figures.end = RunEnd::interrupted;
       break;
     }
-    const StepReport report = s.advance(automatic ? std::min(next, end) : end);
+    const StepReport report = advance(automatic ? std::min(next, end) : end);
     if (!report.accepted) {
       s.figures.end = RunEnd::not_converged;
       s.figures.message = report.message;
@@ -81,11 +81,15 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
       break;
     }
     if (on_step) on_step(*this);
-    const bool finished = s.state.t >= end * (1.0 - kSameTime);
+    const bool finished = s.state.t >= end * (1.0 - kSameTime) || s.stopped();
     if (!every || finished || s.state.t >= next * (1.0 - kSameTime)) {
       look();
       next = output_after(s.state.t);
     }
+  }
+  if (s.stopped() && s.figures.end == RunEnd::finished) {
+    const EventSpec& event = s.map.events[static_cast<std::size_t>(s.events->stopped(s.state))];
+    s.figures.message = format("stopped by event '{}' at t = {:.9g} s", event.name, s.state.t);
   }
   s.figures.wall_time_s += wall_clock() - wall;
   s.figures.cpu_time_s += cpu_clock() - cpu;
@@ -118,6 +122,12 @@ RunSummary Simulation::summary() const {
   r.order = s.method.control.order;
   r.narration = s.narration;
   r.warnings = s.warnings();
+  for (int e = 0; e < static_cast<int>(s.map.events.size()); ++e) {
+    const auto of = [&](EventMemory::Entry k) { return s.events->memory(s.state, e, k); };
+    r.events.push_back({s.map.events[static_cast<std::size_t>(e)].name,
+                        static_cast<std::int64_t>(of(EventMemory::kCount)), of(EventMemory::kTime),
+                        of(EventMemory::kLost), of(EventMemory::kImpulse)});
+  }
   for (std::size_t i = 0; i < s.solid_watches.size(); ++i) {
     const Impl::SolidWatch& w = s.solid_watches[i];
     r.solids.push_back(

@@ -81,6 +81,15 @@ struct RunSummary {
   double strain_energy = 0.0;           ///< Of a static analysis: in springs, beams and solids [J].
   std::string narration;                ///< What was chosen and why, a few lines.
   std::vector<std::string> warnings;    ///< What was seen at output times and deserves a look.
+  /// An event of the model, since the start.
+  struct Event {
+    std::string name;
+    std::int64_t count = 0;  ///< How often it came.
+    double time = 0.0;       ///< When it came last [s].
+    double lost = 0.0;       ///< Kinetic energy lost then, by what it switched on [J].
+    double impulse = 0.0;    ///< Largest of a row then [N s or N m s].
+  };
+  std::vector<Event> events;
   /// Of models with contact.
   struct Contacts {
     int shapes = 0;          ///< Of bodies that may touch bodies.
@@ -149,6 +158,8 @@ class Simulation {
   };
   [[nodiscard]] PointMotion point(int body, const Vec3& Z) const;
   [[nodiscard]] PointMotion point(std::string_view body, const Vec3& Z) const;
+  /// World components [rad/s²].
+  [[nodiscard]] Vec3 angular_acceleration(int body) const;
   /// @param joint_axes  Force and moment along the joint's axes instead of the world's.
   [[nodiscard]] JointReport joint(int joint, bool joint_axes = false) const;
   [[nodiscard]] JointReport joint(std::string_view name, bool joint_axes = false) const;
@@ -199,6 +210,13 @@ class Simulation {
   [[nodiscard]] std::string state_hash() const;
 
  private:
+  /// A step with the events that it meets.
+  StepReport advance(double t_limit);
+  /// Goes back, if an event comes in the step just taken, to where it does.
+  /// @param margin  EventWatch::margin() at its start.
+  void find_event(const State& before, double margin, double limit, StepReport& report);
+  /// Lets all events come that are due. @returns false if one cannot; the report says why.
+  bool let_events_come(StepReport& report);
   [[nodiscard]] Vec3 node_velocity(int node) const;
   [[nodiscard]] const ProbeTarget& probe_target_of(std::string_view name) const;
   void watch_stress();

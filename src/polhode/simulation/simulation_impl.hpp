@@ -18,6 +18,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
+#include <polhode/simulation/event_watch.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/probe.hpp>
 #include <polhode/simulation/separate_overlaps.hpp>
@@ -52,6 +53,7 @@ struct Simulation::Impl {
   std::unique_ptr<Stepper> stepper;
   std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
   ContactKeeper contacts;
+  std::unique_ptr<EventWatch> events;  ///< Null if there are none.
   State state;
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; the rest is in the state.
@@ -103,6 +105,7 @@ struct Simulation::Impl {
     engine_name = statics ? "mumps" : method.engine->name();
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
+    if (!map.events.empty()) events = std::make_unique<EventWatch>(model, map, system);
   }
 
   void choose_statics() {
@@ -125,13 +128,47 @@ struct Simulation::Impl {
   /// Time that the run ends at; in statics the full load.
   [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
 
+  /// A step in time, to which settle_step() belongs once it stays.
+  StepReport take(double t_limit) {
+    instant_step = -1;
+    return stepper->advance(state, t_limit);
+  }
+  void settle_step() {
+    contacts.after_step(state);
+    watch_surfaces();
+  }
+  /// Continues from another state than the last step ended at.
+  void go_to(const State& other) {
+    state = other;
+    stepper->leave();
+    instant_step = -1;
+  }
+  /// What acts has changed, though positions and time have not.
+  void forget_instant() {
+    instant_solver.reset();
+    instant_step = -1;
+  }
+  [[nodiscard]] std::string cannot_switch(const EventSpec& event, const SwitchReport& done) const {
+    if (done.worst < 0)
+      return format(
+          "event '{}' at t = {:.6g} s: its impulses cannot be solved for. Look for joints "
+          "that contradict one another there",
+          event.name, state.t);
+    const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(done.worst)];
+    return format(
+        "event '{}' at t = {:.6g} s: {} '{}' cannot be switched on, its two sides are {:.3g} m (or "
+        "rad) from fitting. Let it come when they fit, or use a fixed joint, which holds its sides "
+        "as they stand",
+        event.name, state.t, system.group(ref.group).kind(), system.name(ref), done.gap);
+  }
+
+  /// An event has ended the run.
+  [[nodiscard]] bool stopped() const { return events && events->stopped(state) >= 0; }
+
   StepReport advance(double t_limit) {
     if (!statics) {
-      StepReport report = stepper->advance(state, t_limit);
-      if (report.accepted) {
-        contacts.after_step(state);
-        watch_surfaces();
-      }
+      StepReport report = take(t_limit);
+      if (report.accepted) settle_step();
       return report;
     }
     const double before = state.t;

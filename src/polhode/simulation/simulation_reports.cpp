@@ -32,6 +32,12 @@ Simulation::PointMotion Simulation::point(int body, const Vec3& Z) const {
           point_acceleration(pose, rates, {now.r_ddot[index], now.alpha[index]}, Z)};
 }
 
+Vec3 Simulation::angular_acceleration(int body) const {
+  const int index = impl_->map.body[body];
+  return index == kGround ? Vec3::Zero()
+                          : impl_->at_instant().alpha[static_cast<std::size_t>(index)];
+}
+
 JointReport Simulation::joint(int joint, bool joint_axes) const {
   const System& system = impl_->system;
   const int interaction = impl_->map.joint[joint];
@@ -60,6 +66,11 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
   report.slips = resistance.slips;
   if (item.resistance()->data().slide) report.stops.push_back(resistance.slide);
   if (item.resistance()->data().turn) report.stops.push_back(resistance.turn);
+  if (system.is_off(impl_->state, interaction)) {
+    std::fill(report.friction.begin(), report.friction.end(), 0.0);
+    std::fill(report.stops.begin(), report.stops.end(), 0.0);
+    report.slips = false;
+  }
   return report;
 }
 
@@ -68,7 +79,18 @@ std::vector<double> Simulation::load(int load) const {
   const System& system = impl_->system;
   const InteractionRef& ref = system.interactions()[impl_->map.load[load]];
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
-  return load_kind(model().loads[load].type).report(system.group(ref.group), ref.item, view.step());
+  const LoadKind& kind = load_kind(model().loads[load].type);
+  std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
+  if (!system.is_off(impl_->state, impl_->map.load[load])) return report;
+  // What is switched off neither acts nor stores.
+  auto at = report.begin();
+  for (const LoadChannel& channel : kind.channels) {
+    if (channel.unit == "N" || channel.unit == "N m" || channel.unit == "W" ||
+        channel.name == "energy")
+      std::fill_n(at, channel.size, 0.0);
+    at += channel.size;
+  }
+  return report;
 }
 
 BeamReport Simulation::beam(int beam) const {
@@ -78,7 +100,9 @@ BeamReport Simulation::beam(int beam) const {
 
 CableReport Simulation::cable(int cable) const {
   const auto k = static_cast<std::size_t>(cable);
-  return cable_report(*this, impl_->model.cables.at(k), impl_->map.cable.at(k));
+  const CableLineSpec& spec = impl_->model.cables.at(k);
+  if (spec.slides) return running_cable_report(*this, spec, impl_->map.running_cable.at(k));
+  return cable_report(*this, spec, impl_->map.cable.at(k));
 }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }

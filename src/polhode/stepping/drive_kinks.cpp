@@ -49,17 +49,7 @@ void DriveKinks::settle(State& state) {
   std::vector<Vec6> bodies;
   std::vector<double> nodes;
   if (!solver_->jumps_by_kinks(state, given_, rows_, bodies, nodes)) return;
-  for (std::size_t k = 0; k < nodes.size(); ++k) state.node_v[k] += nodes[k];
-  for (int b = 0; b < system_->body_count(); ++b) {
-    const int slot = system_->slot(b), lane = slot % kLanes;
-    const Vec6& jump = bodies[static_cast<std::size_t>(b)];
-    const Vec3 dW = system_->motion(state, b).q.conjugate() * jump.tail<3>();
-    BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
-    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
-      block.v[c][lane] += jump[c];
-      block.W[c][lane] += dW[c];
-    }
-  }
+  add_jumps(*system_, bodies, nodes, state);
   for (const PrescribedComponent& p : system_->nodes().prescribed())
     state.node_a[3 * static_cast<std::size_t>(p.node) + p.component] =
         p.displacement->rates(state.t, TimeSide::kAfter).second;

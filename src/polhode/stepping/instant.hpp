@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -83,6 +84,18 @@ class InstantSolver {
   [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
                                     std::span<const double> rows, std::vector<Vec6>& bodies,
                                     std::vector<double>& nodes);
+  /// Jumps of all velocities at this instant that bring some rows onto G v = ċ, while others keep
+  /// their G v: the least mass-weighted ones.
+  /// @param rows      By row: 1 for those.
+  /// @param bodies    Out: by body (linear, angular), world.
+  /// @param nodes     Out: three a node [m/s].
+  /// @param impulses  Out: of the rows [N s or N m s].
+  /// @returns the kinetic energy of the jumps, which is what the impulses take [J]; nothing if a
+  ///          matrix is singular.
+  [[nodiscard]] std::optional<double> jumps_onto(const State& state, std::span<const char> rows,
+                                                 std::vector<Vec6>& bodies,
+                                                 std::vector<double>& nodes,
+                                                 std::vector<double>& impulses);
   /// Of the nodes of solids (3 each), for jumps of the bodies.
   [[nodiscard]] std::vector<double> node_jumps(std::span<const Vec6> bodies);
 
@@ -94,6 +107,12 @@ class InstantSolver {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Adds jumps of velocities to a state.
+/// @param bodies  By body (linear, angular), world.
+/// @param nodes   Of solids, three a node; may be empty.
+void add_jumps(const System& system, std::span<const Vec6> bodies, std::span<const double> nodes,
+               State& state);
 
 /// As InstantSolver::assemble_positions().
 PositionReport assemble_positions(const System& system, State& state, double tolerance = 1e-10);

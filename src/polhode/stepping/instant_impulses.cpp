@@ -50,12 +50,65 @@ bool InstantSolver::jumps_by_kinks(const State& state, std::span<const double> g
   return true;
 }
 
+/// @eq{switch-impulse} @eq{switch-loss}
+std::optional<double> InstantSolver::jumps_onto(const State& state, std::span<const char> rows,
+                                                std::vector<Vec6>& bodies,
+                                                std::vector<double>& nodes,
+                                                std::vector<double>& impulses) {
+  Impl& s = *impl_;
+  s.take(state);
+  s.put_masses_and_rows(state);
+  const Eigen::Index first = 6 * s.system.body_count();
+  Vec given(first);
+  for (int b = 0; b < s.system.body_count(); ++b) {
+    const BodyMotion m = s.system.motion(state, b);
+    given.segment<6>(6 * b) << m.v, m.omega();
+  }
+  s.rhs.setZero();
+  auto wanted = s.rhs.tail(s.system.rows());
+  s.rows_times(given, wanted);
+  s.subtract_rates(state, TimeSide::kAfter, wanted);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    double& row = wanted[static_cast<Eigen::Index>(k)];
+    row = rows[k] != 0 ? -row : 0.0;
+  }
+  const Vec jumps = wanted;
+  if (!s.add_node_masses(state) || !s.factor(state)) return std::nullopt;
+  if (!s.solve_factored().solved) return std::nullopt;
+  bodies.assign(static_cast<std::size_t>(s.system.body_count()), Vec6::Zero());
+  for (int b = 0; b < s.system.body_count(); ++b) bodies[b] = s.x.segment<6>(6 * b);
+  impulses.assign(rows.size(), 0.0);
+  double energy = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    impulses[k] = s.system.mean_mass() * s.x[first + row];
+    energy += 0.5 * impulses[k] * jumps[row];
+  }
+  nodes = node_jumps(bodies);
+  return energy;
+}
+
 std::vector<double> InstantSolver::node_jumps(std::span<const Vec6> bodies) {
   Impl& s = *impl_;
   if (!s.nodes) return {};
   for (std::size_t b = 0; b < bodies.size(); ++b)
     s.x.segment<6>(6 * static_cast<Eigen::Index>(b)) = bodies[b];
   return s.nodes->accelerations(s.x.data());
+}
+
+void add_jumps(const System& system, std::span<const Vec6> bodies, std::span<const double> nodes,
+               State& state) {
+  for (std::size_t k = 0; k < nodes.size(); ++k) state.node_v[k] += nodes[k];
+  for (int b = 0; b < system.body_count(); ++b) {
+    const int slot = system.slot(b), lane = slot % kLanes;
+    const Vec6& jump = bodies[static_cast<std::size_t>(b)];
+    const Vec3 dW = system.motion(state, b).q.conjugate() * jump.tail<3>();
+    BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
+    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
+      block.v[c][lane] += jump[c];
+      block.W[c][lane] += dW[c];
+    }
+  }
 }
 
 }  // namespace polhode

@@ -187,6 +187,16 @@ void LedgerKeeper::add_driven_jump(State& state, const BodySums& before) {
   sums_are_of_state_ = true;
 }
 
+void LedgerKeeper::add_switch(State& state, const BodySums& before, double lost, double potential) {
+  Ledger& l = state.ledger;
+  at_n_ = sums(state);
+  l.dissipated.add(lost + std::max(0.0, -potential));
+  l.put_in.add(at_n_.kinetic - before.kinetic + lost + std::max(0.0, potential));
+  add_impulses(state, before, at_n_);
+  potential_ = stored(state);
+  sums_are_of_state_ = true;
+}
+
 void LedgerKeeper::add_impulses(State& state, const BodySums& before, const BodySums& after) {
   for (int i = 0; i < 3; ++i) {
     state.ledger.impulse[i].add(after.p[i] - before.p[i]);

@@ -36,7 +36,15 @@ class LedgerKeeper {
   void add_jump(State& state, const BodySums& before);
   /// The same where a prescribed motion made them jump: what they gained is its work.
   void add_driven_jump(State& state, const BodySums& before);
+  /// Interactions were switched: velocities that jumped lost energy, the rest that they gained is
+  /// work of drives; potential energy that is gone is lost, what came is put in. @eq{switch-loss}
+  /// @param before     Sums before.
+  /// @param lost       By impulses [J].
+  /// @param potential  Change of potential energy [J].
+  void add_switch(State& state, const BodySums& before, double lost, double potential);
   [[nodiscard]] BodySums sums(const State& state) const;
+  /// Stored by interactions, solids and contacts [J].
+  [[nodiscard]] double potential(const State& state) const { return stored(state); }
   /// The next call is about another state than the last one.
   void forget() { sums_are_of_state_ = false; }
   /// Compares with the start; at the end of whole steps.

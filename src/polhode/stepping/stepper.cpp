@@ -9,6 +9,7 @@
 #include <polhode/stepping/local_error.hpp>
 #include <polhode/stepping/single_step.hpp>
 #include <polhode/stepping/start.hpp>
+#include <polhode/stepping/step_control.hpp>
 #include <polhode/stepping/step_error.hpp>
 #include <polhode/stepping/step_reach.hpp>
 #include <polhode/stepping/stepper.hpp>
@@ -16,47 +17,7 @@
 
 namespace polhode {
 
-namespace {
-
-/// Two times closer than this part of a step are the same.
-constexpr double kSameTime = 1e-9;
-/// Rest of a fixed step, as part of it, that the next one takes along.
-constexpr double kLeftOver = 1e-6;
-/// How much longer a step may be if it ends at a wanted time then [-].
-constexpr double kStretch = 1e-3;
-constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
-/// What the companions' errors say of the error at order 6 and at order 8, measured.
-constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
-/// Round-off of an error estimate, for places at the origin and as part of how far others are:
-/// nothing below can be asked of a step.
-constexpr double kLeastError = 1e-15, kStepRoundOff = 2.2e-16;
-constexpr double kRoundOffComposed = 30.0;  ///< At higher orders stages and companions add to it.
-/// A refused step's error falls with this power of its length at least, or it is noise; and noise
-/// is small.
-constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
-/// Noise that was found counts for the steps after it, less and less.
-constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
-/// Error of an impact allowed in time, times the velocities that jump, as part of the tolerance;
-/// and the part to which a step that holds one is shortened at once at most.
-constexpr double kImpactError = 0.1, kLeastImpactFactor = 0.02;
-/// Highest derivatives of the motion whose jumps end steps.
-constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
-/// Independent samples of loads that a composed step takes, to be on the safe side.
-constexpr double kSamplesComposed = 3.0;
-/// Steps of the search for a first length, and what it may be lengthened by at once. Of so many
-/// fixed steps of higher order one is measured.
-constexpr int kStepProbes = 40, kSampled = 64;
-constexpr double kWorthLonger = 3.0, kLonger = 10.0;
-/// Steps in a row with few iterations after which a halved step grows again.
-constexpr int kEasySteps = 3, kFewIterations = 4;
-/// State::easy_steps of automatic steps: the length is to be found anew.
-constexpr int kFindAnew = -1;
-/// A method with this weight of the end of a step looks at loads there.
-constexpr double kLooksAtEnd = 0.999;
-/// Times just before and just after a break, as parts of it [-].
-constexpr double kJustBeside = 0x1p-47;
-
-}  // namespace
+using namespace step_control;
 
 struct Stepper::Impl {
   const System& system;
@@ -484,6 +445,17 @@ Stepper::~Stepper() = default;
 void Stepper::begin(State& state) { impl_->single.ledger().begin(state); }
 
 StepReport Stepper::advance(State& state, double t_limit) { return impl_->advance(state, t_limit); }
+
+SwitchReport Stepper::switch_over(State& state, std::span<const int> on, std::span<const int> off) {
+  Impl& s = *impl_;
+  const SwitchReport report = switch_interactions(s.system, state, on, off, s.single.ledger());
+  s.begin_anew(state);
+  if (!s.system.contacts())
+    restart_accelerations(s.system, state, s.ga, state.t * (1.0 + kJustBeside));
+  return report;
+}
+
+void Stepper::leave() { impl_->single.ledger().forget(); }
 
 const NewtonEngine& Stepper::engine() const { return impl_->single.engine(); }
 

@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <polhode/newton/newton.hpp>
 #include <polhode/stepping/ledger.hpp>
 #include <polhode/stepping/step_report.hpp>
+#include <polhode/stepping/switching.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -38,6 +40,10 @@ class Stepper {
   /// One accepted step of the chosen order, ending at t_limit at the latest. On failure the state
   /// is left as it was.
   StepReport advance(State& state, double t_limit);
+  /// Switches interactions between two steps; the next one starts without a past.
+  SwitchReport switch_over(State& state, std::span<const int> on, std::span<const int> off);
+  /// The next step starts at another state than the last one ended at.
+  void leave();
   [[nodiscard]] const NewtonEngine& engine() const;
   [[nodiscard]] Balance balance(const State& state) const;
   /// Goals that automatic steps could not reach, in plain words.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <memory>
 #include <optional>
@@ -101,10 +103,19 @@ struct Participants {
 /// rotations. Elimination along the tree carries no more than that.
 enum class Coupling { none, couple, all };
 
+/// Whether an interaction may be switched off and on during a run, and how it begins.
+enum class Switching : unsigned char { never, starts_on, starts_off };
+
 /// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
 struct InteractionItem {
   std::string name;  ///< As in the user's file.
   Participants bodies;
+  Switching switching = Switching::never;
+
+  /// History that goes on while the item is switched off, such as turns counted.
+  void commit_off(const PairStep&, double* /*history*/) const {}
+  /// Begins to act at an instant, where its bodies stand.
+  void switch_on(const PairStep&, double* /*history*/) const {}
 
   [[nodiscard]] int rows() const { return 0; }
   [[nodiscard]] int history_size() const { return 0; }
@@ -177,6 +188,12 @@ struct OwnFunctions {
   static constexpr bool extrapolate = !requires {
     requires std::same_as<decltype(&Item::extrapolate), decltype(&Base::extrapolate)>;
   };
+  static constexpr bool commit_off = !requires {
+    requires std::same_as<decltype(&Item::commit_off), decltype(&Base::commit_off)>;
+  };
+  static constexpr bool switch_on = !requires {
+    requires std::same_as<decltype(&Item::switch_on), decltype(&Base::switch_on)>;
+  };
   static constexpr bool lazy_history = !requires {
     requires std::same_as<decltype(&Item::lazy_history), decltype(&Base::lazy_history)>;
   };
@@ -243,6 +260,8 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
   { item.work(step) } -> std::same_as<Work>;
   { item.initialize(step, history) } -> std::same_as<void>;
   { item.commit(step, history) } -> std::same_as<void>;
+  { item.commit_off(step, history) } -> std::same_as<void>;
+  { item.switch_on(step, history) } -> std::same_as<void>;
   { item.prescribed(step, TimeSide::kBefore, rows) } -> std::same_as<void>;
   { item.impacts(step, impacts) } -> std::same_as<void>;
   { item.clearance(step) } -> std::same_as<double>;
@@ -259,7 +278,8 @@ concept Interaction = HasInteractionFunctions<Item> &&
                        (OwnFunctions<Item>::initialize && OwnFunctions<Item>::commit)) &&
                       (OwnFunctions<Item>::history_size ||
                        !(OwnFunctions<Item>::initialize || OwnFunctions<Item>::commit ||
-                         OwnFunctions<Item>::lazy_history || OwnFunctions<Item>::extrapolate)) &&
+                         OwnFunctions<Item>::lazy_history || OwnFunctions<Item>::extrapolate ||
+                         OwnFunctions<Item>::commit_off || OwnFunctions<Item>::switch_on)) &&
                       // Rows have accelerations.
                       OwnFunctions<Item>::rows == OwnFunctions<Item>::acceleration_terms &&
                       // What takes energy says how much.
@@ -273,8 +293,17 @@ concept Interaction = HasInteractionFunctions<Item> &&
                        OwnFunctions<Item>::acceptable) &&
                       (!OwnFunctions<Item>::reverse || OwnFunctions<Item>::reversible);
 
+/// Entries behind the item's own history, of one that may be switched: 1 while it is off, and the
+/// values of its rows when it was switched on, which they keep. @eq{switch-rows}
+struct SwitchMemory {
+  enum Entry : int { kOff, kHeld };
+  [[nodiscard]] static int size(int rows) { return kHeld + rows; }
+};
+
 /// All interactions of one type, in one contiguous array: the assembler makes one virtual call
 /// per group, never per item. `first` and `count` select items; pair(i) gives item i's step.
+///
+/// An item that is switched off has no wrench, no work and rows λ = 0. It has no place in the tree.
 class InteractionGroup {
  public:
   virtual ~InteractionGroup() = default;
@@ -316,6 +345,15 @@ class InteractionGroup {
   [[nodiscard]] virtual bool has_barrier(int i) const = 0;
   [[nodiscard]] virtual double clearance(int i, const PairStep& step) const = 0;
   virtual void impacts(int i, const PairStep& step, std::vector<Impact>& list) const = 0;
+
+  [[nodiscard]] virtual Switching switching(int i) const = 0;
+  virtual void set_switching(int i, Switching how) = 0;  ///< Before the system is finished.
+  /// @param history  Of the item.
+  [[nodiscard]] virtual bool is_off(int i, const double* history) const = 0;
+  virtual void switch_off(int i, double* history) const = 0;
+  /// Makes an item act from an instant on; its rows keep the values that they have there.
+  /// @returns the largest of these [m or -].
+  virtual double switch_on(int i, const PairStep& step, double* history) const = 0;
 };
 
 /// The group of an item type. Item derives from InteractionItem and has
@@ -335,12 +373,20 @@ class Group final : public InteractionGroup {
   const std::string& name(int i) const override { return at(i).name; }
   Participants bodies(int i) const override { return at(i).bodies; }
   int rows(int i) const override { return at(i).rows(); }
-  int history_size(int i) const override { return at(i).history_size(); }
-  bool lazy_history(int i) const override { return at(i).lazy_history(); }
+  int history_size(int i) const override {
+    return at(i).history_size() + (switched(i) ? SwitchMemory::size(at(i).rows()) : 0);
+  }
+  bool lazy_history(int i) const override { return !switched(i) && at(i).lazy_history(); }
   bool conservative(int i) const override { return at(i).conservative(); }
   bool dissipates(int i) const override { return at(i).dissipates(); }
-  std::optional<MotionBasis> motion_basis(int i) const override { return at(i).motion_basis(); }
-  Coupling coupling(int i) const override { return at(i).coupling(); }
+  std::optional<MotionBasis> motion_basis(int i) const override {
+    return switched(i) ? std::nullopt : at(i).motion_basis();
+  }
+  /// The couple's own elimination asks for rows that hold.
+  Coupling coupling(int i) const override {
+    const Coupling own = at(i).coupling();
+    return switched(i) && own == Coupling::couple ? Coupling::all : own;
+  }
   bool reversible(int i) const override { return at(i).reversible(); }
   void reverse(int i) override { items[static_cast<std::size_t>(i)].reverse(); }
   double coupled_mass(int i) const override { return at(i).coupled_mass(); }
@@ -352,42 +398,94 @@ class Group final : public InteractionGroup {
   bool prescribes(int i) const override { return at(i).prescribes(); }
   PrescribedRows prescribed(int i, const PairStep& step, TimeSide side) const override {
     PrescribedRows rows;
-    at(i).prescribed(step, side, rows);
+    if (!is_off(i, step.history)) at(i).prescribed(step, side, rows);
     return rows;
   }
   void evaluate(std::span<const int> list, std::span<const PairStep> steps,
                 std::span<PairTerms> terms) const override {
     for (std::size_t k = 0; k < list.size(); ++k) {
+      if (switched(list[k])) {
+        evaluate_switched(list[k], steps[k], terms[k]);
+        continue;
+      }
       steps[k].context.tangents ? terms[k].set_sums_zero() : terms[k].set_values_zero();
       at(list[k]).evaluate(steps[k], terms[k]);
     }
   }
   void acceleration_terms(int i, const PairStep& step, Vec6& gamma) const override {
-    at(i).acceleration_terms(step, gamma);
+    if (!is_off(i, step.history)) at(i).acceleration_terms(step, gamma);
   }
-  Work work(int i, const PairStep& step) const override { return at(i).work(step); }
+  Work work(int i, const PairStep& step) const override {
+    return is_off(i, step.history) ? Work{} : at(i).work(step);
+  }
   bool works(int i) const override { return at(i).rows() == 0 || at(i).works(); }
   bool has_barrier(int i) const override { return at(i).has_barrier(); }
-  double clearance(int i, const PairStep& step) const override { return at(i).clearance(step); }
+  double clearance(int i, const PairStep& step) const override {
+    return is_off(i, step.history) ? 1.0 : at(i).clearance(step);
+  }
   void impacts(int i, const PairStep& step, std::vector<Impact>& list) const override {
-    at(i).impacts(step, list);
+    if (!is_off(i, step.history)) at(i).impacts(step, list);
   }
   void initialize(int i, const PairStep& step, double* history) const override {
     at(i).initialize(step, history);
   }
   void commit(int i, const PairStep& step, double* history) const override {
-    at(i).commit(step, history);
+    is_off(i, history) ? at(i).commit_off(step, history) : at(i).commit(step, history);
   }
-  bool acceptable(int i, const PairStep& step) const override { return at(i).acceptable(step); }
+  bool acceptable(int i, const PairStep& step) const override {
+    return is_off(i, step.history) || at(i).acceptable(step);
+  }
   bool always_asked(int i) const override { return at(i).always_asked(); }
   const char* refusal(int i) const override { return at(i).refusal(); }
   void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
                    double* history) const override {
     at(i).extrapolate(step, of_a, of_b, history);
   }
+  Switching switching(int i) const override { return at(i).switching; }
+  void set_switching(int i, Switching how) override {
+    items[static_cast<std::size_t>(i)].switching = how;
+  }
+  bool is_off(int i, const double* history) const override {
+    return switched(i) && memory(i, history)[SwitchMemory::kOff] != 0.0;
+  }
+  void switch_off(int i, double* history) const override {
+    history[at(i).history_size() + SwitchMemory::kOff] = 1.0;
+  }
+  double switch_on(int i, const PairStep& step, double* history) const override {
+    double* memory = history + at(i).history_size();
+    at(i).switch_on(step, history);
+    std::fill_n(memory, SwitchMemory::size(at(i).rows()), 0.0);
+    PairTerms terms;
+    terms.set_zero();
+    const std::array<double, kMaxRows> none{};
+    StepContext still = step.context;
+    still.tangents = false;
+    at(i).evaluate({step.a, step.b, still, none.data(), history}, terms);
+    double most = 0.0;
+    for (int k = 0; k < at(i).rows(); ++k) {
+      memory[SwitchMemory::kHeld + k] = terms.g[k];
+      most = std::max(most, std::abs(terms.g[k]));
+    }
+    return most;
+  }
 
  private:
   [[nodiscard]] const Item& at(int i) const { return items[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] bool switched(int i) const { return at(i).switching != Switching::never; }
+  [[nodiscard]] const double* memory(int i, const double* history) const {
+    return history + at(i).history_size();
+  }
+  void evaluate_switched(int i, const PairStep& step, PairTerms& terms) const {
+    terms.set_zero();
+    const int rows = at(i).rows();
+    if (is_off(i, step.history)) {
+      terms.compliance.head(rows).setOnes();
+      return;
+    }
+    at(i).evaluate(step, terms);
+    const double* held = memory(i, step.history) + SwitchMemory::kHeld;
+    for (int k = 0; k < rows; ++k) terms.g[k] -= held[k];
+  }
 };
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
@@ -14,6 +15,21 @@ int System::add_body(BodyData body, const BodyMotion& start) {
   bodies_.push_back(std::move(body));
   start_.push_back(start);
   return body_count() - 1;
+}
+
+void System::set_switching(std::string_view kind, int item, Switching how) {
+  for (const auto& group : groups_) {
+    if (group->kind() != kind || item >= group->size()) continue;
+    group->set_switching(item, how);
+    return;
+  }
+  throw std::logic_error("System::set_switching: there is no such interaction");
+}
+
+bool System::is_off(const State& state, int interaction) const {
+  const InteractionRef& ref = refs_[static_cast<std::size_t>(interaction)];
+  return groups_[static_cast<std::size_t>(ref.group)]->is_off(
+      ref.item, state.history.data() + ref.first_history);
 }
 
 void System::finish() {
@@ -101,7 +117,10 @@ void System::finish() {
     initial_.set_motion(s,
                         tree_.body_of_slot[s] < 0 ? BodyMotion{} : start_[tree_.body_of_slot[s]]);
   initial_.lambda.assign(rows_, 0.0);
-  initial_.history.assign(histories, 0.0);
+  initial_.history.assign(static_cast<std::size_t>(histories + memory_size_), 0.0);
+  for (const InteractionRef& ref : refs_)
+    if (groups_[ref.group]->switching(ref.item) == Switching::starts_off)
+      groups_[ref.group]->switch_off(ref.item, initial_.history.data() + ref.first_history);
   for (int i = 0; i < nodes_.count(); ++i)
     for (int c = 0; c < 3; ++c) {
       initial_.node_x.push_back(nodes_[i].position[c]);

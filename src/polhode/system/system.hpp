@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <polhode/system/interaction.hpp>
@@ -62,6 +63,11 @@ class System {
   void set_contacts(std::shared_ptr<MovingContacts> contacts) { contacts_ = std::move(contacts); }
   [[nodiscard]] const std::shared_ptr<MovingContacts>& contacts() const { return contacts_; }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
+  /// Lets the item-th interaction of a kind be switched.
+  /// @throws std::logic_error if there is none.
+  void set_switching(std::string_view kind, int item, Switching how);
+  /// Numbers that are saved with the state beside those of interactions, zero at the start.
+  void set_memory(int count) { memory_size_ = count; }
   /// Numbers everything. @throws InputError if an interaction names a body that does not exist.
   void finish();
 
@@ -74,6 +80,13 @@ class System {
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const InteractionGroup& group(int i) const { return *groups_[i]; }
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
+  /// Where the numbers of set_memory() are in State::history.
+  [[nodiscard]] int memory() const {
+    return static_cast<int>(initial_.history.size()) - memory_size_;
+  }
+  [[nodiscard]] int memory_size() const { return memory_size_; }
+  /// Whether an interaction is switched off.
+  [[nodiscard]] bool is_off(const State& state, int interaction) const;
   /// Friction or stops of joints: forces that change a lot over tiny ways.
   [[nodiscard]] bool stiff() const { return stiff_; }
   /// Interactions with a configuration that no step may reach.
@@ -120,6 +133,7 @@ class System {
   double mean_mass_ = 1.0, length_ = 1.0;
   bool conservative_ = true, dissipates_ = false, stiff_ = false;
   std::vector<int> barriers_, drives_;
+  int memory_size_ = 0;
 };
 
 template <class Item>

@@ -200,6 +200,21 @@ void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe
   probe.pair = *pair;
 }
 
+/// Further columns of a body.
+void read_body_columns(Section& section, ProbeSpec& probe) {
+  const auto rotation = section.text("rotation");
+  const bool euler =
+      rotation && *rotation != "quaternion" && *rotation != "vector" && *rotation != "matrix";
+  if (euler && rotation->size() != 3)
+    section.fault("rotation", format("is {}", quote(*rotation)),
+                  "Write quaternion, vector, matrix, or an Euler sequence such as zyx.");
+  else if (rotation && (!euler || check_euler_sequence(section, *rotation, "rotation")))
+    probe.rotation = *rotation;
+  probe.angular = section.boolean("angular").value_or(false);
+  probe.helical = section.choice("helical").value_or("");
+  probe.seen_from = section.body("seen_from").value_or(kGround);
+}
+
 void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) {
   Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
   if (!node.is_map()) return;
@@ -224,6 +239,9 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
   if (section.has("element") && probe.kind != "beam" && probe.kind != "cable")
     section.fault("element", format("does not go with '{}'", probe.kind),
                   "It belongs to a beam or a cable.");
+  for (const char* key : {"rotation", "angular", "helical", "seen_from"})
+    if (section.has(key) && probe.kind != "body")
+      section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a body.");
   if (section.has("axes") && probe.kind != "joint")
     section.fault("axes", format("does not go with '{}'", probe.kind),
                   "Axes belong to a joint's reaction.");
@@ -239,6 +257,7 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
     const BodySpec& spec = context.model.bodies[static_cast<std::size_t>(*body)];
     probe.target = spec.name;
     if (point) probe.point = *point - spec.com;
+    read_body_columns(section, probe);
   } else if (probe.kind == "solid") {
     read_solid_probe(context, section, probe);
   } else if (probe.kind == "beam" || probe.kind == "cable") {

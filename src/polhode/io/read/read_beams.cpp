@@ -349,7 +349,7 @@ class CableReader {
   void read() {
     const std::size_t before = context_.diagnostics.size();
     if (const SourceNode* node = section_.find("through")) read_through(*node);
-    cable_.stiffness = section_.number("stiffness").value_or(1.0);
+    read_cable_pull(context_, section_, cable_);
     cable_.free_length = section_.number("free_length");
     cable_.damping = section_.number("damping").value_or(0.0);
     cable_.tension_only = section_.boolean("tension_only").value_or(true);

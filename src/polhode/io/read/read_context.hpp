@@ -189,7 +189,8 @@ void read_units(ReadContext& context, const SourceNode& node);
 void read_variables(ReadContext& context, const SourceNode& node);
 /// A rotation as an Euler sequence: three letters of one case, neighbours different; adds a fault
 /// if it is none.
-bool check_euler_sequence(Section& section, const std::string& sequence);
+bool check_euler_sequence(Section& section, const std::string& sequence,
+                          const char* key = "sequence");
 /// Prescribed motion among the keys of a section; nothing if it prescribes nothing.
 /// @param moves  By component x, y, z: whether it is given.
 std::optional<FrameMotion> read_motion(ReadContext& context, Section& section,
@@ -221,10 +222,14 @@ void read_sections(ReadContext& context, const SourceNode& node);
 /// Beams and cables become bodies and joints: read after the bodies and before what names them.
 void read_beams(ReadContext& context, const SourceNode& node);
 void read_cables(ReadContext& context, const SourceNode& node);
+/// What a cable pulls with: stiffness, given tension, muscle; and whether it slides.
+void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cable);
 void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::string& path,
                      MeshSpec& mesh);
 void read_solids(ReadContext& context, const SourceNode& node);
 void read_loads(ReadContext& context, const SourceNode& node);
+/// Events switch joints and loads: read after these.
+void read_events(ReadContext& context, const SourceNode& node);
 void read_analysis(ReadContext& context, const SourceNode& node, const Place& place);
 void read_output(ReadContext& context, const SourceNode& node, const Place& place);
 /// What only the mesh of a solid shows: sets that match nothing, nodes held twice, and the like.

@@ -69,6 +69,7 @@ class JointReader {
     joint_.limits = read_limits("limits");
     joint_.angle_limits = read_limits("angle_limits");
     read_frame_motion();
+    read_strength();
     // What follows needs sound numbers, and bodies that stand where they should.
     const auto sound = [&](int body) {
       return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
@@ -277,6 +278,17 @@ class JointReader {
     std::array<bool, 3> moves{};
     joint_.motion = read_motion(context_, section, moves);
     joint_.assembled_start = joint_.assembled_start || joint_.motion;
+  }
+
+  void read_strength() {
+    const SourceNode* node = section_.find("breaks");
+    if (!node) return;
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("breaks"),
+                    strength_fields());
+    if (!node->is_map()) return;
+    joint_.breaks = {section.number("force"), section.number("moment")};
+    if (section.misses("force") && section.misses("moment"))
+      section.fault("no limit is given", "Give force, moment, or both.");
   }
 
   /// Joints given with `at` stand at zero; others are looked at when the start is assembled.

@@ -83,9 +83,9 @@ void read_variables(ReadContext& context, const SourceNode& node) {
 namespace {
 
 /// A map from names to things; an empty value stands for no things.
-const SourceNode* named_things(ReadContext& context, const Section& section,
+const SourceNode* named_things(ReadContext& context, const SourceNode& root,
                                const std::string& name) {
-  const SourceNode* node = section.find(name);
+  const SourceNode* node = root.find(name);
   if (!node || node->kind == SourceNode::Kind::kEmpty) return nullptr;
   if (node->is_map()) return node;
   context.fault(*node, name,
@@ -105,6 +105,7 @@ void read_root(ReadContext& context, const SourceNode& root) {
   if (!root.is_map()) return;
   Model& model = context.model;
   if (const SourceNode* node = root.find("contacts")) read_contacts(context, *node);
+  if (const SourceNode* node = named_things(context, root, "events")) read_events(context, *node);
   if (const SourceNode* node = root.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));
   if (const SourceNode* node = root.find("output"))
@@ -143,15 +144,14 @@ void read_things(ReadContext& context, const SourceNode& root, const std::string
   if (const SourceNode* node = section.find("units")) read_units(context, *node);
   if (const SourceNode* node = section.find("variables")) read_variables(context, *node);
   if (const auto gravity = section.vector("gravity")) model.gravity = *gravity;
-  if (const SourceNode* node = named_things(context, section, "bodies"))
-    read_bodies(context, *node);
-  if (const SourceNode* node = named_things(context, section, "parts")) {
+  if (const SourceNode* node = named_things(context, root, "bodies")) read_bodies(context, *node);
+  if (const SourceNode* node = named_things(context, root, "parts")) {
     const std::size_t before = context.diagnostics.size();
     read_parts(context, *node);
     if (context.diagnostics.size() != before) return;  // Names of theirs would be unknown.
   }
   const auto read = [&](const char* name, void (*reader)(ReadContext&, const SourceNode&)) {
-    if (const SourceNode* node = named_things(context, section, name)) reader(context, *node);
+    if (const SourceNode* node = named_things(context, root, name)) reader(context, *node);
   };
   read("materials", read_materials);
   read("sections", read_sections);

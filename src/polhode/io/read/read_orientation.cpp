@@ -79,12 +79,12 @@ std::optional<Quat> from_matrix(ReadContext& context, const SourceNode& node,
 
 }  // namespace
 
-bool check_euler_sequence(Section& section, const std::string& s) {
+bool check_euler_sequence(Section& section, const std::string& s, const char* key) {
   const auto all = [&](const std::string& letters) {
     return s.size() == 3 && s.find_first_not_of(letters) == std::string::npos;
   };
   if ((all("xyz") || all("XYZ")) && s[0] != s[1] && s[1] != s[2]) return true;
-  section.fault("sequence", quote(s) + " is no Euler sequence",
+  section.fault(key, quote(s) + " is no Euler sequence",
                 "Give three letters, neighbours different: lower case (zxz) for turns about the "
                 "body's axes, upper case (XYZ) about the world's.");
   return false;

@@ -101,6 +101,14 @@ class Fingerprint {
   void one(const JointSpec& j) {
     add(j.name, j.type, j.a, j.b, j.Z_a, j.Z_b, j.R_a, j.R_b, j.free, j.parameters, j.friction,
         j.limits, j.angle_limits, j.motion);
+    // What is not there leaves the fingerprints of older models alone.
+    if (j.breaks.force || j.breaks.moment) add(j.breaks.force, j.breaks.moment);
+  }
+  void one(const ConditionSpec& c) {
+    add(c.channel.kind, c.channel.target, c.channel.name, c.channel.point, c.level, c.above);
+  }
+  void one(const EventSpec& e) {
+    add(e.name, e.at, e.when, e.after, e.on, e.off, e.repeat, e.stop);
   }
   void one(const Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
@@ -144,9 +152,14 @@ class Fingerprint {
   void one(const AttachmentSpec& a) { add(a.body, a.Z); }
   void one(const CableContactSpec& c) { add(c.radius, c.self, c.side); }
   void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
+  void one(const HillMuscle& m) {
+    add(m.max_force, m.optimal_length, m.tendon_length, m.pennation, m.max_velocity, m.damping,
+        m.activation);
+  }
   void one(const CableLineSpec& c) {
     add(c.name, c.through, c.stiffness, c.free_length, c.damping, c.tension_only, c.strain,
         c.mass_per_length, c.elements, c.contact, c.pieces);
+    if (c.slides) add(c.tension, c.muscle);
   }
   void one(const ContactLawSpec& l) {
     add(l.potential, l.gap_tolerance, l.stiffness, l.reference_load, l.reference_pressure,
@@ -172,6 +185,7 @@ std::string model_fingerprint(const Model& model) {
   // Shapes weigh nothing here, as masses do: only what touches asks for them.
   if (model.contacts.present)
     for (const BodySpec& body : model.bodies) f.add(body.shapes);
+  if (!model.events.empty()) f.add(model.events);
   const AnalysisSpec& a = model.analysis;
   f.add(a.type, a.rho_inf, a.momentum_rate, a.conserving);
   return f.hex();

@@ -59,6 +59,16 @@ std::string summary_json(const RunSummary& s, const RunPlace& place) {
     json["slack"] = s.statics->slack;
     json["relaxed"] = s.statics->relaxations > 0;
   }
+  if (!s.events.empty()) {
+    json["events"] = nlohmann::ordered_json::array();
+    for (const RunSummary::Event& e : s.events)
+      json["events"].push_back(
+          {{"event", e.name},
+           {"count", e.count},
+           {"time", e.count > 0 ? nlohmann::ordered_json(e.time) : nlohmann::ordered_json(nullptr)},
+           {"lost", e.lost},
+           {"impulse", e.impulse}});
+  }
   if (!s.solids.empty()) {
     json["solids"] = nlohmann::ordered_json::array();
     for (const RunSummary::SolidStress& solid : s.solids)

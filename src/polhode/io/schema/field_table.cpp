@@ -89,6 +89,10 @@ const FieldTable& model_fields() {
            .meaning = "Contact between the shapes of bodies.",
            .standard = "no contact",
            .table = "contacts"},
+          {.name = "events",
+           .kind = kNamed,
+           .meaning = "Events that switch joints and loads, by name.",
+           .table = "event"},
           {.name = "analysis",
            .kind = kSection,
            .meaning = "What to compute and how.",
@@ -449,6 +453,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&angle_limit_fields());
   tables.push_back(&stroke_limit_fields());
   tables.push_back(&distance_limit_fields());
+  tables.push_back(&strength_fields());
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());
@@ -458,6 +463,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&beam_contact_fields());
   tables.push_back(&cable_fields());
   tables.push_back(&cable_contact_fields());
+  tables.push_back(&muscle_fields());
   tables.push_back(&solid_fields());
   tables.push_back(&solid_mesh_fields());
   tables.push_back(&solid_contact_fields());
@@ -466,8 +472,8 @@ std::vector<const FieldTable*> all_field_tables() {
        {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),
         &contacts_fields(), &contact_law_fields(), &contact_material_fields(),
         &contact_combination_fields(), &contact_pair_fields(), &contact_sensor_fields(),
-        &time_table_fields(), &law_table_fields(), &analysis_fields(), &output_fields(),
-        &probe_fields()})
+        &time_table_fields(), &law_table_fields(), &event_fields(), &condition_fields(),
+        &analysis_fields(), &output_fields(), &probe_fields()})
     tables.push_back(table);
   return tables;
 }

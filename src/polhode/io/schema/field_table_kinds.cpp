@@ -131,6 +131,11 @@ KindTable joint_table(const JointKind& kind) {
                       .kind = kSection,
                       .meaning = "Prescribed motion of the joint's frame on the first body.",
                       .table = motion_fields().title});
+  fields.push_back({.name = "breaks",
+                    .kind = kSection,
+                    .meaning = "Reaction at which the joint breaks.",
+                    .standard = "never",
+                    .table = strength_fields().title});
   return result;
 }
 

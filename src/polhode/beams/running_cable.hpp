@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/beams/hill_muscle.hpp>
+#include <polhode/beams/running_cable_report.hpp>
+#include <polhode/core/time_function.hpp>
+#include <polhode/system/element_group.hpp>
+
+namespace polhode {
+
+/// What makes a cable that runs over its points.
+struct RunningCableSpec {
+  std::string name;
+  std::vector<int> nodes;    ///< Of the System, bonded to bodies, from end to end.
+  double stiffness = 0.0;    ///< Force per elongation; 0: none [N/m].
+  double free_length = 0.0;  ///< [m]
+  double damping = 0.0;      ///< Force per rate of elongation, while taut [N s/m].
+  bool tension_only = true;  ///< Slack when shorter than its free length.
+  TimeFunctionPtr tension;   ///< Beside that; null: none [N].
+  std::optional<HillMuscle> muscle;
+};
+
+/// A cable without mass that slides without friction over points of any number of bodies: one
+/// tension N in all its spans, a function of its whole length L = Σ l_i, its rate and time.
+///
+/// On a point between two spans acts N (n_i − n_{i−1}), n_i = u_{i,α}/l_{i,α}, with discrete
+/// gradients of the lengths of the spans: ΔL = Σ n_i·Δu_i. With the mean of its elastic tension
+/// over the step a cable gives back what it stored exactly at ρ∞ = 1. @eq{running-cable}
+class RunningCable : public ElementGroup {
+ public:
+  /// @throws InputError if a number makes no sense.
+  explicit RunningCable(RunningCableSpec spec);
+
+  [[nodiscard]] std::string kind() const override { return "running cable"; }
+  [[nodiscard]] const std::string& name() const override { return spec_.name; }
+  [[nodiscard]] int size() const override { return 1; }
+  [[nodiscard]] int nodes_per_element() const override {
+    return static_cast<int>(spec_.nodes.size());
+  }
+  [[nodiscard]] std::span<const int> nodes(int) const override { return spec_.nodes; }
+  [[nodiscard]] bool conservative() const override {
+    return !dissipates() && !spec_.tension && !spec_.muscle;
+  }
+  [[nodiscard]] bool dissipates() const override { return spec_.damping > 0.0 || spec_.muscle; }
+  [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const override;
+  ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
+                         const Mat3& turn, const ElementSink& sink) const override;
+  [[nodiscard]] Work work(const NodeStep& step, const double* history,
+                          const double* scratch) const override;
+
+  [[nodiscard]] RunningCableReport report(const NodeStep& instant) const;
+
+ private:
+  struct Span {
+    Vec3 n = Vec3::Zero();     ///< Discrete gradient of its length by the second point.
+    Vec3 e = Vec3::Zero();     ///< Direction at t_{n+1}.
+    Vec3 rate = Vec3::Zero();  ///< Derivative of the cable's rate by the second point [1/s].
+    double per_length = 0.0;   ///< 1/l_α; 0: no direction.
+  };
+  /// The whole cable over the step.
+  struct Course {
+    std::vector<Span> spans;
+    double n = 0.0, n1 = 0.0;  ///< Length at t_n, t_{n+1} [m].
+    double change = 0.0;       ///< Of the length, without cancellation [m].
+    double rate = 0.0;         ///< At t_{n+αf} [m/s].
+  };
+  /// Parts of the tension, and the derivatives of their sum by L_{n+1} and by the rate.
+  struct Tension {
+    double elastic = 0.0, damper = 0.0, active = 0.0, by_n1 = 0.0, by_rate = 0.0;
+    [[nodiscard]] double sum() const { return elastic + damper + active; }
+  };
+  /// A force of the length: value and slope.
+  struct Law {
+    double value = 0.0, slope = 0.0;
+  };
+  [[nodiscard]] Course course(const NodeStep& step) const;
+  [[nodiscard]] Tension tension(const NodeStep& step, const Course& c) const;
+  /// Elastic force at a length, muscle's passive one included.
+  [[nodiscard]] Law elastic(double length) const;
+  [[nodiscard]] double energy(double length) const;
+  [[nodiscard]] bool taut(double length) const {
+    return !spec_.tension_only || length > spec_.free_length;
+  }
+  /// Fibres at a length of the whole muscle.
+  struct Fibre {
+    double length = 0.0;  ///< Over the optimal one [-].
+    double cosine = 1.0;  ///< Of the pennation: derivative of their length by that of the muscle.
+    double bend = 0.0;    ///< Derivative of the cosine by the muscle's length [1/m].
+  };
+  [[nodiscard]] Fibre fibre(double length) const;
+
+  RunningCableSpec spec_;
+};
+
+}  // namespace polhode

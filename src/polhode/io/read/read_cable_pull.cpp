@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_context.hpp>
+
+namespace polhode {
+
+namespace {
+
+HillMuscle read_muscle(ReadContext& context, const SourceNode& node, const std::string& path) {
+  HillMuscle m;
+  Section section(context, node, context.tree.place_of(node), path, muscle_fields());
+  if (!node.is_map()) return m;
+  m.max_force = section.number("max_force").value_or(1.0);
+  m.optimal_length = section.number("optimal_length").value_or(1.0);
+  m.tendon_length = section.number("tendon_length").value_or(0.0);
+  m.pennation = section.number("pennation").value_or(0.0);
+  m.max_velocity = section.number("max_velocity").value_or(10.0);
+  m.damping = section.number("damping").value_or(0.0);
+  m.activation = section.time_number("activation");
+  return m;
+}
+
+}  // namespace
+
+void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cable) {
+  cable.tension = section.time_number("tension");
+  if (const SourceNode* node = section.find("muscle"))
+    cable.muscle = read_muscle(context, *node, section.path("muscle"));
+  const bool other = section.has("tension") || section.has("muscle");
+  const auto stiffness = section.number("stiffness");
+  if (section.misses("stiffness") && !other && !section.has_unknown_key())
+    section.fault("'stiffness' is missing", "Give EA; or, of a cable that slides, a tension.");
+  cable.stiffness = stiffness.value_or(other ? 0.0 : 1.0);
+  cable.slides = section.boolean("slides").value_or(other);
+  if (other && !cable.slides)
+    section.fault("slides", format("does not go with '{}'", cable.muscle ? "muscle" : "tension"),
+                  "A given tension is the same in all pieces: leave it out.");
+  if (cable.slides && section.has("strain"))
+    section.fault("strain", "does not go with 'slides'", "Its strain is l/L - 1: leave it out.");
+}
+
+}  // namespace polhode

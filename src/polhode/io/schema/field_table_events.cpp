@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/io/schema/field_table.hpp>
+
+namespace polhode {
+
+using namespace dimensions;
+using enum FieldKind;
+
+const FieldTable& event_fields() {
+  static const FieldTable table{
+      "event",
+      "Switches joints and loads off and on: at a time, or when a reported number crosses a value. "
+      "An event at time 0 tells how the model starts. Positions are continuous, velocities too "
+      "unless a joint closes or a drive begins.",
+      {
+          {.name = "at",
+           .kind = kNumber,
+           .dimension = kTime,
+           .meaning = "The time. Or when.",
+           .range = kNotNegative},
+          {.name = "when",
+           .kind = kSection,
+           .meaning = "The condition: the event comes when it begins to hold.",
+           .table = "condition"},
+          {.name = "after",
+           .kind = kText,
+           .meaning = "Name of an event before which this one does not come.",
+           .standard = "it may come from the start"},
+          {.name = "off", .kind = kNames, .meaning = "Joints and loads that cease to act."},
+          {.name = "on", .kind = kNames, .meaning = "Joints and loads that begin to act."},
+          {.name = "repeat",
+           .kind = kBoolean,
+           .meaning = "Comes each time the condition begins to hold, not only the first time.",
+           .standard = "false"},
+          {.name = "stop", .kind = kBoolean, .meaning = "Ends the run.", .standard = "false"},
+      }};
+  return table;
+}
+
+const FieldTable& condition_fields() {
+  static const FieldTable table{
+      "condition",
+      "A reported number beyond a value. Give one of body, joint and load, and one of above and "
+      "below.",
+      {
+          {.name = "body", .kind = kBody, .meaning = "The body that reports."},
+          {.name = "joint", .kind = kJoint, .meaning = "The joint that reports."},
+          {.name = "load", .kind = kLoad, .meaning = "The load that reports."},
+          {.name = "point",
+           .kind = kVector,
+           .dimension = kLength,
+           .meaning = "Point of the body, body coordinates.",
+           .standard = "the centre of mass"},
+          {.name = "channel",
+           .kind = kText,
+           .meaning = "The number, named as the column of a probe: z, vz, 'rate rz', fx; also "
+                      "speed of a body, force and moment (magnitudes) of a joint.",
+           .required = true},
+          {.name = "above",
+           .kind = kNumber,
+           .meaning = "The condition holds from here up. In the unit of the channel."},
+          {.name = "below",
+           .kind = kNumber,
+           .meaning = "The condition holds from here down. In the unit of the channel."},
+      }};
+  return table;
+}
+
+const FieldTable& strength_fields() {
+  static const FieldTable table{
+      "strength",
+      "Reaction at which a joint breaks: from then on it is gone. Give one of them or both.",
+      {
+          {.name = "force",
+           .kind = kNumber,
+           .dimension = kForce,
+           .meaning = "Magnitude of the force.",
+           .range = kPositive},
+          {.name = "moment",
+           .kind = kNumber,
+           .dimension = kMoment,
+           .meaning = "Magnitude of the moment at the joint's point.",
+           .range = kPositive},
+      }};
+  return table;
+}
+
+}  // namespace polhode

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a joint's frames stand, also those of one that was switched on where its bodies stood.
+#include <polhode/joints/joint.hpp>
+#include <polhode/joints/moving_frame.hpp>
+
+namespace polhode {
+
+const JointFrames& Joint::held_frames(const PairStep& step, JointFrames& own) const {
+  if (!anchors() || step.history[anchor() + kAnchored] == 0.0) return frames_;
+  const double* held = step.history + anchor();
+  own = frames_;
+  own.Z_b = Eigen::Map<const Vec3>(held + kAnchorZ);
+  own.R_b = Eigen::Map<const Mat3>(held + kAnchorR);
+  return own;
+}
+
+Configuration Joint::at_n1(const PairStep& step) const {
+  const BodyStep &a = step.a, &b = step.b;
+  JointFrames own;
+  const JointFrames& frames = held_frames(step, own);
+  const Vec3 z_a = a.Lambda_n1 * frames.Z_a, z_b = b.Lambda_n1 * frames.Z_b;
+  Configuration q{.u = (b.r_n1 - a.r_n1) + (z_b - z_a),
+                  .z_a = z_a,
+                  .z_b = z_b,
+                  .R_a = a.Lambda_n1 * frames.R_a,
+                  .R_b = b.Lambda_n1 * frames.R_b};
+  if (motion_) {
+    Configuration unused = q;
+    move_frame(*motion_, frames_, step, unused, q);
+  }
+  return q;
+}
+
+/// The frame of a, as b sees it now.
+void Joint::switch_on(const PairStep& step, double* history) const {
+  count_turns(step, history);
+  if (resistance_) resistance_->initialize(history + angles());
+  if (!anchors()) return;
+  const BodyStep &a = step.a, &b = step.b;
+  double* held = history + anchor();
+  held[kAnchored] = 1.0;
+  Eigen::Map<Vec3>(held + kAnchorZ) =
+      b.Lambda_n1.transpose() * (a.r_n1 + a.Lambda_n1 * frames_.Z_a - b.r_n1);
+  Eigen::Map<Mat3>(held + kAnchorR) = b.Lambda_n1.transpose() * (a.Lambda_n1 * frames_.R_a);
+}
+
+}  // namespace polhode

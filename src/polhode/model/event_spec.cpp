@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <polhode/model/event_spec.hpp>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
+#include <polhode/model/model.hpp>
+
+namespace polhode {
+
+SwitchTarget switch_target(const Model& model, const std::string& name) {
+  SwitchTarget found;
+  int count = 0;
+  std::vector<std::string> names;
+  const auto look = [&](const auto& list, bool joint) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      names.push_back(list[i].name);
+      if (list[i].name != name) continue;
+      found = {joint, static_cast<int>(i)};
+      ++count;
+    }
+  };
+  look(model.joints, true);
+  look(model.loads, false);
+  if (count == 0)
+    throw InputError(
+        name, format("unknown joint or load '{}'", name),
+        did_you_mean(name, names) + (names.empty() ? "The model has neither joints nor loads"
+                                                   : "Joints and loads: " + name_list(names)));
+  if (count > 1)
+    throw InputError(name, format("'{}' is a joint and a load", name), "Rename one of them");
+  if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid >= 0)
+    throw InputError(name, format("'{}' is a load on a solid, which is not switched", name),
+                     "Let its function of time be zero instead");
+  return found;
+}
+
+std::vector<EventSpec> all_events(const Model& model) {
+  std::vector<EventSpec> events = model.events;
+  for (const JointSpec& joint : model.joints) {
+    const auto add = [&](const char* what, const std::optional<double>& limit) {
+      if (!limit) return;
+      EventSpec event;
+      event.name = format("{} breaks by {}", joint.name, what);
+      event.place = joint.place;
+      event.when = ConditionSpec{{"joint", joint.name, what}, *limit, true};
+      event.off = {joint.name};
+      events.push_back(std::move(event));
+    };
+    add("force", joint.breaks.force);
+    add("moment", joint.breaks.moment);
+  }
+  return events;
+}
+
+}  // namespace polhode

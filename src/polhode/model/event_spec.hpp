@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/core/place.hpp>
+#include <polhode/core/types.hpp>
+
+namespace polhode {
+
+/// One number that a simulation reports, by the name of its column in a probe.
+struct ChannelSpec {
+  std::string kind;           ///< body, joint or load.
+  std::string target;         ///< Its name.
+  std::string name;           ///< Such as z, vx, rz, "rate rz", fx, force.
+  Vec3 point = Vec3::Zero();  ///< Of a body: from the centre of mass, body axes [m].
+};
+
+/// A channel that crosses a value.
+struct ConditionSpec {
+  ChannelSpec channel;
+  double level = 0.0;  ///< In SI.
+  bool above = true;   ///< It holds from the level up; else from the level down.
+};
+
+/// Something that switches joints and loads, at a time or when a condition comes to hold.
+struct EventSpec {
+  std::string name;
+  Place place;
+  std::optional<double> at;           ///< [s]; at 0 it tells how the model starts.
+  std::optional<ConditionSpec> when;  ///< Instead of a time.
+  std::string after;                  ///< Event that must have come before; "" for none.
+  std::vector<std::string> on, off;   ///< Joints and loads by name.
+  bool repeat = false;                ///< Comes again each time the condition comes to hold.
+  bool stop = false;                  ///< Ends the run.
+};
+
+/// Reaction that a joint bears; beyond it it lets go.
+struct JointStrengthSpec {
+  std::optional<double> force, moment;  ///< Magnitudes [N], [N m].
+};
+
+struct Model;
+
+/// A joint or a load that events may switch.
+struct SwitchTarget {
+  bool joint = false;  ///< Else a load.
+  int index = -1;      ///< Into Model::joints or Model::loads.
+};
+/// @throws InputError if there is none of that name, or two, or it is a load on a solid.
+[[nodiscard]] SwitchTarget switch_target(const Model& model, const std::string& name);
+
+/// The events of a model, with those of joints that break behind them.
+[[nodiscard]] std::vector<EventSpec> all_events(const Model& model);
+
+}  // namespace polhode

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <polhode/compile/build_system.hpp>
+
+namespace polhode {
+
+class Simulation;
+
+/// The events of a model while it runs: which are due, and how far the conditions of others are
+/// from holding. What came is remembered in the State.
+class EventWatch {
+ public:
+  /// @throws InputError if a channel or an event is named that does not exist.
+  EventWatch(const Model& model, const SystemMap& map, const System& system);
+
+  [[nodiscard]] const std::vector<EventSpec>& events() const { return *events_; }
+  /// Interactions that an event switches on, off.
+  [[nodiscard]] const std::vector<int>& on(int event) const { return watched_[at(event)].on; }
+  [[nodiscard]] const std::vector<int>& off(int event) const { return watched_[at(event)].off; }
+
+  /// The next time that is given for an event [s]; infinity if there is none.
+  [[nodiscard]] double next_time(const State& state) const;
+  /// Whether a condition may come to hold in the next step.
+  [[nodiscard]] bool watches(const State& state) const;
+  /// How far the first of these conditions is beyond its level, negative before it: a continuous
+  /// function along the motion, whose zero is the next event.
+  [[nodiscard]] double margin(const Simulation& simulation) const;
+  /// Events that come at the instant, in the order of the model.
+  [[nodiscard]] std::vector<int> due(const Simulation& simulation) const;
+  /// Makes repeated events ready again whose condition no longer holds.
+  void rearm(const Simulation& simulation, State& state) const;
+  /// Notes that an event came.
+  void note(State& state, int event, double lost, double impulse) const;
+  [[nodiscard]] double memory(const State& state, int event, EventMemory::Entry entry) const {
+    return state.history[place(event, entry)];
+  }
+  /// The first event that came and ends the run; −1: none.
+  [[nodiscard]] int stopped(const State& state) const;
+
+ private:
+  /// Where the number of a channel stands in the report of its thing.
+  struct Channel {
+    int index = -1;             ///< Into the model's bodies, joints or loads.
+    int component = -1;         ///< Of the report.
+    bool of_positions = false;  ///< Needs no velocities and forces.
+  };
+  struct Watched {
+    std::vector<int> on, off;
+    Channel channel;
+    int after = -1;
+  };
+  static std::size_t at(int event) { return static_cast<std::size_t>(event); }
+  [[nodiscard]] std::size_t place(int event, EventMemory::Entry entry) const {
+    return at(system_->memory() + EventMemory::kSize * event + entry);
+  }
+  [[nodiscard]] Channel channel(const EventSpec& event) const;
+  [[nodiscard]] bool ready(const State& state, int event) const;
+  /// How far the condition of an event is beyond its level.
+  [[nodiscard]] double beyond(const Simulation& simulation, int event) const;
+  [[nodiscard]] double value(const Simulation& simulation, const ChannelSpec& spec,
+                             const Channel& channel) const;
+
+  const Model* model_;
+  const SystemMap* map_;
+  const System* system_;
+  const std::vector<EventSpec>* events_;
+  std::vector<Watched> watched_;
+};
+
+}  // namespace polhode

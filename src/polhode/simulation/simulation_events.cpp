@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps of a Simulation whose model has events.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/simulation/simulation_impl.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// An event that seems to come within this part of a step behind its end is looked for in a step
+/// that is longer by that: no tiny step follows.
+constexpr double kReach = 0.9e-3;
+/// A change between looks that seems to be bigger than it is, for good measure [-].
+constexpr double kMoreThanSecant = 1.5;
+/// An event is found when the condition is that close to its level, as part of its change over the
+/// step, or its time is known to this part of the step.
+constexpr double kFound = 1e-13;
+constexpr int kMostLooks = 60;
+
+}  // namespace
+
+/// @eq{event-time}
+StepReport Simulation::advance(double t_limit) {
+  Impl& s = *impl_;
+  if (!s.events) return s.advance(t_limit);
+  StepReport report;
+  if (s.state.ledger.steps == 0 && !let_events_come(report)) return report;
+  const EventWatch& events = *s.events;
+  const double limit = std::min(t_limit, events.next_time(s.state));
+  const bool watches = events.watches(s.state);
+  const State before = s.state;
+  const double margin = watches ? events.margin(*this) : 0.0;
+  report = s.take(limit);
+  if (!report.accepted) return report;
+  if (watches) find_event(before, margin, limit, report);
+  s.settle_step();
+  events.rearm(*this, s.state);
+  if (!let_events_come(report)) s.go_to(before);
+  return report;
+}
+
+void Simulation::find_event(const State& before, double margin, double limit, StepReport& report) {
+  Impl& s = *impl_;
+  const auto take = [&](double t) {
+    s.go_to(before);
+    StepReport r = s.take(t);
+    return std::pair(r, r.accepted ? s.events->margin(*this) : 0.0);
+  };
+  double beyond = s.events->margin(*this);
+  if (beyond < 0.0) {
+    const double H = s.state.t - before.t, longer = s.state.t + kReach * H;
+    if (beyond + kMoreThanSecant * kReach * (beyond - margin) < 0.0 || longer > limit) return;
+    const State ordinary = s.state;
+    const auto [r, at_end] = take(longer);
+    if (!r.accepted || at_end < 0.0) {
+      s.go_to(ordinary);
+      return;
+    }
+    report = r;
+    beyond = at_end;
+  }
+  // Regula falsi with the Illinois rule; the state stays on the side where the condition holds.
+  State reached = s.state;
+  double low = 0.0, high = s.state.t - before.t, at_low = margin, at_high = beyond;
+  const double close = kFound * (beyond - margin), H = high;
+  const double same =
+      std::max(kFound * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(s.state.t));
+  int side = 0;
+  for (int k = 0; k < kMostLooks && beyond > close && high - low > same; ++k) {
+    const double secant = (low * at_high - high * at_low) / (at_high - at_low);
+    const double x = std::clamp(secant + 0.25 * same, low + 0.25 * same, high - 0.25 * same);
+    const auto [r, m] = take(before.t + x);
+    if (!r.accepted) break;
+    const double length = s.state.t - before.t;
+    if (m >= 0.0) {
+      high = length;
+      at_high = beyond = m;
+      reached = s.state;
+      report = r;
+      if (side > 0) at_low *= 0.5;
+      side = 1;
+    } else {
+      low = length;
+      at_low = m;
+      if (side < 0) at_high *= 0.5;
+      side = -1;
+    }
+  }
+  s.go_to(reached);
+}
+
+bool Simulation::let_events_come(StepReport& report) {
+  Impl& s = *impl_;
+  const EventWatch& events = *s.events;
+  for (std::vector<int> due = events.due(*this); !due.empty(); due = events.due(*this))
+    for (const int e : due) {
+      SwitchReport done;
+      const EventSpec& event = events.events()[static_cast<std::size_t>(e)];
+      const bool at_start = event.at && *event.at <= 0.0;  // the start was assembled with it
+      if (!at_start && (!event.on.empty() || !event.off.empty())) {
+        done = s.stepper->switch_over(s.state, events.on(e), events.off(e));
+        s.forget_instant();
+      }
+      if (done.worst >= 0 || !done.solved) {
+        report.accepted = false;
+        report.message = s.cannot_switch(event, done);
+        return false;
+      }
+      events.note(s.state, e, done.lost, done.impulse);
+    }
+  return true;
+}
+
+}  // namespace polhode

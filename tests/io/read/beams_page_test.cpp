@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole models in docs/reference/beams.md run as they stand.
+#include <support/page_examples.hpp>
+
+namespace polhode::test::beams_page_tests {
+
+TEST(BeamsPage, EveryModelRuns) { EXPECT_EQ(run_page_examples("docs/reference/beams.md"), 2); }
+
+}  // namespace polhode::test::beams_page_tests
