@@ -77,16 +77,27 @@ inline Mat tangent(const SolidContact& contact, const MovingNodes& nodes,
                    const std::vector<double>& history) {
   return tangent_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
-/// A history in which every point has a bristle.
+/// Numbers that a point of solids in contact remembers: its bristle comes first, last by how much
+/// its band ends lower.
+inline constexpr std::size_t kPointNumbers = 12;
+inline std::size_t first_of_points(const MovingNodes& nodes) { return 3 * nodes.X.size() + 1; }
+
+/// At the start, but with the whole band for points that start within.
+inline std::vector<double> with_whole_bands(const SolidContact& contact, const MovingNodes& nodes) {
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  for (std::size_t p = 1; p <= contact.points().size(); ++p)
+    history[first_of_points(nodes) + kPointNumbers * p - 1] = 0.0;
+  return history;
+}
+/// A history in which every point has a bristle, and its whole band.
 inline std::vector<double> bristles(const SolidContact& contact, const MovingNodes& nodes,
                                     unsigned seed) {
   Random random(seed);
-  std::vector<double> history(contact.history_size());
-  contact.initialize(history.data());
-  constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
-  const std::size_t first = 3 * nodes.X.size() + 1;
+  std::vector<double> history = with_whole_bands(contact, nodes);
   for (std::size_t p = 0; p < contact.points().size(); ++p)
-    for (std::size_t c = 0; c < 3; ++c) history[first + kNumbers * p + c] = 0.05 * random.number();
+    for (std::size_t c = 0; c < 3; ++c)
+      history[first_of_points(nodes) + kPointNumbers * p + c] = 0.05 * random.number();
   return history;
 }
 

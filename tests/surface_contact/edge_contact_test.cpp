@@ -84,6 +84,7 @@ Scene scene(double x, double rough, double way, unsigned seed = 1) {
 std::vector<double> history_of(const EdgeContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
+  history.back() = 0.0;  // the whole band, wherever it starts
   return history;
 }
 

@@ -2,6 +2,7 @@
 // Surfaces of solids against each other over one step.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <polhode/surface_contact/solid_contact.hpp>
@@ -154,9 +155,7 @@ TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
   Random random(1);
   settle(s, random, 0.0, 0.0);
   const SolidContact contact = s.contact(law(0.0), 0.5, true);
-  std::vector<double> history(contact.history_size());
-  contact.initialize(history.data());
-  const Vec f = forces(contact, s, history);
+  const Vec f = forces(contact, s, with_whole_bands(contact, s));
   const double p = law(0.0).normal.force(0.05 - kTolerance);
   double area = 0.0;
   for (const MeshPoint& point : contact.points()) area += point.area;
@@ -170,6 +169,49 @@ TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
   };
   expect(0, 3, -1.0);
   expect(16, 4, 1.0);
+}
+
+// @tests{surface-start}
+TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
+  Scene s;
+  s.context = context_of(1.0);
+  s.lower = {plate(s, 3, 0.0, true)};
+  s.upper = {plate(s, 4, 0.4, false)};  // a third of its tolerance above the middle of the band
+  Random random(1);
+  settle(s, random, 0.0, 0.0);
+  const SolidContact contact = s.contact(law(0.0), 3.0, true);
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  const auto stored = [&] {
+    Scene still = s;
+    still.context.dt = 0.0;
+    return contact.work(still.start(), history.data(), nullptr).stored;
+  };
+  // To another height; the force on the upper plate.
+  const auto go = [&](double z) {
+    s.x_n = s.x_n1;
+    std::fill(s.u.begin(), s.u.end(), 0.0);
+    for (std::size_t i = 16; i < s.X.size(); ++i) s.move(3 * i + 2, z - s.x_n[3 * i + 2]);
+    const Vec f = forces(contact, s, history);
+    const double before = stored(), up = -f[3 * 16 + 2] / law(0.0).normal.force(0.1);
+    double work = 0.0;
+    for (Eigen::Index k = 0; k < f.size(); ++k) work += f[k] * s.u[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(contact.work(s.step(), history.data(), nullptr).stored - before, -work, 1e-12);
+    contact.commit(s.step(), history.data(), nullptr);
+    s.x_n = s.x_n1;
+    return std::abs(up);
+  };
+  EXPECT_EQ(stored(), 0.0);
+  EXPECT_EQ(forces(contact, s, history).norm(), 0.0);
+  EXPECT_GT(go(0.3), 0.0);
+  EXPECT_GT(stored(), 0.0);
+  EXPECT_GT(go(0.4), 0.0) << "given back";
+  EXPECT_EQ(stored(), 0.0);
+  EXPECT_EQ(go(0.59), 0.0) << "still within the band of others";
+  EXPECT_EQ(go(0.4), 0.0);
+  EXPECT_EQ(go(0.61), 0.0);
+  EXPECT_GT(go(0.4), 0.0) << "opened, and closed again";
+  EXPECT_NEAR(stored(), 4.0 * law(0.0).normal.energy(0.1), 1e-12);
 }
 
 TEST(SolidContact, StopsPointsThatWouldPassThrough) {

@@ -184,11 +184,21 @@ Mat tangent(const SurfaceContact& contact, const Nodes& nodes, const std::vector
   return K;
 }
 
-std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
-  Random random(seed);
+/// Numbers of a point: its bristle comes first, behind it by how much its band ends lower.
+constexpr std::size_t kNumbers = 14, kLowered = 11;
+
+/// At the start, but with the whole band for points that start within.
+std::vector<double> with_whole_bands(const SurfaceContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
-  constexpr std::size_t kNumbers = 11;  // of a point; its bristle comes first
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.size()); ++i)
+    history[kNumbers * i + kLowered] = 0.0;
+  return history;
+}
+
+std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
+  Random random(seed);
+  std::vector<double> history = with_whole_bands(contact);
   for (std::size_t i = 0; i < kNumbers * static_cast<std::size_t>(contact.size()); ++i)
     if (i % kNumbers < 3) history[i] = 0.05 * random.number();
   return history;
@@ -318,14 +328,27 @@ TEST(SurfaceContact, SharesItsAreaAmongTheNodes) {
   const SurfaceContact contact("c", surface_points("c", faces, X), X, plane, {}, l);
   Nodes nodes;
   for (const Vec3& x : X) nodes.add(x, Vec3::Zero());
-  std::vector<double> history(contact.history_size());
-  contact.initialize(history.data());
+  std::vector<double> history = with_whole_bands(contact);
   EXPECT_EQ(contact.report(history.data()).least_gap, 0.0);
   contact.commit(nodes.step(), history.data(), nullptr);
   const SurfaceReport r = contact.report(history.data());
   EXPECT_NEAR(r.area, 6.0, 1e-14);
   EXPECT_NEAR(r.force[2], 6.0 * l.normal.force(0.0), 1e-12);
   EXPECT_EQ(r.least_gap, 0.0);
+}
+
+// @tests{surface-start}
+TEST(SurfaceContact, StoresNothingWhereItStarts) {
+  const std::vector<Vec3> X{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
+  const SurfaceContact contact("c", surface_points("c", {"quad4", {0, 1, 2, 3}}, X), X,
+                               RigidSurface{}, {}, law(0.0));
+  std::vector<double> history(contact.history_size());
+  contact.initialize(history.data());
+  Nodes nodes;
+  for (const Vec3& x : X) nodes.add(x, Vec3::Zero());
+  EXPECT_EQ(contact.work(nodes.start(), history.data(), nullptr).stored, 0.0);
+  contact.commit(nodes.step(), history.data(), nullptr);
+  EXPECT_EQ(contact.report(history.data()).normal_force, 0.0);
 }
 
 /// Points on their way, stopped before they come out on the other side.

@@ -33,8 +33,8 @@ constexpr double kPressure = 0.02;
 /// cable's radius.
 constexpr double kCablePressure = 1e-3;
 /// Of the band of faces, that of edges: faces that lie on each other keep their edges farther apart
-/// than that, so that these add nothing to a pressure.
-constexpr double kEdgeBand = 0.25;
+/// than that, so that these add nothing to a pressure, also those whose band ends where they start.
+constexpr double kEdgeBand = 0.1;
 
 /// Young's modulus of small strains [Pa].
 double modulus(const Model& model, const SolidSpec& solid) {

@@ -301,9 +301,8 @@ void NodeCondensation::gather(const std::vector<double>& F, double scale,
   }
 }
 
-void NodeCondensation::condense(const std::vector<double>& F, double scale,
-                                std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
-                                std::span<KktValues::Pair> pairs) {
+void NodeCondensation::press(const std::vector<double>& F, double scale,
+                             std::vector<Vec6>& residual) {
   const Nodes& nodes = system_->nodes();
   const auto at = [&](int node) { return Eigen::Map<const Vec3>(F.data() + 3 * node); };
   gather(F, scale, residual);
@@ -314,15 +313,23 @@ void NodeCondensation::condense(const std::vector<double>& F, double scale,
       if (const int row = nodes.unknown(i, c); row >= 0) y_[row] = f[c];
   }
   if (nodes.unknowns() > 0) mumps_.solve(y_.data());
-  for (std::size_t p = 0; p < couplings_.size(); ++p) {
-    const std::vector<int>& bodies = nodes.pieces()[p].bodies;
-    const Mat3& Q = turn_[p];
+  for (std::size_t p = 0; p < couplings_.size(); ++p)
     for (const Coupling& c : couplings_[p]) {
       Vec6 share = Vec6::Zero();
       for (int r = 0; r < 3; ++r)
         if (const int row = nodes.unknown(c.node, r); row >= 0) share += y_[row] * c.bf.col(r);
-      residual[c.body] -= scale * turned(Q, share);
+      residual[c.body] -= scale * turned(turn_[p], share);
     }
+}
+
+void NodeCondensation::condense(const std::vector<double>& F, double scale,
+                                std::vector<Vec6>& residual, std::vector<Mat6>& diagonal,
+                                std::span<KktValues::Pair> pairs) {
+  const Nodes& nodes = system_->nodes();
+  press(F, scale, residual);
+  for (std::size_t p = 0; p < couplings_.size(); ++p) {
+    const std::vector<int>& bodies = nodes.pieces()[p].bodies;
+    const Mat3& Q = turn_[p];
     std::size_t pair = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto block = [&](std::size_t r, std::size_t c) {

@@ -54,6 +54,9 @@ class NodeCondensation {
   /// body, and S to the diagonal and to the pairs' blocks, all times `scale`.
   void condense(const std::vector<double>& F, double scale, std::vector<Vec6>& residual,
                 std::vector<Mat6>& diagonal, std::span<KktValues::Pair> pairs);
+  /// The first part of that alone: P̄ᵀF − A_bf A_ff⁻¹ F_f. What expand() tells follows from the
+  /// forces given last.
+  void press(const std::vector<double>& F, double scale, std::vector<Vec6>& residual);
   /// Increments of all nodes (3 each) from those of the bodies (6 each).
   void expand(const double* bodies, std::vector<double>& du) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 
 #include <polhode/equations/node_inertia.hpp>
 
@@ -79,6 +80,13 @@ void NodeInertia::put(double scale, std::vector<Vec6>& force, std::vector<Mat6>&
                       std::span<KktValues::Pair> pairs) {
   std::vector<Vec6> share(force.size(), Vec6::Zero());
   condensation_.condense(residual_, scale, share, diagonal, pairs);
+  for (std::size_t b = 0; b < force.size(); ++b) force[b] -= share[b];
+}
+
+void NodeInertia::press(std::span<const double> impulses, double scale, std::vector<Vec6>& force) {
+  std::vector<Vec6> share(force.size(), Vec6::Zero());
+  std::transform(impulses.begin(), impulses.end(), residual_.begin(), std::negate<>());
+  condensation_.press(residual_, scale, share);
   for (std::size_t b = 0; b < force.size(); ++b) force[b] -= share[b];
 }
 

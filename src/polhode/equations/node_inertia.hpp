@@ -26,6 +26,9 @@ class NodeInertia {
   /// Adds the condensed mass and, to `force` by body, what the nodes exert, all times `scale`.
   void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,
            std::span<KktValues::Pair> pairs);
+  /// After take_masses() and put(): impulses on free nodes (3 each, zero on others), whose share of
+  /// the bodies' is added to `force` by body, times `scale`. accelerations() are then the jumps.
+  void press(std::span<const double> impulses, double scale, std::vector<Vec6>& force);
   /// Accelerations of all nodes (3 each) from those of the bodies (6 each).
   [[nodiscard]] const std::vector<double>& accelerations(const double* bodies);
   /// M a − f − M g of all nodes (3 each) for the accelerations last asked for: what bodies, ground

@@ -71,6 +71,9 @@ class InstantSolver {
   /// impulse, but move with those that bodies carry as their mass couples them.
   /// @returns false if a matrix is singular.
   [[nodiscard]] bool take_impulses(const State& state);
+  /// Impulses on free nodes (3 each, zero on others) to which jumps() and node_jumps() answer from
+  /// here on; empty: none.
+  void press_nodes(std::span<const double> impulses);
   /// M Δv = impulses with G Δv = 0. By body (linear, angular), world, about the centres of mass.
   [[nodiscard]] std::vector<Vec6> jumps(std::span<const Vec6> impulses);
   /// The least change that takes the velocities onto G v = 0.

@@ -8,7 +8,19 @@ bool InstantSolver::take_impulses(const State& state) {
   Impl& s = *impl_;
   s.take(state);
   s.put_masses_and_rows(state);
+  s.of_nodes.clear();
   return s.add_node_masses(state) && s.factor(state);
+}
+
+/// @eq{solid-impulse}
+void InstantSolver::press_nodes(std::span<const double> impulses) {
+  Impl& s = *impl_;
+  if (!s.nodes || (impulses.empty() && s.of_nodes.empty())) return;
+  const std::vector<double> none(impulses.empty() ? s.system.nodes().no_displacement().size() : 0);
+  s.of_nodes.assign(static_cast<std::size_t>(s.system.body_count()), Vec6::Zero());
+  s.nodes->press(impulses.empty() ? std::span<const double>(none) : impulses,
+                 1.0 / s.system.mean_mass(), s.of_nodes);
+  if (impulses.empty()) s.of_nodes.clear();
 }
 
 std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
@@ -17,6 +29,8 @@ std::vector<Vec6> InstantSolver::jumps(std::span<const Vec6> impulses) {
   s.rhs.setZero();
   for (std::size_t b = 0; b < impulses.size(); ++b)
     s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) = per_mass * impulses[b];
+  for (std::size_t b = 0; b < s.of_nodes.size(); ++b)
+    s.rhs.segment<6>(6 * static_cast<Eigen::Index>(b)) += s.of_nodes[b];
   return s.solution_by_body();
 }
 

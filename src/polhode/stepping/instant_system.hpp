@@ -36,6 +36,7 @@ struct InstantSolver::Impl {
   KktValues values;
   Vec rhs, x, correction;
   std::unique_ptr<NodeInertia> nodes;  ///< Of deformable solids, if there are any.
+  std::vector<Vec6> of_nodes;          ///< By body: what impulses on free nodes are there.
   /// Positions and time that the factorisation at hand belongs to.
   std::vector<BodyBlock> factored_at;
   double factored_t = 0.0;

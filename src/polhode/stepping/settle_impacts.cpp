@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
-#include <polhode/stepping/settle_impacts.hpp>
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/stepping/impact_rows.hpp>
 #include <polhode/stepping/single_impact.hpp>
 
 namespace polhode {
@@ -23,28 +23,19 @@ constexpr double kHeld = 1e-13;
 /// A speed that is wanted to change by less than this part is left as it is.
 constexpr double kSameSpeed = 1e-12;
 
-int first_of(std::vector<int>& tie, int body) {
-  while (tie[body] != body) body = tie[body] = tie[tie[body]];
-  return body;
-}
-
-void join(std::vector<int>& tie, int a, int b) {
-  const int x = first_of(tie, a), y = first_of(tie, b);
-  tie[std::max(x, y)] = std::min(x, y);
-}
-
 }  // namespace
 
 SettleImpacts::SettleImpacts(const System& system) : system_(&system) {
   const auto n = static_cast<std::size_t>(system.body_count());
-  tie_.resize(n);
+  // Behind the bodies the pieces of solids.
+  tie_.resize(n + system.nodes().pieces().size());
   std::iota(tie_.begin(), tie_.end(), 0);
   tied_.assign(n, false);
   place_.assign(n, -1);
   const auto tie = [&](int a, int b) {
     if (a != kGround) tied_[a] = true;
     if (b != kGround) tied_[b] = true;
-    if (a != kGround && b != kGround) join(tie_, a, b);
+    if (a != kGround && b != kGround) impact_rows::join(tie_, a, b);
   };
   for (const InteractionRef& ref : system.interactions())
     if (ref.rows > 0 || system.group(ref.group).coupled_mass(ref.item) != 0.0) tie(ref.a, ref.b);
@@ -53,11 +44,28 @@ SettleImpacts::SettleImpacts(const System& system) : system_(&system) {
     if (nodes[i].body >= 0) tied_[nodes[i].body] = true;
   for (const NodePiece& piece : nodes.pieces())
     for (int body : piece.bodies) tie(piece.bodies.front(), body);
+  for (std::size_t p = 0; p < nodes.pieces().size(); ++p)
+    if (const NodePiece& piece = nodes.pieces()[p]; !piece.bodies.empty())
+      impact_rows::join(tie_, piece.bodies.front(), static_cast<int>(n + p));
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const auto* group = dynamic_cast<const SurfaceImpacts*>(&nodes.group(g)))
+      groups_.emplace_back(g, group);
 }
 
 void SettleImpacts::find(const State& state, const Trial& trial) {
   rows_.clear();
+  surfaces_.clear();
   contacts_ = nullptr;
+  dt_ = trial.context.dt;
+  if (!groups_.empty()) {
+    const NodeStep step = node_step(state, trial);
+    std::vector<SurfaceImpact> hit;
+    for (const auto& [g, group] : groups_) {
+      hit.clear();
+      group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
+      for (SurfaceImpact& impact : hit) surfaces_.push_back({g, std::move(impact)});
+    }
+  }
   std::vector<Impact> impacts;
   for (int i : system_->barriers()) {
     const InteractionRef& ref = system_->interactions()[i];
@@ -66,7 +74,7 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
     system_->group(ref.group).impacts(ref.item, view.step(), impacts);
     for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact, {}});
   }
-  of_joints_ = rows_.size();
+  of_joints_ = before_contacts_ = rows_.size();
 }
 
 Work SettleImpacts::find(State& state, MovingContacts& contacts) {
@@ -79,37 +87,6 @@ bool SettleImpacts::any() const {
                      [](const PairImpact& row) { return !std::isnan(row.impact.wanted); });
 }
 
-std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
-  std::vector<int> root = tie_;
-  for (const auto& [bodies, impact, course, slow] : rows_)
-    if (bodies.a != kGround && bodies.b != kGround) join(root, bodies.a, bodies.b);
-  std::map<int, Island> by_root;
-  for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
-    const auto [a, b] = rows_[k].bodies;
-    Island& island = by_root[first_of(root, a != kGround ? a : b)];
-    island.rows.push_back(k);
-    for (int body : {a, b}) {
-      if (body == kGround) continue;
-      island.bodies.push_back(body);
-      island.tied = island.tied || tied_[body];
-    }
-  }
-  std::vector<Island> list;
-  for (auto& [first, island] : by_root) {
-    if (island.tied) {
-      island.bodies.clear();
-      for (int body = 0; body < static_cast<int>(root.size()); ++body)
-        if (first_of(root, body) == first) island.bodies.push_back(body);
-    } else {
-      std::sort(island.bodies.begin(), island.bodies.end());
-      island.bodies.erase(std::unique(island.bodies.begin(), island.bodies.end()),
-                          island.bodies.end());
-    }
-    list.push_back(std::move(island));
-  }
-  return list;
-}
-
 Vec6 SettleImpacts::velocity(const State& state, int body) const {
   const BodyMotion m = system_->motion(state, body);
   Vec6 v;
@@ -117,45 +94,14 @@ Vec6 SettleImpacts::velocity(const State& state, int body) const {
   return v;
 }
 
-/// A relative velocity J v, and how the island answers a unit impulse along it.
-struct SettleImpacts::Row {
-  int impact = 0;      ///< Its number.
-  Vec6 on_a, on_b;     ///< J.
-  int a = -1, b = -1;  ///< Places of the bodies in the island; −1: the ground.
-  std::vector<std::pair<int, Vec6>> answer;  ///< By place: X = M⁻¹ Jᵀ under G v = 0.
-  double mobility = 0.0;                     ///< J X.
-  double before = 0.0, impulse = 0.0;        ///< J v at first [m/s]; [N s].
-  bool rubs = false;                         ///< The first of two tangents.
-
-  [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
-    double sum = 0.0;
-    if (a >= 0) sum += on_a.dot(v[static_cast<std::size_t>(a)]);
-    if (b >= 0) sum += on_b.dot(v[static_cast<std::size_t>(b)]);
-    return sum;
-  }
-  /// Its velocity by a unit impulse along another row of the same bodies.
-  [[nodiscard]] double speed_by(const Row& other) const {
-    double sum = 0.0;
-    for (const auto& [place, x] : other.answer) {
-      if (place == a) sum += on_a.dot(x);
-      if (place == b) sum += on_b.dot(x);
-    }
-    return sum;
-  }
-  void push(double p, std::vector<Vec6>& v) {
-    impulse += p;
-    for (const auto& [place, x] : answer) v[static_cast<std::size_t>(place)] += p * x;
-  }
-};
-
 /// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
 /// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
 void SettleImpacts::settle(State& state) {
   settled_.assign(rows_.size(), {});
   jumped_.clear();
   resting_.clear();
-  numbers_.resize(rows_.size() - of_joints_);
-  std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(of_joints_));
+  numbers_.resize(rows_.size() - before_contacts_);
+  std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(before_contacts_));
   std::vector<Vec6> before;
   if (contacts_)
     for (int body = 0; body < system_->body_count(); ++body)
@@ -163,6 +109,7 @@ void SettleImpacts::settle(State& state) {
   for (PairImpact& row : rows_)
     if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
+  tell_surfaces(state);
   if (!contacts_) return;
   for (int round = 0; round < kMostCarried; ++round) {
     const std::size_t first = rows_.size();
@@ -214,6 +161,15 @@ void SettleImpacts::settle_from(State& state, std::size_t first) {
   std::erase_if(all, [&](const Island& island) {
     return static_cast<std::size_t>(island.rows.back()) < first;
   });
+  const auto inert = [&](int k) {
+    const Impact& impact = rows_[k].impact;
+    if (impact.mu > 0.0) return false;
+    const double now = speed(state, k);
+    return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
+  };
+  std::erase_if(all, [&](const Island& island) {
+    return std::all_of(island.rows.begin(), island.rows.end(), inert);
+  });
   const bool tied = std::any_of(all.begin(), all.end(), [](const Island& i) { return i.tied; });
   std::vector<Vec6> to_admissible;
   if (tied) {
@@ -221,14 +177,7 @@ void SettleImpacts::settle_from(State& state, std::size_t first) {
     if (!solver_->take_impulses(state)) return;
     to_admissible = solver_->jumps_to_admissible(state);
   }
-  const auto inert = [&](int k) {
-    const Impact& impact = rows_[k].impact;
-    if (impact.mu > 0.0) return false;
-    const double now = speed(state, rows_[k]);
-    return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
-  };
   for (const Island& island : all) {
-    if (std::all_of(island.rows.begin(), island.rows.end(), inert)) continue;
     for (std::size_t i = 0; i < island.bodies.size(); ++i)
       place_[island.bodies[i]] = static_cast<int>(i);
     if (island.tied && system_->rows() > 0) {
@@ -239,55 +188,6 @@ void SettleImpacts::settle_from(State& state, std::size_t first) {
     settle(state, island);
     jumped_.insert(jumped_.end(), island.bodies.begin(), island.bodies.end());
   }
-}
-
-std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const Island& island) {
-  std::vector<Row> rows;
-  std::vector<Vec6> impulses;
-  if (island.tied) impulses.assign(tie_.size(), Vec6::Zero());
-  const auto add = [&](int impact, const Vec6& on_a, const Vec6& on_b, bool rubs) {
-    Row& row = rows.emplace_back();
-    row.impact = impact;
-    row.on_a = on_a;
-    row.on_b = on_b;
-    row.rubs = rubs;
-    const auto& [a, b] = rows_[impact].bodies;
-    for (const auto& [body, J, place] :
-         {std::tuple(a, &row.on_a, &row.a), std::tuple(b, &row.on_b, &row.b)}) {
-      if (body == kGround) continue;
-      *place = place_[body];
-      if (island.tied) {
-        impulses[body] = *J;
-        continue;
-      }
-      const BodyData& data = system_->bodies()[body];
-      const Mat3 Lambda = system_->motion(state, body).Lambda();
-      Vec6 x;
-      x << J->head<3>() / data.mass,
-          Lambda * data.inertia.ldlt().solve(Lambda.transpose() * J->tail<3>());
-      row.answer.emplace_back(*place, x);
-    }
-    if (island.tied) {
-      const std::vector<Vec6> jumps = solver_->jumps(impulses);
-      for (std::size_t i = 0; i < island.bodies.size(); ++i)
-        row.answer.emplace_back(static_cast<int>(i), jumps[island.bodies[i]]);
-      if (a != kGround) impulses[a].setZero();
-      if (b != kGround) impulses[b].setZero();
-    }
-    row.mobility = row.speed_by(row);
-  };
-  for (int k : island.rows) {
-    const Impact& impact = rows_[k].impact;
-    add(k, impact.on_a, impact.on_b, false);
-    if (impact.mu == 0.0) continue;
-    for (const Vec3* t : {&impact.along, &impact.across}) {
-      Vec6 on_a, on_b;
-      on_a << *t, impact.arm_a.cross(*t);
-      on_b << -*t, -impact.arm_b.cross(*t);
-      add(k, on_a, on_b, t == &impact.along);
-    }
-  }
-  return rows;
 }
 
 namespace {
@@ -391,6 +291,10 @@ void SettleImpacts::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
 void SettleImpacts::settle(State& state, const Island& island) {
   std::vector<Vec6> v;
   for (int body : island.bodies) v.push_back(velocity(state, body));
+  for (int node : island.nodes) {
+    v.push_back(Vec6::Zero());
+    v.back().head<3>() = at_node(state.node_v, node);
+  }
   const std::vector<Vec6> start = v;
   std::vector<Row> rows = rows_of(state, island);
   double most = 0.0;
@@ -415,9 +319,11 @@ void SettleImpacts::settle(State& state, const Island& island) {
   const double part = first + 0.5 * second <= 0.0 || !(second > 0.0)
                           ? 1.0
                           : std::clamp(-2.0 * first / second, 0.0, 1.0);
-  std::vector<Vec6> jumps(v.size());
-  for (std::size_t i = 0; i < v.size(); ++i) jumps[i] = part * (v[i] - start[i]);
+  std::vector<Vec6> jumps(island.bodies.size());
+  for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
+  if (!island.nodes.empty()) solver_->press_nodes(on_nodes(island, rows, part));
   const double more = jump(state, island, jumps);
+  if (!island.nodes.empty()) solver_->press_nodes({});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     SettledImpact& s = settled_[row.impact];
@@ -444,7 +350,7 @@ double SettleImpacts::jump(State& state, const Island& island, const std::vector
   const Nodes& nodes = system_->nodes();
   double lost = 0.0;
   if (island.tied && !nodes.empty()) {
-    std::vector<Vec6> by_body(tie_.size(), Vec6::Zero());
+    std::vector<Vec6> by_body(static_cast<std::size_t>(system_->body_count()), Vec6::Zero());
     for (std::size_t i = 0; i < jumps.size(); ++i) by_body[island.bodies[i]] = jumps[i];
     const std::vector<double> dv = solver_->node_jumps(by_body);
     const auto at = [](const std::vector<double>& x, int i) {

@@ -6,20 +6,24 @@
 
 #include <polhode/equations/trial.hpp>
 #include <polhode/stepping/instant.hpp>
+#include <polhode/system/surface_impacts.hpp>
 
 namespace polhode {
 
-/// Makes velocities jump at the end of a step in impacts, of contacts and of the stops of joints:
-/// by impulses along their normals and friction across, from bodies that are as heavy as the solids
-/// they hold make them, while G v = 0. They only take energy.
-/// @eq{turn-law} @eq{impact-friction} @eq{routh} @eq{joint-stop-exit}
+/// Makes velocities jump at the end of a step in impacts, of contacts, of surfaces and of the stops
+/// of joints: by impulses along their normals and friction across, from bodies that are as heavy as
+/// the solids they hold make them, while G v = 0. They only take energy.
+/// @eq{turn-law} @eq{impact-friction} @eq{routh} @eq{joint-stop-exit} @eq{surface-turn}
 class SettleImpacts {
  public:
   explicit SettleImpacts(const System& system);
 
-  /// Finds the impacts of interactions in an accepted step, the state and the histories still at
-  /// t_n. Forgets those before.
+  /// Finds the impacts of interactions and of surfaces in an accepted step, the state and the
+  /// histories still at t_n. Forgets those before.
   void find(const State& state, const Trial& trial);
+  /// Goes on with those of surfaces, the state having moved to t_{n+1}. Before those of contacts.
+  /// @returns the change of what surfaces store, and what they dissipated by it.
+  Work find_turns(State& state);
   /// Adds those of contacts, the state having moved to t_{n+1}.
   /// @returns the change of what contacts store, and what they dissipated by it.
   Work find(State& state, MovingContacts& contacts);
@@ -31,10 +35,22 @@ class SettleImpacts {
   /// Rows that share bodies, directly or by way of joints and solids.
   struct Island {
     std::vector<int> rows, bodies;
-    bool tied = false;  ///< Joints or solids make its bodies answer together.
+    std::vector<int> nodes;  ///< Free ones that rows press on, ascending.
+    bool tied = false;       ///< Joints or solids make its bodies answer together.
+  };
+  /// A point of a surface, and the group that it belongs to.
+  struct Surface {
+    int group = 0;
+    SurfaceImpact impact;
   };
   [[nodiscard]] std::vector<Island> islands() const;
   [[nodiscard]] Vec6 velocity(const State& state, int body) const;
+  [[nodiscard]] Vec3 velocity_of_node(const State& state, int node) const;
+  /// Of a row of a surface; null for others.
+  [[nodiscard]] const SurfaceImpact* surface(int row) const;
+  [[nodiscard]] double wanted_of(const SurfaceImpact& impact, double speed) const;
+  template <class Use>
+  void for_bodies(int row, Use&& use) const;
   struct Row;
   /// Rows of an island: one for each normal, two more for each that rubs.
   [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
@@ -44,21 +60,30 @@ class SettleImpacts {
   /// Lasting contacts of bodies that jumped, pressed on by it, become rows.
   void press_on(const State& state, const std::vector<Vec6>& before);
   [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
+  [[nodiscard]] double speed(const State& state, int row) const;
+  void tell_surfaces(State& state) const;
   double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
   /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
   ///          tell [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
+  /// Impulses of rows on free nodes, 3 each.
+  [[nodiscard]] std::vector<double> on_nodes(const Island& island, const std::vector<Row>& rows,
+                                             double part) const;
 
   const System* system_;
   std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of tied bodies on.
   std::vector<int> tie_;    ///< By body: the first of those that joints and solids tie it to.
   std::vector<bool> tied_;  ///< By body: something ties it, be it to the ground.
   std::vector<int> place_;  ///< By body: in the island at hand.
+  std::vector<std::pair<int, const SurfaceImpacts*>> groups_;  ///< Of elements, with numbers.
+  std::vector<Surface> surfaces_;                              ///< In the order of their rows.
+  double dt_ = 0.0;                                            ///< Of the step [s].
   std::vector<PairImpact> rows_;
   MovingContacts* contacts_ = nullptr;  ///< Whose impacts the last rows are.
-  std::size_t of_joints_ = 0;           ///< Rows before those.
+  std::size_t of_joints_ = 0;           ///< Rows of joints, the first ones.
+  std::size_t before_contacts_ = 0;     ///< Rows of joints and of surfaces.
   std::vector<int> jumped_;             ///< Bodies of the islands so far, ascending.
   std::vector<PairImpact> resting_;     ///< Their lasting contacts.
   std::vector<SettledImpact> settled_;  ///< Of the rows.

@@ -69,7 +69,8 @@ int EdgeContact::slot_of_second(int f) const {
 }
 
 std::size_t EdgeContact::history_size() const {
-  return nodes_.key_size() + kMemory * static_cast<std::size_t>(slots()) + SurfaceTotals::kCount;
+  return nodes_.key_size() + kMemory * static_cast<std::size_t>(slots()) + SurfaceTotals::kCount +
+         1;
 }
 
 struct EdgeContact::Touch {
@@ -84,6 +85,7 @@ struct EdgeContact::Touch {
 std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const double* history,
                                                      bool tangent) const {
   std::vector<Touch> list;
+  const SurfaceLaw law = law_now(history);
   const bool instant = step.x_n == step.x_n1, rubs = law_.mu > 0.0 && step.context.dt > 0.0;
   for (const auto& [e, f] : search(history).pairs) {
     FourMoves moves;
@@ -92,7 +94,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
       moves.x_n1[k] = p.at(step.x_n1);
       moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
     }
-    Touch t{e, f, -1, -1, {moves, data(e, f), law_, step.alpha_f, step.context.conserving}, {}, {}};
+    Touch t{e, f, -1, -1, {moves, data(e, f), law, step.alpha_f, step.context.conserving}, {}, {}};
     if (!t.pair.acts()) continue;
     const int first = e, second = slot_of_second(f);
     if (memory(history, first)[0] == f + 1.0)
@@ -102,7 +104,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
     list.push_back(std::move(t));
   }
   std::vector<char> taken(static_cast<std::size_t>(slots()), 0);
-  const auto stays = [&](const Touch& t) { return t.pair.gap_n1() < law_.normal.reach(); };
+  const auto stays = [&](const Touch& t) { return t.pair.gap_n1() < law.normal.reach(); };
   for (Touch& t : list)
     if (t.slot_n >= 0 && stays(t)) taken[static_cast<std::size_t>(t.slot_n1 = t.slot_n)] = 1;
   for (Touch& t : list)
@@ -219,6 +221,8 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     sums.point[k] = moment[k];
   }
   std::copy_n(&sums.impulse, SurfaceTotals::kCount, numbers);
+  double& lowered = numbers[SurfaceTotals::kCount];
+  if (lowered > 0.0 && !(least_of_terms(step.x_n1, history) < law_.normal.reach())) lowered = 0.0;
   nodes_.renew(step, history);
 }
 
@@ -240,7 +244,7 @@ std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& insta
       at.x_n1[k] = end(e, f, k).at(instant.x_n1);
       at.u[k].setZero();
     }
-    const EdgePair pair(at, data(e, f), law_, 1.0, true);
+    const EdgePair pair(at, data(e, f), law_now(history), 1.0, true);
     list.push_back({.point = pair.point(),
                     .normal = pair.normal(),
                     .force = Vec3(kept + 5),

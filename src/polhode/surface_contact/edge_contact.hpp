@@ -8,6 +8,7 @@
 #include <polhode/surface_contact/edge_lines.hpp>
 #include <polhode/surface_contact/edge_pair.hpp>
 #include <polhode/surface_contact/meeting_nodes.hpp>
+#include <polhode/surface_contact/point_band.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_points.hpp>
 #include <polhode/system/element_group.hpp>
@@ -103,7 +104,14 @@ class EdgeContact final : public ElementGroup,
                                            bool tangent) const;
   [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
   void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
-  void note_gap(double* history) const;
+  /// The band of all of it ends lower by what the history keeps behind the totals, as some of it
+  /// started within.
+  [[nodiscard]] SurfaceLaw law_now(const double* history) const {
+    return with_band_lowered(law_, memory(history, slots())[SurfaceTotals::kCount]);
+  }
+  /// Of all terms of the potential the least; ∞ if none is near [m].
+  [[nodiscard]] double least_of_terms(const double* x, const double* history) const;
+  void write_start(double* history) const;
   [[nodiscard]] double least_gap(const double* x, const double* history) const;
   /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
   [[nodiscard]] double room(int e, int f, const Vec3 (&x)[4]) const;

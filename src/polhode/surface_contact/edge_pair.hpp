@@ -91,7 +91,7 @@ class EdgePair {
 
   FourMoves moves_;
   EdgePairData data_;
-  const SurfaceLaw& law_;
+  SurfaceLaw law_;
   double alpha_;
   bool conserving_, acts_ = false;
   NearestFour nearest_;

@@ -114,18 +114,30 @@ void EdgeContact::find(Search& s) const {
 void EdgeContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   nodes_.write_start(history);
-  note_gap(history);
+  write_start(history);
 }
 
 void EdgeContact::begin_at(const NodeStep& instant, double* history) const {
   nodes_.write_instant(instant.x_n1, history);
-  note_gap(history);
+  write_start(history);
 }
 
-/// Where nodes were looked at last.
-void EdgeContact::note_gap(double* history) const {
-  memory(history, slots())[offsetof(SurfaceTotals, gap) / sizeof(double)] =
-      least_gap(nodes_.positions(history).data(), history);
+/// Where nodes were looked at last. @eq{surface-start}
+void EdgeContact::write_start(double* history) const {
+  const std::vector<double> x = nodes_.positions(history);
+  double* const numbers = memory(history, slots());
+  numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] = least_gap(x.data(), history);
+  numbers[SurfaceTotals::kCount] = lowered_for(law_, least_of_terms(x.data(), history));
+}
+
+double EdgeContact::least_of_terms(const double* x, const double* history) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [e, f] : search(history).pairs) {
+    Vec3 at[4];
+    four_ends(e, f, x, at);
+    least = std::min(least, room(e, f, at) - law_.normal.tolerance);
+  }
+  return least;
 }
 
 /// Of round edges, and of sharp ones that are not along each other; NaN if none is near.

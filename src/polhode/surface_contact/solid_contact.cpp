@@ -52,8 +52,8 @@ FourMoves SolidContact::moves(const Field& x_n1, const Field& u, int point, int 
 }
 
 MeshGap SolidContact::gap(const Field& field, std::span<const int> triangles, int point,
-                          const Nearest& nearest) const {
-  const double reach = centre_ + law_.normal.reach();
+                          const Nearest& nearest, const contact::NormalLaw& law) const {
+  const double reach = centre_ + law.reach();
   if (!of_cable() || nearest.four.distance >= reach)
     return MeshGap::of(nearest.triangle, nearest.four);
   std::vector<TriangleAt> near;
@@ -65,32 +65,34 @@ MeshGap SolidContact::gap(const Field& field, std::span<const int> triangles, in
     at.corners = surface_.triangles[static_cast<std::size_t>(t)];
     near.push_back(at);
   }
-  return mesh_gap(near, law_.normal, centre_);
+  return mesh_gap(near, law, centre_);
 }
 
 SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, const Field& x_n1,
-                                       std::span<const int> triangles, int point) const {
+                                       std::span<const int> triangles, int point,
+                                       const double* memory) const {
   Action a;
+  const contact::NormalLaw law = law_of(memory).normal;
   const Nearest to = nearest(x_n1, triangles, point);
   const Nearest from = step.x_n == step.x_n1 ? to : nearest(x_n, triangles, point);
-  const double reach = law_.normal.reach();
+  const double reach = law.reach();
   a.gap_n = from.four.distance - centre_;
   a.gap_n1 = to.four.distance - centre_;
   if (a.gap_n >= reach && a.gap_n1 >= reach) return a;
   a.acts = true;
-  a.at_n1 = gap(x_n1, triangles, point, to);
-  a.at_n = step.x_n == step.x_n1 ? a.at_n1 : gap(x_n, triangles, point, from);
+  a.at_n1 = gap(x_n1, triangles, point, to, law);
+  a.at_n = step.x_n == step.x_n1 ? a.at_n1 : gap(x_n, triangles, point, from, law);
   const double resultant = a.gap_n < reach ? a.at_n.resultant : a.at_n1.resultant;
   a.gap_n = a.at_n.distance - centre_;
   a.gap_n1 = a.at_n1.distance - centre_;
   if (step.context.dt == 0.0)
-    a.pressure = {law_.normal.force(a.gap_n1), 0.0};
+    a.pressure = {law.force(a.gap_n1), 0.0};
   else
-    a.pressure = contact::stop_force(law_.normal, {.at_n = a.gap_n,
-                                                   .at_n1 = a.gap_n1,
-                                                   .alpha_f = step.alpha_f,
-                                                   .conserving = step.context.conserving,
-                                                   .end_share = law_.end_share});
+    a.pressure = contact::stop_force(law, {.at_n = a.gap_n,
+                                           .at_n1 = a.gap_n1,
+                                           .alpha_f = step.alpha_f,
+                                           .conserving = step.context.conserving,
+                                           .end_share = law_.end_share});
   a.push = {resultant * a.pressure.value, resultant * a.pressure.slope};
   return a;
 }
@@ -113,7 +115,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
     if (triangles.empty()) continue;
-    const Action a = act(step, x_n, x_n1, triangles, p);
+    const Action a = act(step, x_n, x_n1, triangles, p, memory(history, p));
     if (!a.acts) continue;
     const double area = points_[static_cast<std::size_t>(p)].area;
     with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& at) {

@@ -8,6 +8,7 @@
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/meeting_nodes.hpp>
 #include <polhode/surface_contact/mesh_gap.hpp>
+#include <polhode/surface_contact/point_band.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_points.hpp>
 #include <polhode/system/element_group.hpp>
@@ -75,8 +76,9 @@ class SolidContact final : public ElementGroup,
 
  private:
   /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
-  /// its tangential part and the pressure.
-  static constexpr std::size_t kMemory = 11;
+  /// its tangential part and the pressure; then by how much its band ends lower as it started
+  /// within.
+  static constexpr std::size_t kMemory = 12, kLowered = 11;
   struct Field;
   struct Slide;
 
@@ -113,8 +115,11 @@ class SolidContact final : public ElementGroup,
   void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
   [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
                                 int point) const;
+  [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
+    return with_band_lowered(law_, memory[kLowered]);
+  }
   [[nodiscard]] MeshGap gap(const Field& field, std::span<const int> triangles, int point,
-                            const Nearest& nearest) const;
+                            const Nearest& nearest, const contact::NormalLaw& law) const;
   [[nodiscard]] double signed_distance(const Field& field, std::span<const int> triangles,
                                        int point, const Nearest& nearest) const;
   [[nodiscard]] Vec3 way_out(const Field& field, const Nearest& nearest, int point,
@@ -131,13 +136,13 @@ class SolidContact final : public ElementGroup,
   }
   [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
   [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
-                           std::span<const int> triangles, int point) const;
+                           std::span<const int> triangles, int point, const double* memory) const;
   [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
                             std::span<const int> triangles, int point, double pressure,
                             const double* memory, bool tangent) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
                                   const double* memory) const;
-  void note_gap(double* history) const;
+  void write_start(double* history) const;
   [[nodiscard]] Vec3 normal(const Field& field, const MeshGap& gap, int point) const;
   [[nodiscard]] Vec3 foot(const Field& field, const MeshGap& gap, int point) const;
 

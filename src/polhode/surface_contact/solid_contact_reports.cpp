@@ -13,17 +13,18 @@ namespace polhode {
 SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
                                               const Slide& slide, const double* memory) const {
   const Vec3 kept(memory[0], memory[1], memory[2]);
-  const bool stays = a.gap_n1 < law_.normal.reach();
+  const contact::NormalLaw law = law_of(memory).normal;
+  const bool stays = a.gap_n1 < law.reach();
   const double half_k = 0.5 * law_.bristle;
   const double bristle_n1 = stays ? half_k * slide.bristle.squaredNorm() : 0.0;
-  const double e_n1 = law_.normal.energy(a.gap_n1);
+  const double e_n1 = law.energy(a.gap_n1);
   Energies e;
   e.stored = e_n1 + bristle_n1;
   e.by_friction =
       std::max(0.0, -slide.friction.dot(slide.slid) - bristle_n1 + half_k * kept.squaredNorm());
   if (law_.end_share > 0.0 || step.alpha_f != 0.5)
-    e.by_pressure = std::max(
-        0.0, -a.pressure.value * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+    e.by_pressure =
+        std::max(0.0, -a.pressure.value * (a.gap_n1 - a.gap_n) - e_n1 + law.energy(a.gap_n));
   return e;
 }
 
@@ -41,13 +42,14 @@ Work SolidContact::work(const NodeStep& step, const double* history,
     const double* kept = memory(history, p);
     const double area = points_[static_cast<std::size_t>(p)].area;
     if (instant) {
+      const contact::NormalLaw law = law_of(kept).normal;
       const double gap =
-          this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p)).distance - centre_;
-      w.stored += area * (law_.normal.energy(gap) +
+          this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p), law).distance - centre_;
+      w.stored += area * (law.energy(gap) +
                           0.5 * law_.bristle * Vec3(kept[0], kept[1], kept[2]).squaredNorm());
       continue;
     }
-    const Action a = act(step, x_n, x_n1, triangles, p);
+    const Action a = act(step, x_n, x_n1, triangles, p, kept);
     if (!a.acts) continue;
     const Slide slide = law_.mu > 0.0
                             ? this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false)
@@ -75,7 +77,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     Slide slide;
     Vec3 h = Vec3::Zero();
     if (!triangles.empty()) {
-      a = act(step, x_n, x_n1, triangles, p);
+      a = act(step, x_n, x_n1, triangles, p, kept);
       t.gap = std::min(t.gap, a.gap_n1 + centre_ - cable_.radius);
     }
     if (a.acts) {
@@ -101,7 +103,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       friction += point.area * slide.friction;
       moment += point.area * pressure * foot(x_n1, a.at_n1, p);
     }
-    const bool stays = a.acts && a.gap_n1 < law_.normal.reach();
+    const bool stays = a.acts && a.gap_n1 < law_of(kept).normal.reach();
     for (int k = 0; k < 3; ++k) {
       kept[k] = stays ? slide.bristle_n1[k] : 0.0;
       kept[4 + k] = h[k];
@@ -109,6 +111,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     }
     kept[3] = stays && slide.slips ? 1.0 : 0.0;
     kept[10] = pressure;
+    if (triangles.empty() || !(a.gap_n1 < law_.normal.reach())) kept[kLowered] = 0.0;
   }
   if (!std::isfinite(t.gap)) t.gap = std::numeric_limits<double>::quiet_NaN();
   if (t.normal_force > 0.0) moment /= t.normal_force;
@@ -139,15 +142,19 @@ Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const
   return of_cable() ? Vec3(at - cable_.radius * normal(field, gap, point)) : at;
 }
 
-/// Where nodes were looked at last; NaN where nothing is near.
-void SolidContact::note_gap(double* history) const {
+/// Where nodes were looked at last; NaN where nothing is near. @eq{surface-start}
+void SolidContact::write_start(double* history) const {
   double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
   const std::vector<double> x = nodes_.positions(history);
   const Search& s = search(history);
   const Field start(surface_, x.data());
   double least = std::numeric_limits<double>::infinity();
-  for (int p = 0; p < static_cast<int>(points_.size()); ++p)
-    least = std::min(least, nearest(start, found(s, p), p).four.distance - cable_.radius);
+  for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    const double d = nearest(start, found(s, p), p).four.distance;
+    least = std::min(least, d - cable_.radius);
+    history[memory(history, p) - history + static_cast<std::ptrdiff_t>(kLowered)] =
+        lowered_for(law_, d - centre_);
+  }
   numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
       std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
 }
@@ -168,7 +175,7 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
     const std::span<const int> triangles = found(s, p);
     const Nearest n = nearest(x, triangles, p);
     if (n.triangle < 0) continue;
-    const MeshGap gap = this->gap(x, triangles, p, n);
+    const MeshGap gap = this->gap(x, triangles, p, n, law_of(kept).normal);
     list.push_back({.point = foot(x, gap, p),
                     .normal = normal(x, gap, p),
                     .force = point.area * Vec3(kept[4], kept[5], kept[6]),

@@ -130,12 +130,12 @@ void SolidContact::find(Search& s) const {
 void SolidContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
   nodes_.write_start(history);
-  note_gap(history);
+  write_start(history);
 }
 
 void SolidContact::begin_at(const NodeStep& instant, double* history) const {
   nodes_.write_instant(instant.x_n1, history);
-  note_gap(history);
+  write_start(history);
 }
 
 void SolidContact::clearances(const NodeStep& step, const double* history,

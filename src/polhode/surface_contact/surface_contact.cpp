@@ -36,8 +36,7 @@ SurfaceContact::SurfaceContact(std::string name, SurfacePoints points, const std
     nodes_.insert(nodes_.end(), first, first + n_);
     if (frame_ > 0) nodes_.insert(nodes_.end(), place_.nodes.begin(), place_.nodes.end());
   }
-  gap_at_start_ = std::numeric_limits<double>::infinity();
-  for (const double g : gaps(X)) gap_at_start_ = std::min(gap_at_start_, g);
+  gaps_at_start_ = gaps(X);
 }
 
 std::vector<double> SurfaceContact::gaps(const std::vector<Vec3>& X) const {
@@ -82,6 +81,21 @@ Vec3 SurfaceContact::local(const double* x, int point) const {
   for (std::size_t k = 0; k < 3; ++k)
     y[static_cast<int>(k)] = (p - x_0).dot(at(x, place_.nodes[k + 1]) - x_0) / place_.size;
   return y;
+}
+
+Vec3 SurfaceContact::local_rate(const double* x, const double* v, int point) const {
+  const Vec3 p_dot = position(v, point);
+  if (frame_ == 0) return place_.axes.transpose() * p_dot;
+  const Vec3 d = position(x, point) - at(x, place_.nodes[0]),
+             d_dot = p_dot - at(v, place_.nodes[0]);
+  Vec3 y_dot;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int node = place_.nodes[k + 1];
+    y_dot[static_cast<int>(k)] = (d_dot.dot(at(x, node) - at(x, place_.nodes[0])) +
+                                  d.dot(at(v, node) - at(v, place_.nodes[0]))) /
+                                 place_.size;
+  }
+  return y_dot;
 }
 
 /// Of the surface, columns.
@@ -190,21 +204,31 @@ struct SurfaceContact::Terms {
 };
 
 /// @eq{surface-action} @eq{contact-bristle}
-SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& place,
-                                           const double* memory, bool tangent) const {
+SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point, const double* memory,
+                                           bool tangent) const {
   Action a;
-  const double reach = law_.normal.reach();
+  a.phase = phase_of(memory);
+  SurfaceLaw law = law_of(memory);
+  const double reach = law.normal.reach();
+  const Place place = this->place(step, point);
   const Vec3 way = place.at_n1 - place.at_n;
   // Of a gap that acts at the other end of the step only, the value matters as well.
-  const GapQuestion question{law_.normal, reach + way.norm(), sided(step)};
+  const GapQuestion question{law.normal, law_.normal.reach() + way.norm(), sided(step)};
   const RigidSurface::Gap g_n1 = gap(place.at_n1, question);
   const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : gap(place.at_n, question);
   a.gap_n = g_n.value;
   a.gap_n1 = g_n1.value;
   if (g_n.value >= reach && g_n1.value >= reach) return a;
   a.acts = true;
+  a.normal = g_n1.normal;
+  if (step.context.conserving && step.context.dt > 0.0) {
+    const bool open = a.phase.open() && g_n.value >= reach;
+    a.phase = a.phase.in_step(law_, g_n.value,
+                              open ? g_n.normal.dot(local_rate(step.x_n, step.v_n, point)) : 0.0);
+    law = a.phase.law(law_);
+  }
   if (step.context.dt == 0.0) {  // an instant
-    a.lambda = law_.normal.force(g_n1.value);
+    a.lambda = law.normal.force(g_n1.value);
     a.pressure = a.lambda * g_n1.normal.norm();
     if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory[0], memory[1], memory[2]);
     a.h = a.lambda * g_n1.normal + a.friction;
@@ -212,7 +236,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
     return a;
   }
   if (!tangent) {
-    const Terms<double> t(law_, step, place, g_n, g_n1, memory, a.slips);
+    const Terms<double> t(law, step, place, g_n, g_n1, memory, a.slips);
     a.h = contact::value(t.h);
     a.friction = contact::value(t.friction);
     a.bristle = contact::value(t.bristle);
@@ -221,7 +245,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, const Place& pl
     a.pressure = t.pressure;
     return a;
   }
-  const Terms<Dual> t(law_, step, place, g_n, g_n1, memory, a.slips);
+  const Terms<Dual> t(law, step, place, g_n, g_n1, memory, a.slips);
   a.h = contact::value(t.h);
   for (int j = 0; j < 3; ++j) a.D.col(j) << t.h.x.d[j], t.h.y.d[j], t.h.z.d[j];
   a.lambda = t.lambda.v;
@@ -284,8 +308,7 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
   std::array<double, kWidth * kWidth> K;
   for (int i = 0; i < size(); ++i) {
     const SurfacePoints::Point& point = points_.points[static_cast<std::size_t>(i)];
-    const Action a =
-        act(step, place(step, i), history + kMemory * static_cast<std::size_t>(i), tangent);
+    const Action a = act(step, i, history + kMemory * static_cast<std::size_t>(i), tangent);
     if (!a.acts) continue;
     Central c;
     if (frame_ == 0) {

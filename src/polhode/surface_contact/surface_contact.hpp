@@ -6,11 +6,13 @@
 #include <vector>
 
 #include <polhode/surface_contact/line_stretch.hpp>
+#include <polhode/surface_contact/point_band.hpp>
 #include <polhode/surface_contact/rigid_surface.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_points.hpp>
 #include <polhode/system/element_group.hpp>
+#include <polhode/system/surface_impacts.hpp>
 
 namespace polhode {
 
@@ -38,7 +40,10 @@ struct SurfacePlace {
 ///
 /// The history holds, for each point, bristle, slip and what acted in the last
 /// step, and then sums over the run: all that reports tell goes with the state.
-class SurfaceContact final : public ElementGroup, public BarrierPoints, public TouchingSurface {
+class SurfaceContact final : public ElementGroup,
+                             public BarrierPoints,
+                             public TouchingSurface,
+                             public SurfaceImpacts {
  public:
   /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
   ///           that carry it are among them.
@@ -80,10 +85,16 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
                                                               const double* history) const override;
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
+  void impacts(const NodeStep& step, const double* history,
+               std::vector<SurfaceImpact>& list) const override;
+  double turn(const SurfaceImpact& impact, double* history) const override;
+  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+               double* history) const override;
+
  private:
-  /// Of a point: bristle in the surface's axes, whether it slips, and of the last step h, its
-  /// tangential part and the pressure.
-  static constexpr std::size_t kMemory = 11;
+  /// Of a point: bristle in the surface's axes, whether it slips, of the last step h, its
+  /// tangential part and the pressure; then its PointPhase.
+  static constexpr std::size_t kMemory = 14, kPhase = 11;
 
   /// The point in the surface's coordinates over the step.
   struct Place {
@@ -99,6 +110,8 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
     double lambda = 0.0;           ///< Conjugate to the gap.
     double pressure = 0.0;         ///< Of the normal force.
     double gap_n = 0.0, gap_n1 = 0.0;
+    Vec3 normal = Vec3::Zero();  ///< Gradient of the gap at t_{n+1}.
+    PointPhase phase;            ///< In the step.
     bool acts = false, slips = false;
   };
   /// Energy per unit of area: stored at the end, taken over the step.
@@ -130,7 +143,22 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   [[nodiscard]] bool sided(const NodeStep& step) const {
     return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }
-  [[nodiscard]] Action act(const NodeStep& step, const Place& place, const double* memory,
+  [[nodiscard]] static PointPhase phase_of(const double* memory) {
+    return {memory[kPhase], memory[kPhase + 1], memory[kPhase + 2]};
+  }
+  static void keep(const PointPhase& phase, double* memory) {
+    memory[kPhase] = phase.lowered;
+    memory[kPhase + 1] = phase.phase;
+    memory[kPhase + 2] = phase.restitution;
+  }
+  /// At an instant.
+  [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
+    return with_band_lowered(law_, memory[kPhase]);
+  }
+  /// Velocity in the surface's coordinates.
+  [[nodiscard]] Vec3 local_rate(const double* x, const double* v, int point) const;
+  void write_start(const std::vector<double>& gaps, double* history) const;
+  [[nodiscard]] Action act(const NodeStep& step, int point, const double* memory,
                            bool tangent) const;
   [[nodiscard]] bool goes_through(const Vec3& from, const Vec3& to) const;
   [[nodiscard]] double free_of_stretch(const NodeStep& from, const NodeStep& to) const;
@@ -143,9 +171,9 @@ class SurfaceContact final : public ElementGroup, public BarrierPoints, public T
   SurfaceLaw law_;
   int n_ = 1, frame_ = 0;  ///< Nodes of the face, of the frame.
   SurfacePoints points_;
-  double extent_ = 0.0;        ///< Of the surface about its origin [m].
-  std::vector<int> nodes_;     ///< Of each point: of its face, then of the frame.
-  double gap_at_start_ = 0.0;  ///< Smallest [m].
+  double extent_ = 0.0;                ///< Of the surface about its origin [m].
+  std::vector<int> nodes_;             ///< Of each point: of its face, then of the frame.
+  std::vector<double> gaps_at_start_;  ///< Of each point [m].
 };
 
 }  // namespace polhode

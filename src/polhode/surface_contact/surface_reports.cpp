@@ -17,6 +17,7 @@ constexpr double kFarReport = 10.0;
 /// A way shorter than so many times the depth that counts as through does not get so deep.
 constexpr double kThroughBeam = 2.0;
 constexpr int kHalvings = 6;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -97,16 +98,17 @@ std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) c
 SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
                                                   const double* memory) const {
   const Vec3 kept(memory[0], memory[1], memory[2]);
-  const bool stays = a.gap_n1 < law_.normal.reach();
+  const SurfaceLaw in_step = a.phase.law(law_);
+  const contact::NormalLaw& law = in_step.normal;
+  const bool stays = a.gap_n1 < law.reach();
   const double half_k = 0.5 * law_.bristle;
   const double bristle_n1 = stays ? half_k * a.bristle.squaredNorm() : 0.0;
-  const double e_n1 = law_.normal.energy(a.gap_n1);
+  const double e_n1 = law.energy(a.gap_n1);
   Energies e;
   e.stored = e_n1 + bristle_n1;
   e.by_friction = std::max(0.0, -a.friction.dot(a.slid) - bristle_n1 + half_k * kept.squaredNorm());
-  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
-    e.by_pressure =
-        std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law_.normal.energy(a.gap_n));
+  if (in_step.end_share > 0.0 || step.alpha_f != 0.5)
+    e.by_pressure = std::max(0.0, -a.lambda * (a.gap_n1 - a.gap_n) - e_n1 + law.energy(a.gap_n));
   return e;
 }
 
@@ -114,17 +116,17 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
                           const double* /*scratch*/) const {
   Work w;
   const bool instant = step.x_n == step.x_n1;
-  const GapQuestion question{law_.normal, law_.normal.reach(), false};
   for (int i = 0; i < size(); ++i) {
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
       const Vec3 kept(memory[0], memory[1], memory[2]);
-      const double now = gap(local(step.x_n1, i), question).value;
-      w.stored += area * (law_.normal.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
+      const contact::NormalLaw law = law_of(memory).normal;
+      const double now = gap(local(step.x_n1, i), {law, law.reach(), false}).value;
+      w.stored += area * (law.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
       continue;
     }
-    const Action a = act(step, place(step, i), memory, false);
+    const Action a = act(step, i, memory, false);
     if (!a.acts) continue;
     const Energies e = energies(step, a, memory);
     w.stored += area * e.stored;
@@ -135,14 +137,23 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
 
 void SurfaceContact::initialize(double* history) const {
   std::fill_n(history, history_size(), 0.0);
-  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] =
-      gap_at_start_;
+  write_start(gaps_at_start_, history);
 }
 
 void SurfaceContact::begin_at(const NodeStep& instant, double* history) const {
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> gaps;
   for (int i = 0; i < size(); ++i)
-    least = std::min(least, distance(local(instant.x_n1, i), least, true));
+    gaps.push_back(distance(local(instant.x_n1, i), kInfinite, true));
+  write_start(gaps, history);
+}
+
+/// @eq{surface-start}
+void SurfaceContact::write_start(const std::vector<double>& gaps, double* history) const {
+  double least = kInfinite;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    least = std::min(least, gaps[i]);
+    keep({lowered_for(law_, gaps[i])}, history + kMemory * i);
+  }
   history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] = least;
 }
 
@@ -158,7 +169,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
   for (int i = 0; i < size(); ++i) {
     double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
-    const Action a = act(step, place(step, i), memory, false);
+    const Action a = act(step, i, memory, false);
     t.gap = std::min(t.gap, a.acts ? a.gap_n1 : distance(local(step.x_n1, i), t.gap));
     if (a.acts && !instant) {
       const Energies e = energies(step, a, memory);
@@ -175,7 +186,8 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
       friction += area * a.friction;
       moment += area * a.pressure * foot(step.x_n1, i);
     }
-    const bool stays = a.gap_n1 < law_.normal.reach();
+    const PointPhase then = a.phase.at_end(law_, a.gap_n1);
+    const bool stays = a.gap_n1 < law_of(memory).normal.reach();
     for (int k = 0; k < 3; ++k) {
       memory[k] = stays ? a.bristle[k] : 0.0;
       memory[4 + k] = a.h[k];
@@ -183,6 +195,7 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
     }
     memory[3] = stays && a.slips ? 1.0 : 0.0;
     memory[10] = a.pressure;
+    keep(then, memory);
   }
   if (t.normal_force > 0.0) moment /= t.normal_force;
   for (int k = 0; k < 3; ++k) {
@@ -205,7 +218,8 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     if (!(memory[10] > 0.0)) continue;
     const double area = points_.points[static_cast<std::size_t>(i)].area;
-    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law_.normal});
+    const contact::NormalLaw law = law_of(memory).normal;
+    const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law});
     list.push_back({.point = foot(instant.x_n1, i),
                     .normal = R * here.normal.normalized(),
                     .force = area * (R * Vec3(memory[4], memory[5], memory[6])),

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include <polhode/surface_contact/surface_law.hpp>
+#include <polhode/system/moving_contacts.hpp>
 
 namespace polhode {
 
@@ -35,6 +36,21 @@ struct SurfaceTotals {
     r.friction_loss = t.friction_loss;
     r.normal_loss = t.normal_loss;
     return r;
+  }
+  /// An impulse at the end of the last step counts as a force over it.
+  static void add_impulse(const Vec3& normal, const SettledImpact& settled, double dt,
+                          double* numbers) {
+    SurfaceTotals t;
+    std::copy_n(numbers, kCount, &t.impulse);
+    t.impulse += settled.normal;
+    t.normal_loss += settled.normal_loss;
+    t.friction_loss += settled.friction_loss;
+    t.normal_force += settled.normal / dt;
+    for (int k = 0; k < 3; ++k) {
+      t.friction[k] += settled.friction[k] / dt;
+      t.force[k] += (settled.normal * normal[k] + settled.friction[k]) / dt;
+    }
+    std::copy_n(&t.impulse, kCount, numbers);
   }
 };
 static_assert(sizeof(SurfaceTotals) == SurfaceTotals::kCount * sizeof(double));

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows behind SettleImpacts; only its source files include this.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <polhode/stepping/settle_impacts.hpp>
+
+namespace polhode {
+
+namespace impact_rows {
+
+/// Of what is tied together the first.
+inline int first_of(std::vector<int>& tie, int body) {
+  while (tie[body] != body) body = tie[body] = tie[tie[body]];
+  return body;
+}
+
+inline void join(std::vector<int>& tie, int a, int b) {
+  const int x = first_of(tie, a), y = first_of(tie, b);
+  tie[std::max(x, y)] = std::min(x, y);
+}
+
+}  // namespace impact_rows
+
+/// A relative velocity J v, and how the island answers a unit impulse along it.
+struct SettleImpacts::Row {
+  int impact = 0;  ///< Its number.
+  /// J, by places in the island: of its bodies, then of its nodes, which do not turn.
+  std::vector<std::pair<int, Vec6>> on;
+  std::vector<std::pair<int, Vec6>> answer;  ///< By place: X = M⁻¹ Jᵀ under G v = 0.
+  double mobility = 0.0;                     ///< J X.
+  double before = 0.0, impulse = 0.0;        ///< J v at first [m/s]; [N s].
+  bool rubs = false;                         ///< The first of two tangents.
+
+  [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
+    double sum = 0.0;
+    for (const auto& [place, J] : on) sum += J.dot(v[static_cast<std::size_t>(place)]);
+    return sum;
+  }
+  /// Its velocity by a unit impulse along another row of the same bodies.
+  [[nodiscard]] double speed_by(const Row& other) const {
+    double sum = 0.0;
+    for (const auto& [place, x] : other.answer)
+      for (const auto& [own, J] : on)
+        if (own == place) sum += J.dot(x);
+    return sum;
+  }
+  void push(double p, std::vector<Vec6>& v) {
+    impulse += p;
+    for (const auto& [place, x] : answer) v[static_cast<std::size_t>(place)] += p * x;
+  }
+};
+
+}  // namespace polhode

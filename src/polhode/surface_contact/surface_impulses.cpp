@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What points of a surface do in an impact, between closing and turning.
+#include <algorithm>
+
+#include <polhode/surface_contact/surface_contact.hpp>
+
+namespace polhode {
+
+/// Both sides at the place where the point is, so that impulses leave neither sum nor moment.
+/// @eq{surface-turn}
+void SurfaceContact::impacts(const NodeStep& step, const double* history,
+                             std::vector<SurfaceImpact>& list) const {
+  if (!step.context.conserving || !(step.context.dt > 0.0)) return;
+  const Mat3 R = axes(step.x_n1);
+  for (int i = 0; i < size(); ++i) {
+    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const Action a = act(step, i, memory, false);
+    if (!a.acts || !a.phase.in_impact() || !(a.pressure > 0.0)) continue;
+    const double length = a.normal.norm();
+    if (!(length > 0.0)) continue;
+    const SurfacePoints::Point& point = points_.points[static_cast<std::size_t>(i)];
+    SurfaceImpact& s = list.emplace_back();
+    s.point = i;
+    const std::span<const int> own = nodes(i);
+    for (int k = 0; k < n_; ++k)
+      if (point.N[k] != 0.0) s.nodes.emplace_back(own[static_cast<std::size_t>(k)], point.N[k]);
+    if (frame_ > 0) {
+      // Its place on the body is affine in the nodes of the frame.
+      const Vec3 y = local(step.x_n1, i) / place_.size;
+      s.nodes.emplace_back(place_.nodes[0], y.sum() - 1.0);
+      for (std::size_t k = 0; k < 3; ++k)
+        s.nodes.emplace_back(place_.nodes[k + 1], -y[static_cast<int>(k)]);
+    }
+    s.normal = R * a.normal / length;
+    s.restitution = a.phase.restitution;
+    s.turned = a.phase.is(contact::ContactPhase::restitution);
+    s.mu = law_.mu;
+    s.given = step.context.dt * point.area * a.pressure;
+    s.gap = a.gap_n1;
+    s.beyond = std::max(0.0, a.gap_n1 - a.phase.law(law_).normal.reach());
+  }
+}
+
+double SurfaceContact::turn(const SurfaceImpact& impact, double* history) const {
+  double* memory = history + kMemory * static_cast<std::size_t>(impact.point);
+  PointPhase phase = phase_of(memory);
+  const double released = phase.turn(law_, impact.gap);
+  keep(phase, memory);
+  const double energy = points_.points[static_cast<std::size_t>(impact.point)].area * released;
+  history[kMemory * points_.points.size() +
+          offsetof(SurfaceTotals, normal_loss) / sizeof(double)] += energy;
+  return energy;
+}
+
+void SurfaceContact::settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+                             double* history) const {
+  SurfaceTotals::add_impulse(impact.normal, settled, dt, history + kMemory * points_.points.size());
+}
+
+}  // namespace polhode

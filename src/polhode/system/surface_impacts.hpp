@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <polhode/system/moving_contacts.hpp>
+#include <polhode/system/node_step.hpp>
+
+namespace polhode {
+
+/// A point of a surface in an impact over a step. Its velocity against what it meets is
+/// Σ N v over nodes.
+struct SurfaceImpact {
+  int point = 0;                              ///< Of its group.
+  std::vector<std::pair<int, double>> nodes;  ///< With N, each once.
+  Vec3 normal = Vec3::UnitZ();                ///< At t_{n+1}, unit, world.
+  double restitution = 0.0;                   ///< e of this impact.
+  double apart = 0.0;                         ///< Normal speed at t_n after a turn before, or 0.
+  double mu = 0.0;                            ///< Coefficient of friction.
+  double given = 0.0;                         ///< Normal impulse of the step [N s].
+  double gap = 0.0;                           ///< At t_{n+1} [m].
+  double beyond = 0.0;                        ///< Of its band at t_{n+1} [m]; 0 within.
+  bool turned = false;                        ///< Before the step.
+};
+
+/// A group of elements whose points are hit: their velocities jump at the end of a step.
+/// @eq{surface-turn}
+class SurfaceImpacts {
+ public:
+  virtual ~SurfaceImpacts() = default;
+  /// Appends the points that are in an impact in an accepted step.
+  /// @param history  At t_n.
+  virtual void impacts(const NodeStep& step, const double* history,
+                       std::vector<SurfaceImpact>& list) const = 0;
+  /// What one of them does after it has turned (or come back): its history is at t_{n+1}.
+  /// @returns the energy that it stores no more [J].
+  virtual double turn(const SurfaceImpact& impact, double* history) const = 0;
+  /// The impulse that it took at the end of the step, for its report.
+  virtual void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+                       double* history) const = 0;
+};
+
+}  // namespace polhode

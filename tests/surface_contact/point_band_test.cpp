@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <polhode/surface_contact/point_band.hpp>
+
+namespace polhode::test::point_band_tests {
+namespace {
+
+// @tests{surface-start}
+TEST(PointBand, HasABandThatEndsWhereAPointStarts) {
+  SurfaceLaw law;
+  law.normal.tolerance = 2e-4;
+  law.normal.stiffness = 1e6;
+  const double middle = law.normal.force(0.0);
+  for (const double start : {1.9e-4, 1e-4, 0.0, -1e-4, -1.79e-4}) {
+    const contact::NormalLaw own = with_band_lowered(law, lowered_for(law, start)).normal;
+    EXPECT_NEAR(own.reach(), start, 1e-18);
+    EXPECT_EQ(own.floor(), -2e-4);
+    EXPECT_NEAR(own.energy(start), 0.0, 1e-30);
+    EXPECT_NEAR(own.force(0.5 * (start - 2e-4)), middle, 1e-9 * middle) << "in its middle";
+  }
+  EXPECT_NEAR(with_band_lowered(law, lowered_for(law, -1.99e-4)).normal.band(), 0.05 * 4e-4, 1e-18)
+      << "a twentieth is left";
+}
+
+TEST(PointBand, KeepsItsBandForWhatStartsElsewhere) {
+  SurfaceLaw law;
+  EXPECT_EQ(lowered_for(law, law.normal.reach()), 0.0);
+  EXPECT_EQ(lowered_for(law, std::numeric_limits<double>::infinity()), 0.0);
+  EXPECT_EQ(lowered_for(law, std::nan("")), 0.0) << "nothing is near";
+  EXPECT_EQ(with_band_lowered(law, 0.0).normal.stiffness, law.normal.stiffness);
+  law.normal.potential = contact::NormalPotential::linear;
+  EXPECT_EQ(lowered_for(law, -1e-3), 0.0) << "overlaps are allowed";
+}
+
+// @tests{surface-turn}
+TEST(PointBand, KeepsThePartOfItsEnergyThatAReboundNeeds) {
+  SurfaceLaw law;
+  law.normal.tolerance = 2e-4;
+  law.normal.stiffness = 1e6;
+  for (const double e : {0.0, 0.3, 0.9})
+    for (const double gap : {1.5e-4, 0.0, -1.9e-4}) {
+      law.end_share = 0.5 * (1.0 - e);
+      PointPhase p = PointPhase{}.in_step(law, 3e-4, -1.0);
+      EXPECT_TRUE(p.is(contact::ContactPhase::compression));
+      EXPECT_EQ(p.law(law).end_share, e == 0.0 ? 1.0 : 0.0);
+      p = p.at_end(law, gap);
+      const double before = law.normal.energy(gap), released = p.turn(law, gap),
+                   after = with_band_lowered(law, p.lowered).normal.energy(gap);
+      EXPECT_NEAR(after, e * e * before, 1e-9 * before) << e << ", " << gap;
+      EXPECT_NEAR(released + after, before, 1e-12 * before);
+      EXPECT_TRUE(p.is(e > 0.0 ? contact::ContactPhase::restitution : contact::ContactPhase::rest));
+    }
+}
+
+TEST(PointBand, BeginsAnImpactOnlyWhereItClosesFromOutside) {
+  SurfaceLaw law;
+  law.mu = law.end_share = 0.5;  // no rebound
+  const double reach = law.normal.reach();
+  EXPECT_TRUE(PointPhase{}.in_step(law, reach, -1e-9).in_impact());
+  EXPECT_FALSE(PointPhase{}.in_step(law, reach, 0.0).in_impact()) << "it does not come nearer";
+  EXPECT_FALSE(PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact()) << "it starts within";
+  PointPhase p = PointPhase{}.in_step(law, reach, -1.0).at_end(law, 0.0);
+  EXPECT_EQ(p.law(law).mu, 0.0) << "friction is an impulse";
+  p.turn(law, 0.0);
+  EXPECT_EQ(p.law(law).mu, 0.5);
+  EXPECT_FALSE(p.in_step(law, 0.0, -1.0).in_impact()) << "it presses on";
+  EXPECT_TRUE(p.at_end(law, 0.5 * reach).open()) << "of a band that ends lower";
+  EXPECT_GT(p.at_end(law, 0.5 * reach).lowered, 0.0);
+  EXPECT_EQ(p.at_end(law, reach).lowered, 0.0);
+}
+
+}  // namespace
+}  // namespace polhode::test::point_band_tests
