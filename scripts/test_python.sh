@@ -16,7 +16,8 @@ rm -rf build/wheel
   { tail -50 "$log"; exit 1; }
 "$python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall build/wheel/polhode-*.whl
 "$python" -m ruff check --quiet python
-(cd "$environment" && bin/mypy --config-file "$OLDPWD/pyproject.toml" --python-executable "$python" -p polhode)
+mypy=(bin/mypy --config-file "$PWD/pyproject.toml" --python-executable "$python")
+(cd "$environment" && "${mypy[@]}" -p polhode && "${mypy[@]}" "$OLDPWD/python/tests")
 "$python" -m pytest -q -p no:cacheprovider --timeout 300 "$@"
 [ $# = 0 ] || exit 0
 bash scripts/build_wheel.sh build/wheel/polhode-*.whl

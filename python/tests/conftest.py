@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*/model.yaml"))
 
 
-def make_pendulum(**keys):
+def make_pendulum(**keys: object) -> polhode.Model:
     """A bar on a hinge, let go from the horizontal."""
     analysis = {"duration": 1, "step": "5 ms"}
     m = polhode.Model(gravity=[0, 0, -9.81], analysis=analysis, **keys)
@@ -21,5 +21,5 @@ def make_pendulum(**keys):
 
 
 @pytest.fixture
-def pendulum():
+def pendulum() -> polhode.Model:
     return make_pendulum()

@@ -1,44 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forces that Python gives as functions of the motion; probes by name."""
 
-import copy
 import gc
+import pathlib
 import pickle
 import traceback
 import weakref
+from collections.abc import Callable
+from typing import Optional, Union
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import polhode
 from conftest import make_pendulum
+from polhode._functions import BodyReading
+
+Array = npt.NDArray[np.float64]
 
 MASS, K, C, START = 2.0, 50.0, 3.0, 0.8
 
 
-def free_body(step, force, **analysis):
+def free_body(step: float, force: object, **analysis: object) -> polhode.Model:
     m = polhode.Model(analysis={"duration": 1.5, "step": step, **analysis})
     m.add_body("it", mass=MASS, inertia=[0.1, 0.2, 0.3], position=[START, 0, 0])
     m.add_load("push", "force", body="it", at=[START, 0, 0], force=force)
     return m
 
 
-def spring(t, body):
+def spring(t: float, body: BodyReading) -> Array:
     return -K * body.position - C * body.velocity
 
 
-def spring_tangent(t, body):
+def spring_tangent(t: float, body: BodyReading) -> "dict[str, Array]":
     return {"position": -K * np.eye(3), "velocity": -C * np.eye(3)}
 
 
-def closed_form(t, c=C):
+def closed_form(t: Union[float, Array], c: float = C) -> Union[np.float64, Array]:
     d = c / (2 * MASS)
     w = np.sqrt(K / MASS - d * d)
-    return START * np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
+    x: Union[np.float64, Array] = START * np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
+    return x
 
 
 @pytest.mark.parametrize("force", [spring, polhode.StateFunction(spring, tangent=spring_tangent)])
-def test_a_spring_in_python_is_of_second_order(force):
+def test_a_spring_in_python_is_of_second_order(force: "Callable[..., object]") -> None:
     errors = []
     for steps in (30, 300, 3000):  # a hundredth of the first
         r = polhode.run(free_body(1.5 / steps, force))
@@ -49,7 +56,7 @@ def test_a_spring_in_python_is_of_second_order(force):
     assert np.log10(errors[1] / errors[2]) == pytest.approx(2, abs=0.05)
 
 
-def test_what_reads_no_velocity_goes_with_order_four():
+def test_what_reads_no_velocity_goes_with_order_four() -> None:
     force = polhode.StateFunction(lambda t, body: -K * body.position, velocity=False)
     errors = []
     for steps in (50, 100, 200):
@@ -61,7 +68,7 @@ def test_what_reads_no_velocity_goes_with_order_four():
         polhode.run(free_body(0.01, spring, order=4))
 
 
-def test_a_linear_spring_keeps_its_energy_at_any_step():
+def test_a_linear_spring_keeps_its_energy_at_any_step() -> None:
     for step in (0.1, 0.01, 0.001):
         r = polhode.run(free_body(step, lambda t, body: -K * body.position))
         x = r.bodies["it"].position[:, 0]
@@ -69,14 +76,14 @@ def test_a_linear_spring_keeps_its_energy_at_any_step():
         assert np.ptp(total) < 1e-11 * total[0]
 
 
-def test_a_force_reads_the_point_that_it_acts_at():
-    seen = []
+def test_a_force_reads_the_point_that_it_acts_at() -> None:
+    seen: "list[tuple[float, Array, Array, Array]]" = []
 
-    def force(t, body):
+    def force(t: float, body: BodyReading) -> "list[float]":
         assert body.position.shape == (3,) and body.orientation.shape == (4,)
         with pytest.raises(ValueError):
             body.position[0] = 1.0
-        seen.append((t, *copy.deepcopy([body.position, body.velocity, body.angular_velocity])))
+        seen.append((t, body.position.copy(), body.velocity.copy(), body.angular_velocity.copy()))
         return [0, 0, 0]
 
     m = polhode.Model(analysis={"duration": 0.1, "step": 0.01})
@@ -90,21 +97,24 @@ def test_a_force_reads_the_point_that_it_acts_at():
         assert angular_velocity == pytest.approx([0, 0, 2], abs=1e-4)  # moved a little for differences
 
 
-def test_a_moment_in_a_joint_is_the_spring_of_the_engine():
+def test_a_moment_in_a_joint_is_the_spring_of_the_engine() -> None:
+    loads: "list[tuple[str, dict[str, object]]]" = [
+        ("torsional_spring", {"stiffness": 7, "damping": 0.3}),
+        ("rotary_motor", {"moment": lambda t, q, rate: -7 * q - 0.3 * rate}),
+        ("rotary_motor", {"moment": polhode.StateFunction(
+            lambda t, q, rate: -7 * q - 0.3 * rate, tangent=lambda t, q, rate: (-7, -0.3))}),
+    ]
     results = []
-    for load in ({"type": "torsional_spring", "stiffness": 7, "damping": 0.3},
-                 {"type": "rotary_motor", "moment": lambda t, q, rate: -7 * q - 0.3 * rate},
-                 {"type": "rotary_motor", "moment": polhode.StateFunction(
-                     lambda t, q, rate: -7 * q - 0.3 * rate, tangent=lambda t, q, rate: (-7, -0.3))}):
+    for kind, load in loads:
         m = make_pendulum()
-        m.add_load("twist", joint="hinge", **load)
+        m.add_load("twist", kind, joint="hinge", **load)
         results.append(polhode.run(m).joints["hinge"].coordinates[:, 0])
     assert np.ptp(results[0]) > 0.5
     for other in results[1:]:
         assert other == pytest.approx(results[0], abs=1e-8)
 
 
-def test_a_pull_along_a_line_and_a_moment_on_a_body():
+def test_a_pull_along_a_line_and_a_moment_on_a_body() -> None:
     angles, lengths = [], []
     for pull in (lambda t, length, rate: 40 * (length - 0.4) + 0.5 * rate, None):
         m = polhode.Model(analysis={"duration": 1, "step": 0.005})
@@ -124,7 +134,7 @@ def test_a_pull_along_a_line_and_a_moment_on_a_body():
     assert angles[0] == pytest.approx(angles[1], abs=1e-9)
 
 
-def test_the_same_bits_again_and_after_a_restart():
+def test_the_same_bits_again_and_after_a_restart() -> None:
     m = free_body(0.01, spring)
     first, second = polhode.Simulation(m), polhode.Simulation(m)
     first.run(0.7)
@@ -134,10 +144,10 @@ def test_the_same_bits_again_and_after_a_restart():
     assert first.ledger.result_hash == second.ledger.result_hash == polhode.run(m).ledger.result_hash
 
 
-def test_an_exception_stops_the_run_and_shows_its_line():
+def test_an_exception_stops_the_run_and_shows_its_line() -> None:
     trouble = {"on": False}
 
-    def force(t, body):
+    def force(t: float, body: BodyReading) -> Union[float, Array]:
         if trouble["on"] and t > 0.5:
             return 1 / 0  # here
         return -K * body.position
@@ -164,12 +174,12 @@ def test_an_exception_stops_the_run_and_shows_its_line():
     (polhode.StateFunction(spring, tangent=lambda t, body: {"speed": 0}), "may give position"),
     (polhode.StateFunction(spring, tangent=lambda t, body: [1]), "has to give a map"),
 ])
-def test_what_is_no_force_is_told(give, message):
+def test_what_is_no_force_is_told(give: "Callable[..., object]", message: str) -> None:
     with pytest.raises(TypeError, match=message):
         polhode.run(free_body(0.01, give))
 
 
-def test_a_wrong_number_of_arguments_is_told_before_the_run():
+def test_a_wrong_number_of_arguments_is_told_before_the_run() -> None:
     for force, key in ((lambda t, q, rate: [0, 0, 0], "f\\(t, body\\)"), ([spring, 0, 0], "Whole forces")):
         with pytest.raises(polhode.ModelError, match=key):
             free_body(0.01, force).check()
@@ -183,13 +193,13 @@ def test_a_wrong_number_of_arguments_is_told_before_the_run():
 
 
 @pytest.mark.parametrize("mirror", [None, "y"])
-def test_functions_of_a_part_count_in_its_axes(mirror):
+def test_functions_of_a_part_count_in_its_axes(mirror: Optional[str]) -> None:
     """A part that stands turned and mirrored moves as it does alone, seen in its own axes."""
 
     class Steer:
         calls = 0
 
-        def __call__(self, t, body):
+        def __call__(self, t: float, body: BodyReading) -> "list[float]":
             self.calls += 1
             return [1 - 5 * body.position[0], 2 * body.velocity[2], 3 * np.cos(t) - body.orientation[1]]
 
@@ -216,7 +226,7 @@ def test_functions_of_a_part_count_in_its_axes(mirror):
     assert seen.velocity == pytest.approx((alone.velocity * sign) @ turn.T, abs=1e-9)
 
 
-def test_a_mirrored_joint_counts_as_in_the_part():
+def test_a_mirrored_joint_counts_as_in_the_part() -> None:
     part = make_pendulum()
     part.add_load("drive", "rotary_motor", joint="hinge", moment=lambda t, q, rate: 3 - 2 * rate)
     part.add_load("time", "rotary_motor", joint="hinge", moment=lambda t: np.sin(t))
@@ -229,7 +239,7 @@ def test_a_mirrored_joint_counts_as_in_the_part():
         assert polhode.run(whole).bodies["it_arm"].position == pytest.approx(alone * sign, abs=1e-9)
 
 
-def test_linearize_sees_the_derivatives_of_a_function():
+def test_linearize_sees_the_derivatives_of_a_function() -> None:
     m = polhode.Model(analysis={"duration": 1, "step": 0.01})
     m.add_body("it", mass=MASS, inertia=[1, 1, 1])
     m.add_joint("rail", "prismatic", ["ground", "it"], at=[0, 0, 0], axis="x")
@@ -240,18 +250,18 @@ def test_linearize_sees_the_derivatives_of_a_function():
     assert s.C @ np.linalg.solve(-s.A, s.B) == pytest.approx(1 / K, rel=1e-5)
 
 
-def test_models_with_named_functions_are_pickled():
+def test_models_with_named_functions_are_pickled() -> None:
     m = pickle.loads(pickle.dumps(free_body(0.01, polhode.StateFunction(spring, tangent=spring_tangent))))
     assert polhode.run(m).ledger.result_hash == polhode.run(
         free_body(0.01, polhode.StateFunction(spring, tangent=spring_tangent))).ledger.result_hash
     assert "StateFunction" in repr(m.loads["push"].force)
 
 
-def test_a_force_that_knows_the_simulation_is_collected_with_it():
+def test_a_force_that_knows_the_simulation_is_collected_with_it() -> None:
     class Force:
-        simulation = None
+        simulation: Optional[polhode.Simulation] = None
 
-        def __call__(self, t, body):
+        def __call__(self, t: float, body: BodyReading) -> "list[float]":
             return [0, 0, 0 if self.simulation is None else self.simulation.time]
 
     force = Force()
@@ -264,7 +274,7 @@ def test_a_force_that_knows_the_simulation_is_collected_with_it():
     assert gone() is None
 
 
-def test_names_that_do_not_exist_are_told_with_near_ones(pendulum):
+def test_names_that_do_not_exist_are_told_with_near_ones(pendulum: polhode.Model) -> None:
     with pytest.raises(AttributeError, match="Did you mean 'Box'"):
         _ = polhode.Boxx
     with pytest.raises(KeyError, match="There are: arm"):
@@ -274,7 +284,7 @@ def test_names_that_do_not_exist_are_told_with_near_ones(pendulum):
     assert polhode.ModelError.__module__ == "polhode"
 
 
-def test_probes_by_name(pendulum, tmp_path):
+def test_probes_by_name(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     pendulum.add_probe("tip", body="arm", point=[0.5, 0, 0], every="50 ms")
     pendulum.add_probe("hinge", joint="hinge")
     r = polhode.run(pendulum, output=tmp_path / "run")

@@ -2,12 +2,15 @@
 """Laws that hold for any frame and any units."""
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import polhode
 from polhode import rotations as so3
+
+Array = npt.NDArray[np.float64]
 
 _turns = st.tuples(*[st.floats(-1.7, 1.7)] * 3).map(np.array)
 _shifts = st.tuples(*[st.floats(-3, 3)] * 3).map(np.array)
@@ -16,17 +19,19 @@ _shifts = st.tuples(*[st.floats(-3, 3)] * 3).map(np.array)
 _EYE, _ZERO = np.eye(3), np.zeros(3)
 
 
-def double_pendulum(R=_EYE, shift=_ZERO, **scale):
+def double_pendulum(R: Array = _EYE, shift: Array = _ZERO, **scale: float) -> polhode.Model:
     """Two bars on spherical joints and a spring, in a frame that is turned and shifted."""
     L, M, T = scale.get("length", 1), scale.get("mass", 1), scale.get("time", 1)
     units = {k: u for k, u in (("length", "mm" if L != 1 else "m"), ("mass", "g" if M != 1 else "kg"),
                                ("time", "ms" if T != 1 else "s"))}
 
-    def place(x):
-        return ((R @ np.array(x) + shift) * L).tolist()
+    def place(x: "list[float]") -> "list[float]":
+        placed: "list[float]" = ((R @ np.array(x) + shift) * L).tolist()
+        return placed
 
-    def turn(x, unit):
-        return (R @ np.array(x) * unit).tolist()
+    def turn(x: "list[float]", unit: float) -> "list[float]":
+        turned: "list[float]" = (R @ np.array(x) * unit).tolist()
+        return turned
 
     m = polhode.Model(units=units, gravity=turn([0, 0, -9.81], L / T**2),
                       analysis={"duration": 0.3 * T, "step": 0.01 * T})
@@ -46,7 +51,7 @@ _PLAIN = polhode.run(double_pendulum())
 
 @settings(deadline=None, max_examples=25)
 @given(_turns, _shifts)
-def test_motion_and_reactions_do_not_depend_on_the_frame(v, shift):
+def test_motion_and_reactions_do_not_depend_on_the_frame(v: Array, shift: Array) -> None:
     R = so3.matrix_from_rotation_vector(v)
     r = polhode.run(double_pendulum(R, shift))
     for name in ("upper", "lower"):
@@ -58,7 +63,7 @@ def test_motion_and_reactions_do_not_depend_on_the_frame(v, shift):
 
 @settings(deadline=None, max_examples=8)
 @given(st.sampled_from([1, 1000]), st.sampled_from([1, 1000]), st.sampled_from([1, 1000]))
-def test_motion_does_not_depend_on_the_units(length, mass, time):
+def test_motion_does_not_depend_on_the_units(length: float, mass: float, time: float) -> None:
     r = polhode.run(double_pendulum(length=length, mass=mass, time=time))
     assert r.time == pytest.approx(_PLAIN.time, rel=1e-12)
     assert r.bodies["lower"].position == pytest.approx(_PLAIN.bodies["lower"].position, abs=1e-10)

@@ -10,7 +10,7 @@ from conftest import make_pendulum
 CART, POLE, HALF, INERTIA, G = 2.0, 0.3, 0.4, 0.02, 9.81
 
 
-def cart_pole(**pole):
+def cart_pole(**pole: object) -> polhode.Model:
     """A pole that stands on a cart; the cart slides along x."""
     m = polhode.Model(gravity=[0, 0, -G], analysis={"duration": 1, "step": 0.001})
     m.add_body("cart", mass=CART, inertia=[1, 1, 1])
@@ -22,7 +22,7 @@ def cart_pole(**pole):
     return m
 
 
-def test_a_cart_pole_has_the_matrices_of_the_textbook():
+def test_a_cart_pole_has_the_matrices_of_the_textbook() -> None:
     outputs = ["joints.hinge.coordinates", "bodies.pole.velocity.x"]
     s = polhode.linearize(cart_pole(), ["push.x", "loads.motor"], outputs)
     assert s.states == ["joints.slide.coordinates.0", "joints.hinge.coordinates.0",
@@ -31,7 +31,7 @@ def test_a_cart_pole_has_the_matrices_of_the_textbook():
     M = np.array([[CART + POLE, POLE * HALF], [POLE * HALF, INERTIA + POLE * HALF**2]])
     A, B = np.zeros((4, 4)), np.zeros((4, 2))
     A[:2, 2:] = np.eye(2)
-    A[2:, :2] = np.linalg.solve(M, [[0, 0], [0, POLE * G * HALF]])
+    A[2:, :2] = np.linalg.solve(M, [[0.0, 0.0], [0.0, POLE * G * HALF]])
     B[2:] = np.linalg.inv(M)
     assert s.A == pytest.approx(A, abs=1e-6 * np.abs(A).max())
     assert s.B == pytest.approx(B, abs=1e-6 * np.abs(B).max())
@@ -40,12 +40,12 @@ def test_a_cart_pole_has_the_matrices_of_the_textbook():
     assert s.outputs == ["joints.hinge.coordinates.0", "bodies.pole.velocity.x"] and s.inputs[0] == "push.x"
 
 
-def test_a_reaction_goes_through():
+def test_a_reaction_goes_through() -> None:
     s = polhode.linearize(cart_pole(), ["push.z"], ["joints.slide.force"])
     assert abs(s.D[2, 0]) == pytest.approx(1.0, abs=1e-9)  # what lifts the cart unloads its guide
 
 
-def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiffness():
+def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiffness() -> None:
     # A pendulum on a shaft that turns at a constant rate, at the angle where it stays:
     # a'' = W^2 sin a cos a (1) - g/l sin a for a point; its linearisation is -W^2 sin(a)^2 for a fixed rate.
     W, L = 6.0, 1.0
@@ -62,7 +62,7 @@ def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiff
     assert np.abs(A[2:, 0]).max() < 1e-4 * W**2  # the shaft's angle
 
 
-def test_what_cannot_be_linearised_is_told():
+def test_what_cannot_be_linearised_is_told() -> None:
     with pytest.raises(KeyError, match="unknown load 'pusch'. Did you mean 'push'"):
         polhode.linearize(cart_pole(), ["pusch.x"])
     with pytest.raises(KeyError, match="unknown joint 'hinges'. Did you mean 'hinge'"):
@@ -75,7 +75,7 @@ def test_what_cannot_be_linearised_is_told():
         polhode.linearize(m)
 
 
-def test_inverse_dynamics_of_a_pendulum():
+def test_inverse_dynamics_of_a_pendulum() -> None:
     m = make_pendulum()
     t = np.linspace(0, 1, 201)
     angle = 0.3 * (t - np.sin(2 * np.pi * t) / (2 * np.pi))  # from rest to rest

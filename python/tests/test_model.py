@@ -2,6 +2,7 @@
 """Models in code: keys, faults, round trips."""
 
 import copy
+import pathlib
 import pickle
 
 import numpy as np
@@ -14,7 +15,7 @@ from conftest import EXAMPLES, make_pendulum
 from polhode import _native, _text
 
 
-def test_a_model_in_code_is_the_model_of_the_file(pendulum):
+def test_a_model_in_code_is_the_model_of_the_file(pendulum: polhode.Model) -> None:
     text = """\
 format: 1
 gravity: [0, 0, -9.81]
@@ -28,7 +29,7 @@ joints:
     assert pendulum.to_yaml() == text
 
 
-def test_values_are_read_and_set_by_name(pendulum):
+def test_values_are_read_and_set_by_name(pendulum: polhode.Model) -> None:
     body = pendulum.bodies["arm"]
     body.mass = 2
     body.density = None
@@ -44,7 +45,7 @@ def test_values_are_read_and_set_by_name(pendulum):
     assert repr(pendulum) == "<polhode.Model: 1 body, 1 joint>"
 
 
-def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum):
+def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum: polhode.Model) -> None:
     with pytest.raises(polhode.ModelError) as error:
         pendulum.bodies["arm"].densty = 3
     assert error.value.path == "bodies.arm.densty" and "Did you mean 'density'" in error.value.hint
@@ -57,7 +58,8 @@ def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum):
         _ = pendulum.bodies["amr"]
 
 
-def test_faults_have_path_and_hint_and_in_files_line_and_column(tmp_path, pendulum):
+def test_faults_have_path_and_hint_and_in_files_line_and_column(tmp_path: pathlib.Path,
+                                                                pendulum: polhode.Model) -> None:
     pendulum.joints["hinge"].bodies = ["ground", "arn"]
     with pytest.raises(polhode.ModelError) as error:
         pendulum.check()
@@ -78,7 +80,7 @@ def test_faults_have_path_and_hint_and_in_files_line_and_column(tmp_path, pendul
         polhode.load(tmp_path / "none.yaml")
 
 
-def test_shapes_have_the_sizes_of_the_model_file():
+def test_shapes_have_the_sizes_of_the_model_file() -> None:
     assert polhode.Box(1, 2, 3, position=[0, 0, 1]).tree() == {"box": [1, 2, 3], "position": [0, 0, 1]}
     assert polhode.Tube(outer=0.2, inner="100 mm", length=1).tree() == {"tube": [0.2, "100 mm", 1]}
     assert polhode.Plane("z").tree() == {"plane": "z"}
@@ -95,7 +97,7 @@ def test_shapes_have_the_sizes_of_the_model_file():
 
 
 @pytest.mark.parametrize("kind", ["Box", "Sphere", "Cylinder", "Capsule", "Cone", "Ellipsoid", "Tube"])
-def test_every_shape_is_read_by_the_engine(kind):
+def test_every_shape_is_read_by_the_engine(kind: str) -> None:
     shape = getattr(polhode, kind)
     m = polhode.Model(gravity=[0, 0, -1])
     sizes = {"x": 1, "y": 2, "z": 3, "diameter": 0.5, "length": 1, "outer": 0.5, "inner": 0.25}
@@ -104,7 +106,7 @@ def test_every_shape_is_read_by_the_engine(kind):
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.parent.name)
-def test_examples_go_through_text_without_loss(path, tmp_path):
+def test_examples_go_through_text_without_loss(path: pathlib.Path, tmp_path: pathlib.Path) -> None:
     m = polhode.load(path)
     for name in ("again.yaml", "again.json"):
         m.save(tmp_path / name)
@@ -121,11 +123,11 @@ _values = st.recursive(
 
 @settings(deadline=None, max_examples=300)
 @given(st.dictionaries(st.text("abcxyz019_-", min_size=1), _values, min_size=1, max_size=5))
-def test_any_tree_goes_through_yaml_without_loss(tree):
+def test_any_tree_goes_through_yaml_without_loss(tree: "dict[str, object]") -> None:
     assert _native.parse(_text.block(tree), "t.yaml") == tree
 
 
-def test_an_edited_model_reads_meshes_from_its_own_folder(tmp_path):
+def test_an_edited_model_reads_meshes_from_its_own_folder(tmp_path: pathlib.Path) -> None:
     corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     faces = [(1, 3, 2), (1, 2, 4), (1, 4, 3), (2, 3, 4)]
     (tmp_path / "t.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners)
@@ -139,7 +141,7 @@ def test_an_edited_model_reads_meshes_from_its_own_folder(tmp_path):
     assert r.bodies["t"].position[0] == pytest.approx([0.25] * 3, rel=1e-14)
 
 
-def test_copies_do_not_change_with_the_model(pendulum):
+def test_copies_do_not_change_with_the_model(pendulum: polhode.Model) -> None:
     other = pendulum.copy()
     pendulum.bodies["arm"].density = 1
     assert other == make_pendulum() and other != pendulum

@@ -2,6 +2,7 @@
 """The notebooks run, and are stored without outputs."""
 
 import json
+import pathlib
 
 import pytest
 
@@ -11,7 +12,7 @@ NOTEBOOKS = sorted((ROOT / "docs/python/notebooks").glob("*.ipynb"))
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
-def test_notebook_runs(path, tmp_path, monkeypatch):
+def test_notebook_runs(path: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")
     monkeypatch.delenv("MPLBACKEND", raising=False)
@@ -23,7 +24,7 @@ def test_notebook_runs(path, tmp_path, monkeypatch):
     assert pictures or path.stem == "rubber_bushing"
 
 
-def test_there_is_a_notebook_for_each_topic():
+def test_there_is_a_notebook_for_each_topic() -> None:
     assert len(NOTEBOOKS) == 5
     for path in NOTEBOOKS:
         assert json.loads(path.read_text())["nbformat"] == 4

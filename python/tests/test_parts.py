@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models within models."""
 
+import pathlib
+from collections.abc import Mapping
+from typing import Optional
+
 import numpy as np
 import pytest
 
 import polhode
 
 
-def leg():
+def leg() -> polhode.Model:
     m = polhode.Model(variables={"L": 0.4})
     m.add_body("thigh", mass=3, inertia=[0.1, 0.2, 0.15], position=[0, 0.1, "-L/2"], angular_velocity=[0.5, 0.2, 0.3])
     m.add_body("shin", shape=polhode.Box(0.05, 0.08, "L"), density=900, position=[0, 0.1, "-1.5*L"])
@@ -16,17 +20,17 @@ def leg():
     return m
 
 
-def walker(**right):
+def walker(variables: "Optional[Mapping[str, float]]" = None) -> polhode.Model:
     m = polhode.Model(analysis={"duration": 0.5, "step": "5 ms"})
     m.add_body("hip", mass=10, inertia=[1, 1, 1], fixed=True)
-    for name, keys in (("left", {}), ("right", {"mirror": "y", **right})):
-        m.attach(leg(), name, prefix=name[0] + "_", at=[0, 0, -0.1], **keys)
+    for name, mirror, own in (("left", None, None), ("right", "y", variables)):
+        m.attach(leg(), name, prefix=name[0] + "_", at=[0, 0, -0.1], mirror=mirror, variables=own)
         y = 0.1 if name == "left" else -0.1
         m.add_joint(f"{name}_hip", "spherical", ["hip", f"{name[0]}_thigh"], at=[0, y, -0.1])
     return m
 
 
-def test_mirrored_parts_of_one_machine_move_as_mirror_images():
+def test_mirrored_parts_of_one_machine_move_as_mirror_images() -> None:
     r = polhode.run(walker())
     left, right = r.bodies["l_shin"], r.bodies["r_shin"]
     assert np.ptp(left.position, axis=0).max() > 0.02
@@ -35,7 +39,7 @@ def test_mirrored_parts_of_one_machine_move_as_mirror_images():
     assert r.joints["r_knee"].coordinates == pytest.approx(r.joints["l_knee"].coordinates, abs=1e-11)
 
 
-def test_variables_of_a_part_and_files_and_round_trips(tmp_path):
+def test_variables_of_a_part_and_files_and_round_trips(tmp_path: pathlib.Path) -> None:
     m = walker(variables={"L": 0.5})
     m.save(tmp_path / "walker.yaml")
     again = polhode.load(tmp_path / "walker.yaml")
@@ -49,7 +53,7 @@ def test_variables_of_a_part_and_files_and_round_trips(tmp_path):
     assert polhode.Simulation(alone).bodies["l_thigh"].position == pytest.approx([1, 0.1, -0.2])
 
 
-def test_faults_of_parts():
+def test_faults_of_parts() -> None:
     m = walker(variables={"l": 0.5})
     with pytest.raises(polhode.ModelError, match="the part has no variable 'l'"):
         m.check()

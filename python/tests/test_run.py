@@ -3,6 +3,7 @@
 
 import json
 import os
+import pathlib
 import pickle
 import signal
 import subprocess
@@ -12,26 +13,29 @@ import time
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
 import polhode
 from conftest import ROOT, make_pendulum
 
+Array = npt.NDArray[np.float64]
 CLI = os.path.join(os.path.dirname(polhode.__file__), "bin", "polhode")
 
 
-def exact_height(times):
+def exact_height(times: Array) -> Array:
     """Height of the bar's centre by SciPy: a physical pendulum with its length along x."""
     length, width, g = 1.0, 0.05, 9.81
     inertia = (length**2 + width**2) / 12 + 0.25
     motion = solve_ivp(lambda t, y: [y[1], -0.5 * g / inertia * np.cos(y[0])], (0, times[-1]), [0, 0],
                        method="DOP853", rtol=1e-12, atol=1e-12, t_eval=times)
-    return 0.5 * np.sin(motion.y[0])
+    angle: Array = motion.y[0]
+    return 0.5 * np.sin(angle)
 
 
 @pytest.mark.parametrize("step", [0.02, 0.005, 0.0005])
-def test_a_pendulum_moves_as_its_equation_says(step):
+def test_a_pendulum_moves_as_its_equation_says(step: float) -> None:
     m = make_pendulum()
     m.analysis.step = step
     r = polhode.run(m)
@@ -43,7 +47,7 @@ def test_a_pendulum_moves_as_its_equation_says(step):
     assert r.ledger.energy_drift < 1e-13 and r.end == "finished"
 
 
-def test_arrays_are_the_memory_of_the_engine(pendulum):
+def test_arrays_are_the_memory_of_the_engine(pendulum: polhode.Model) -> None:
     r = polhode.run(pendulum)
     body = r.bodies["arm"]
     assert body.position.shape == (201, 3) and body.orientation.shape == (201, 4)
@@ -61,7 +65,7 @@ def test_arrays_are_the_memory_of_the_engine(pendulum):
         _ = r["bodies.leg.position"]
 
 
-def test_results_are_those_of_the_command_line_bit_for_bit(pendulum, tmp_path):
+def test_results_are_those_of_the_command_line_bit_for_bit(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     pendulum.add_load("spring", "spring_damper", bodies=["ground", "arm"], at=[[0, 0, 1], [1, 0, 0]], stiffness=5)
     pendulum.save(tmp_path / "m.yaml")
     figures = json.loads(subprocess.run([CLI, "run", "m.yaml", "--json", "--quiet"], cwd=tmp_path, check=True,
@@ -78,7 +82,7 @@ def test_results_are_those_of_the_command_line_bit_for_bit(pendulum, tmp_path):
     assert file.ledger.energy_drift < 1e-13 and file.ledger.steps == 200
 
 
-def test_a_folder_of_results_says_where_they_come_from(pendulum, tmp_path):
+def test_a_folder_of_results_says_where_they_come_from(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     pendulum.save(tmp_path / "m.yaml")
     polhode.run(tmp_path / "m.yaml", output=tmp_path / "out", overrides={"analysis.duration": "20 ms"})
     with h5py.File(tmp_path / "out/results.h5") as h5:
@@ -88,7 +92,7 @@ def test_a_folder_of_results_says_where_they_come_from(pendulum, tmp_path):
         assert origin["model"].asstr()[0] == (tmp_path / "m.yaml").read_text()
 
 
-def test_models_of_many_bodies_are_read_by_name_too(tmp_path):
+def test_models_of_many_bodies_are_read_by_name_too(tmp_path: pathlib.Path) -> None:
     m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 0.02, "step": 0.01})
     for i in range(150):
         m.add_body(f"b{i}", mass=1, inertia=[1, 1, 1], position=[i, 0, 0], velocity=[0, 0, i])
@@ -101,7 +105,7 @@ def test_models_of_many_bodies_are_read_by_name_too(tmp_path):
         assert r.unit("bodies.b7.position") == "m"
 
 
-def test_overrides_hold_for_one_run(pendulum):
+def test_overrides_hold_for_one_run(pendulum: polhode.Model) -> None:
     pendulum.variables["g"] = 9.81
     pendulum.gravity = [0, 0, "-g"]
     r = polhode.run(pendulum, overrides={"variables.g": 0, "analysis.duration": "20 ms"})
@@ -109,7 +113,7 @@ def test_overrides_hold_for_one_run(pendulum):
     assert pendulum.variables["g"] == 9.81
 
 
-def test_a_table_goes_to_parquet_with_units(pendulum, tmp_path):
+def test_a_table_goes_to_parquet_with_units(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     r = polhode.run(pendulum)
     r.to_parquet(tmp_path / "out.parquet", "bodies.arm", "energy.total")
@@ -122,7 +126,7 @@ def test_a_table_goes_to_parquet_with_units(pendulum, tmp_path):
     assert "joints.hinge.force.z" in parquet.read_table(tmp_path / "all.parquet").column_names
 
 
-def test_results_go_to_other_libraries(pendulum):
+def test_results_go_to_other_libraries(pendulum: polhode.Model) -> None:
     r = polhode.run(pendulum)
     table = r.to_pandas("bodies.arm", "energy.total")
     assert list(table.columns[:3]) == ["bodies.arm.position.x", "bodies.arm.position.y", "bodies.arm.position.z"]
@@ -141,14 +145,14 @@ def test_results_go_to_other_libraries(pendulum):
     assert np.array_equal(figure.axes[1].lines[2].get_ydata(), r.joints["hinge"].force[:, 2])
 
 
-def test_results_can_be_pickled(pendulum, tmp_path):
+def test_results_can_be_pickled(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
     for r in (polhode.run(pendulum, output=tmp_path / "o"), polhode.open(tmp_path / "o")):
         again = pickle.loads(pickle.dumps(r))
         assert np.array_equal(again.bodies["arm"].position, r.bodies["arm"].position)
         assert again.ledger.t == r.ledger.t and again.channels() == r.channels()
 
 
-def test_a_step_that_does_not_converge_raises_with_what_was_computed(pendulum):
+def test_a_step_that_does_not_converge_raises_with_what_was_computed(pendulum: polhode.Model) -> None:
     pendulum.add_load("push", "force", body="arm", at=[1, 0, 0], force=["1e300*t", 0, 0])
     pendulum.analysis.step = "0.5 s"
     with pytest.raises(polhode.NotConverged) as error, pytest.warns(UserWarning, match="velocities are far"):
@@ -156,7 +160,7 @@ def test_a_step_that_does_not_converge_raises_with_what_was_computed(pendulum):
     assert error.value.result.frames >= 1 and error.value.result.end == "not_converged"
 
 
-def test_statics_runs_over_the_load_factor():
+def test_statics_runs_over_the_load_factor() -> None:
     m = polhode.Model(gravity=[0, 0, -10], analysis={"type": "statics", "load_steps": 4})
     m.add_body("b", mass=2, inertia=[1, 1, 1])
     m.add_joint("slide", "prismatic", ["ground", "b"], at=[0, 0, 0], axis="z")
@@ -166,11 +170,11 @@ def test_statics_runs_over_the_load_factor():
     assert r.bodies["b"].position[:, 2] == pytest.approx(-0.2 * r.time, abs=1e-12)
 
 
-def test_the_interpreter_goes_on_while_a_run_goes_on(pendulum):
+def test_the_interpreter_goes_on_while_a_run_goes_on(pendulum: polhode.Model) -> None:
     counted = [0]
     done = threading.Event()
 
-    def count():
+    def count() -> None:
         while not done.is_set():
             counted[0] += 1
             time.sleep(0.001)
@@ -183,7 +187,7 @@ def test_the_interpreter_goes_on_while_a_run_goes_on(pendulum):
     assert counted[0] > 20
 
 
-def test_ctrl_c_stops_with_what_was_computed():
+def test_ctrl_c_stops_with_what_was_computed() -> None:
     program = """
 import sys, warnings
 sys.path.insert(0, sys.argv[1])
@@ -198,25 +202,25 @@ print(r.end, 1 < r.ledger.t < 3600, r.frames > 1, flush=True)
 """
     folder = str(ROOT / "python/tests")
     with subprocess.Popen([sys.executable, "-c", program, folder], stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline() == "begin\n"
+        assert process.stdout and process.stdout.readline() == "begin\n"
         time.sleep(1.5)
         process.send_signal(signal.SIGINT)
         assert process.communicate(timeout=60)[0] == "interrupted True True\n"
 
 
-def test_progress_is_shown_by_tqdm(pendulum, monkeypatch):
+def test_progress_is_shown_by_tqdm(pendulum: polhode.Model, monkeypatch: pytest.MonkeyPatch) -> None:
     from polhode import _progress
 
-    seen = []
+    seen: "list[float]" = []
     monkeypatch.setattr(_progress.Bar, "show", property(lambda self: seen.append))
     polhode.run(pendulum, overrides={"analysis.step": "20 us", "output.every": 1})
     assert seen and seen == sorted(seen) and seen[-1] <= 1
 
 
-def test_ctrl_c_within_the_progress_stops_too(pendulum, monkeypatch):
+def test_ctrl_c_within_the_progress_stops_too(pendulum: polhode.Model, monkeypatch: pytest.MonkeyPatch) -> None:
     from polhode import _progress
 
-    def interrupt(t):
+    def interrupt(t: float) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(_progress.Bar, "show", property(lambda self: interrupt))
@@ -225,10 +229,10 @@ def test_ctrl_c_within_the_progress_stops_too(pendulum, monkeypatch):
     assert r.end == "interrupted" and 0 < r.time[-1] < 1
 
 
-def test_an_exception_in_the_progress_stops_the_run(pendulum, monkeypatch):
+def test_an_exception_in_the_progress_stops_the_run(pendulum: polhode.Model, monkeypatch: pytest.MonkeyPatch) -> None:
     from polhode import _progress
 
-    def fail(t):
+    def fail(t: float) -> None:
         raise ZeroDivisionError("in progress")
 
     monkeypatch.setattr(_progress.Bar, "show", property(lambda self: fail))
@@ -236,7 +240,7 @@ def test_an_exception_in_the_progress_stops_the_run(pendulum, monkeypatch):
         polhode.run(pendulum, overrides={"analysis.step": "10 us", "output.every": 1})
 
 
-def test_the_version_is_that_of_the_build():
+def test_the_version_is_that_of_the_build() -> None:
     text = (ROOT / "CMakeLists.txt").read_text()
     assert f"project(polhode VERSION {polhode.__version__} " in text
     import importlib.metadata
@@ -246,7 +250,7 @@ def test_the_version_is_that_of_the_build():
     assert polhode.__version__ in program.stdout
 
 
-def test_the_command_is_installed():
+def test_the_command_is_installed() -> None:
     program = os.path.join(os.path.dirname(sys.executable), "polhode")
     text = subprocess.run([program, "examples"], check=True, stdout=subprocess.PIPE, text=True).stdout
     assert "double_pendulum" in text

@@ -9,10 +9,9 @@ import polhode
 from conftest import make_pendulum
 
 
-def test_steps_are_those_of_a_run(pendulum):
+def test_steps_are_those_of_a_run(pendulum: polhode.Model) -> None:
     sim = polhode.Simulation(pendulum)
     heights = [sim.bodies["arm"].position[2]]
-    step = None
     for step in sim:  # noqa: B007
         heights.append(sim.bodies["arm"].position[2])
     r = polhode.run(pendulum)
@@ -25,7 +24,7 @@ def test_steps_are_those_of_a_run(pendulum):
         _ = sim.bodies["amr"]
 
 
-def test_a_state_is_restored_bit_for_bit(pendulum):
+def test_a_state_is_restored_bit_for_bit(pendulum: polhode.Model) -> None:
     sim = polhode.Simulation(pendulum)
     sim.run(0.3)
     state, other = sim.state, sim.copy()
@@ -39,7 +38,7 @@ def test_a_state_is_restored_bit_for_bit(pendulum):
         sim.restore(state[:-8])
 
 
-def test_stop_conditions_and_observers(pendulum):
+def test_stop_conditions_and_observers(pendulum: polhode.Model) -> None:
     seen = []
     r = polhode.Simulation(pendulum).run(
         stop=lambda s: s.bodies["arm"].position[2] < -0.4, observe=lambda s: seen.append(s.time))
@@ -47,7 +46,7 @@ def test_stop_conditions_and_observers(pendulum):
     assert np.array_equal(seen, r.time)
 
 
-def test_a_body_set_in_motion_keeps_its_joints(pendulum):
+def test_a_body_set_in_motion_keeps_its_joints(pendulum: polhode.Model) -> None:
     sim = polhode.Simulation(pendulum)
     sim.run(0.5)
     # About the hinge the bar turns with 2 rad/s: the part along the bar is projected away.
@@ -65,7 +64,7 @@ def test_a_body_set_in_motion_keeps_its_joints(pendulum):
         sim.bodies["arm"].acceleration = [0, 0, 0]
 
 
-def test_a_force_from_python_is_the_force_of_the_file():
+def test_a_force_from_python_is_the_force_of_the_file() -> None:
     results = []
     for force in (["2*sin(3*t)", 0, 0], lambda t: [2 * np.sin(3 * t), 0, 0], [lambda t: 2 * np.sin(3 * t), 0, 0]):
         m = polhode.Model(analysis={"duration": 2, "step": 0.01})
@@ -81,10 +80,10 @@ def test_a_force_from_python_is_the_force_of_the_file():
         assert r.loads["push"].force[-1, 0] == pytest.approx(2 * np.sin(6))
 
 
-def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor():
+def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor() -> None:
     times = []
 
-    def speed(t):
+    def speed(t: float) -> float:
         times.append(t)
         return 3.0 * t
 
@@ -97,11 +96,11 @@ def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor():
         m.save("never.yaml")
 
 
-def test_an_exception_in_a_force_stops_the_run_and_is_raised():
+def test_an_exception_in_a_force_stops_the_run_and_is_raised() -> None:
     m = polhode.Model(analysis={"duration": 1, "step": 0.01})
     m.add_body("b", mass=2, inertia=[1, 1, 1])
 
-    def fail(t):
+    def fail(t: float) -> "list[float]":
         if t > 0.5:
             raise ZeroDivisionError(f"at {t}")
         return [0, 0, 0]
@@ -114,7 +113,7 @@ def test_an_exception_in_a_force_stops_the_run_and_is_raised():
         m.check()
 
 
-def two_masses():
+def two_masses() -> polhode.Model:
     """Two masses on springs along z: K = [[300, -100], [-100, 100]], M = diag(2, 1)."""
     m = polhode.Model(analysis={"type": "modes", "about": "start"})
     for name, mass, z in (("a", 2, 1), ("b", 1, 2)):
@@ -125,7 +124,7 @@ def two_masses():
     return m
 
 
-def test_modes_are_those_of_two_masses():
+def test_modes_are_those_of_two_masses() -> None:
     m = two_masses()
     m.loads["s1"].damping = None
     K, M = np.array([[300, -100], [-100, 100]]), np.diag([2, 1])
@@ -138,7 +137,7 @@ def test_modes_are_those_of_two_masses():
     assert len(polhode.modes(m, 1)) == 1
 
 
-def test_matrices_are_those_of_two_masses():
+def test_matrices_are_those_of_two_masses() -> None:
     m = two_masses()
     m.analysis = {"type": "dynamics"}
     matrices = polhode.matrices(m)

@@ -5,16 +5,23 @@ import json
 import os
 import pathlib
 import signal
+from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import polhode
 from conftest import make_pendulum
 from polhode import _sweep, _sweep_command
 
+if TYPE_CHECKING:
+    import pandas
 
-def oscillator():
+Array = npt.NDArray[np.float64]
+
+
+def oscillator() -> polhode.Model:
     """A damped mass on a spring along z."""
     m = polhode.Model(variables={"k": 40, "c": 0.8}, analysis={"duration": 3, "step": 0.005})
     m.add_body("b", mass=1, inertia=[1, 1, 1], position=[0, 0, 1.5])
@@ -24,12 +31,13 @@ def oscillator():
     return m
 
 
-def height(t, k=40.0, c=0.8):
+def height(t: Union[float, Array], k: float = 40.0, c: float = 0.8) -> Union[np.float64, Array]:
     w = np.sqrt(k - c * c / 4)
-    return 1 + 0.5 * np.exp(-c * t / 2) * (np.cos(w * t) + c / (2 * w) * np.sin(w * t))
+    z: Union[np.float64, Array] = 1 + 0.5 * np.exp(-c * t / 2) * (np.cos(w * t) + c / (2 * w) * np.sin(w * t))
+    return z
 
 
-def test_a_grid_is_every_combination_and_failures_are_rows():
+def test_a_grid_is_every_combination_and_failures_are_rows() -> None:
     table = polhode.sweep(oscillator(), {"variables.k": [20, 40, -1], "variables.c": (0.2, 0.4)}, n=2, processes=1,
                           outputs=["bodies.b.position"])
     assert table[["variables.k", "variables.c"]].values.tolist() == [
@@ -41,9 +49,10 @@ def test_a_grid_is_every_combination_and_failures_are_rows():
     assert all("loads.s.stiffness" in message for message in table.message[4:])
 
 
-def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path):
-    def sweep(n, **options):
-        return polhode.sweep(oscillator(), {"variables.k": [20, 30, 40][:n]}, outputs=["energy.total"], **options)
+def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path: pathlib.Path) -> None:
+    def sweep(n: int, processes: int, resume: Optional[pathlib.Path] = None) -> "pandas.DataFrame":
+        return polhode.sweep(oscillator(), {"variables.k": [20, 30, 40][:n]}, outputs=["energy.total"],
+                             processes=processes, resume=resume)
 
     alone, together = sweep(3, processes=1), sweep(3, processes=2)
     assert alone.drop(columns="wall_time_s").equals(together.drop(columns="wall_time_s"))
@@ -59,7 +68,7 @@ def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path):
     assert [json.loads(line)["point"] for line in added] == [{"variables.k": 40}]
 
 
-def die_once(result):
+def die_once(result: polhode.Result) -> "dict[str, float]":
     """Kills its process the first time, as the system does when memory is short."""
     mark = pathlib.Path(os.environ["POLHODE_TEST_MARK"])
     if result.ledger.t > 2.9 and not mark.exists():
@@ -68,14 +77,14 @@ def die_once(result):
     return {"height": float(result.bodies["b"].position[-1, 2])}
 
 
-def test_the_runs_of_a_killed_process_are_run_again(tmp_path, monkeypatch):
+def test_the_runs_of_a_killed_process_are_run_again(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("POLHODE_TEST_MARK", str(tmp_path / "mark"))
     table = polhode.sweep(oscillator(), {"variables.k": [20, 30, 40, 50]}, outputs=die_once, processes=2)
     assert (tmp_path / "mark").exists() and list(table.message) == [""] * 4
     assert table.height.to_numpy() == pytest.approx([height(3.0, k) for k in (20, 30, 40, 50)], abs=2e-3)
 
 
-def test_points_fill_their_ranges():
+def test_points_fill_their_ranges() -> None:
     pairs = {"a": (0, 1), "b": (10, 20)}
     for method in ("sobol", "lhs"):
         points = _sweep._points(pairs, 16, method, 1)
@@ -88,7 +97,7 @@ def test_points_fill_their_ranges():
         _sweep._points(pairs, 4, "halton", 0)
 
 
-def test_a_fit_finds_stiffness_and_damper_in_noisy_data():
+def test_a_fit_finds_stiffness_and_damper_in_noisy_data() -> None:
     times = np.linspace(0, 3, 200)
     noise = np.random.default_rng(3).normal(0, 0.005, 200)
     fit = polhode.fit(oscillator(), {"time": times, "bodies.b.position.z": height(times) + noise},
@@ -101,7 +110,8 @@ def test_a_fit_finds_stiffness_and_damper_in_noisy_data():
         polhode.fit(make_pendulum(), {"time": times, "energy.total": [1]}, {"gravity.2": 9})
 
 
-def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp_path, monkeypatch):
+def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp_path: pathlib.Path,
+                                                                             monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
     monkeypatch.setenv("POLHODE_TEST_MARK", str(tmp_path / "mark"))
     points = {"variables.k": [20, 30, 40, 50, 60]}
@@ -119,15 +129,16 @@ def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp
     assert len((tmp_path / "d.csv").read_text().splitlines()) == 3
 
 
-def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path, capsys):
+def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path: pathlib.Path,
+                                                            capsys: pytest.CaptureFixture[str]) -> None:
     import pandas
 
     file, csv = tmp_path / "model.yaml", tmp_path / "t.csv"
     oscillator().save(file)
 
-    def command(*words):
+    def command(*words: str) -> "tuple[int, str]":
         status = _sweep_command.main([str(file), "-o", str(csv), "--jobs", "1", *words])
-        return status, capsys.readouterr()
+        return status, capsys.readouterr().out
 
     words = ["--vary", "k=20,40", "--vary", "variables.c=0.2..0.4", "-n", "2", "--output", "bodies.b.position"]
     assert command(*words)[0] == 0
@@ -139,9 +150,9 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path, capsys):
     csv.unlink()
     assert command(*words)[0] == 0 and csv.read_text() == first  # wall times too: no run was made again
     status, said = command("--method", "normal", "-n", "4", "--vary", "k=40+-2", "--seed", "3")
-    assert status == 0 and "4 runs" in said.out and pandas.read_csv(csv)["variables.k"].std() > 0.5
+    assert status == 0 and "4 runs" in said and pandas.read_csv(csv)["variables.k"].std() > 0.5
     status, said = command("--vary", "k=40,-1")
-    assert status == 1 and "2 runs, 1 of them failed" in said.out
+    assert status == 1 and "2 runs, 1 of them failed" in said
 
 
 @pytest.mark.parametrize(("words", "message"), [
@@ -153,7 +164,8 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path, capsys):
     (["--vary", "k=1..2", "--method", "normal", "-n", "2"], "MEAN+-DEVIATION goes with --method normal"),
     (["--vary", "kk=1,2"], "there is no variable 'kk'"),
 ])
-def test_the_command_tells_what_is_wrong(words, message, tmp_path, capsys):
+def test_the_command_tells_what_is_wrong(words: "list[str]", message: str, tmp_path: pathlib.Path,
+                                         capsys: pytest.CaptureFixture[str]) -> None:
     oscillator().save(tmp_path / "m.yaml")
     assert _sweep_command.main([str(tmp_path / "m.yaml"), "-o", str(tmp_path / "t.csv"), *words]) == 2
     assert message in capsys.readouterr().err
