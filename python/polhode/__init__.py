@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._errors import Fault, ModelError, NotConverged
-from ._functions import StateFunction
+from ._functions import BodyReading, StateFunction
 from ._model import Model, from_text, load
 from ._native import version as __version__
 
@@ -45,7 +45,7 @@ for _error in (Fault, ModelError, NotConverged):
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
-    "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
+    "BodyReading", "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
     "Simulation", "StateFunction", "StateSpace", "Step", "__version__", "fit", "from_text", "inverse_dynamics",
     "linearize", "load", "matrices", "modes", "open", "rotations", "run", "sweep",
 ]

@@ -15,7 +15,6 @@ import pytest
 
 import polhode
 from conftest import make_pendulum
-from polhode._functions import BodyReading
 
 Array = npt.NDArray[np.float64]
 
@@ -29,11 +28,11 @@ def free_body(step: float, force: object, **analysis: object) -> polhode.Model:
     return m
 
 
-def spring(t: float, body: BodyReading) -> Array:
+def spring(t: float, body: polhode.BodyReading) -> Array:
     return -K * body.position - C * body.velocity
 
 
-def spring_tangent(t: float, body: BodyReading) -> "dict[str, Array]":
+def spring_tangent(t: float, body: polhode.BodyReading) -> "dict[str, Array]":
     return {"position": -K * np.eye(3), "velocity": -C * np.eye(3)}
 
 
@@ -79,7 +78,7 @@ def test_a_linear_spring_keeps_its_energy_at_any_step() -> None:
 def test_a_force_reads_the_point_that_it_acts_at() -> None:
     seen: "list[tuple[float, Array, Array, Array]]" = []
 
-    def force(t: float, body: BodyReading) -> "list[float]":
+    def force(t: float, body: polhode.BodyReading) -> "list[float]":
         assert body.position.shape == (3,) and body.orientation.shape == (4,)
         with pytest.raises(ValueError):
             body.position[0] = 1.0
@@ -147,7 +146,7 @@ def test_the_same_bits_again_and_after_a_restart() -> None:
 def test_an_exception_stops_the_run_and_shows_its_line() -> None:
     trouble = {"on": False}
 
-    def force(t: float, body: BodyReading) -> Union[float, Array]:
+    def force(t: float, body: polhode.BodyReading) -> Union[float, Array]:
         if trouble["on"] and t > 0.5:
             return 1 / 0  # here
         return -K * body.position
@@ -199,7 +198,7 @@ def test_functions_of_a_part_count_in_its_axes(mirror: Optional[str]) -> None:
     class Steer:
         calls = 0
 
-        def __call__(self, t: float, body: BodyReading) -> "list[float]":
+        def __call__(self, t: float, body: polhode.BodyReading) -> "list[float]":
             self.calls += 1
             return [1 - 5 * body.position[0], 2 * body.velocity[2], 3 * np.cos(t) - body.orientation[1]]
 
@@ -261,7 +260,7 @@ def test_a_force_that_knows_the_simulation_is_collected_with_it() -> None:
     class Force:
         simulation: Optional[polhode.Simulation] = None
 
-        def __call__(self, t: float, body: BodyReading) -> "list[float]":
+        def __call__(self, t: float, body: polhode.BodyReading) -> "list[float]":
             return [0, 0, 0 if self.simulation is None else self.simulation.time]
 
     force = Force()
