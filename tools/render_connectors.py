@@ -214,3 +214,28 @@ def bicycle(tools):
     plot.legend(frameon=False)
     tools.label(plot, "lean after the gust", y="[deg]")
     return figure
+
+
+def falling_cat(tools):
+    m = tools.Motion("falling_cat", "output.every=5 ms")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.25)
+    flat = np.array([[1, 0], [0.4, 0.3], [0, 1]])             # seen from beside and a little above
+    legs = {"front": (-0.11, 0.11, -0.06, tools.BLUE), "rear": (-0.12, 0.12, 0.06, tools.RED)}
+    for n, k in enumerate(tools.frames(m, 0.0, 0.6, 6)):
+        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # beside each other, not one below the other
+        for body, (low, high, at, colour) in legs.items():
+            lines = [([low, 0, 0], [high, 0, 0], 7)] + [([at, y, 0], [at, y, 0.16], 2.5) for y in (-0.05, 0.05)]
+            for a, b, width in lines:
+                scene.plot(*((m.points(body, [a, b], k) + away) @ flat).T, color=colour, lw=width, solid_capstyle="round")
+        scene.plot(*((m.points("front", [[-0.15, 0, 0.02]], k) + away) @ flat).T, color=tools.BLUE, marker="o", ms=9)
+        scene.text(0.6 * (n % 3), -0.3 - 0.62 * (n // 3), f"{m.t[k]:.2f} s", ha="center", fontsize=8)
+    scene.set_xlim(-0.3, 1.5), scene.set_ylim(-0.98, 0.3), scene.set_axis_off()
+    scene.set_title("its fall left out", loc="left")
+    turn = np.degrees(np.unwrap(np.arctan2(m.turn["front"][:, 2, 1], m.turn["front"][:, 2, 2])))
+    spine = m.probe("spine")
+    plot.plot(m.t, turn, color=tools.BLUE, label="turn of the front about its spine")
+    bend = np.degrees(np.arccos(np.cos(spine["rx"]) * np.cos(spine["ry"])))
+    plot.plot(spine["t"], bend, color=tools.GOLD, label="bend of the spine")
+    plot.legend(frameon=False)
+    tools.label(plot, "zero angular momentum throughout", y="[deg]")
+    return figure
