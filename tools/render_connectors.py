@@ -239,3 +239,32 @@ def falling_cat(tools):
     plot.legend(frameon=False)
     tools.label(plot, "zero angular momentum throughout", y="[deg]")
     return figure
+
+
+def governor_on_motor(tools):
+    m = tools.Motion("governor_on_motor", "output.every=2 ms")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.8)
+    middle, half = (1 * 0.25 + 0.15 * 0.125) / 1.15, 0.125
+    for t, alpha in ((1.0, 0.3), (2.0, 0.55), (4.0, 1.0)):
+        k = int(np.argmin(abs(m.t - t)))
+        back = m.turn["shaft"][k]                             # seen along with the shaft
+        z = m.place["sleeve"][k][2]
+        for name in "ab":
+            arm = m.points(f"arm_{name}", [[-middle, 0, 0], [2 * half - middle, 0, 0]], k) @ back
+            scene.plot(arm[:, 0], arm[:, 2], color=tools.BLUE, lw=2, alpha=alpha)
+            scene.plot(arm[1, 0], arm[1, 2], color=tools.BLUE, marker="o", ms=13, alpha=alpha)
+            scene.plot([arm[1, 0], 0], [arm[1, 2], z], color=tools.GOLD, lw=1.5, alpha=alpha)
+        sleeve = np.array([[-0.05, 0, z - 0.03], [0.05, 0, z - 0.03], [0.05, 0, z + 0.03], [-0.05, 0, z + 0.03], [-0.05, 0, z - 0.03]])
+        scene.plot(sleeve[:, 0], sleeve[:, 2], color=tools.RED, lw=2, alpha=alpha)
+    scene.plot([0, 0], [0, 0.6], color=tools.INK, lw=3, zorder=3)
+    tools.label(scene, "at 1, 2 and 4 s", "x [m]", "z [m]")
+    motor, pin = m.probe("motor"), m.probe("pin_a")
+    tilt = np.arccos((1 * 0.25 + 0.15 * 0.125 + 3 * 0.25) * 9.81 / ((0.0625 + 0.15 * 0.0625 / 3 - 2e-5) * 15**2))
+    steady = np.arccos(np.cos(tilt) * (15 / motor["rate"]) ** 2)
+    plot.plot(motor["t"], np.degrees(steady), color=tools.PALE, lw=3, label="steady tilt at that speed [deg]")
+    plot.plot(pin["t"], np.degrees(tilt + pin["rz"]), color=tools.BLUE, label="tilt of the arms [deg]")
+    plot.plot(motor["t"], motor["power"], color=tools.RED, label="power of the motor [W]")
+    plot.set_xlim(0, 6)
+    plot.legend(frameon=False, loc="center right")
+    tools.label(plot, "from 15 to 20 rad/s")
+    return figure
