@@ -268,3 +268,21 @@ def governor_on_motor(tools):
     plot.legend(frameon=False, loc="center right")
     tools.label(plot, "from 15 to 20 rad/s")
     return figure
+
+
+def stick_slip(tools):
+    m = tools.Motion("stick_slip")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.0)
+    block = m.probe("block")
+    scene.plot(1e3 * block["x"], block["vx"], color=tools.BLUE)
+    scene.axhline(0.1, color=tools.PALE, lw=3, zorder=0)
+    scene.text(-0.5, 0.106, "the belt's velocity", fontsize=8)
+    scene.set_aspect("auto")
+    tools.label(scene, "sticks on the straight line, slides on the arc", "x [mm]", "velocity [m/s]")
+    plot.plot(block["t"], 1e3 * block["x"], color=tools.BLUE, label="place of the block [mm]")
+    drive = m.probe("drive")
+    plot.plot(drive["t"], drive["fx"], color=tools.RED, label="friction [N]")
+    plot.set_ylim(-1, 19)
+    plot.legend(frameon=False, ncol=2, loc="upper center")
+    tools.label(plot, "0.098 s on the belt, 0.237 s on its way back")
+    return figure
