@@ -214,3 +214,75 @@ def bicycle(tools):
     plot.legend(frameon=False)
     tools.label(plot, "lean after the gust", y="[deg]")
     return figure
+
+
+def falling_cat(tools):
+    m = tools.Motion("falling_cat", "output.every=5 ms")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.25)
+    flat = np.array([[1, 0], [0.4, 0.3], [0, 1]])             # seen from beside and a little above
+    legs = {"front": (-0.11, 0.11, -0.06, tools.BLUE), "rear": (-0.12, 0.12, 0.06, tools.RED)}
+    for n, k in enumerate(tools.frames(m, 0.0, 0.6, 6)):
+        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # beside each other, not one below the other
+        for body, (low, high, at, colour) in legs.items():
+            lines = [([low, 0, 0], [high, 0, 0], 7)] + [([at, y, 0], [at, y, 0.16], 2.5) for y in (-0.05, 0.05)]
+            for a, b, width in lines:
+                scene.plot(*((m.points(body, [a, b], k) + away) @ flat).T, color=colour, lw=width, solid_capstyle="round")
+        scene.plot(*((m.points("front", [[-0.15, 0, 0.02]], k) + away) @ flat).T, color=tools.BLUE, marker="o", ms=9)
+        scene.text(0.6 * (n % 3), -0.3 - 0.62 * (n // 3), f"{m.t[k]:.2f} s", ha="center", fontsize=8)
+    scene.set_xlim(-0.3, 1.5), scene.set_ylim(-0.98, 0.3), scene.set_axis_off()
+    scene.set_title("its fall left out", loc="left")
+    turn = np.degrees(np.unwrap(np.arctan2(m.turn["front"][:, 2, 1], m.turn["front"][:, 2, 2])))
+    spine = m.probe("spine")
+    plot.plot(m.t, turn, color=tools.BLUE, label="turn of the front about its spine")
+    bend = np.degrees(np.arccos(np.cos(spine["rx"]) * np.cos(spine["ry"])))
+    plot.plot(spine["t"], bend, color=tools.GOLD, label="bend of the spine")
+    plot.legend(frameon=False)
+    tools.label(plot, "zero angular momentum throughout", y="[deg]")
+    return figure
+
+
+def governor_on_motor(tools):
+    m = tools.Motion("governor_on_motor", "output.every=2 ms")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.8)
+    middle, half = (1 * 0.25 + 0.15 * 0.125) / 1.15, 0.125
+    for t, alpha in ((1.0, 0.3), (2.0, 0.55), (4.0, 1.0)):
+        k = int(np.argmin(abs(m.t - t)))
+        back = m.turn["shaft"][k]                             # seen along with the shaft
+        z = m.place["sleeve"][k][2]
+        for name in "ab":
+            arm = m.points(f"arm_{name}", [[-middle, 0, 0], [2 * half - middle, 0, 0]], k) @ back
+            scene.plot(arm[:, 0], arm[:, 2], color=tools.BLUE, lw=2, alpha=alpha)
+            scene.plot(arm[1, 0], arm[1, 2], color=tools.BLUE, marker="o", ms=13, alpha=alpha)
+            scene.plot([arm[1, 0], 0], [arm[1, 2], z], color=tools.GOLD, lw=1.5, alpha=alpha)
+        sleeve = np.array([[-0.05, 0, z - 0.03], [0.05, 0, z - 0.03], [0.05, 0, z + 0.03], [-0.05, 0, z + 0.03], [-0.05, 0, z - 0.03]])
+        scene.plot(sleeve[:, 0], sleeve[:, 2], color=tools.RED, lw=2, alpha=alpha)
+    scene.plot([0, 0], [0, 0.6], color=tools.INK, lw=3, zorder=3)
+    tools.label(scene, "at 1, 2 and 4 s", "x [m]", "z [m]")
+    motor, pin = m.probe("motor"), m.probe("pin_a")
+    tilt = np.arccos((1 * 0.25 + 0.15 * 0.125 + 3 * 0.25) * 9.81 / ((0.0625 + 0.15 * 0.0625 / 3 - 2e-5) * 15**2))
+    steady = np.arccos(np.cos(tilt) * (15 / motor["rate"]) ** 2)
+    plot.plot(motor["t"], np.degrees(steady), color=tools.PALE, lw=3, label="steady tilt at that speed [deg]")
+    plot.plot(pin["t"], np.degrees(tilt + pin["rz"]), color=tools.BLUE, label="tilt of the arms [deg]")
+    plot.plot(motor["t"], motor["power"], color=tools.RED, label="power of the motor [W]")
+    plot.set_xlim(0, 6)
+    plot.legend(frameon=False, loc="center right")
+    tools.label(plot, "from 15 to 20 rad/s")
+    return figure
+
+
+def stick_slip(tools):
+    m = tools.Motion("stick_slip")
+    figure, scene, plot = tools.sheet(flat=True, wide=1.0)
+    block = m.probe("block")
+    scene.plot(1e3 * block["x"], block["vx"], color=tools.BLUE)
+    scene.axhline(0.1, color=tools.PALE, lw=3, zorder=0)
+    scene.text(-0.5, 0.106, "the belt's velocity", fontsize=8)
+    scene.set_aspect("auto")
+    tools.label(scene, "sticks on the straight line, slides on the arc", "x [mm]", "velocity [m/s]")
+    plot.plot(block["t"], 1e3 * block["x"], color=tools.BLUE, label="place of the block [mm]")
+    drive = m.probe("drive")
+    plot.plot(drive["t"], drive["fx"], color=tools.RED, label="friction [N]")
+    plot.set_ylim(-1, 19)
+    plot.legend(frameon=False, ncol=2, loc="upper center")
+    tools.label(plot, "0.098 s on the belt, 0.237 s on its way back")
+    return figure

@@ -490,7 +490,8 @@ def main():
             picture = getattr(render_contact.Pictures(sys.modules[__name__]), name)()
             save(picture, ROOT / "examples" / name / "picture.png")
     for name in ("planetary_gearbox", "suspension_corner", "shaking_table", "stewart_platform", "excavator", "trebuchet",
-                 "cable_crane", "arm_with_muscles", "bicycle"):
+                 "cable_crane", "arm_with_muscles", "bicycle", "falling_cat", "governor_on_motor",
+                 "stick_slip"):
         if name in wanted or not sys.argv[1:]:
             save(getattr(render_connectors, name)(sys.modules[__name__]), ROOT / "examples" / name / "picture.png")
     if "hero" in wanted:
