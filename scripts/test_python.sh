@@ -7,8 +7,8 @@ environment=$PWD/build/python-tests
 python=$environment/bin/python
 [ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment"
 "$python" -m pip install --quiet --disable-pip-version-check -r python/requirements.txt
-# The same compiler names and base folder as the other builds, so that a compiler cache serves all of them.
-export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+# The same compiler names, options and base folder as the other builds, so that a compiler cache serves all of them.
+export CC=${CC:-cc} CXX=${CXX:-c++} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 POLHODE_WERROR=ON
 export OPENBLAS_NUM_THREADS=1
 log=build/python-install.log
 rm -rf build/wheel
