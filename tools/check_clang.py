@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """All sources are read by clang without a warning; the tests build with g++.
 
     tools/check_clang.py BUILD    BUILD: a configured build folder, with its compile_commands.json
