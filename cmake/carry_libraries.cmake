@@ -9,7 +9,7 @@ file(GET_RUNTIME_DEPENDENCIES EXECUTABLES "${program}" LIBRARIES "${mumps}"
 file(MAKE_DIRECTORY "${libraries}" "${licences}")
 find_program(DPKG_QUERY dpkg-query)
 
-# carry(FILE NAME): a library under the name by which it is asked for.
+# carry(FILE NAME): copy of a library under the name that programs load it by.
 function(carry file name)
   file(REAL_PATH "${file}" real)
   file(COPY_FILE "${real}" "${libraries}/${name}")

@@ -132,6 +132,20 @@ def dot(a, b):
     return sum(x * y for x, y in zip(a, b))
 
 
+def solve(matrix, right):
+    """Solution of a small linear system, by elimination with pivots."""
+    rows = [list(row) + [value] for row, value in zip(matrix, right)]
+    n = len(rows)
+    for k in range(n):
+        pivot = max(range(k, n), key=lambda r: abs(rows[r][k]))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        for r in range(n):
+            if r != k:
+                factor = rows[r][k] / rows[k][k]
+                rows[r] = [a - factor * b for a, b in zip(rows[r], rows[k])]
+    return [rows[k][n] / rows[k][k] for k in range(n)]
+
+
 def angular_velocity(run, centre, tips):
     """Angular velocity (world axes) of a body from probes at a point and at one unit along each of its axes:
     ω = ½ Σ e × ė."""

@@ -48,7 +48,7 @@ nlohmann::json how_of(const FilmRequest& request, const std::string& kind) {
   return how;
 }
 
-/// What the page sends, until it says that it is done or has failed.
+/// Messages of the page up to the one that ends the film or reports a failure.
 class Receiver {
  public:
   Receiver(const FilmRequest& request, const std::string& kind, std::string folder)

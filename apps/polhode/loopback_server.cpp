@@ -65,7 +65,7 @@ std::string value_of(const std::string& head, const std::string& name) {
   return "";
 }
 
-/// What was sent behind the head; nothing if it does not come to its end.
+/// Body of a request; nothing if the connection ends before it is complete.
 std::optional<std::string> read_body(int connection, const std::string& head) {
   const std::string length = value_of(head, "content-length");
   std::size_t size = 0;

@@ -14,7 +14,7 @@ struct WebAnswer {
   std::string body{};
 };
 
-/// What a page asked for, or sent.
+/// Request of a page.
 struct WebRequest {
   std::string path;
   bool sent = false;   ///< POST.

@@ -7,7 +7,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from support import ROUND_OFF, Report, Run, cross, dot, integrate, subtract  # noqa: E402
+from support import ROUND_OFF, Report, Run, cross, dot, integrate, solve, subtract  # noqa: E402
 
 FRONT = dict(m=1.8, J=(2.6e-3, 8.0e-3, 8.4e-3), at=-0.11)     # kg, kg m^2, m from the joint along the spine
 REAR = dict(m=2.2, J=(3.1e-3, 9.5e-3, 9.9e-3), at=0.12)
@@ -34,14 +34,6 @@ def product(A, B):
 
 def transposed(A):
     return tuple(zip(*A))
-
-
-def solve(A, b):
-    """Of three equations."""
-    columns = transposed(A)
-    det = sum(x * y for x, y in zip(columns[0], cross(columns[1], columns[2])))
-    rows = (cross(columns[1], columns[2]), cross(columns[2], columns[0]), cross(columns[0], columns[1]))
-    return tuple(sum(x * y for x, y in zip(row, b)) / det for row in rows)
 
 
 def spin(t):

@@ -7,7 +7,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from support import ROUND_OFF, Report, Run, cross, dot, subtract  # noqa: E402
+from support import ROUND_OFF, Report, Run, cross, dot, solve, subtract  # noqa: E402
 
 FOOT, HEAD, HEIGHT, W = 0.8, 0.5, 1.0, math.pi
 GRAVITY = (0, 0, -9.81)
@@ -80,19 +80,6 @@ def momentum(i, t):
         place = lambda s, at=at: times(at(s), axes(i, s)[2])  # noqa: E731
         total = plus(total, cross(place(t), times(part["m"], rate(place, t))))
     return total
-
-
-def solve(matrix, right):
-    rows = [list(row) + [value] for row, value in zip(matrix, right)]
-    n = len(rows)
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda r: abs(rows[r][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        for r in range(n):
-            if r != k:
-                factor = rows[r][k] / rows[k][k]
-                rows[r] = [a - factor * b for a, b in zip(rows[r], rows[k])]
-    return [rows[k][n] / rows[k][k] for k in range(n)]
 
 
 def motor_forces(t):

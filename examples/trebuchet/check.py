@@ -6,7 +6,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from support import Report, Run, integrate  # noqa: E402
+from support import Report, Run, integrate, solve  # noqa: E402
 
 G = 9.81
 LONG, SHORT, DROP, HEIGHT, SLING, HANG = 3.2, 0.8, 2.6, 3.0, 2.4, 0.7
@@ -14,19 +14,6 @@ ARM, ARM_J, WEIGHT, WEIGHT_J, BALL = 40.0, 55.0, 600.0, 40.0, 6.0
 CENTRE = (LONG - SHORT) / 2
 SLOPE = math.asin(DROP / LONG)
 FIRE, LET_GO = 0.2, math.radians(128)
-
-
-def solve(matrix, right):
-    rows = [list(row) + [value] for row, value in zip(matrix, right)]
-    n = len(rows)
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda r: abs(rows[r][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        for r in range(n):
-            if r != k:
-                factor = rows[r][k] / rows[k][k]
-                rows[r] = [a - factor * b for a, b in zip(rows[r], rows[k])]
-    return [rows[k][n] / rows[k][k] for k in range(n)]
 
 
 def accelerations(y, trough):

@@ -7,14 +7,14 @@
 
 namespace polhode::python {
 
-/// What a Python callable gives, as a number. @throws nb::python_error if it is none.
+/// Result of a Python callable as a number. @throws nb::python_error if it is none.
 inline double number_of(nb::handle result) {
   const double x = PyFloat_AsDouble(result.ptr());
   if (x == -1.0 && PyErr_Occurred()) throw nb::python_error();
   return x;
 }
 
-/// Likewise as three numbers. @throws nb::type_error if they are not three.
+/// Result of a Python callable as a vector. @throws nb::type_error if they are not three.
 inline Vec3 three_numbers_of(const nb::object& result) {
   const Py_ssize_t n = PySequence_Check(result.ptr()) ? PySequence_Size(result.ptr()) : -1;
   if (n != 3) {

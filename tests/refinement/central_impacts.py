@@ -6,6 +6,7 @@ changes the speed of the touching point by 7/2 J/m. With p = (1 + e) w m* the fr
 (Routh: the direction of slip cannot change in a central impact), or what ends the slip, if that is less.
 """
 from case import FLOOR, Case, Known, Variant, body, fall, largest, last, model, spin_y
+from support import solve
 
 R, M, W = 0.1, 1.0, 2.0  # m, kg, m/s of approach
 EXACT = 1e-4 * W  # What the issue of step-independent impacts asks of a central impact at every step.
@@ -102,19 +103,6 @@ def on_plate():
                       joints={"hinge": {"type": "revolute", "bodies": ["ground", "plate"], "at": [0, 0, 0], "axis": "y"}},
                       contacts={"default": {"restitution": "e"}}, probes=body("ball")),
                 1e-2, 0.04, tuple(variants), ABSOLUTE, compare=False, because="Closed forms ask everything.")
-
-
-def solve(a, b):
-    """Of a small system, by elimination with pivots."""
-    n, rows = len(b), [list(r) + [v] for r, v in zip(a, b)]
-    for k in range(n):
-        p = max(range(k, n), key=lambda i: abs(rows[i][k]))
-        rows[k], rows[p] = rows[p], rows[k]
-        for i in range(n):
-            if i != k:
-                f = rows[i][k] / rows[k][k]
-                rows[i] = [x - f * y for x, y in zip(rows[i], rows[k])]
-    return [rows[i][n] / rows[i][i] for i in range(n)]
 
 
 def chain_compliance(count, length, mass, inertia, place):

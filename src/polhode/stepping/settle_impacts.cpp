@@ -63,7 +63,7 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
     for (const auto& [g, group] : groups_) {
       hit.clear();
       group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
-      for (SurfaceImpact& impact : hit) surfaces_.push_back({g, std::move(impact)});
+      for (SurfaceImpact& impact : hit) surfaces_.push_back({g, group, std::move(impact)});
     }
   }
   std::vector<Impact> impacts;

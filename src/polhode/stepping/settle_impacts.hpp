@@ -38,9 +38,10 @@ class SettleImpacts {
     std::vector<int> nodes;  ///< Free ones that rows press on, ascending.
     bool tied = false;       ///< Joints or solids make its bodies answer together.
   };
-  /// A point of a surface, and the group that it belongs to.
+  /// A point of a surface, and the group of elements that it belongs to, with its number.
   struct Surface {
-    int group = 0;
+    int number = 0;
+    const SurfaceImpacts* group = nullptr;
     SurfaceImpact impact;
   };
   [[nodiscard]] std::vector<Island> islands() const;

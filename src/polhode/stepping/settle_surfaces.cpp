@@ -21,7 +21,7 @@ double SettleImpacts::wanted_of(const SurfaceImpact& impact, double speed) const
 /// @eq{surface-turn}
 Work SettleImpacts::find_turns(State& state) {
   Work work;
-  for (const auto& [g, hit] : surfaces_) {
+  for (const auto& [g, group, hit] : surfaces_) {
     double* history = state.element_history.data() + system_->nodes().first_history(g);
     Vec3 v = Vec3::Zero();
     for (const auto& [node, N] : hit.nodes) v += N * velocity_of_node(state, node);
@@ -39,7 +39,6 @@ Work SettleImpacts::find_turns(State& state) {
     const bool turns = hit.turned ? speed <= 0.0 : speed >= 0.0;
     if (!turns) continue;
     if (!hit.turned) impact.wanted = wanted_of(hit, speed);
-    const auto* group = dynamic_cast<const SurfaceImpacts*>(&system_->nodes().group(g));
     const double released = group->turn(hit, history);
     work.stored -= released;
     work.dissipated += released;
@@ -65,9 +64,9 @@ void SettleImpacts::tell_surfaces(State& state) const {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const SettledImpact& s = settled_[of_joints_ + k];
     if (s.normal == 0.0 && s.friction.isZero(0.0)) continue;
-    const auto& [g, impact] = surfaces_[k];
-    dynamic_cast<const SurfaceImpacts&>(system_->nodes().group(g))
-        .settled(impact, s, dt_, state.element_history.data() + system_->nodes().first_history(g));
+    const auto& [g, group, impact] = surfaces_[k];
+    group->settled(impact, s, dt_,
+                   state.element_history.data() + system_->nodes().first_history(g));
   }
 }
 
