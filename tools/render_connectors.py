@@ -92,6 +92,24 @@ def stewart_platform(tools):
     return figure
 
 
+def three_rrr(tools):
+    m = tools.Motion("three_rrr")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.9)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 1.0, 3)):
+        tools.draw(scene, m.points("plate", tools.circle(0.15), k), tools.BLUE, alpha, 2)
+        for i in (1, 2, 3):
+            for name, colour in ((f"upper_{i}", tools.INK), (f"lower_{i}", tools.RED)):
+                tools.draw(scene, m.points(name, [[-0.2, 0, 0], [0.2, 0, 0]], k), colour, alpha, 2.5)
+    tools.draw(scene, m.place["plate"], tools.GOLD, 1, 1)
+    scene.set_aspect("equal")
+    for i, colour in zip((1, 2, 3), (tools.RED, tools.BLUE, tools.GOLD)):
+        motor = m.probe(f"motor_{i}")
+        plot.plot(motor["t"], motor["mz"], color=colour, label=f"motor {i}")
+    plot.legend(frameon=False, ncol=3)
+    tools.label(plot, "moments of the motors", y="[N m]")
+    return figure
+
+
 def excavator(tools):
     m = tools.Motion("excavator")
     figure, scene, plot = tools.sheet(flat=True, wide=1.1)
