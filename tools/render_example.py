@@ -489,7 +489,7 @@ def main():
         if name in wanted or not sys.argv[1:]:
             picture = getattr(render_contact.Pictures(sys.modules[__name__]), name)()
             save(picture, ROOT / "examples" / name / "picture.png")
-    for name in ("planetary_gearbox", "suspension_corner", "shaking_table", "stewart_platform", "three_rrr", "excavator", "trebuchet",
+    for name in ("planetary_gearbox", "suspension_corner", "shaking_table", "stewart_platform", "three_rrr", "geneva_drive", "excavator", "trebuchet",
                  "cable_crane", "arm_with_muscles", "bicycle", "falling_cat", "governor_on_motor",
                  "stick_slip"):
         if name in wanted or not sys.argv[1:]:
