@@ -14,7 +14,7 @@ Recording::Recording(const Simulation& simulation)
 
 void Recording::step(const Simulation& simulation) {
   for (ProbeRows& probe : probes_) {
-    if (!probe.clock.strikes(simulation.time())) continue;
+    if (!probe.clock.strikes(simulation.time(), simulation.stopped())) continue;
     const std::vector<double> row = probe_row(probe.target, simulation);
     probe.numbers.insert(probe.numbers.end(), row.begin(), row.end());
   }

@@ -25,6 +25,7 @@ constexpr int kPoints = 4;
 struct Sample {
   RunningCable cable;
   std::vector<double> x_n, x_n1, u, v_n, v_n1;
+  std::vector<double> history;  ///< With friction.
   StepContext context;
   double rate = 0.0;
 
@@ -35,6 +36,11 @@ struct Sample {
     context.dt = 0.01;
     context.conserving = true;
     rate = context.ga.c / context.dt;
+    if (spec.friction > 0.0) {  // parts whose sum over stiffness is nothing
+      history = {0.3 * spec.pieces[1], -0.3 * spec.pieces[0], 0.0};
+      for (double& part : history)
+        part *= spec.stiffness * spec.free_length / spec.pieces[0] / spec.pieces[1] * 0.1;
+    }
     for (int i = 0; i < kPoints; ++i) {
       const Vec3 at = random.vector(0.3) + 0.8 * i * Vec3::UnitX();
       const Vec3 way = random.vector(move), v = random.vector(2.0);
@@ -71,7 +77,7 @@ struct Sample {
     std::vector<double> f(3 * kPoints, 0.0), k(9 * kPoints * kPoints, 0.0);
     std::vector<int> slots;
     for (int i = 0; i < kPoints * kPoints; ++i) slots.push_back(i);
-    cable.evaluate(step(), nullptr, nullptr, Mat3::Identity(),
+    cable.evaluate(step(), history.data(), nullptr, Mat3::Identity(),
                    {f.data(), K ? k.data() : nullptr, slots.data()});
     if (K) {
       K->resize(3 * kPoints, 3 * kPoints);
@@ -86,7 +92,8 @@ struct Sample {
   }
 };
 
-/// Taut, slack at one end of the step, with a damper, with a given tension, muscles.
+/// Taut, slack at one end of the step, with a damper, with a given tension, muscles, friction
+/// that holds, slips in parts, slips.
 std::vector<RunningCableSpec> kinds(double length) {
   RunningCableSpec plain;
   plain.name = "rope";
@@ -111,6 +118,13 @@ std::vector<RunningCableSpec> kinds(double length) {
                                   .max_velocity = 8.0,
                                   .damping = 0.1,
                                   .activation = std::make_shared<Ramp>()};
+  for (const double mu : {3.0, 0.5, 0.02}) {
+    list.push_back(plain);
+    list.back().friction = mu;
+    list.back().damping = mu == 0.5 ? 2.0 : 0.0;
+    const double free = list.back().free_length;
+    list.back().pieces = {0.3 * free, 0.45 * free, 0.25 * free};
+  }
   return list;
 }
 
@@ -144,7 +158,7 @@ TEST(RunningCable, HasTheTangentOfItsForces) {
 }
 
 // Force times motion is what it stored, and what was dissipated and put in; neither force nor
-// moment is left. @tests{running-cable}
+// moment is left. @tests{running-cable} @tests{cable-capstan-step}
 TEST(RunningCable, GivesBackExactlyWhatItStored) {
   for (const double move : {0.3, 0.02, 1e-4, 1e-7})
     for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -155,9 +169,10 @@ TEST(RunningCable, GivesBackExactlyWhatItStored) {
         Sample before = s;
         before.x_n1 = s.x_n;
         before.context.dt = 0.0;
-        const double stored = s.cable.work(s.step(), nullptr, nullptr).stored -
-                              s.cable.work(before.step(), nullptr, nullptr).stored;
-        const Work w = s.cable.work(s.step(), nullptr, nullptr);
+        const double* history = s.history.data();
+        const double stored = s.cable.work(s.step(), history, nullptr).stored -
+                              s.cable.work(before.step(), history, nullptr).stored;
+        const Work w = s.cable.work(s.step(), history, nullptr);
         const double work = f.dot(Eigen::Map<const Vec>(s.u.data(), 3 * kPoints));
         EXPECT_NEAR(work, w.put_in - w.dissipated - stored, 2e-13 * (1.0 + f.norm())) << seed;
         EXPECT_GE(w.dissipated, 0.0);
@@ -171,6 +186,38 @@ TEST(RunningCable, GivesBackExactlyWhatItStored) {
         EXPECT_LT(moment.norm(), 1e-12);
       }
     }
+}
+
+// Each point holds up to e^{μβ}, the others what is left of it; the mean by compliance stays.
+// @tests{cable-capstan}
+TEST(CableFriction, HoldsUpToItsRatio) {
+  Random random(7);
+  int slipped = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<double> k;
+    for (int i = 0; i < 5; ++i) k.push_back(std::exp(random.number(1.5)));
+    const CableFriction friction(k);
+    Vec N(5), ratio(4);
+    for (int i = 0; i < 5; ++i) N[i] = 1.0 + random.number(1.5);
+    for (int i = 0; i < 4; ++i) ratio[i] = std::exp(-std::abs(random.number(1.0)));
+    const Vec compliance = Eigen::Map<const Vec>(k.data(), 5).cwiseInverse();
+    if (compliance.dot(N) <= 0.0) continue;
+    const CableFriction::Held held = friction.hold(N, ratio);
+    EXPECT_NEAR(compliance.dot(held.tension - N), 0.0, 1e-12);
+    double material = 0.0;
+    for (int j = 0; j < 4; ++j) {
+      const double a = held.tension[j], b = held.tension[j + 1];
+      EXPECT_GT(a, 0.0);
+      EXPECT_GE(b, ratio[j] * a * (1.0 - 1e-11));
+      EXPECT_GE(a, ratio[j] * b * (1.0 - 1e-11));
+      // What came over the point: it came from the slacker side, and only at the ratio.
+      material += (held.tension[j] - N[j]) / k[static_cast<std::size_t>(j)];
+      if (std::abs(material) < 1e-11) continue;
+      ++slipped;
+      EXPECT_NEAR(material > 0.0 ? ratio[j] * b / a : ratio[j] * a / b, 1.0, 1e-10);
+    }
+  }
+  EXPECT_GT(slipped, 100);
 }
 
 // Tension of a muscle held still: a f_L + f_P along the tendon. @tests{muscle-force}
@@ -192,7 +239,7 @@ TEST(RunningCable, PullsAsItsMuscle) {
                            .v_n1 = still.data(),
                            .context = context,
                            .alpha_f = 1.0};
-    const RunningCableReport r = RunningCable(spec).report(instant);
+    const RunningCableReport r = RunningCable(spec).report(instant, nullptr);
     EXPECT_NEAR(r.fibre_length, fibre * m.optimal_length, 1e-14);
     EXPECT_NEAR(r.activation, 0.7, 1e-15);
     const double bells =

@@ -31,6 +31,7 @@ RunningCable::RunningCable(RunningCableSpec spec) : spec_(std::move(spec)) {
   if (spec_.nodes.size() < 2) refuse("through", "has fewer than two points", "Give two or more");
   if (!(spec_.stiffness >= 0.0) || !(spec_.damping >= 0.0))
     refuse("", "has a negative stiffness or damping", "Give numbers that are not negative");
+  if (spec_.friction > 0.0) add_friction();
   if (!spec_.muscle) return;
   const HillMuscle& m = *spec_.muscle;
   if (!(m.max_force > 0.0) || !(m.optimal_length > 0.0) || !(m.max_velocity > 0.0) ||
@@ -62,7 +63,8 @@ RunningCable::Course RunningCable::course(const NodeStep& step) const {
       s.n = s.per_length * ((1.0 - af) * d_n + af * d_n1);
       if (l_n1 > kNoSpan) s.e = d_n1 / l_n1;
       const Vec3 moved = NodeStep::at(step.u, j) - NodeStep::at(step.u, i);
-      c.change += (d_n + d_n1).dot(moved) / (l_n + l_n1);
+      s.change = (d_n + d_n1).dot(moved) / (l_n + l_n1);
+      c.change += s.change;
       if (middle) {
         s.rate = s.e / step.context.dt;
       } else {
@@ -154,58 +156,91 @@ RunningCable::Tension RunningCable::tension(const NodeStep& step, const Course& 
   return T;
 }
 
-ElementReport RunningCable::evaluate(const NodeStep& step, const double*, double*, const Mat3&,
-                                     const ElementSink& sink) const {
+ElementReport RunningCable::evaluate(const NodeStep& step, const double* history, double*,
+                                     const Mat3&, const ElementSink& sink) const {
   const Course c = course(step);
   const Tension T = tension(step, c);
-  const double N = T.sum(), af = step.alpha_f;
+  const double af = step.alpha_f;
   const std::size_t count = spec_.nodes.size();
+  std::optional<Grip> grip;
+  if (friction_) grip = this->grip(step, c, T.sum(), history);
+  const auto N = [&](std::size_t k) {
+    return grip ? grip->held.tension[static_cast<Eigen::Index>(k)] : T.sum();
+  };
   std::vector<double> force(3 * count, 0.0);
   const auto at = [&](std::size_t node) { return Eigen::Map<Vec3>(force.data() + 3 * node); };
   for (std::size_t k = 0; k + 1 < count; ++k) {
-    at(k) += N * c.spans[k].n;
-    at(k + 1) -= N * c.spans[k].n;
+    at(k) += N(k) * c.spans[k].n;
+    at(k + 1) -= N(k) * c.spans[k].n;
   }
   sink.add_force(spec_.nodes, force.data());
   if (!sink.tangent) return {};
   const auto size = static_cast<Eigen::Index>(3 * count);
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Matrix K = Matrix::Zero(size, size);
-  Vec gradient = Vec::Zero(size), by_end = Vec::Zero(size);
+  Vec by_end = Vec::Zero(size);
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const Span& s = c.spans[k];
     const auto i = static_cast<Eigen::Index>(3 * k), j = i + 3;
-    gradient.segment<3>(i) += s.n;
-    gradient.segment<3>(j) -= s.n;
     const Vec3 by_point = T.by_n1 * s.e + T.by_rate * s.rate;
     by_end.segment<3>(i) -= by_point;
     by_end.segment<3>(j) += by_point;
-    const Mat3 turn = N * af * s.per_length * (Mat3::Identity() - s.n * s.e.transpose());
+    const Mat3 turn = N(k) * af * s.per_length * (Mat3::Identity() - s.n * s.e.transpose());
     K.block<3, 3>(i, i) -= turn;
     K.block<3, 3>(i, j) += turn;
     K.block<3, 3>(j, i) += turn;
     K.block<3, 3>(j, j) -= turn;
   }
-  K += gradient * by_end.transpose();
+  const Mat by_nodes = grip ? tension_by_nodes(*grip, c, by_end) : Mat(by_end.transpose());
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    const auto i = static_cast<Eigen::Index>(3 * k);
+    const auto row = by_nodes.row(grip ? static_cast<Eigen::Index>(k) : 0);
+    K.middleRows<3>(i) += c.spans[k].n * row;
+    K.middleRows<3>(i + 3) -= c.spans[k].n * row;
+  }
   sink.add_tangent(0, static_cast<int>(count), K.data());
   return {};
 }
 
-/// @eq{running-cable}
-Work RunningCable::work(const NodeStep& step, const double*, const double*) const {
+void RunningCable::commit(const NodeStep& step, double* history, const double*) const {
+  if (!friction_ || step.context.dt == 0.0) return;
+  const Course c = course(step);
+  const Vec parts = grip(step, c, tension(step, c).sum(), history).parts;
+  std::copy(parts.begin(), parts.end(), history);
+}
+
+/// @eq{running-cable} @eq{cable-capstan}
+Work RunningCable::work(const NodeStep& step, const double* history, const double*) const {
   const Course c = course(step);
   Work work{.stored = energy(c.n1)};
-  if (step.context.dt == 0.0) return work;
+  if (step.context.dt == 0.0) {
+    if (friction_) work.stored += friction_->energy(parts_of(history));
+    return work;
+  }
   const Tension T = tension(step, c);
   work.dissipated = T.damper * c.change;
   work.put_in = -T.active * c.change;
+  if (!friction_) return work;
+  const Grip g = grip(step, c, T.sum(), history);
+  const double after = friction_->energy(g.parts);
+  double done = friction_->energy(parts_of(history)) - after;
+  for (std::size_t k = 0; k < c.spans.size(); ++k)
+    done += (g.held.tension[static_cast<Eigen::Index>(k)] - T.sum()) * c.spans[k].change;
+  work.stored += after;
+  work.dissipated += std::max(0.0, done);
   return work;
 }
 
-RunningCableReport RunningCable::report(const NodeStep& instant) const {
+RunningCableReport RunningCable::report(const NodeStep& instant, const double* history) const {
   const Course c = course(instant);
   const Tension T = tension(instant, c);
   RunningCableReport r{.tension = T.sum(), .length = c.n1, .rate = c.rate, .energy = energy(c.n1)};
+  r.tensions.assign(c.spans.size(), r.tension);
+  if (friction_) {
+    const Vec held = grip(instant, c, r.tension, history).held.tension;
+    r.tensions.assign(held.begin(), held.end());
+    r.energy += friction_->energy(parts_of(history));
+  }
   if (!spec_.muscle) return r;
   const Fibre f = fibre(c.n1);
   r.fibre_length = f.length * spec_.muscle->optimal_length;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/beams/cable_friction.hpp>
 #include <polhode/beams/hill_muscle.hpp>
 #include <polhode/beams/running_cable_report.hpp>
 #include <polhode/core/time_function.hpp>
@@ -23,10 +24,14 @@ struct RunningCableSpec {
   bool tension_only = true;  ///< Slack when shorter than its free length.
   TimeFunctionPtr tension;   ///< Beside that; null: none [N].
   std::optional<HillMuscle> muscle;
+  double friction = 0.0;        ///< On each point between the ends: coefficient μ [-].
+  std::vector<double> wrapped;  ///< Angles about these points beside the cable's turn [rad].
+  std::vector<double> pieces;   ///< With friction: free lengths from point to point [m].
 };
 
-/// A cable without mass that slides without friction over points of any number of bodies: one
-/// tension N in all its spans, a function of its whole length L = Σ l_i, its rate and time.
+/// A cable without mass that slides over points of any number of bodies: one tension N in all its
+/// spans, a function of its whole length L = Σ l_i, its rate and time. With friction it is the mean
+/// of the spans' tensions, see CableFriction.
 ///
 /// On a point between two spans acts N (n_i − n_{i−1}), n_i = u_{i,α}/l_{i,α}, with discrete
 /// gradients of the lengths of the spans: ΔL = Σ n_i·Δu_i. With the mean of its elastic tension
@@ -46,14 +51,21 @@ class RunningCable : public ElementGroup {
   [[nodiscard]] bool conservative() const override {
     return !dissipates() && !spec_.tension && !spec_.muscle;
   }
-  [[nodiscard]] bool dissipates() const override { return spec_.damping > 0.0 || spec_.muscle; }
+  [[nodiscard]] bool dissipates() const override {
+    return spec_.damping > 0.0 || spec_.muscle || friction_;
+  }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const override;
+  /// With friction, of each span the part of its tension that the mean does not say [N].
+  [[nodiscard]] std::size_t history_size() const override {
+    return friction_ ? spec_.nodes.size() - 1 : 0;
+  }
   ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                          const Mat3& turn, const ElementSink& sink) const override;
+  void commit(const NodeStep& step, double* history, const double* scratch) const override;
   [[nodiscard]] Work work(const NodeStep& step, const double* history,
                           const double* scratch) const override;
 
-  [[nodiscard]] RunningCableReport report(const NodeStep& instant) const;
+  [[nodiscard]] RunningCableReport report(const NodeStep& instant, const double* history) const;
 
  private:
   struct Span {
@@ -61,6 +73,7 @@ class RunningCable : public ElementGroup {
     Vec3 e = Vec3::Zero();     ///< Direction at t_{n+1}.
     Vec3 rate = Vec3::Zero();  ///< Derivative of the cable's rate by the second point [1/s].
     double per_length = 0.0;   ///< 1/l_α; 0: no direction.
+    double change = 0.0;       ///< Of its length [m].
   };
   /// The whole cable over the step.
   struct Course {
@@ -74,12 +87,30 @@ class RunningCable : public ElementGroup {
     double elastic = 0.0, damper = 0.0, active = 0.0, by_n1 = 0.0, by_rate = 0.0;
     [[nodiscard]] double sum() const { return elastic + damper + active; }
   };
+  /// Tensions of the spans with friction.
+  struct Grip {
+    CableFriction::Held held;
+    Mat by_change;                  ///< Of the trial, by the changes of the spans' lengths [N/m].
+    Vec parts;                      ///< At t_{n+1}, beside the mean [N].
+    std::vector<Vec3> turn_first;   ///< At each point: derivative of the turn by the motion of its
+    std::vector<Vec3> turn_second;  ///< first span's end against its start; of its second [1/m].
+  };
   /// A force of the length: value and slope.
   struct Law {
     double value = 0.0, slope = 0.0;
   };
   [[nodiscard]] Course course(const NodeStep& step) const;
   [[nodiscard]] Tension tension(const NodeStep& step, const Course& c) const;
+  /// @param mean  Tension N̄ [N].
+  [[nodiscard]] Grip grip(const NodeStep& step, const Course& c, double mean,
+                          const double* history) const;
+  /// Derivatives of the spans' tensions by the nodes at t_{n+1}, one row each [N/m].
+  /// @param of_mean  Those of N̄.
+  [[nodiscard]] Mat tension_by_nodes(const Grip& g, const Course& c, const Vec& of_mean) const;
+  [[nodiscard]] Vec parts_of(const double* history) const {
+    return Eigen::Map<const Vec>(history, static_cast<Eigen::Index>(history_size()));
+  }
+  void add_friction();
   /// Elastic force at a length, muscle's passive one included.
   [[nodiscard]] Law elastic(double length) const;
   [[nodiscard]] double energy(double length) const;
@@ -95,6 +126,7 @@ class RunningCable : public ElementGroup {
   [[nodiscard]] Fibre fibre(double length) const;
 
   RunningCableSpec spec_;
+  std::optional<CableFriction> friction_;
 };
 
 }  // namespace polhode

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <polhode/beams/beam_element.hpp>
@@ -346,6 +347,9 @@ class Builder {
     r.tension_only = cable.tension_only;
     r.tension = cable.tension;
     r.muscle = cable.muscle;
+    r.friction = cable.friction;
+    for (const double turns : cable.wraps) r.wrapped.push_back(2.0 * std::numbers::pi * turns);
+    for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
     map_.running_cable.back() = system_.add_elements(std::make_unique<RunningCable>(std::move(r)));
   }
 
@@ -381,11 +385,17 @@ class Builder {
   /// Lets what events switch be switched; those at the start tell what is off there.
   void add_switching() {
     map_.events = all_events(model_);
+    int memory = EventMemory::kSize * static_cast<int>(map_.events.size());
+    for (const ControllerSpec& controller : model_.controllers)
+      memory += ControllerMemory::size(controller);
+    system_.set_memory(memory);
+    if (!model_.controllers.empty() && model_.analysis.type != "dynamics")
+      throw InputError("controllers", "act in time, but in statics and modes there is none",
+                       "Leave them out, or use type: dynamics");
     if (map_.events.empty()) return;
     if (model_.analysis.type != "dynamics")
       throw InputError("events", "come in time, but in statics and modes there is none",
                        "Leave what they switch off out of the model, or use type: dynamics");
-    system_.set_memory(EventMemory::kSize * static_cast<int>(map_.events.size()));
     const auto each = [&](const EventSpec& event, const std::vector<std::string>& names,
                           Switching how) {
       for (const std::string& name : names) {

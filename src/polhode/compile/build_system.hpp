@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,16 @@ namespace polhode {
 /// largest impulse [N s or N m s].
 struct EventMemory {
   enum Entry : int { kCount, kTime, kSpent, kLost, kImpulse, kSize };
+};
+
+/// Likewise of each controller, behind those of events: how often it acted, when last [s], what it
+/// set then and its slope [1/s], the error and its rate, its integral [s], the rate behind the lag
+/// of its filter; and behind these the states of its transfer function.
+struct ControllerMemory {
+  enum Entry : int { kCount, kTime, kValue, kSlope, kError, kRate, kIntegral, kLag, kSize };
+  [[nodiscard]] static int size(const ControllerSpec& spec) {
+    return kSize + std::max(static_cast<int>(spec.denominator.size()) - 1, 0);
+  }
 };
 
 /// Where the things of a Model went in its System.

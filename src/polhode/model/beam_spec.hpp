@@ -95,8 +95,10 @@ struct CableLineSpec {
   double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then pieces go from point to point.
   int elements = 1;              ///< With mass: pieces from one point to the next.
   std::optional<CableContactSpec> contact;  ///< None: bodies pass through the cable.
-  /// It slides without friction over its points: one tension in all pieces.
+  /// It slides over its points: without friction one tension in all pieces.
   bool slides = false;
+  double friction = 0.0;             ///< Of one that slides, on the points between the ends [-].
+  std::vector<double> wraps;         ///< Whole turns about these points beside its turn there [-].
   TimeFunctionPtr tension;           ///< Of one that slides, beside its elastic one [N].
   std::optional<HillMuscle> muscle;  ///< It pulls as one; slides.
 

@@ -57,6 +57,10 @@ int Model::cable_index(const std::string& name) const {
   return index_of(cables, name, "cable", "cables", {});
 }
 
+int Model::controller_index(const std::string& name) const {
+  return index_of(controllers, name, "controller", "controllers", {});
+}
+
 int Model::probe_index(const std::string& name) const {
   return index_of(output.probes, name, "probe", "probes", {});
 }

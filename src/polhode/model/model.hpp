@@ -16,6 +16,7 @@
 #include <polhode/loads/load_function.hpp>
 #include <polhode/model/beam_spec.hpp>
 #include <polhode/model/contact_spec.hpp>
+#include <polhode/model/controller_spec.hpp>
 #include <polhode/model/event_spec.hpp>
 #include <polhode/model/material_spec.hpp>
 #include <polhode/model/solid_spec.hpp>
@@ -130,7 +131,7 @@ struct LoadSpec {
 struct ProbeSpec {
   std::string name;
   Place place;
-  std::string kind;             ///< body, joint, load, solid, beam, cable or contact.
+  std::string kind;             ///< body, joint, load, solid, beam, cable, contact, controller.
   std::string target;           ///< Its name.
   std::array<int, 2> pair{};    ///< Of a contact probe: sides.
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
@@ -196,6 +197,7 @@ struct Model {
   std::vector<CableLineSpec> cables;  ///< Divided into pieces.
   ContactsSpec contacts;
   std::vector<EventSpec> events;
+  std::vector<ControllerSpec> controllers;
   AnalysisSpec analysis;
   OutputSpec output;
 
@@ -211,6 +213,7 @@ struct Model {
   [[nodiscard]] int load_index(const std::string& name) const;   ///< Likewise.
   [[nodiscard]] int beam_index(const std::string& name) const;   ///< Likewise.
   [[nodiscard]] int cable_index(const std::string& name) const;  ///< Likewise.
+  [[nodiscard]] int controller_index(const std::string& name) const;  ///< Likewise.
   [[nodiscard]] int probe_index(const std::string& name) const;  ///< In output.probes; likewise.
 };
 

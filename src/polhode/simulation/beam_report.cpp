@@ -68,9 +68,11 @@ CableReport running_cable_report(const Simulation& simulation, const CableLineSp
   StepContext still;
   still.t_n = simulation.time();
   const auto& cable = dynamic_cast<const RunningCable&>(simulation.system().nodes().group(group));
-  report.whole = cable.report(node_instant(simulation.system(), simulation.state(), still));
+  report.whole = cable.report(
+      node_instant(simulation.system(), simulation.state(), still),
+      simulation.state().element_history.data() + simulation.system().nodes().first_history(group));
   for (std::size_t k = 0; k < spec.pieces.size(); ++k) {
-    report.tension.push_back(report.whole->tension);
+    report.tension.push_back(report.whole->tensions[k]);
     report.length.push_back((report.position[k + 1] - report.position[k]).norm());
     report.strain.push_back(report.whole->length / spec.length() - 1.0);
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/compile/build_system.hpp>
+#include <polhode/simulation/channel_reader.hpp>
 
 namespace polhode {
 
@@ -42,30 +42,19 @@ class EventWatch {
   [[nodiscard]] int stopped(const State& state) const;
 
  private:
-  /// Where the number of a channel stands in the report of its thing.
-  struct Channel {
-    int index = -1;             ///< Into the model's bodies, joints or loads.
-    int component = -1;         ///< Of the report.
-    bool of_positions = false;  ///< Needs no velocities and forces.
-  };
   struct Watched {
     std::vector<int> on, off;
-    Channel channel;
+    ChannelReader channel;
     int after = -1;
   };
   static std::size_t at(int event) { return static_cast<std::size_t>(event); }
   [[nodiscard]] std::size_t place(int event, EventMemory::Entry entry) const {
     return at(system_->memory() + EventMemory::kSize * event + entry);
   }
-  [[nodiscard]] Channel channel(const EventSpec& event) const;
   [[nodiscard]] bool ready(const State& state, int event) const;
   /// How far the condition of an event is beyond its level.
   [[nodiscard]] double beyond(const Simulation& simulation, int event) const;
-  [[nodiscard]] double value(const Simulation& simulation, const ChannelSpec& spec,
-                             const Channel& channel) const;
 
-  const Model* model_;
-  const SystemMap* map_;
   const System* system_;
   const std::vector<EventSpec>* events_;
   std::vector<Watched> watched_;

@@ -181,6 +181,10 @@ ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
   const std::string where = format("output.probes.{}", spec.name);
   if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
   if (spec.kind == "solid") return find_solid_target(simulation, spec);
+  if (spec.kind == "controller")
+    return {.spec = spec,
+            .index = model.controller_index(spec.target),
+            .header = {"t [s]", "setpoint [SI]", "channel [SI]", "output [SI]"}};
   if (spec.kind == "contact")
     return {.spec = spec,
             .index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
@@ -194,8 +198,9 @@ ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
   }
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
-    throw InputError(where, format("records a '{}', which is not known", spec.kind),
-                     "Name a body, a joint, a load, a solid, a beam, a cable or a contact");
+    throw InputError(
+        where, format("records a '{}', which is not known", spec.kind),
+        "Name a body, a joint, a load, a solid, a beam, a cable, a contact or a controller");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which stands still", "Name a body");
@@ -210,9 +215,9 @@ ProbeClock::ProbeClock(const ProbeSpec& spec, const OutputSpec& output, std::opt
     next_ = static_cast<std::int64_t>(std::floor(*last_ / every_ * (1 + 1e-12))) + 1;
 }
 
-bool ProbeClock::strikes(double t) {
+bool ProbeClock::strikes(double t, bool last) {
   if (last_ && *last_ >= t) return false;
-  if (every_ > 0.0) {
+  if (every_ > 0.0 && !last) {
     // A step that ends within rounding of the due time ends at it.
     if (t * (1 + 1e-12) < static_cast<double>(next_) * every_) return false;
     next_ = static_cast<std::int64_t>(std::floor(t / every_ * (1 + 1e-12))) + 1;
@@ -248,6 +253,9 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
     extend(row, reaction.moment);
   } else if (probe.spec.kind == "contact") {
     add_contact(row, simulation, probe);
+  } else if (probe.spec.kind == "controller") {
+    const std::array<double, 3> values = simulation.controller(probe.index);
+    row.insert(row.end(), values.begin(), values.end());
   } else if (probe.spec.kind == "load") {
     const std::vector<double> values = simulation.load(probe.index);
     row.insert(row.end(), values.begin(), values.end());
@@ -260,7 +268,7 @@ std::vector<double> probe_row(const ProbeTarget& probe, const Simulation& simula
     const CableReport cable = simulation.cable(probe.index);
     const auto k = static_cast<std::size_t>(probe.spec.element);
     if (const auto& whole = cable.whole) {
-      row.insert(row.end(), {whole->tension, whole->length, whole->rate, whole->energy});
+      row.insert(row.end(), {cable.tension[k], whole->length, whole->rate, whole->energy});
       if (simulation.model().cables[static_cast<std::size_t>(probe.index)].muscle)
         row.insert(row.end(), {whole->fibre_length, whole->activation, whole->passive});
     } else {

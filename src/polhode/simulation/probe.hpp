@@ -30,7 +30,8 @@ class ProbeClock {
   ProbeClock(const ProbeSpec& spec, const OutputSpec& output,
              std::optional<double> last = std::nullopt);
   /// Whether there is a row at the end of this step; then the next one is waited for.
-  [[nodiscard]] bool strikes(double t);
+  /// @param last  The run ends here before its time: there is one.
+  [[nodiscard]] bool strikes(double t, bool last = false);
 
  private:
   double every_;           ///< [s]; 0: every step.

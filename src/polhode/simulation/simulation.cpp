@@ -17,6 +17,7 @@ constexpr double kSameTime = 1e-9;
 
 Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
   impl_->start_consistently();
+  if (impl_->controllers) impl_->let_act(*this);
 }
 
 Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(std::move(model))) {
@@ -27,6 +28,7 @@ Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(
                      "Restart with the model it was saved from");
   impl_->state = std::move(state);
   impl_->contacts.resume(impl_->state);
+  if (impl_->controllers) impl_->controllers->resume(impl_->state);
 }
 
 Simulation::~Simulation() = default;

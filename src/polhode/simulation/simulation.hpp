@@ -170,6 +170,11 @@ class Simulation {
   [[nodiscard]] BeamReport beam(std::string_view name) const;
   [[nodiscard]] CableReport cable(int cable) const;  ///< Likewise.
   [[nodiscard]] CableReport cable(std::string_view name) const;
+  /// What a controller aims at, sees, and sets until it acts again, in SI.
+  [[nodiscard]] std::array<double, 3> controller(int controller) const;
+  [[nodiscard]] std::array<double, 3> controller(std::string_view name) const;
+  /// An event has ended the run.
+  [[nodiscard]] bool stopped() const;
   /// What a probe of the model's output records, at the present state: the time, then the numbers
   /// of the columns that probe_columns() names, such as "x [m]".
   [[nodiscard]] std::vector<double> probe(std::string_view name) const;

@@ -25,6 +25,9 @@ BeamReport Simulation::beam(std::string_view name) const {
 CableReport Simulation::cable(std::string_view name) const {
   return cable(model().cable_index(std::string(name)));
 }
+std::array<double, 3> Simulation::controller(std::string_view name) const {
+  return controller(model().controller_index(std::string(name)));
+}
 /// Found when it is asked for first.
 const ProbeTarget& Simulation::probe_target_of(std::string_view name) const {
   const int index = model().probe_index(std::string(name));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a Simulation whose model has events.
+// Steps of a Simulation whose model has events or controllers.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,11 +25,19 @@ constexpr int kMostLooks = 60;
 /// @eq{event-time}
 StepReport Simulation::advance(double t_limit) {
   Impl& s = *impl_;
-  if (!s.events) return s.advance(t_limit);
+  if (!s.events && !s.controllers) return s.advance(t_limit);
   StepReport report;
+  if (!s.events) {
+    report =
+        s.advance(std::min(t_limit, s.controllers->next_time(s.state, std::min(t_limit, s.end()))));
+    if (report.accepted) s.let_act(*this);
+    return report;
+  }
   if (s.state.ledger.steps == 0 && !let_events_come(report)) return report;
   const EventWatch& events = *s.events;
-  const double limit = std::min(t_limit, events.next_time(s.state));
+  double limit = std::min(t_limit, events.next_time(s.state));
+  if (s.controllers)
+    limit = std::min(limit, s.controllers->next_time(s.state, std::min(limit, s.end())));
   const bool watches = events.watches(s.state);
   const State before = s.state;
   const double margin = watches ? events.margin(*this) : 0.0;
@@ -38,7 +46,11 @@ StepReport Simulation::advance(double t_limit) {
   if (watches) find_event(before, margin, limit, report);
   s.settle_step();
   events.rearm(*this, s.state);
-  if (!let_events_come(report)) s.go_to(before);
+  if (!let_events_come(report)) {
+    s.go_to(before);
+  } else if (s.controllers) {
+    s.let_act(*this);
+  }
   return report;
 }
 

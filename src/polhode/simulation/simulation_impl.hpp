@@ -18,6 +18,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
+#include <polhode/simulation/controllers.hpp>
 #include <polhode/simulation/event_watch.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/simulation/probe.hpp>
@@ -47,13 +48,15 @@ inline constexpr double kUncertainStress = 0.1;
 
 struct Simulation::Impl {
   Model model;
+  ControllerOutputs outputs;
   SystemMap map;
   System system;
   Method method;
   std::unique_ptr<Stepper> stepper;
   std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
   ContactKeeper contacts;
-  std::unique_ptr<EventWatch> events;  ///< Null if there are none.
+  std::unique_ptr<EventWatch> events;        ///< Null if there are none.
+  std::unique_ptr<Controllers> controllers;  ///< Likewise.
   State state;
   StartReport start_report;
   RunSummary figures;  ///< Times, end and message; the rest is in the state.
@@ -64,6 +67,7 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
+  std::vector<double> projection_work;  ///< By row, of the projection; empty: none [J].
   /// Largest |G v| at output times and when [s], and the largest magnitudes of its terms.
   double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
   /// Smallest of surfaces of solids after any step [m].
@@ -94,6 +98,7 @@ struct Simulation::Impl {
 
   explicit Impl(Model m)
       : model(std::move(m)),
+        outputs(own_outputs(model)),
         system(build_system(model, &map)),
         contacts(map.contacts, map.contact) {
     method = choose_method(system, model.analysis);
@@ -106,6 +111,9 @@ struct Simulation::Impl {
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
     if (!map.events.empty()) events = std::make_unique<EventWatch>(model, map, system);
+    if (!model.controllers.empty())
+      controllers =
+          std::make_unique<Controllers>(model, map, system, outputs, method.control.order);
   }
 
   void choose_statics() {
@@ -142,6 +150,10 @@ struct Simulation::Impl {
     state = other;
     stepper->leave();
     instant_step = -1;
+  }
+  /// Lets controllers set what acts from now on.
+  void let_act(const Simulation& simulation) {
+    if (controllers->act(simulation, state)) instant_step = -1;
   }
   /// What acts has changed, though positions and time have not.
   void forget_instant() {
@@ -412,6 +424,16 @@ struct Simulation::Impl {
               "set contacts.overlaps: resolve");
   }
 
+  /// What the projection of velocities that are reported did by the rows of an interaction: a
+  /// drive's multipliers leave a part of that to it, of order Δt², as velocities carry a part
+  /// normal to its row. @eq{drive-work}
+  [[nodiscard]] double work_of_projection(const InteractionRef& ref) const {
+    double sum = 0.0;
+    for (int k = 0; k < ref.rows && !projection_work.empty(); ++k)
+      sum += projection_work[static_cast<std::size_t>(ref.first_row + k)];
+    return sum;
+  }
+
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
     if (statics) {
@@ -425,7 +447,8 @@ struct Simulation::Impl {
     }
     if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
     projected = state;
-    const VelocityReport v = instant_solver->project_velocities(projected);
+    VelocityReport v = instant_solver->project_velocities(projected);
+    projection_work = std::move(v.work);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
     velocity_scale = std::max(velocity_scale, v.scale);

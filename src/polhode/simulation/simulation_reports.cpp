@@ -57,7 +57,7 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
       item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
   if (item.frame_moves()) {
     report.power = {item.drive_power(step)};
-    report.work = {item.drive_work(step)};
+    report.work = {item.drive_work(step) + impl_->work_of_projection(ref)};
   }
   if (!item.resistance()) return report;
   const ResistanceReport resistance = item.resistance_report(step);
@@ -81,6 +81,13 @@ std::vector<double> Simulation::load(int load) const {
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
+  if (system.group(ref.group).prescribes(ref.item)) {
+    auto at = report.begin();
+    for (const LoadChannel& channel : kind.channels) {
+      if (channel.name == "work") *at += impl_->work_of_projection(ref);
+      at += channel.size;
+    }
+  }
   if (!system.is_off(impl_->state, impl_->map.load[load])) return report;
   // What is switched off neither acts nor stores.
   auto at = report.begin();
@@ -104,6 +111,13 @@ CableReport Simulation::cable(int cable) const {
   if (spec.slides) return running_cable_report(*this, spec, impl_->map.running_cable.at(k));
   return cable_report(*this, spec, impl_->map.cable.at(k));
 }
+
+std::array<double, 3> Simulation::controller(int controller) const {
+  (void)impl_->model.controllers.at(static_cast<std::size_t>(controller));
+  return impl_->controllers->report(controller, *this);
+}
+
+bool Simulation::stopped() const { return impl_->stopped(); }
 
 Balance Simulation::balance() const { return impl_->stepper->balance(impl_->state); }
 

@@ -219,14 +219,15 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
   Section section(context, node, probe.place, "output.probes." + probe.name, probe_fields());
   if (!node.is_map()) return;
   int targets = 0;
-  for (const char* kind : {"body", "joint", "load", "solid", "beam", "cable", "contact"}) {
+  for (const char* kind :
+       {"body", "joint", "load", "solid", "beam", "cable", "contact", "controller"}) {
     if (!section.has(kind)) continue;
     probe.kind = kind;
     ++targets;
   }
   if (targets != 1) {
     section.fault(targets == 0 ? "names nothing to record" : "names more than one thing to record",
-                  "Give one of: body, joint, load, solid, beam, cable, contact.");
+                  "Give one of: body, joint, load, solid, beam, cable, contact, controller.");
     return;
   }
   probe.every = section.number("every");
@@ -264,6 +265,8 @@ void read_probe(ReadContext& context, const SourceNode& node, ProbeSpec& probe) 
     read_line_probe(context, section, probe);
   } else if (probe.kind == "contact") {
     read_contact_probe(context, section, probe);
+  } else if (probe.kind == "controller") {
+    probe.target = read_target(context, section, "controller", context.controllers);
   } else if (probe.kind == "joint") {
     probe.target = read_target(context, section, "joint", context.joint_names());
   } else {

@@ -32,6 +32,13 @@ void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cabl
     section.fault("'stiffness' is missing", "Give EA; or, of a cable that slides, a tension.");
   cable.stiffness = stiffness.value_or(other ? 0.0 : 1.0);
   cable.slides = section.boolean("slides").value_or(other);
+  cable.friction = section.number("friction").value_or(0.0);
+  cable.wraps = section.number_list("wraps").value_or(std::vector<double>());
+  for (const char* key : {"friction", "wraps"})
+    if (section.has(key) && !cable.slides)
+      section.fault(key, "goes with 'slides' only", "Add slides: true, or leave it out.");
+  if (section.has("wraps") && !section.has("friction"))
+    section.fault("wraps", "goes with 'friction' only", "Add friction, or leave it out.");
   if (other && !cable.slides)
     section.fault("slides", format("does not go with '{}'", cable.muscle ? "muscle" : "tension"),
                   "A given tension is the same in all pieces: leave it out.");

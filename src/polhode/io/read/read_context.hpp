@@ -35,6 +35,7 @@ struct ReadContext {
   /// By name; nothing if a fault was found.
   std::map<std::string, std::optional<SectionSpec>> sections{};
   std::map<std::string, std::optional<int>> cables{};       ///< Index by name, likewise.
+  std::vector<std::string> controllers{};                   ///< Names, before they are read.
   std::vector<bool> material_is_sound{}, solid_is_sound{};  ///< No fault was found in the entries.
   std::vector<bool> body_is_sound{};  ///< No fault was found in the body's place.
   std::string source_file{};          ///< The model file, as messages show it.
@@ -228,6 +229,15 @@ void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::st
                      MeshSpec& mesh);
 void read_solids(ReadContext& context, const SourceNode& node);
 void read_loads(ReadContext& context, const SourceNode& node);
+/// A number that a body, a joint or a load reports, by the keys of these names and 'channel'.
+std::optional<ChannelSpec> read_channel(ReadContext& context, Section& section);
+/// Dimension of its number; none for names that do not exist, which are told later.
+Dimension channel_dimension(const ReadContext& context, const ChannelSpec& channel);
+/// Controllers read channels of joints and loads: read after these.
+void read_controllers(ReadContext& context, const SourceNode& node);
+/// A number that a controller sets, {controller: name}; null after a fault.
+TimeFunctionPtr read_controlled_value(ReadContext& context, const SourceNode& node,
+                                      const std::string& path);
 /// Events switch joints and loads: read after these.
 void read_events(ReadContext& context, const SourceNode& node);
 void read_analysis(ReadContext& context, const SourceNode& node, const Place& place);

@@ -101,9 +101,14 @@ void read_root(ReadContext& context, const SourceNode& root) {
                             "A model starts with 'format: 1'.");
     return;
   }
+  // What they set is named by what is read before them.
+  if (const SourceNode* node = root.is_map() ? root.find("controllers") : nullptr)
+    for (const SourceNode::Key& key : node->keys) context.controllers.push_back(key.name);
   read_things(context, root, "");
   if (!root.is_map()) return;
   Model& model = context.model;
+  if (const SourceNode* node = named_things(context, root, "controllers"))
+    read_controllers(context, *node);
   if (const SourceNode* node = root.find("contacts")) read_contacts(context, *node);
   if (const SourceNode* node = named_things(context, root, "events")) read_events(context, *node);
   if (const SourceNode* node = root.find("analysis"))

@@ -237,6 +237,7 @@ TimeFunctionPtr read_table(ReadContext& context, const SourceNode& node, const s
 
 TimeFunctionPtr read_time_number(ReadContext& context, const SourceNode& node,
                                  const std::string& path, const Field& field) {
+  if (node.is_map() && node.find("controller")) return read_controlled_value(context, node, path);
   if (node.is_map()) return read_table(context, node, path, field);
   const auto expression = read_expression(context, node, path, true);
   if (!expression) return nullptr;

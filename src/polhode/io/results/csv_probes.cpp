@@ -119,7 +119,7 @@ CsvProbes::CsvProbes(const Simulation& simulation, const std::string& folder,
 
 void CsvProbes::record(const Simulation& simulation) {
   for (Probe& probe : probes_)
-    if (probe.clock.strikes(simulation.time()))
+    if (probe.clock.strikes(simulation.time(), simulation.stopped()))
       probe.table.append(probe_row(probe.target, simulation));
 }
 

@@ -67,6 +67,7 @@ class Fingerprint {
   void one(const TimeFunctionPtr& f) {
     one(f != nullptr);
     if (!f) return;
+    if (const auto* set = dynamic_cast<const ControlledValue*>(f.get())) add(set->controller());
     one((*f)(0.0));
     double t = kFirstTime;
     for (int k = 0; k < kTimes; ++k, t *= kGrowth) one((*f)(t));
@@ -109,6 +110,11 @@ class Fingerprint {
   }
   void one(const EventSpec& e) {
     add(e.name, e.at, e.when, e.after, e.on, e.off, e.repeat, e.stop);
+  }
+  void one(const ControllerSpec& c) {
+    add(c.name, c.channel.kind, c.channel.target, c.channel.name, c.channel.point, c.setpoint,
+        c.sample, c.proportional, c.integral, c.derivative, c.filter, c.numerator, c.denominator,
+        c.least, c.most);
   }
   void one(const Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
@@ -160,6 +166,7 @@ class Fingerprint {
     add(c.name, c.through, c.stiffness, c.free_length, c.damping, c.tension_only, c.strain,
         c.mass_per_length, c.elements, c.contact, c.pieces);
     if (c.slides) add(c.tension, c.muscle);
+    if (c.friction > 0.0) add(c.friction, c.wraps);
   }
   void one(const ContactLawSpec& l) {
     add(l.potential, l.gap_tolerance, l.stiffness, l.reference_load, l.reference_pressure,
@@ -186,6 +193,7 @@ std::string model_fingerprint(const Model& model) {
   if (model.contacts.present)
     for (const BodySpec& body : model.bodies) f.add(body.shapes);
   if (!model.events.empty()) f.add(model.events);
+  if (!model.controllers.empty()) f.add(model.controllers);
   const AnalysisSpec& a = model.analysis;
   f.add(a.type, a.rho_inf, a.momentum_rate, a.conserving);
   return f.hex();

@@ -89,6 +89,11 @@ const FieldTable& model_fields() {
            .meaning = "Contact between the shapes of bodies.",
            .standard = "no contact",
            .table = "contacts"},
+          {.name = "controllers",
+           .kind = kNamed,
+           .meaning = "Controllers that set loads, moments of motors, tensions or activations, by "
+                      "name.",
+           .table = "controller"},
           {.name = "events",
            .kind = kNamed,
            .meaning = "Events that switch joints and loads, by name.",
@@ -468,12 +473,26 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&solid_mesh_fields());
   tables.push_back(&solid_contact_fields());
   for (const KindTable& kind : mesh_generator_tables()) tables.push_back(&kind.table);
-  for (const FieldTable* table :
-       {&prescribed_fields(), &selection_fields(), &plane_fields(), &box_fields(), &sphere_fields(),
-        &contacts_fields(), &contact_law_fields(), &contact_material_fields(),
-        &contact_combination_fields(), &contact_pair_fields(), &contact_sensor_fields(),
-        &time_table_fields(), &law_table_fields(), &event_fields(), &condition_fields(),
-        &analysis_fields(), &output_fields(), &probe_fields()})
+  for (const FieldTable* table : {&prescribed_fields(),
+                                  &selection_fields(),
+                                  &plane_fields(),
+                                  &box_fields(),
+                                  &sphere_fields(),
+                                  &contacts_fields(),
+                                  &contact_law_fields(),
+                                  &contact_material_fields(),
+                                  &contact_combination_fields(),
+                                  &contact_pair_fields(),
+                                  &contact_sensor_fields(),
+                                  &time_table_fields(),
+                                  &law_table_fields(),
+                                  &event_fields(),
+                                  &condition_fields(),
+                                  &controller_fields(),
+                                  &controlled_value_fields(),
+                                  &analysis_fields(),
+                                  &output_fields(),
+                                  &probe_fields()})
     tables.push_back(table);
   return tables;
 }

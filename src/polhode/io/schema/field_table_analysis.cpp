@@ -169,7 +169,7 @@ const FieldTable& output_fields() {
 const FieldTable& probe_fields() {
   static const FieldTable table{
       "probe",
-      "One of body, joint, load, solid, beam, cable, contact.",
+      "One of body, joint, load, solid, beam, cable, contact, controller.",
       {
           {.name = "body",
            .kind = kBody,
@@ -237,6 +237,9 @@ const FieldTable& probe_fields() {
            .meaning = "The element of the beam, or piece of the cable; the first is 0.",
            .standard = "0",
            .range = kNotNegative},
+          {.name = "controller",
+           .kind = kText,
+           .meaning = "Record setpoint, channel and output of this controller, in SI."},
           {.name = "contact",
            .kind = kBodyPair,
            .meaning = "Record gap, forces, point, status, impulse and energy lost between these "

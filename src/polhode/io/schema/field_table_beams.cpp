@@ -223,9 +223,20 @@ const FieldTable& cable_fields() {
            .standard = "true"},
           {.name = "slides",
            .kind = kBoolean,
-           .meaning = "Runs without friction over its points between the ends: one tension in "
-                      "all pieces, from the whole length.",
+           .meaning = "Runs over its points between the ends: one tension in all pieces, from "
+                      "the whole length, unless it has friction.",
            .standard = "false; true with tension or muscle"},
+          {.name = "friction",
+           .kind = kNumber,
+           .meaning = "Coefficient of friction on these points, of a cable that slides.",
+           .standard = "0",
+           .range = kNotNegative},
+          {.name = "wraps",
+           .kind = kNumberList,
+           .meaning = "Whole turns about each of these points beside the cable's turn there, with "
+                      "friction.",
+           .standard = "0 each",
+           .range = kNotNegative},
           {.name = "tension",
            .kind = kTimeNumber,
            .dimension = kForce,

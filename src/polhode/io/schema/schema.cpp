@@ -230,8 +230,10 @@ json definitions() {
       {"description", "A number, a number with its unit, or an expression of the variables."},
       {"type", json::array({"number", "string"})}};
   defs["time_number"] = {
-      {"description", "A number or expression, of the time t too, or a table over time."},
-      {"anyOf", json::array({reference("number"), reference("table")})}};
+      {"description",
+       "A number or expression, of the time t too, a table over time, or what a controller sets."},
+      {"anyOf",
+       json::array({reference("number"), reference("table"), reference(definition_name(controlled_value_fields().title))})}};
   defs["vector"] = list_of(reference("number"), 3, 3);
   defs["direction"] = {
       {"description", "x, y, z, -x, -y, -z, or three numbers of any length but zero."},

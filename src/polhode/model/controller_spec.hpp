@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polhode/core/place.hpp>
+#include <polhode/core/time_function.hpp>
+#include <polhode/model/event_spec.hpp>
+
+namespace polhode {
+
+/// Output of a controller over the step to come: a straight line in time, within its limits.
+struct ControllerOutput {
+  double t = 0.0;      ///< When it was made [s].
+  double value = 0.0;  ///< There.
+  double slope = 0.0;  ///< [1/s]; 0 of a sampled one.
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+};
+
+/// A number that a controller sets, wherever a number over time may stand. SI units.
+class ControlledValue final : public TimeFunction {
+ public:
+  /// @param controller  Into Model::controllers.
+  /// @param output      Of one simulation; null in a model that does not run.
+  explicit ControlledValue(int controller, std::shared_ptr<const ControllerOutput> output = nullptr)
+      : controller_(controller), output_(std::move(output)) {}
+  [[nodiscard]] int controller() const { return controller_; }
+  [[nodiscard]] double operator()(double t) const override {
+    if (!output_) return 0.0;
+    const ControllerOutput& o = *output_;
+    return std::clamp(o.value + o.slope * (t - o.t), o.least, o.most);
+  }
+  [[nodiscard]] TimeRates rates(double t, TimeSide) const override {
+    return {(*this)(t), output_ ? output_->slope : 0.0, 0.0};
+  }
+
+ private:
+  int controller_;
+  std::shared_ptr<const ControllerOutput> output_;
+};
+
+/// A controller: what it makes of the error r(t) − y of a channel y. @eq{controller}
+struct ControllerSpec {
+  std::string name;
+  Place place;
+  ChannelSpec channel;
+  TimeFunctionPtr setpoint;      ///< In SI; null: zero.
+  std::optional<double> sample;  ///< Time between samples [s]; nothing: continuous.
+  // PID: proportional·e + integral·∫e dt + derivative·ė, ė through a lag of `filter` [s].
+  double proportional = 0.0, integral = 0.0, derivative = 0.0, filter = 0.0;
+  /// Or a transfer function: coefficients of polynomials in s, the highest power first.
+  std::vector<double> numerator, denominator;
+  double least = -std::numeric_limits<double>::infinity();  ///< Of the output.
+  double most = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace polhode
