@@ -63,7 +63,11 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
     for (const auto& [g, group] : groups_) {
       hit.clear();
       group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
-      for (SurfaceImpact& impact : hit) surfaces_.push_back({g, group, std::move(impact)});
+      for (SurfaceImpact& impact : hit) {
+        for (const auto& [node, N] : impact.nodes)
+          impact.before += N * impact.normal.dot(velocity_of_node(state, node));
+        surfaces_.push_back({g, group, std::move(impact)});
+      }
     }
   }
   std::vector<Impact> impacts;
@@ -96,7 +100,7 @@ Vec6 SettleImpacts::velocity(const State& state, int body) const {
 
 /// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
 /// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
-void SettleImpacts::settle(State& state) {
+Work SettleImpacts::settle(State& state) {
   settled_.assign(rows_.size(), {});
   jumped_.clear();
   resting_.clear();
@@ -110,7 +114,8 @@ void SettleImpacts::settle(State& state) {
     if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
   tell_surfaces(state);
-  if (!contacts_) return;
+  const Work work = turn_surfaces(state);
+  if (!contacts_) return work;
   for (int round = 0; round < kMostCarried; ++round) {
     const std::size_t first = rows_.size();
     press_on(state, before);
@@ -120,6 +125,7 @@ void SettleImpacts::settle(State& state) {
   std::vector<SettledImpact> of_contacts;
   for (int k : numbers_) of_contacts.push_back(k < 0 ? SettledImpact{} : settled_[k]);
   contacts_->settled(of_contacts);
+  return work;
 }
 
 double SettleImpacts::speed(const State& state, const PairImpact& row) const {
@@ -163,7 +169,8 @@ void SettleImpacts::settle_from(State& state, std::size_t first) {
   });
   const auto inert = [&](int k) {
     const Impact& impact = rows_[k].impact;
-    if (impact.mu > 0.0) return false;
+    if (const SurfaceImpact* hit = surface(k); impact.mu > 0.0 || (hit && !hit->turned))
+      return false;
     const double now = speed(state, k);
     return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
   };
@@ -297,6 +304,7 @@ void SettleImpacts::settle(State& state, const Island& island) {
   }
   const std::vector<Vec6> start = v;
   std::vector<Row> rows = rows_of(state, island);
+  find_held(rows, v);
   double most = 0.0;
   for (Row& row : rows) {
     row.before = row.speed(v);
