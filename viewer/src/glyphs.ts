@@ -114,9 +114,9 @@ export class Loads {
     this.jointOf = list.map((l) => (l.joint ? joints.findIndex((j) => j.name === l.joint) : -1));
     const all = list.map((_, i) => i);
     const springs = all.filter((i) => list[i].type === "spring_damper" && list[i].Za);
-    this.coils = new Glyphs(coil(), "#3d8a55", springs.filter((i) => list[i].stiffness !== 0), "load");
+    this.coils = new Glyphs(coil(), "#3d8a55", springs.filter((i) => list[i].coil), "load");
     this.pots = new Glyphs(merged(alongZ(new CylinderGeometry(0.6, 0.6, 0.4, 16)).translate(0, 0, 0.35), alongZ(new CylinderGeometry(0.16, 0.16, 1, 10)).translate(0, 0, 0.5)),
-      "#7a8791", springs.filter((i) => (list[i].damping ?? 0) > 0), "load");
+      "#7a8791", springs.filter((i) => list[i].damper), "load");
     this.rings = new Glyphs(merged(new TorusGeometry(1, 0.12, 8, 36, 5), alongZ(new ConeGeometry(0.3, 0.5, 12)).rotateX(-Math.PI / 2).rotateZ(5).translate(Math.cos(5), Math.sin(5), 0)),
       "#b3402e", all.filter((i) => this.jointOf[i] >= 0), "load");
     for (const glyphs of [this.coils, this.pots, this.rings]) this.group.add(glyphs.mesh);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films and pictures by `polhode convert`.
 import { execFileSync, spawnSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { program } from "./browser.mjs";
 import { browser, expect, folder, made, page_of, refusal, run, test } from "./support.mjs";
@@ -29,7 +29,9 @@ await test("a film has the pictures that were asked for", async () => {
   expect(new Set(found.map((p) => p.sum)).size === 5, "pictures are alike");
   run("convert", "all.results", "pictures", "--size", "64x48", "--rate", "2");
   expect(readFileSync(join(folder, "pictures/00002.png")).subarray(1, 4).toString() === "PNG", "no pictures in the folder");
-  for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"]])
+  mkdirSync(join(folder, "made/film.gif"), { recursive: true });  // a folder of that name: what fails when all is drawn
+  for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"],
+    [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: cannot be written"]])
     expect(refusal(["convert", "all.results", ...words]).includes(text), refusal(["convert", "all.results", ...words]));
 });
 
@@ -52,10 +54,11 @@ await test("an .mp4 film has the size, the rate, the duration and the pictures t
   const { streams: [film], format } = JSON.parse(of("ffprobe", "-count_frames", "-show_streams", "-show_format", "-of", "json", "film.mp4"));
   // Numbers of pixels are even in what every player takes: 161 become 162.
   expect(film.codec_name === "h264" && film.pix_fmt === "yuv420p" && film.width === 162 && film.height === 120, JSON.stringify(film));
+  expect(film.color_space === "bt709" && film.color_range === "tv", "players must guess its colours");
   expect(film.r_frame_rate === "8/1" && Number(film.nb_read_frames) === 7 && Math.abs(Number(format.duration) - 7 / 8) < 0.01, JSON.stringify([film, format]));
   // Its pictures are those of the folder, but for what compression loses, and each differs more from the next one.
   const raw = (...words) => of("ffmpeg", ...words, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"), pad = ["-vf", "pad=162:120"];
-  const pictures = raw("-i", "film.mp4"), drawn = raw("-i", "same/%05d.png", ...pad), size = 162 * 120 * 3;
+  const pictures = raw("-i", "film.mp4", "-vf", "scale=in_color_matrix=bt709:in_range=tv"), drawn = raw("-i", "same/%05d.png", ...pad), size = 162 * 120 * 3;
   expect(pictures.length === 7 * size && drawn.length === 7 * size, `${pictures.length} and ${drawn.length} bytes`);
   const apart = (a, i, b, j) => { let sum = 0; for (let k = 0; k < size; k++) if (k % 486 < 480) sum += Math.abs(a[i * size + k] - b[j * size + k]); return sum / size; };
   for (let i = 0; i < 7; i++) {
