@@ -93,6 +93,46 @@ def stewart_platform(tools):
     return figure
 
 
+def geneva_drive(tools):
+    m = tools.Motion("geneva_drive")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.9)
+    radius, slots = 0.05, [np.pi / 4 + k * np.pi / 2 for k in range(4)]
+    for t, alpha in ((0.3, 0.2), (0.45, 0.45), (0.6, 1.0)):
+        k = int(np.argmin(abs(m.t - t)))
+        tools.draw(scene, m.points("crank", [[0, 0, 0], [0, -radius, 0]], k), tools.INK, alpha, 3)
+        pin = m.points("crank", [[0, -radius, 0]], k)
+        scene.plot(pin[:, 0], pin[:, 1], "o", color=tools.RED, alpha=alpha)
+        tools.draw(scene, m.points("wheel", tools.circle(radius), k), tools.BLUE, alpha, 2)
+        for s in slots:
+            ends = [[r * np.cos(s), r * np.sin(s), 0] for r in (0.015, radius)]
+            tools.draw(scene, m.points("wheel", ends, k), tools.BLUE, alpha, 2)
+    scene.set_aspect("equal")
+    axle, motor = m.probe("axle"), m.probe("motor")
+    plot.plot(axle["t"], -axle["rz"], color=tools.BLUE, label="angle of the wheel [rad]")
+    plot.plot(motor["t"], 100 * motor["mz"], color=tools.RED, label="moment of the motor [N cm]")
+    plot.legend(frameon=False)
+    tools.label(plot, "two quarter turns", y="")
+    return figure
+
+
+def three_rrr(tools):
+    m = tools.Motion("three_rrr")
+    figure, scene, plot = tools.sheet(flat=True, wide=0.9)
+    for k, alpha in tools.fades(tools.frames(m, 0.0, 1.0, 3)):
+        tools.draw(scene, m.points("plate", tools.circle(0.15), k), tools.BLUE, alpha, 2)
+        for i in (1, 2, 3):
+            for name, colour in ((f"upper_{i}", tools.INK), (f"lower_{i}", tools.RED)):
+                tools.draw(scene, m.points(name, [[-0.2, 0, 0], [0.2, 0, 0]], k), colour, alpha, 2.5)
+    tools.draw(scene, m.place["plate"], tools.GOLD, 1, 1)
+    scene.set_aspect("equal")
+    for i, colour in zip((1, 2, 3), (tools.RED, tools.BLUE, tools.GOLD)):
+        motor = m.probe(f"motor_{i}")
+        plot.plot(motor["t"], motor["mz"], color=colour, label=f"motor {i}")
+    plot.legend(frameon=False, ncol=3)
+    tools.label(plot, "moments of the motors", y="[N m]")
+    return figure
+
+
 def excavator(tools):
     m = tools.Motion("excavator")
     figure, scene, plot = tools.sheet(flat=True, wide=1.1)
