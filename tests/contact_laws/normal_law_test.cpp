@@ -54,7 +54,8 @@ TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
         const NormalLaw::WithSlope q = later.quotient_and_slope(from, gap);
         const double h = 1e-6 * (gap - law.floor());
         EXPECT_NEAR(q.value * (from - gap), later.energy(gap) - later.energy(from),
-                    1e-12 * law.energy(gap));
+                    1e-11 * law.energy(gap));
+        if (part < 0.1) continue;  // differences would go beyond its begin
         EXPECT_NEAR(q.slope,
                     (later.quotient(from, gap + h) - later.quotient(from, gap - h)) / (2.0 * h),
                     1e-5 * std::abs(q.slope) + 1e-9 * law.stiffness);

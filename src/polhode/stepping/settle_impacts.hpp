@@ -48,6 +48,8 @@ class SettleImpacts {
   };
   [[nodiscard]] std::vector<Island> islands() const;
   [[nodiscard]] Vec6 velocity(const State& state, int body) const;
+  /// Of an island's bodies, then of its nodes, which do not turn.
+  [[nodiscard]] std::vector<Vec6> velocities(const State& state, const Island& island) const;
   [[nodiscard]] Vec3 velocity_of_node(const State& state, int node) const;
   /// Of a row of a surface; null for others.
   [[nodiscard]] const SurfaceImpact* surface(int row) const;
