@@ -131,6 +131,19 @@ TEST(Connectors, SpringsBetweenPointsGiveBackWhatTheyStore) {
   });
 }
 
+// A potential that is given itself. @tests{law-mean}
+TEST(Connectors, PotentialsGiveBackWhatTheyStore) {
+  class Potential final : public TimeFunction {
+   public:
+    double operator()(double l) const override { return 0.4 * l * l * l - 3.0 / l; }
+    [[nodiscard]] TimeRates rates(double l, TimeSide) const override {
+      return {(*this)(l), 1.2 * l * l + 3.0 / (l * l), 2.4 * l - 6.0 / (l * l * l)};
+    }
+  };
+  expect_laws<PotentialForce>(
+      [](LoadDescription& d) { d.laws["energy"] = std::make_shared<Potential>(); });
+}
+
 // @tests{attraction-gradient}
 TEST(Connectors, GravityBetweenBodiesHasAPotential) {
   expect_laws<Attraction>([](LoadDescription& d) {

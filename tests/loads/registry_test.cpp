@@ -31,7 +31,7 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "loads: the type 'torque' is not known. Use one of: force, moment, "
-                 "spring_damper, axial_force, vector_damper, bushing, attraction, drag, "
+                 "spring_damper, potential, axial_force, vector_damper, bushing, attraction, drag, "
                  "torsional_spring, translational_spring, rotary_motor, linear_motor, "
                  "rotary_servo, linear_servo, gear, screw, point_on_surface, "
                  "point_on_curve, rolling.");

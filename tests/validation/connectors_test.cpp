@@ -109,6 +109,7 @@ TEST(Connectors, TwoBodiesGoRoundKeplersEllipse) {
   const double K = 7.0, m_1 = 2.0, m_2 = 3.0, reduced = m_1 * m_2 / (m_1 + m_2), a = 1.5, e = 0.4;
   const double T = 2.0 * kPi * std::sqrt(a * a * a * reduced / K);
   const double l = a * (1.0 - e), v = std::sqrt(K / reduced * (2.0 / l - 1.0 / a));
+  std::string load = "type: attraction, bodies: [one, two], strength: 7";
   const auto model = [&](int order) {
     return format(R"(
 format: 1
@@ -116,11 +117,11 @@ variables: {{h: 2 ms}}
 bodies:
   one: {{mass: 2, inertia: [1, 1, 1], position: [{}, 0, 0], velocity: [0, {}, 0]}}
   two: {{mass: 3, inertia: [1, 1, 1], position: [{}, 0, 0], velocity: [0, {}, 0]}}
-loads: {{it: {{type: attraction, bodies: [one, two], strength: 7}}}}
+loads: {{it: {{{}}}}}
 analysis: {{type: dynamics, duration: {:.15g} s, step: h, order: {}}}
 output: {{hdf5: false}}
 )",
-                  -0.6 * l, -0.6 * v, 0.4 * l, 0.4 * v, T, order);
+                  -0.6 * l, -0.6 * v, 0.4 * l, 0.4 * v, load, T, order);
   };
   for (const Step& step : kSteps) {
     const Outcome o = run(model(2), {step_of(step)});
@@ -135,6 +136,20 @@ output: {{hdf5: false}}
     const double fine = std::abs(run(model(order), {"variables.h=40 ms"}).body(1).r.y());
     EXPECT_GT(std::log2(coarse / fine), order - 0.7) << order << ' ' << coarse << ' ' << fine;
   }
+  // The same potential as an expression: the same motion.
+  const Outcome attracted = run(model(2), {"variables.h=2 ms"});
+  load = "type: potential, bodies: [one, two], at_body: [[0, 0, 0], [0, 0, 0]], energy: -7/l";
+  for (const Step& step : kSteps) {
+    const Outcome o = run(model(2), {step_of(step)});
+    EXPECT_NEAR(o.body(1).r.x(), 0.4 * l, 100.0 * step.h * step.h) << step.text;
+    EXPECT_LT(o.summary.energy_drift, 1e-12) << step.text;
+    EXPECT_LT(o.summary.angular_momentum_drift, 1e-12) << step.text;
+  }
+  const Outcome given = run(model(2), {"variables.h=2 ms"});
+  EXPECT_LT((given.body(1).r - attracted.body(1).r).norm(), 1e-9);
+  const double coarse = std::abs(run(model(4), {"variables.h=80 ms"}).body(1).r.y());
+  const double fine = std::abs(run(model(4), {"variables.h=40 ms"}).body(1).r.y());
+  EXPECT_GT(std::log2(coarse / fine), 3.3);
 }
 
 namespace {

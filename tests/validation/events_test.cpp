@@ -8,39 +8,14 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/system/state_archive.hpp>
+#include <support/run_text.hpp>
 
-namespace polhode::events_tests {
+namespace polhode::test::events_tests {
 namespace {
 
 constexpr double kG = 9.81, kDegree = std::numbers::pi / 180.0;
-
-Simulation made(const std::string& text, const Overrides& overrides = {}) {
-  return Simulation(read_model_text(text, "events.yaml", overrides));
-}
-
-RunSummary finished(Simulation& s) {
-  const RunSummary r = s.run();
-  EXPECT_EQ(r.end, RunEnd::finished) << r.message;
-  return r;
-}
-
-std::string fault_of(const std::string& text) {
-  try {
-    (void)made(text);
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool tells(const std::string& text, const std::string& wanted) {
-  const std::string fault = fault_of(text);
-  EXPECT_NE(fault.find(wanted), std::string::npos) << fault;
-  return fault.find(wanted) != std::string::npos;
-}
 
 /// A ball of 2 kg on a rod of 0.8 m, from 60 degrees at rest; the joint's angle counts from there.
 struct Pendulum {
@@ -428,4 +403,4 @@ events:
 }
 
 }  // namespace
-}  // namespace polhode::events_tests
+}  // namespace polhode::test::events_tests

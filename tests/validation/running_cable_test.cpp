@@ -9,23 +9,13 @@
 
 #include <polhode/beams/muscle_curves.hpp>
 #include <polhode/core/error.hpp>
-#include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
+#include <support/run_text.hpp>
 
-namespace polhode::running_cable_tests {
+namespace polhode::test::running_cable_motion_tests {
 namespace {
 
 constexpr double kG = 9.81;
-
-Simulation made(const std::string& text, const Overrides& overrides = {}) {
-  return Simulation(read_model_text(text, "cable.yaml", overrides));
-}
-
-RunSummary finished(Simulation& s) {
-  const RunSummary r = s.run();
-  EXPECT_EQ(r.end, RunEnd::finished) << r.message;
-  return r;
-}
 
 /// Two weights of 3 kg and 2 kg on the ends of a rope over two points 1 m apart.
 std::string weights(const std::string& rope) {
@@ -236,19 +226,9 @@ TEST(RunningCable, LiftsAsAMuscle) {
   }
 }
 
-std::string fault_of(const std::string& text) {
-  try {
-    (void)made(text);
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
-}
-
 TEST(RunningCable, TellsWhatIsWrong) {
   const auto has = [](const std::string& rope, const std::string& wanted) {
-    const std::string fault = fault_of(weights(rope));
-    EXPECT_NE(fault.find(wanted), std::string::npos) << fault;
+    tells(weights(rope), wanted);
   };
   has("slides: true",
       "cables.rope: 'stiffness' is missing. Give EA; or, of a cable that slides, a "
@@ -262,4 +242,4 @@ TEST(RunningCable, TellsWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace polhode::running_cable_tests
+}  // namespace polhode::test::running_cable_motion_tests

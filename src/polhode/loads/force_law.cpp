@@ -16,6 +16,28 @@ constexpr double kAgree = 4e-16;
 /// Steps shorter than this part of x have no difference quotient worth the name.
 constexpr double kShort = 1e-6;
 
+/// Ways shorter than this part of x take the mean of V' instead of the quotient of V.
+constexpr double kShortWay = 1e-4;
+
+/// V'(x) of a potential.
+class SlopeFunction final : public TimeFunction {
+ public:
+  explicit SlopeFunction(TimeFunctionPtr V) : V_(std::move(V)) {}
+  [[nodiscard]] double operator()(double x) const override {
+    return V_->rates(x, TimeSide::kAfter).rate;
+  }
+  [[nodiscard]] TimeRates rates(double x, TimeSide side) const override {
+    const TimeRates r = V_->rates(x, side);
+    return {r.rate, r.second, 0.0};
+  }
+  [[nodiscard]] TimeBreak next_break(double x, double until) const override {
+    return V_->next_break(x, until);
+  }
+
+ private:
+  TimeFunctionPtr V_;
+};
+
 struct Estimate {
   double mean = 0.0, size = 0.0;
 };
@@ -66,7 +88,9 @@ ForceLaw::ForceLaw(const LoadDescription& load, const std::string& law)
     : k_(load.value("stiffness", 0.0)),
       k_2_(load.value("quadratic", 0.0)),
       K_(load.value("inverse_square", 0.0)),
-      f_(load.law(law)) {
+      f_(load.law(law)),
+      V_(load.law("energy")) {
+  if (V_) f_ = std::make_shared<SlopeFunction>(V_);
   const std::string acts = load.word("acts");
   acts_ = acts == "tension"       ? Acts::tension
           : acts == "compression" ? Acts::compression
@@ -79,7 +103,10 @@ double ForceLaw::mean_on_one_side(double p, double q) const {
   if (!acts_on(x)) return 0.0;
   double mean = 0.5 * k_ * x + sign_of(x) * k_2_ * (p * p + p * q + q * q) / 3.0;
   if (K_ != 0.0) mean += K_ / (p * q);
-  if (f_) mean += mean_value(*f_, p, q);
+  if (V_ && std::abs(q - p) > kShortWay * std::max(std::abs(p), std::abs(q)))
+    mean += ((*V_)(q) - (*V_)(p)) / (q - p);
+  else if (f_)
+    mean += mean_value(*f_, p, q);
   return mean;
 }
 
@@ -120,7 +147,10 @@ double ForceLaw::energy(double x) const {
   if (acts_on(x)) {
     energy = (0.5 * k_ + k_2_ * std::abs(x) / 3.0) * x * x;
     if (K_ != 0.0) energy -= K_ / x;
-    if (f_) energy += x * mean_value(*f_, 0.0, x);
+    if (V_)
+      energy += (*V_)(x);
+    else if (f_)
+      energy += x * mean_value(*f_, 0.0, x);
   }
   return energy;
 }

@@ -11,8 +11,8 @@ struct LawValue {
   double slope = 0.0;
 };
 
-/// A force f(x) with a potential: k x + k₂ |x| x, K/x², and a table or an expression beside it; on
-/// both sides of x = 0 or on one only.
+/// A force f(x) with a potential: k x + k₂ |x| x, K/x², and a table or an expression beside it, or
+/// the derivative of a given potential; on both sides of x = 0 or on one only.
 ///
 /// Over a step it is the mean of f from x_{n+1} − 2(1 − αf) Δx to x_{n+1}: at ρ∞ = 1 the force
 /// times Δx is the change of the potential, and at αf = 1 it is f(x_{n+1}). @eq{law-mean}
@@ -21,8 +21,8 @@ class ForceLaw {
   enum class Acts { both, tension, compression };
 
   ForceLaw() = default;
-  /// @param load  Values stiffness, quadratic and inverse_square, a law of this name, the word
-  ///              `acts`.
+  /// @param load  Values stiffness, quadratic and inverse_square, a law of this name or the law
+  ///              `energy` for the potential, the word `acts`.
   ForceLaw(const LoadDescription& load, const std::string& law);
 
   /// The force over a step from x_n to x_n1.
@@ -40,6 +40,7 @@ class ForceLaw {
 
   double k_ = 0.0, k_2_ = 0.0, K_ = 0.0;
   TimeFunctionPtr f_;
+  TimeFunctionPtr V_;  ///< Potential of f_ if that is what is given, else null.
   Acts acts_ = Acts::both;
 };
 

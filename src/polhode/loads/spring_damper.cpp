@@ -163,6 +163,17 @@ Attraction::Attraction(const LoadDescription& load)
         return d;
       }()) {}
 
+PotentialForce::PotentialForce(const LoadDescription& load)
+    : SpringDamper([&] {
+        LoadDescription d = load;
+        d.values["free_length"] = 0.0;
+        return d;
+      }()) {}
+
+void add_potential_force(System& system, const LoadDescription& load) {
+  system.group<PotentialForce>().items.emplace_back(load);
+}
+
 void add_axial_force(System& system, const LoadDescription& load) {
   system.group<AxialForce>().items.emplace_back(load);
 }

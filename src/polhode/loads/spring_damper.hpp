@@ -67,6 +67,14 @@ struct Attraction : SpringDamper {
   explicit Attraction(const LoadDescription& load);
 };
 
+/// A force along the line between two points, from a potential V(l) of their distance.
+/// @eq{law-mean}
+struct PotentialForce : SpringDamper {
+  static constexpr const char* kKind = "potential";
+  explicit PotentialForce(const LoadDescription& load);
+};
+
+void add_potential_force(System& system, const LoadDescription& load);
 void add_axial_force(System& system, const LoadDescription& load);
 void add_attraction(System& system, const LoadDescription& load);
 /// Adds a SpringDamper to the system. free_length left out is the distance at the start.

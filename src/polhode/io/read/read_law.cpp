@@ -74,8 +74,9 @@ TimeFunctionPtr read_law(ReadContext& context, const SourceNode& node, const std
                   "Give it in a unit of that dimension.");
     return nullptr;
   }
-  if (!std::isfinite((*expression)(0.0))) {
-    context.fault(node, path, format("is no finite number at {} = 0", field.variable),
+  const double somewhere = field.variable == "l" ? 1.0 : 0.0;  // distances are above zero
+  if (!std::isfinite((*expression)(somewhere))) {
+    context.fault(node, path, format("is no finite number at {} = {}", field.variable, somewhere),
                   "Look for a division by zero or a root of a negative number.");
     return nullptr;
   }
