@@ -347,7 +347,7 @@ class SurfacesBuilder {
     double E = std::numeric_limits<double>::infinity();  ///< Young's modulus [Pa].
     double pressure = E;                                 ///< At gap zero, at least [Pa].
   };
-  /// Of several solids the softest counts.
+  /// The softest of several solids.
   [[nodiscard]] Stuff stuff_of(const std::vector<int>& solids) const {
     Stuff stuff;
     for (const int s : solids) {

@@ -29,8 +29,8 @@ struct NormalLaw {
   double tolerance = 1e-3;  ///< Of the gap [m].
   /// Ends of the band, where they are not ±tolerance of a barrier, or 0 of another potential [m].
   std::optional<double> upper, lower;
-  /// Within the band of a barrier: the gap from which on it presses, by a force that is less by
-  /// what it would be there [m]. @eq{contact-later}
+  /// Gap at which a barrier begins to press, where that is within its band: its force is less by
+  /// the one there [m]. @eq{contact-later}
   std::optional<double> later;
 
   /// Gaps from here on carry no force [m].

@@ -53,9 +53,9 @@ void SettleImpacts::find_turns(const State& state) {
   before_contacts_ = rows_.size();
 }
 
-/// What but the impacts of the step changed normal speeds is what presses points on. Where it
-/// presses as much as the point presses back, and the point has little speed left, there is no
-/// impact any more. @eq{surface-held}
+/// Forces that hold points in place: what changed normal speeds over the step, but for the impacts.
+/// An impact is over where they press as much as the point presses back and it has little speed
+/// left. @eq{surface-held}
 void SettleImpacts::find_held(const std::vector<Row>& rows, std::vector<Vec6> v) {
   std::vector<Row> normals;
   bool find = false;

@@ -10,10 +10,10 @@ namespace polhode {
 /// stored at the start, but a twentieth of the band is left. Zero outside of the band, and for NaN,
 /// where nothing is near [m]. @eq{surface-start}
 [[nodiscard]] double lowered_for(const SurfaceLaw& law, double gap_at_start);
-/// Of meshes on each other: with a band that ends lower; the pressure in its middle stays.
+/// The law of meshes on each other with a band that ends lower; the pressure in its middle stays.
 [[nodiscard]] SurfaceLaw with_band_lowered(const SurfaceLaw& law, double by);
-/// Of points on rigid shapes: the same band, but force begins lower. What is pressed deeper hardly
-/// tells the difference. @eq{contact-later}
+/// The law of points on rigid shapes with the same band, in which force begins lower; deeper down
+/// it is nearly the same. @eq{contact-later}
 [[nodiscard]] SurfaceLaw beginning_later(const SurfaceLaw& law, double by);
 /// By how much lower it begins to store this energy at a gap within, per area [m].
 /// @param least  Lower than this at least: the law at hand [m].
