@@ -7,7 +7,7 @@
 #   POLHODE=path/to/polhode scripts/docs.sh
 #   LIVE="knee stack" scripts/docs.sh  these examples are run; LIVE= none
 #   scripts/docs.sh --version 0.2      as build/docs/site/0.2, with a choice of all versions there and a list of them, index.html
-#   scripts/docs.sh --version 0.1 --of v0.1.0   the same of another commit
+#   scripts/docs.sh --version 0.1 --of v0.1.0   the same of another commit, with the program that is built here
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -21,24 +21,38 @@ while [ $# -gt 0 ]; do
 done
 case "$version" in *[!A-Za-z0-9._-]* | .*) echo "scripts/docs.sh: --version '$version' is no name of a folder" >&2; exit 2 ;; esac
 [ -z "$commit" ] || [ -n "$version" ] || { echo "scripts/docs.sh: --of goes with --version" >&2; exit 2; }
+skip() { echo "skipped: $1"; exit 77; }
+environment=$PWD/build/docs/environment
+python=$environment/bin/python
+prepare() {
+  mkdir -p build/docs
+  [ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment" 2>/dev/null || skip "python3 cannot make a virtual environment: install python3-venv"
+}
 if [ -n "$commit" ]; then
+  git rev-parse --quiet --verify "$commit^{commit}" >/dev/null || { echo "scripts/docs.sh: --of '$commit' is no commit of this repository" >&2; exit 2; }
+  git cat-file -e "$commit:docs/site/versions.py" 2>/dev/null || { echo "scripts/docs.sh: --of '$commit' has no documentation site with versions. Name a later commit" >&2; exit 2; }
   tree=$PWD/build/docs/tree
-  git worktree add --force --detach "$tree" "$commit" >/dev/null
-  trap 'git worktree remove --force "$tree"' EXIT
-  POLHODE=${POLHODE:-$PWD/build/release/apps/polhode/polhode} "$tree/scripts/docs.sh" --version "$version"
+  remove() { git worktree remove --force "$tree" 2>/dev/null || { rm -rf "$tree"; git worktree prune; }; }
+  remove  # what a build that was interrupted left behind
+  git worktree add --force --detach "$tree" "$commit" >/dev/null 2>&1 || { echo "scripts/docs.sh: $tree cannot be made" >&2; exit 1; }
+  trap remove EXIT
+  # The tools of the site and the program are those of this tree.
+  mkdir -p "$tree/build/docs"
+  prepare
+  ln -s "$PWD/build/docs/environment" "$tree/build/docs/environment"
+  status=0
+  POLHODE=${POLHODE:-$PWD/build/release/apps/polhode/polhode} "$tree/scripts/docs.sh" --version "$version" || status=$?
+  [ $status -eq 0 ] || exit $status
   mkdir -p build/docs/site
   rm -rf "build/docs/site/$version"
   cp -r "$tree/build/docs/site/$version" build/docs/site/
   "${PYTHON:-python3}" docs/site/versions.py build/docs/site
+  echo "build/docs/site/$version/index.html"
   exit
 fi
 export POLHODE_DOCS_VERSION=$version
 
-skip() { echo "skipped: $1"; exit 77; }
-environment=$PWD/build/docs/environment
-python=$environment/bin/python
-mkdir -p build/docs
-[ -x "$python" ] || "${PYTHON:-python3}" -m venv "$environment" 2>/dev/null || skip "python3 cannot make a virtual environment: install python3-venv"
+prepare
 "$python" -c "import sphinx, myst_parser, furo, latex2mathml, pypdf" 2>/dev/null ||
   "$python" -m pip install --quiet --disable-pip-version-check -r docs/site/requirements.txt || skip "the packages of docs/site/requirements.txt cannot be fetched"
 
@@ -55,7 +69,11 @@ for browser in "${CHROMIUM:-}" chromium chromium-browser google-chrome; do
   [ -n "$browser" ] && command -v "$browser" >/dev/null && { options+=(--pdf); break; }
 done
 PYTHONDONTWRITEBYTECODE=1 "$python" docs/site/assemble.py build/docs/source "${options[@]}"
+# A build that was interrupted leaves a part of the index of words, and the next one would add only what has changed.
+[ -e build/docs/whole ] || rm -rf build/docs/doctrees
+rm -f build/docs/whole
 PYTHONDONTWRITEBYTECODE=1 "$python" -m sphinx -q -W --keep-going -j auto -c docs/site -d build/docs/doctrees -b html build/docs/source build/docs/html
+touch build/docs/whole
 [ ! -d build/docs/source/extra ] || cp -r build/docs/source/extra/. build/docs/html/
 "$python" docs/site/theory_pdf.py build/docs/html build/docs/html/theory.pdf "${version:-$(sed -n 's/.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -1)}" || [ $? -eq 77 ]
 "$python" docs/site/check_site.py build/docs/html

@@ -15,7 +15,7 @@ for purpose in "$@"; do
     state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
     [ "${state:0:2}" = ii ] && continue
     # Programs that came in another way, such as an npm within a newer node, do as well.
-    case "$package" in npm | chromium) command -v "$package" >/dev/null && continue ;; esac
+    case "$package" in npm | chromium | ffmpeg) command -v "$package" >/dev/null && continue ;; esac
     missing+=("$package")
   done <"$list"
 done

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Versions of the documentation site lie side by side, the newest first, and scripts/docs.sh says what it does not know."""
+"""Versions of the documentation site lie side by side, the newest first, and scripts/docs.sh says what it does not know and
+takes the site of another commit from that commit."""
 
+import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,6 +19,51 @@ def refused(*words):
     told = subprocess.run([ROOT / "scripts/docs.sh", *words], capture_output=True, text=True)
     assert told.returncode == 2, told
     return told.stderr
+
+
+def of_another_commit(folder):
+    """In a repository of its own, where the site of an older commit is one line that its own script writes."""
+    environment = {**os.environ, **{f"GIT_{who}_{what}": "tests" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}}
+
+    def git(*words):
+        return subprocess.run(["git", *words], cwd=folder, check=True, capture_output=True, text=True, env=environment).stdout.strip()
+
+    def commit(text):
+        for name in ("scripts/docs.sh", "docs/site/versions.py"):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+        if text:
+            (folder / "scripts/docs.sh").write_text("#!/bin/sh\ncd $(dirname $0)/..\n" + text)
+        git("add", ".")
+        git("commit", "--quiet", "--message", "one")
+        return git("rev-parse", "HEAD")
+
+    def build(*words):
+        return subprocess.run([folder / "scripts/docs.sh", *words], capture_output=True, text=True, env=environment)
+
+    git("init", "--quiet")
+    (folder / ".gitignore").write_text("build/\n")
+    git("add", ".")
+    git("commit", "--quiet", "--message", "no site")
+    bare = git("rev-parse", "HEAD")
+    old = commit("mkdir -p build/docs/site/$2; echo the old site >build/docs/site/$2/index.html; test -x build/docs/environment/bin/python\n")
+    broken = commit("exit 3\n")
+    commit(None)
+    tools = folder / "build/docs/environment/bin/python"  # which are there; Sphinx is not wanted here
+    tools.parent.mkdir(parents=True)
+    tools.symlink_to(sys.executable)
+    site = folder / "build/docs/site"
+    for version in ("0.1", "0.2"):
+        (folder / "build/docs/tree").mkdir(parents=True, exist_ok=True)  # of a build that was interrupted
+        told = build("--version", version, "--of", old)
+        assert told.returncode == 0 and told.stdout.endswith(f"build/docs/site/{version}/index.html\n"), told
+        assert (site / version / "index.html").read_text() == "the old site\n"
+    assert '"0.2", "0.1"' in (site / "versions.js").read_text()
+    assert build("--version", "0.3", "--of", broken).returncode == 3 and not (site / "0.3").exists()
+    assert len(git("worktree", "list").splitlines()) == 1 and not (folder / "build/docs/tree").exists() and tools.exists(), "its tree stays"
+    for words, text in ((("--of", "nothing"), "--of 'nothing' is no commit of this repository"), (("--of", bare), "has no documentation site with versions. Name a later commit")):
+        told = build("--version", "0.3", *words)
+        assert told.returncode == 2 and text in told.stderr, told
 
 
 def main():
@@ -34,6 +82,8 @@ def main():
     assert "'--fast' is not known; there are --version NAME and --of COMMIT" in refused("--fast")
     assert "'../x' is no name of a folder" in refused("--version", "../x")
     assert "--of goes with --version" in refused("--of", "main")
+    with tempfile.TemporaryDirectory() as folder:
+        of_another_commit(pathlib.Path(folder))
     print("versions are listed, the newest first")
 
 

@@ -1,4 +1,5 @@
-"""Pictures of the examples with gears and bushings, for render_example.py."""
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of the examples with gears, bushings and events; tools/render_example.py makes them. `tools` is the module drawing."""
 import numpy as np
 
 

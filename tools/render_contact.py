@@ -33,7 +33,7 @@ def triangles_of(file):
 
 
 class Pictures:
-    """One function for each example; `r` is the module render_example."""
+    """One function for each example; `r` is the module drawing."""
 
     def __init__(self, r):
         self.r = r

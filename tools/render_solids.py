@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib import cm, colors
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from render_example import BLUE, GOLD, GREEN, INK, PALE, RED, ROOT, box, draw, fit, label, rotation, save, sheet, support
+from drawing import BLUE, GOLD, GREEN, INK, PALE, RED, ROOT, box, draw, fit, label, rotation, save, sheet, support
 
 FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))  # of a hexahedron
 LIGHT = np.array([0.35, -0.55, 0.76])

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film.hpp"
 
+#include <atomic>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <thread>
 
 #include <unistd.h>
@@ -82,17 +85,60 @@ class Receiver {
   std::string how_, output_, folder_, error_;
 };
 
-/// Pictures in a folder as a film that any player takes: even numbers of pixels, 4:2:0.
+/// Pictures in a folder as a film that any player takes: even numbers of pixels, 4:2:0, colours of
+/// BT.709, which it names, and its index at the front, so that a browser plays it while it loads.
 void encode(const std::string& ffmpeg, const std::string& folder, double rate,
             const std::string& output) {
   const std::string log = folder + "/log";
   ChildProcess child(
-      {ffmpeg, "-y", "-loglevel", "error", "-framerate", format("{}", rate), "-i",
-       folder + "/%05d.png", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", output},
+      {ffmpeg,
+       "-y",
+       "-loglevel",
+       "error",
+       "-framerate",
+       format("{}", rate),
+       "-i",
+       folder + "/%05d.png",
+       "-vf",
+       "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+       "-colorspace",
+       "bt709",
+       "-color_primaries",
+       "bt709",
+       "-color_trc",
+       "bt709",
+       "-color_range",
+       "tv",
+       "-movflags",
+       "+faststart",
+       output},
       log);
-  if (child.wait() != 0)
-    throw FileError(output, "cannot be written by ffmpeg: " + read_file(log), "Name a .gif file");
+  if (child.wait() == 0) return;
+  std::string said = read_file(log);
+  while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back())) != 0)
+    said.pop_back();
+  throw FileError(output, "cannot be written by ffmpeg: " + said, "Name a .gif file");
 }
+
+/// Sets `stop` when a condition holds, looked at from a thread of its own, which ends with this.
+class Watch {
+ public:
+  Watch(std::function<bool()> over, std::atomic<bool>& stop)
+      : thread_([this, over = std::move(over), &stop] {
+          while (!quit_ && !over()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          stop = true;
+        }) {}
+  ~Watch() {
+    quit_ = true;
+    thread_.join();
+  }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+ private:
+  std::atomic<bool> quit_{false};
+  std::thread thread_;
+};
 
 }  // namespace
 
@@ -103,6 +149,10 @@ void write_film(const FilmRequest& request) {
   if (ending == ".mp4" && ffmpeg.empty())
     throw InputError(kWhere, "an .mp4 file is written by ffmpeg, which is missing",
                      "Install the Debian package ffmpeg, or write a .gif file");
+  const fs::path place = fs::path(request.output).parent_path();
+  if (!ending.empty() && !place.empty() && !fs::is_directory(place))
+    throw FileError(request.output, "cannot be written: its folder does not exist",
+                    "Make the folder first");
   const TemporaryFolder folder;
   const bool pictures = ending.empty();
   if (pictures) make_folder(request.output);
@@ -123,13 +173,8 @@ void write_film(const FilmRequest& request) {
   words.push_back(format("http://127.0.0.1:{}/?film", server.port()));
   ChildProcess child(words, folder.path() + "/browser.log");
   std::atomic<bool> stop{false};
-  std::thread watch([&] {
-    while (!receiver.done && child.runs())
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    stop = true;
-  });
+  const Watch watch([&] { return receiver.done || !child.runs(); }, stop);
   server.run([&](const WebRequest& what) { return receiver.answer(what); }, stop, true);
-  watch.join();
   if (!receiver.error().empty())
     throw InputError(kWhere, "the page says: " + receiver.error(),
                      "Correct the options of the film");

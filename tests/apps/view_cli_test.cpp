@@ -116,6 +116,22 @@ TEST_F(ViewCommand, ConvertsByTheEndingOfTheFile) {
   EXPECT_THAT(there.err, HasSubstr("cannot be written"));
 }
 
+TEST_F(ViewCommand, PlotsChannelsForPapersAndListsThem) {
+  ASSERT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
+  const test::ProgramResult list = run({"plot", "model.results"});
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(list.out, HasSubstr("bodies.upper.position"));
+  EXPECT_EQ(run({"plot", "model.results", "energy", "joints.B.force", "-o", "fig.svg"}).code, 0);
+  const std::string figure = read("fig.svg");
+  EXPECT_THAT(figure, HasSubstr("<svg"));
+  EXPECT_THAT(figure, HasSubstr("energy"));
+  EXPECT_THAT(figure, HasSubstr("joints.B.force"));
+  const test::ProgramResult wrong = run({"plot", "model.results", "enrgy", "-o", "other.svg"});
+  EXPECT_EQ(wrong.code, 3);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no 'enrgy'"));
+  EXPECT_FALSE(exists("other.svg"));
+}
+
 TEST_F(ViewCommand, ShowsWhatOverlapsAtTheStart) {
   write("overlap.yaml",
         "format: 1\nbodies:\n  one: {shape: {sphere: 1}, density: 1}\n"

@@ -92,9 +92,9 @@ class EveryPairOfShapes : public testing::TestWithParam<std::tuple<int, int>> {
 constexpr double kReach = 2e-4;  // shapes of a metre with a rounding of about 3e-4
 
 std::vector<NormalLaw> laws() {
-  return {{NormalPotential::barrier, 1e5, kReach, {}, {}},
-          {NormalPotential::linear, 1e5, 0.0, {}, {}},
-          {NormalPotential::hertz, 1e7, 0.0, {}, {}}};
+  return {{NormalPotential::barrier, 1e5, kReach, {}, {}, {}},
+          {NormalPotential::linear, 1e5, 0.0, {}, {}, {}},
+          {NormalPotential::hertz, 1e7, 0.0, {}, {}, {}}};
 }
 
 // @tests{contact-quotient} @tests{contact-direction} @tests{contact-wrench} @tests{contact-fading}
@@ -185,7 +185,7 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
       int of_this = 0;
       for (const OrderedPair& p : e.pairs) {
         for (const bool rubs : {false, true}) {
-          NormalLaw law{NormalPotential::barrier, 1e5, kReach, {}, {}};
+          NormalLaw law{NormalPotential::barrier, 1e5, kReach, {}, {}, {}};
           PointData d = data_of(p, a_, b_, law);
           d.end_share = trial % 2 == 1 ? 0.5 : 0.0;
           if (rubs) {

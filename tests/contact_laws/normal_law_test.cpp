@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <polhode/contact_laws/normal_law.hpp>
 
 namespace polhode::contact::normal_law_tests {
@@ -25,6 +27,41 @@ TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
         EXPECT_NEAR(law.energy(gap), energy, 1e-9 * energy) << gap << ' ' << part;
         EXPECT_EQ(law.reach_for(gap, 0.0), gap);
       }
+}
+
+/// A barrier that begins to press later: force and quotient are those of the whole one less the
+/// force where it begins, its energy is their sum over the way; the quotient is that of the energy.
+/// @tests{contact-later}
+TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
+  NormalLaw law;
+  law.stiffness = 3e5;
+  law.tolerance = 1e-4;
+  for (const double begin : {0.99e-4, 0.2e-4, -0.9e-4}) {
+    NormalLaw later = law;
+    later.later = begin;
+    EXPECT_EQ(later.reach(), begin);
+    EXPECT_EQ(later.band(), law.band());
+    EXPECT_EQ(later.energy(begin), 0.0);
+    EXPECT_EQ(later.force(begin), 0.0);
+    EXPECT_EQ(later.quotient(begin + 1e-5, begin), 0.0);
+    const double less = law.force(begin);
+    for (const double part : {1e-9, 0.1, 0.7, 0.95}) {
+      const double gap = begin - part * (begin - law.floor());
+      EXPECT_NEAR(later.force(gap), law.force(gap) - less, 1e-10 * law.force(gap)) << part;
+      const double energy = law.energy(gap) - law.energy(begin) - less * (begin - gap);
+      EXPECT_NEAR(later.energy(gap), energy, 1e-12 * law.energy(gap)) << part;
+      for (const double from : {begin + 2e-5, begin - 1e-3 * (begin - law.floor())}) {
+        const NormalLaw::WithSlope q = later.quotient_and_slope(from, gap);
+        const double h = 1e-6 * (gap - law.floor());
+        EXPECT_NEAR(q.value * (from - gap), later.energy(gap) - later.energy(from),
+                    1e-11 * law.energy(gap));
+        if (part < 0.1) continue;  // differences would go beyond its begin
+        EXPECT_NEAR(q.slope,
+                    (later.quotient(from, gap + h) - later.quotient(from, gap - h)) / (2.0 * h),
+                    1e-5 * std::abs(q.slope) + 1e-9 * law.stiffness);
+      }
+    }
+  }
 }
 
 }  // namespace

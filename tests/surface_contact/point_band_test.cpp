@@ -10,7 +10,26 @@ namespace polhode::test::point_band_tests {
 namespace {
 
 // @tests{surface-start}
-TEST(PointBand, HasABandThatEndsWhereAPointStarts) {
+TEST(PointBand, BeginsToPressWhereAPointStarts) {
+  SurfaceLaw law;
+  law.normal.tolerance = 2e-4;
+  law.normal.stiffness = 1e6;
+  for (const double start : {1.9e-4, 1e-4, 0.0, -1e-4, -1.79e-4}) {
+    const contact::NormalLaw own = beginning_later(law, lowered_for(law, start)).normal;
+    EXPECT_NEAR(own.reach(), start, 1e-18);
+    EXPECT_EQ(own.floor(), -2e-4);
+    EXPECT_NEAR(own.energy(start), 0.0, 1e-30);
+    const double deeper = 0.9 * -2e-4 + 0.1 * start;
+    EXPECT_NEAR(own.force(deeper), law.normal.force(deeper) - law.normal.force(start),
+                1e-12 * law.normal.force(deeper));
+  }
+  EXPECT_NEAR(beginning_later(law, lowered_for(law, -1.99e-4)).normal.reach(), -2e-4 + 0.05 * 4e-4,
+              1e-18)
+      << "a twentieth is left";
+}
+
+// @tests{surface-start}
+TEST(PointBand, OfAMeshEndsWhereItStarts) {
   SurfaceLaw law;
   law.normal.tolerance = 2e-4;
   law.normal.stiffness = 1e6;
@@ -22,8 +41,6 @@ TEST(PointBand, HasABandThatEndsWhereAPointStarts) {
     EXPECT_NEAR(own.energy(start), 0.0, 1e-30);
     EXPECT_NEAR(own.force(0.5 * (start - 2e-4)), middle, 1e-9 * middle) << "in its middle";
   }
-  EXPECT_NEAR(with_band_lowered(law, lowered_for(law, -1.99e-4)).normal.band(), 0.05 * 4e-4, 1e-18)
-      << "a twentieth is left";
 }
 
 TEST(PointBand, KeepsItsBandForWhatStartsElsewhere) {
@@ -32,6 +49,7 @@ TEST(PointBand, KeepsItsBandForWhatStartsElsewhere) {
   EXPECT_EQ(lowered_for(law, std::numeric_limits<double>::infinity()), 0.0);
   EXPECT_EQ(lowered_for(law, std::nan("")), 0.0) << "nothing is near";
   EXPECT_EQ(with_band_lowered(law, 0.0).normal.stiffness, law.normal.stiffness);
+  EXPECT_FALSE(beginning_later(law, 0.0).normal.later);
   law.normal.potential = contact::NormalPotential::linear;
   EXPECT_EQ(lowered_for(law, -1e-3), 0.0) << "overlaps are allowed";
 }
@@ -48,11 +66,29 @@ TEST(PointBand, KeepsThePartOfItsEnergyThatAReboundNeeds) {
       EXPECT_TRUE(p.is(contact::ContactPhase::compression));
       EXPECT_EQ(p.law(law).end_share, e == 0.0 ? 1.0 : 0.0);
       p = p.at_end(law, gap);
-      const double before = law.normal.energy(gap), released = p.turn(law, gap),
-                   after = with_band_lowered(law, p.lowered).normal.energy(gap);
+      const double before = law.normal.energy(gap), released = p.turn(law, gap, 0.0),
+                   after = beginning_later(law, p.lowered).normal.energy(gap);
       EXPECT_NEAR(after, e * e * before, 1e-9 * before) << e << ", " << gap;
       EXPECT_NEAR(released + after, before, 1e-12 * before);
       EXPECT_TRUE(p.is(e > 0.0 ? contact::ContactPhase::restitution : contact::ContactPhase::rest));
+    }
+}
+
+// @tests{surface-held}
+TEST(PointBand, PressesBackAfterItsTurnByWhatHoldsIt) {
+  SurfaceLaw law;
+  law.normal.tolerance = 2e-4;
+  law.normal.stiffness = 1e6;
+  law.end_share = 0.5;  // no rebound
+  for (const double gap : {1.5e-4, 0.0, -1.9e-4})
+    for (const double part : {0.01, 0.5, 0.99, 1.0, 3.0}) {
+      PointPhase p = PointPhase{}.in_step(law, 3e-4, -1.0);
+      const double force = law.normal.force(gap), before = law.normal.energy(gap),
+                   released = p.turn(law, gap, part * force);
+      const contact::NormalLaw after = beginning_later(law, p.lowered).normal;
+      EXPECT_NEAR(after.force(gap), std::min(1.0, part) * force, 1e-9 * force) << part;
+      EXPECT_NEAR(released + after.energy(gap), before, 1e-12 * before);
+      EXPECT_GE(released, 0.0);
     }
 }
 
@@ -65,7 +101,7 @@ TEST(PointBand, BeginsAnImpactOnlyWhereItClosesFromOutside) {
   EXPECT_FALSE(PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact()) << "it starts within";
   PointPhase p = PointPhase{}.in_step(law, reach, -1.0).at_end(law, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.0) << "friction is an impulse";
-  p.turn(law, 0.0);
+  p.turn(law, 0.0, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.5);
   EXPECT_FALSE(p.in_step(law, 0.0, -1.0).in_impact()) << "it presses on";
   EXPECT_TRUE(p.at_end(law, 0.5 * reach).open()) << "of a band that ends lower";

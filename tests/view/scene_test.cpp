@@ -50,6 +50,7 @@ joints:
   hinge: {type: revolute, bodies: [ground, bone], at: [0, 5, 3], axis: x}
 loads:
   spring: {type: spring_damper, bodies: [ground, brick], at: [[5, 0, 3], [5, 0, 1.1]], stiffness: 100, damping: 1}
+  dashpot: {type: spring_damper, bodies: [ground, brick], at: [[5, 1, 3], [5, 0, 1.1]], damping: 1}
 materials:
   steel: {type: elastic, youngs_modulus: 200 GPa, poisson_ratio: 0.3, density: 8000}
   rubber: {type: neo_hookean, youngs_modulus: 1 MPa, poisson_ratio: 0.4, density: 1100}
@@ -118,7 +119,12 @@ TEST_F(SceneTest, HoldsEveryKindOfThing) {
   std::map<std::string, json> joint;  // The beam's bond is one of them.
   for (const json& j : m["joints"]) joint[j["name"]] = j;
   EXPECT_EQ(joint["hinge"]["type"], "revolute");
-  EXPECT_EQ(m["loads"][0]["damping"], 1.0);
+  std::map<std::string, json> load;
+  for (const json& l : m["loads"]) load[l["name"]] = l;
+  EXPECT_EQ(load["spring"]["damping"], 1.0);
+  EXPECT_TRUE(load["spring"]["coil"] && load["spring"]["damper"]);
+  EXPECT_FALSE(load["dashpot"]["coil"]) << "a damper alone has no coil";
+  EXPECT_TRUE(load["dashpot"]["damper"]);
   EXPECT_EQ(m["beams"][0]["height"], 0.02);
   EXPECT_EQ(m["cables"][0]["name"], "stay");
   EXPECT_EQ(m["solids"][0]["triangles"]["n"], 6 * 4 * 2) << "six sides of 2 x 2 squares";

@@ -13,7 +13,7 @@ export interface JointEntry {
 }
 export interface LoadEntry {
   name: string; type: string; first: number; columns: { name: string; unit: string; size: number }[];
-  line?: number; a?: number; b?: number; Za?: Triple; Zb?: Triple; joint?: string; damping?: number; stiffness?: number;
+  line?: number; a?: number; b?: number; Za?: Triple; Zb?: Triple; joint?: string; damping?: number; stiffness?: number; coil?: boolean; damper?: boolean;
 }
 /** Values at nodes or in elements, those that are seen. */
 export interface FieldEntry { name: string; of?: "nodes" | "elements"; unit: string; size: number; data: Packed }

@@ -1,38 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joints by kind, springs, motors, and arrows of forces.
 import {
-  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4,
-  OctahedronGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Vector3,
+  BufferGeometry, CatmullRomCurve3, Color, ConeGeometry, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4, Quaternion, TorusGeometry, TubeGeometry, Vector3,
 } from "three";
-import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { quaternion } from "./bodies";
 import type { JointEntry, LoadEntry, Scene, Triple } from "./data";
+import { alongZ, jointShape, kLinks, merged } from "./joint_shapes";
 import { surface } from "./materials";
 import { valuesAt, type Poses } from "./poses";
 
 const kNothing = new Matrix4().makeScale(0, 0, 0);
 const kZ = new Vector3(0, 0, 1);
-
-const alongZ = (g: BufferGeometry): BufferGeometry => g.rotateX(Math.PI / 2);
-const merged = (...parts: BufferGeometry[]): BufferGeometry => mergeGeometries(parts.map((p) => p.toNonIndexed()));
-
-/** Shape of a kind of joint in its own axes, of size 1; z is the axis. */
-function jointShape(type: string): BufferGeometry {
-  const pin = (r: number, l: number) => alongZ(new CylinderGeometry(r, r, l, 20));
-  switch (type) {
-    case "revolute": return merged(pin(0.32, 1.3), pin(0.55, 0.3));
-    case "prismatic": return merged(new BoxGeometry(0.55, 0.55, 1), new BoxGeometry(0.22, 0.22, 2.6));
-    case "cylindrical": return merged(pin(0.5, 1), pin(0.2, 2.6));
-    case "spherical": return new SphereGeometry(0.6, 20, 14);
-    case "universal": return merged(new CylinderGeometry(0.2, 0.2, 1.7, 14), new CylinderGeometry(0.2, 0.2, 1.7, 14).rotateZ(Math.PI / 2));
-    case "planar": case "point_in_plane": return merged(new BoxGeometry(2.2, 2.2, 0.12), pin(0.15, 0.9));
-    case "point_on_line": return merged(pin(0.12, 3), new SphereGeometry(0.42, 14, 10));
-    case "parallel_axes": return merged(pin(0.14, 1.8).translate(0.4, 0, 0), pin(0.14, 1.8).translate(-0.4, 0, 0));
-    case "fixed": return new BoxGeometry(0.9, 0.9, 0.9);
-    case "distance": return new SphereGeometry(0.4, 14, 10);
-    default: return new OctahedronGeometry(0.7);
-  }
-}
 
 /** A coil along z from 0 to 1, of radius 1 across. Springs are some 20 times as long as wide: their wire is made thin along z. */
 function coil(): BufferGeometry {
@@ -65,10 +43,11 @@ const byKind = (types: string[]): Map<string, number[]> => {
   return map;
 };
 
-/** Joints, each kind with its own shape; those with a remark stand out. */
+/** Joints, each kind with its own shape, links with a rod between their points; those with a remark stand out. */
 export class Joints {
   readonly group = new Group();
   private readonly kinds: Glyphs[] = [];
+  private readonly rods: Glyphs;
   private readonly arm: number;
   chosen = -1;
   scale = 1;
@@ -80,13 +59,16 @@ export class Joints {
       this.kinds.push(glyphs);
       this.group.add(glyphs.mesh);
     }
+    const links = list.flatMap((j, i) => (kLinks.includes(j.type ?? "") && j.Za && j.Zb ? [i] : []));
+    this.rods = new Glyphs(alongZ(new CylinderGeometry(0.16, 0.16, 1, 12)).translate(0, 0, 0.5), "#ffffff", links, "joint");
+    this.group.add(this.rods.mesh);
     // Joints are as large as suits the bodies that they tie together.
     const arms = list.filter((j) => j.Za && j.Zb).map((j) => Math.max((j.a ?? -1) < 0 ? 0 : Math.hypot(...j.Za!), (j.b ?? -1) < 0 ? 0 : Math.hypot(...j.Zb!))).filter((x) => x > 0).sort((x, y) => x - y);
     this.arm = arms.length > 0 ? arms[arms.length >> 1] : Infinity;
     this.colours();
   }
   colours(): void {
-    for (const kind of this.kinds) {
+    for (const kind of [...this.kinds, this.rods]) {
       kind.indices.forEach((j, i) => kind.mesh.setColorAt(i, new Color(j === this.chosen ? "#ffd23f" : this.list[j].mark ? "#d9822b" : "#42505c")));
       if (kind.mesh.instanceColor) kind.mesh.instanceColor.needsUpdate = true;
     }
@@ -109,10 +91,18 @@ export class Joints {
       });
       kind.done();
     }
+    this.rods.indices.forEach((j, i) => {
+      const { b, Zb } = this.list[j];
+      this.point(j, at);
+      const along = this.poses.point(b ?? -1, Zb as Triple, new Vector3()).sub(at), length = along.length();
+      turn.setFromUnitVectors(kZ, along.divideScalar(length || 1));
+      this.rods.mesh.setMatrixAt(i, length > 0 ? matrix.compose(at, turn, new Vector3(scale.x, scale.y, length)) : kNothing);
+    });
+    this.rods.done();
   }
 }
 
-/** Springs and dampers as coils, rods of distance joints, motors and torsional springs as rings. */
+/** Springs and dampers as coils and cylinders, motors and torsional springs as rings. */
 export class Loads {
   readonly group = new Group();
   private readonly coils: Glyphs;
@@ -124,9 +114,9 @@ export class Loads {
     this.jointOf = list.map((l) => (l.joint ? joints.findIndex((j) => j.name === l.joint) : -1));
     const all = list.map((_, i) => i);
     const springs = all.filter((i) => list[i].type === "spring_damper" && list[i].Za);
-    this.coils = new Glyphs(coil(), "#3d8a55", springs.filter((i) => list[i].stiffness !== 0), "load");
+    this.coils = new Glyphs(coil(), "#3d8a55", springs.filter((i) => list[i].coil), "load");
     this.pots = new Glyphs(merged(alongZ(new CylinderGeometry(0.6, 0.6, 0.4, 16)).translate(0, 0, 0.35), alongZ(new CylinderGeometry(0.16, 0.16, 1, 10)).translate(0, 0, 0.5)),
-      "#7a8791", springs.filter((i) => (list[i].damping ?? 0) > 0), "load");
+      "#7a8791", springs.filter((i) => list[i].damper), "load");
     this.rings = new Glyphs(merged(new TorusGeometry(1, 0.12, 8, 36, 5), alongZ(new ConeGeometry(0.3, 0.5, 12)).rotateX(-Math.PI / 2).rotateZ(5).translate(Math.cos(5), Math.sin(5), 0)),
       "#b3402e", all.filter((i) => this.jointOf[i] >= 0), "load");
     for (const glyphs of [this.coils, this.pots, this.rings]) this.group.add(glyphs.mesh);

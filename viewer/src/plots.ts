@@ -126,6 +126,8 @@ export class Plot {
       axes: [{ ...axis(label, 26) }, { ...axis(`[${units}]`, 56), values: (_, ticks) => ticks.map((v) => (v === null ? "" : String(+v.toPrecision(6)))) }],
       series: [phase ? null as unknown as uPlot.Series : {}, ...curves.map((s): uPlot.Series => ({ label: s.name, stroke: kColours[s.ink % kColours.length], width: 1.4, points: { show: false },
         ...(s.other ? { dash: [6, 4] } : {}), ...(this.mode === "stacked" ? { fill: kColours[s.ink % kColours.length] + "55" } : {}), ...(phase ? { facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path } : {}) }))],
+      // A layer is filled down to the one below it, the lowest down to zero.
+      ...(this.mode === "stacked" ? { bands: curves.slice(1).map((_, i): uPlot.Band => ({ series: [i + 2, i + 1] })) } : {}),
       hooks: { draw: [(u) => this.cursor(u)], ready: [(u) => this.listen(u)] },
     };
     const data = phase ? [null, ...curves.map((s) => [x, s.values])] : [x, ...curves.map((s) => s.values)];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The documentation site in a headless Chromium without network: node site.mjs FOLDER. Skipped (77) without Chromium.
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { launch } from "./browser.mjs";
 
 const site = resolve(process.argv[2]), browser = await launch();
@@ -36,6 +36,18 @@ for (const path of ["index.html", "gallery.html", "theory/joints.html", "referen
       expect(await page.evaluate(() => [...document.images].every((i) => !i.complete || i.naturalWidth > 0 || i.loading === "lazy")), `${path}: a picture is missing`);
     });
 await open("theory/joints.html", {}, async (page) => expect(await page.locator("math").count() > 20 && await page.locator("#equation-joint-coincident math").count() === 1, "formulas are no formulas"));
+// What the site promises is there: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
+const examples = join(dirname(fileURLToPath(import.meta.url)), "../../examples"), all = readdirSync(examples).filter((name) => existsSync(join(examples, name, "model.yaml")));
+await open("gallery.html", {}, async (page) => {
+  const shown = await page.evaluate(() => [...document.querySelectorAll("article a")].filter((a) => a.querySelector("img")?.naturalWidth > 0 || a.parentElement.querySelector("img")).map((a) => a.getAttribute("href")));
+  const missing = all.filter((name) => !shown.some((link) => link?.includes(`examples/${name}/`)));
+  expect(all.length > 30 && missing.length === 0, `the gallery has no picture of ${missing}`);
+});
+for (const path of [...["mechanism", "spacecraft", "tissue", "robot", "classroom"].map((name) => `quick_start/${name}`), "how_to/step_does_not_converge", "how_to/is_my_result_right", "how_to/coming_from_another_program",
+  "reference/conventions", "reference/model_file", "api/python", "api/cpp/index", "validation", "benchmarks"]) expect(existsSync(join(site, `${path}.html`)), `there is no ${path}.html`);
+const terms = readFileSync(join(site, "how_to/coming_from_another_program.html"), "utf8");
+for (const program of ["FEBio", "Chrono", "MuJoCo", "Adams", "Exudyn"]) expect(terms.includes(program), `terms of ${program} are missing`);
+expect(readFileSync(join(site, "theory.pdf")).subarray(0, 5).toString() === "%PDF-", "the theory is no PDF");
 for (const [words, at] of [["bushing", "reference/connectors.html"], ["quaternion order", "reference/conventions.html"]])
   await open(`search.html?q=${encodeURIComponent(words)}`, {}, async (page) => {
     await page.locator("#search-results li a").first().waitFor();

@@ -346,25 +346,23 @@ class SurfacesBuilder {
   struct Stuff {
     double E = std::numeric_limits<double>::infinity();  ///< Young's modulus [Pa].
     double pressure = E;                                 ///< At gap zero, at least [Pa].
-    double density = E;                                  ///< [kg/m³]
   };
-  /// Of several solids the softest and lightest counts.
+  /// The softest of several solids.
   [[nodiscard]] Stuff stuff_of(const std::vector<int>& solids) const {
     Stuff stuff;
     for (const int s : solids) {
       stuff.E = std::min(stuff.E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
       stuff.pressure = kPressure * stuff.E;
-      stuff.density = std::min(stuff.density, solids_[static_cast<std::size_t>(s)].plan.density);
     }
     return stuff;
   }
   [[nodiscard]] static Stuff lesser(const Stuff& a, const Stuff& b) {
-    return {std::min(a.E, b.E), std::min(a.pressure, b.pressure), std::min(a.density, b.density)};
+    return {std::min(a.E, b.E), std::min(a.pressure, b.pressure)};
   }
   /// A cable counts as a full round bar, which is not flattened. @eq{cable-stiffness}
   [[nodiscard]] static Stuff stuff_of(const CableLineSpec& cable) {
     const double area = std::numbers::pi * cable.contact->radius * cable.contact->radius;
-    return {0.0, kCablePressure * cable.stiffness / area, cable.mass_per_length / area};
+    return {0.0, kCablePressure * cable.stiffness / area};
   }
 
   /// Place of the band in which surfaces act: below those of rigid shapes, which have an inside.
@@ -377,17 +375,12 @@ class SurfacesBuilder {
     SurfaceLaw law;
     if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
     law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
-    const double dt = model_.analysis.type == "dynamics" ? model_.analysis.step.value_or(0.0) : 0.0;
     const bool barrier = law.normal.potential == contact::NormalPotential::barrier;
     if (barrier && place == Band::below) law.normal.upper = 0.0;
     const double band = barrier ? law.normal.band() : 2.0 * law.normal.tolerance;
     double& k = law.normal.stiffness;
-    if (spec.reference_pressure > 0.0) {
-      k = 1.5 * spec.reference_pressure / band;
-    } else {
-      k = 1.5 * std::max(stuff.E / edge, stuff.pressure / band);
-      if (dt > 0.0) k = std::max(k, stuff.density * edge / (dt * dt));
-    }
+    k = spec.reference_pressure > 0.0 ? 1.5 * spec.reference_pressure / band
+                                      : 1.5 * std::max(stuff.E / edge, stuff.pressure / band);
     law.end_share = 0.5 * (1.0 - spec.restitution);
     law.mu = spec.friction;
     law.bristle = k;

@@ -17,8 +17,10 @@ double NormalLaw::energy(double gap) const {
     case NormalPotential::barrier: {
       const double band = this->band(), s = (gap - floor()) / band;
       if (s <= 0.0) return std::numeric_limits<double>::infinity();
-      const double rest = 1.0 - s;  // 1/s − 3 + 3s − s² = (1 − s)³/s
-      return stiffness * band * band / 3.0 * rest * rest * rest / s;
+      const double first = this->first(), rest = first - s;
+      // 1/s − 3 + 3s − s² = (1 − s)³/s; in general (first − s)²(1/(s first²) − 1)
+      return stiffness * band * band / 3.0 * rest * rest *
+             ((1.0 - s) + s * (1.0 - first) * (1.0 + first)) / (s * first * first);
     }
     case NormalPotential::linear:
       return 0.5 * stiffness * (reach() - gap) * (reach() - gap);
@@ -74,10 +76,15 @@ NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {
   switch (potential) {
     case NormalPotential::barrier: {
       const double band = this->band(), s = (gap - floor()) / band;
+      const double slope = -stiffness / 3.0 * (2.0 / (s * s * s) - 2.0);
+      if (later) {
+        const double first = this->first(), product = s * first;
+        return {stiffness * band / 3.0 * (first - s) * ((first + s) / (product * product) - 2.0),
+                slope};
+      }
       // 1/s² − 3 + 2s = (1 − s)²(1 + 2s)/s²
       const double part = (1.0 - s) / s;
-      return {stiffness * band / 3.0 * part * part * (1.0 + 2.0 * s),
-              -stiffness / 3.0 * (2.0 / (s * s * s) - 2.0)};
+      return {stiffness * band / 3.0 * part * part * (1.0 + 2.0 * s), slope};
     }
     case NormalPotential::linear:
       return {stiffness * (reach() - gap), -stiffness};
@@ -100,8 +107,10 @@ NormalLaw::WithSlope NormalLaw::quotient_and_slope(double gap_0, double gap_1) c
   switch (potential) {
     case NormalPotential::barrier: {
       const double band = this->band();
-      const double s_0 = (gap_0 - floor()) / band, s_1 = (gap_1 - floor()) / band;
-      return {stiffness * band / 3.0 * (1.0 / (s_0 * s_1) - 3.0 + s_0 + s_1),
+      const double s_0 = (gap_0 - floor()) / band, s_1 = (gap_1 - floor()) / band,
+                   first = this->first();
+      return {stiffness * band / 3.0 *
+                  (1.0 / (s_0 * s_1) - (1.0 / (first * first) + 2.0 * first) + s_0 + s_1),
               -stiffness / 3.0 * (1.0 / (s_0 * s_1 * s_1) - 1.0)};
     }
     case NormalPotential::linear:

@@ -29,14 +29,15 @@ struct NormalLaw {
   double tolerance = 1e-3;  ///< Of the gap [m].
   /// Ends of the band, where they are not ±tolerance of a barrier, or 0 of another potential [m].
   std::optional<double> upper, lower;
+  /// Gap at which a barrier begins to press, where that is within its band: its force is less by
+  /// the one there [m]. @eq{contact-later}
+  std::optional<double> later;
 
   /// Gaps from here on carry no force [m].
-  [[nodiscard]] double reach() const {
-    return upper ? *upper : potential == NormalPotential::barrier ? tolerance : 0.0;
-  }
+  [[nodiscard]] double reach() const { return later ? *later : end(); }
   /// No step may bring the gap to this [m]; −∞ if the law lets bodies overlap.
   [[nodiscard]] double floor() const;
-  [[nodiscard]] double band() const { return reach() - floor(); }
+  [[nodiscard]] double band() const { return end() - floor(); }
 
   [[nodiscard]] double energy(double gap) const;     ///< b [J]
   [[nodiscard]] double gap_of(double energy) const;  ///< Where b is that; reach() if it is zero.
@@ -57,6 +58,12 @@ struct NormalLaw {
   [[nodiscard]] WithSlope quotient_and_slope(double gap_0, double gap_1) const;
 
  private:
+  /// Of the band [m].
+  [[nodiscard]] double end() const {
+    return upper ? *upper : potential == NormalPotential::barrier ? tolerance : 0.0;
+  }
+  /// s where it begins to press.
+  [[nodiscard]] double first() const { return later ? (*later - floor()) / band() : 1.0; }
   [[nodiscard]] static double chained(double, const WithSlope& f) { return f.value; }
   [[nodiscard]] static Dual chained(const Dual& x, const WithSlope& f) {
     return x.chained(f.value, f.slope);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <polhode/equations/node_motion.hpp>
@@ -63,7 +64,11 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
     for (const auto& [g, group] : groups_) {
       hit.clear();
       group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
-      for (SurfaceImpact& impact : hit) surfaces_.push_back({g, group, std::move(impact)});
+      for (SurfaceImpact& impact : hit) {
+        for (const auto& [node, N] : impact.nodes)
+          impact.before += N * impact.normal.dot(velocity_of_node(state, node));
+        surfaces_.push_back({g, group, std::move(impact)});
+      }
     }
   }
   std::vector<Impact> impacts;
@@ -94,9 +99,19 @@ Vec6 SettleImpacts::velocity(const State& state, int body) const {
   return v;
 }
 
+std::vector<Vec6> SettleImpacts::velocities(const State& state, const Island& island) const {
+  std::vector<Vec6> v;
+  for (int body : island.bodies) v.push_back(velocity(state, body));
+  for (int node : island.nodes) {
+    v.push_back(Vec6::Zero());
+    v.back().head<3>() = at_node(state.node_v, node);
+  }
+  return v;
+}
+
 /// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
 /// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
-void SettleImpacts::settle(State& state) {
+Work SettleImpacts::settle(State& state) {
   settled_.assign(rows_.size(), {});
   jumped_.clear();
   resting_.clear();
@@ -110,7 +125,8 @@ void SettleImpacts::settle(State& state) {
     if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
   settle_from(state, 0);
   tell_surfaces(state);
-  if (!contacts_) return;
+  const Work work = turn_surfaces(state);
+  if (!contacts_) return work;
   for (int round = 0; round < kMostCarried; ++round) {
     const std::size_t first = rows_.size();
     press_on(state, before);
@@ -120,6 +136,7 @@ void SettleImpacts::settle(State& state) {
   std::vector<SettledImpact> of_contacts;
   for (int k : numbers_) of_contacts.push_back(k < 0 ? SettledImpact{} : settled_[k]);
   contacts_->settled(of_contacts);
+  return work;
 }
 
 double SettleImpacts::speed(const State& state, const PairImpact& row) const {
@@ -167,19 +184,36 @@ void SettleImpacts::settle_from(State& state, std::size_t first) {
     const double now = speed(state, k);
     return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
   };
-  std::erase_if(all, [&](const Island& island) {
-    return std::all_of(island.rows.begin(), island.rows.end(), inert);
+  const auto still = std::stable_partition(all.begin(), all.end(), [&](const Island& island) {
+    return !std::all_of(island.rows.begin(), island.rows.end(), inert);
   });
-  const bool tied = std::any_of(all.begin(), all.end(), [](const Island& i) { return i.tied; });
+  std::vector<Island> pressed(std::make_move_iterator(still), std::make_move_iterator(all.end()));
+  all.erase(still, all.end());
+  std::erase_if(pressed, [&](const Island& island) {
+    return std::none_of(island.rows.begin(), island.rows.end(), [&](int k) {
+      const SurfaceImpact* hit = surface(k);
+      return hit && !hit->turned;
+    });
+  });
+  const auto is_tied = [](const Island& i) { return i.tied; };
+  const bool tied = std::any_of(all.begin(), all.end(), is_tied) ||
+                    std::any_of(pressed.begin(), pressed.end(), is_tied);
   std::vector<Vec6> to_admissible;
   if (tied) {
     if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
     if (!solver_->take_impulses(state)) return;
     to_admissible = solver_->jumps_to_admissible(state);
   }
-  for (const Island& island : all) {
+  const auto number = [&](const Island& island) {
     for (std::size_t i = 0; i < island.bodies.size(); ++i)
       place_[island.bodies[i]] = static_cast<int>(i);
+  };
+  for (const Island& island : pressed) {
+    number(island);
+    find_held(rows_of(state, island), velocities(state, island));
+  }
+  for (const Island& island : all) {
+    number(island);
     if (island.tied && system_->rows() > 0) {
       std::vector<Vec6> jumps;
       for (int body : island.bodies) jumps.push_back(to_admissible[body]);
@@ -289,14 +323,10 @@ void SettleImpacts::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
 
 /// Impulses that would give energy are scaled back to where they do not. @eq{turn-law}
 void SettleImpacts::settle(State& state, const Island& island) {
-  std::vector<Vec6> v;
-  for (int body : island.bodies) v.push_back(velocity(state, body));
-  for (int node : island.nodes) {
-    v.push_back(Vec6::Zero());
-    v.back().head<3>() = at_node(state.node_v, node);
-  }
+  std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
   std::vector<Row> rows = rows_of(state, island);
+  find_held(rows, v);
   double most = 0.0;
   for (Row& row : rows) {
     row.before = row.speed(v);

@@ -22,14 +22,14 @@ class SettleImpacts {
   /// histories still at t_n. Forgets those before.
   void find(const State& state, const Trial& trial);
   /// Goes on with those of surfaces, the state having moved to t_{n+1}. Before those of contacts.
-  /// @returns the change of what surfaces store, and what they dissipated by it.
-  Work find_turns(State& state);
+  void find_turns(const State& state);
   /// Adds those of contacts, the state having moved to t_{n+1}.
   /// @returns the change of what contacts store, and what they dissipated by it.
   Work find(State& state, MovingContacts& contacts);
   [[nodiscard]] bool any() const;
   /// Changes the velocities of the state, which has moved to t_{n+1}.
-  void settle(State& state);
+  /// @returns the change of what surfaces store, and what they dissipated by it.
+  Work settle(State& state);
 
  private:
   /// Rows that share bodies, directly or by way of joints and solids.
@@ -43,12 +43,19 @@ class SettleImpacts {
     int number = 0;
     const SurfaceImpacts* group = nullptr;
     SurfaceImpact impact;
+    bool turns = false;  ///< In this step.
+    double held = 0.0;   ///< Force by which others press it on [N].
   };
   [[nodiscard]] std::vector<Island> islands() const;
   [[nodiscard]] Vec6 velocity(const State& state, int body) const;
+  /// Of an island's bodies, then of its nodes, which do not turn.
+  [[nodiscard]] std::vector<Vec6> velocities(const State& state, const Island& island) const;
   [[nodiscard]] Vec3 velocity_of_node(const State& state, int node) const;
   /// Of a row of a surface; null for others.
   [[nodiscard]] const SurfaceImpact* surface(int row) const;
+  [[nodiscard]] Surface& of_surface(int row) {
+    return surfaces_[static_cast<std::size_t>(row) - of_joints_];
+  }
   [[nodiscard]] double wanted_of(const SurfaceImpact& impact, double speed) const;
   template <class Use>
   void for_bodies(int row, Use&& use) const;
@@ -62,6 +69,8 @@ class SettleImpacts {
   void press_on(const State& state, const std::vector<Vec6>& before);
   [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
   [[nodiscard]] double speed(const State& state, int row) const;
+  void find_held(const std::vector<Row>& rows, std::vector<Vec6> v);
+  [[nodiscard]] Work turn_surfaces(State& state) const;
   void tell_surfaces(State& state) const;
   double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;

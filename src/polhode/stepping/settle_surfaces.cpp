@@ -2,9 +2,21 @@
 // Impacts of points of surfaces among those that SettleImpacts knows.
 #include <cmath>
 
-#include <polhode/stepping/settle_impacts.hpp>
+#include <polhode/stepping/impact_rows.hpp>
 
 namespace polhode {
+
+namespace {
+
+/// Sweeps that find what presses points on end when no impulse changes by more than this part of
+/// the largest one, or after so many.
+constexpr double kHeldConverged = 1e-10;
+constexpr int kMostHeldSweeps = 200;
+/// An impact is over before it turns where others press the point on by this part of what it
+/// presses back, and it has no more than this part of what it stores as kinetic energy.
+constexpr double kHeldOn = 0.9, kNoImpact = 1e-2;
+
+}  // namespace
 
 /// Speed after the turn, as of bodies: what a point flew beyond its band was under gravity alone.
 /// @eq{surface-turn}
@@ -19,10 +31,9 @@ double SettleImpacts::wanted_of(const SurfaceImpact& impact, double speed) const
 }
 
 /// @eq{surface-turn}
-Work SettleImpacts::find_turns(State& state) {
-  Work work;
-  for (const auto& [g, group, hit] : surfaces_) {
-    double* history = state.element_history.data() + system_->nodes().first_history(g);
+void SettleImpacts::find_turns(const State& state) {
+  for (Surface& surface : surfaces_) {
+    const SurfaceImpact& hit = surface.impact;
     Vec3 v = Vec3::Zero();
     for (const auto& [node, N] : hit.nodes) v += N * velocity_of_node(state, node);
     PairImpact& row = rows_.emplace_back();
@@ -36,14 +47,59 @@ Work SettleImpacts::find_turns(State& state) {
       impact.along = slip.norm() > 0.0 ? Vec3(slip.normalized()) : hit.normal.unitOrthogonal();
       impact.across = hit.normal.cross(impact.along);
     }
-    const bool turns = hit.turned ? speed <= 0.0 : speed >= 0.0;
-    if (!turns) continue;
-    if (!hit.turned) impact.wanted = wanted_of(hit, speed);
-    const double released = group->turn(hit, history);
+    surface.turns = hit.turned ? speed <= 0.0 : speed >= 0.0;
+    if (surface.turns && !hit.turned) impact.wanted = wanted_of(hit, speed);
+  }
+  before_contacts_ = rows_.size();
+}
+
+/// Forces that hold points in place: what changed normal speeds over the step, but for the impacts.
+/// An impact is over where they press as much as the point presses back and it has little speed
+/// left. @eq{surface-held}
+void SettleImpacts::find_held(const std::vector<Row>& rows, std::vector<Vec6> v) {
+  std::vector<Row> normals;
+  bool find = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0 && rows[i - 1].rubs) continue;
+    const SurfaceImpact* hit = surface(rows[i].impact);
+    if (!hit) continue;
+    find = find || !hit->turned;
+    normals.push_back(rows[i]);
+    normals.back().impulse = 0.0;
+  }
+  if (!find) return;
+  for (int sweep = 0; sweep < kMostHeldSweeps; ++sweep) {
+    double change = 0.0, largest = 0.0;
+    for (Row& row : normals) {
+      if (!(row.mobility > 0.0)) continue;
+      const double p = (surface(row.impact)->before - row.speed(v)) / row.mobility;
+      row.push(p, v);
+      change = std::max(change, std::abs(p));
+      largest = std::max(largest, std::abs(row.impulse));
+    }
+    if (!(change > kHeldConverged * largest)) break;
+  }
+  for (const Row& row : normals) {
+    Surface& of = of_surface(row.impact);
+    of.held = std::max(0.0, of.impact.given + row.impulse) / dt_;
+    if (of.impact.turned || of.turns || !(row.mobility > 0.0)) continue;
+    const double speed = rows_[row.impact].impact.wanted;
+    of.turns = of.held * dt_ >= kHeldOn * of.impact.given &&
+               0.5 * speed * speed / row.mobility <= kNoImpact * of.impact.stored;
+  }
+}
+
+/// @eq{surface-turn}
+Work SettleImpacts::turn_surfaces(State& state) const {
+  Work work;
+  for (const Surface& surface : surfaces_) {
+    if (!surface.turns) continue;
+    const double released = surface.group->turn(
+        surface.impact, surface.held,
+        state.element_history.data() + system_->nodes().first_history(surface.number));
     work.stored -= released;
     work.dissipated += released;
   }
-  before_contacts_ = rows_.size();
   return work;
 }
 
@@ -64,9 +120,9 @@ void SettleImpacts::tell_surfaces(State& state) const {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const SettledImpact& s = settled_[of_joints_ + k];
     if (s.normal == 0.0 && s.friction.isZero(0.0)) continue;
-    const auto& [g, group, impact] = surfaces_[k];
-    group->settled(impact, s, dt_,
-                   state.element_history.data() + system_->nodes().first_history(g));
+    const Surface& of = surfaces_[k];
+    of.group->settled(of.impact, s, dt_,
+                      state.element_history.data() + system_->nodes().first_history(of.number));
   }
 }
 

@@ -148,7 +148,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_time[state.past_next] = state.t + 0.5 * dt;
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
-  ledger_.add(state, impacts_.find_turns(state));
+  impacts_.find_turns(state);
   if (MovingContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
     ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps start best from the velocities at t_n then
@@ -156,8 +156,9 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   jumped_ = impacts_.any();
   if (jumped_) {
     const BodySums before = ledger_.sums(state);
-    impacts_.settle(state);
+    const Work work = impacts_.settle(state);
     ledger_.add_jump(state, before);
+    ledger_.add(state, work);
   }
   state.t += dt;
   state.dt_last = dt;

@@ -34,26 +34,39 @@ SurfaceLaw with_band_lowered(const SurfaceLaw& law, double by) {
   return own;
 }
 
-/// With x = gap − floor and k d̂ as it is, b = (k d̂/3)(d̂ − x)³/(d̂ x) grows with d̂.
-double lowered_to_store(const SurfaceLaw& law, double gap, double energy, double most) {
-  const contact::NormalLaw& normal = law.normal;
-  const double x = gap - normal.floor(), whole = normal.band();
-  double high = whole - most, low = std::min(high, std::max(x, kLeftAfterImpact * whole));
-  const auto stored = [&](double band) {
-    const double rest = std::max(0.0, band - x);
-    return normal.stiffness * whole / 3.0 * rest * rest * rest / (band * x);
-  };
+SurfaceLaw beginning_later(const SurfaceLaw& law, double by) {
+  SurfaceLaw own = law;
+  if (by != 0.0) own.normal.later = law.normal.reach() - by;
+  return own;
+}
+
+/// b(g) grows with the gap where it begins.
+double lowered_to_store(const SurfaceLaw& law, double gap, double energy, double least) {
+  const double x = gap - law.normal.floor(), whole = law.normal.band();
+  double low = least, high = std::max(low, whole - std::max(x, kLeftAfterImpact * whole));
   for (int k = 0; k < kHalvings && energy > 0.0; ++k) {
     const double middle = 0.5 * (low + high);
-    (stored(middle) > energy ? high : low) = middle;
+    (beginning_later(law, middle).normal.energy(gap) > energy ? low : high) = middle;
   }
-  return whole - low;
+  return high;
+}
+
+/// f(g) less what the force would be where it begins.
+double lowered_to_press(const SurfaceLaw& law, double gap, double pressure, double least) {
+  const double whole = law.normal.band();
+  double low = least, high = std::max(low, whole - (gap - law.normal.floor()));
+  if (!(pressure > 0.0)) return high;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (beginning_later(law, middle).normal.force(gap) > pressure ? low : high) = middle;
+  }
+  return high;
 }
 
 PointPhase PointPhase::in_step(const SurfaceLaw& law, double gap, double speed) const {
   PointPhase now = *this;
   if (law.normal.potential != NormalPotential::barrier || !open()) return now;
-  const SurfaceLaw own = with_band_lowered(law, lowered);
+  const SurfaceLaw own = beginning_later(law, lowered);
   now.set(ContactPhase::rest);
   if (!(gap >= own.normal.reach() && speed < 0.0)) return now;
   now.set(ContactPhase::compression);
@@ -69,19 +82,20 @@ PointPhase PointPhase::at_end(const SurfaceLaw& law, double gap) const {
   return then;
 }
 
-double PointPhase::turn(const SurfaceLaw& law, double gap) {
+double PointPhase::turn(const SurfaceLaw& law, double gap, double held) {
   if (open()) return 0.0;
   const bool first = is(ContactPhase::compression);
   const double e = restitution;
   set(first && e > 0.0 ? ContactPhase::restitution : ContactPhase::rest);
   if (!first || e == 1.0) return 0.0;
-  const double energy = with_band_lowered(law, lowered).normal.energy(gap);
-  lowered = lowered_to_store(law, gap, e * e * energy, lowered);
-  return energy - with_band_lowered(law, lowered).normal.energy(gap);
+  const double energy = beginning_later(law, lowered).normal.energy(gap);
+  lowered = std::min(lowered_to_store(law, gap, e * e * energy, lowered),
+                     lowered_to_press(law, gap, held, lowered));
+  return energy - beginning_later(law, lowered).normal.energy(gap);
 }
 
 SurfaceLaw PointPhase::law(const SurfaceLaw& law) const {
-  SurfaceLaw own = with_band_lowered(law, lowered);
+  SurfaceLaw own = beginning_later(law, lowered);
   if (!in_impact()) return own;
   own.mu = 0.0;
   own.end_share = is(ContactPhase::compression) && restitution == 0.0 ? 1.0 : 0.0;

@@ -6,21 +6,28 @@
 
 namespace polhode {
 
-/// By how much the band of a barrier ends lower for what starts at a gap: there, so that nothing
-/// is stored at the start, but a twentieth of the band is left. Zero outside of the band, and for
-/// NaN, where nothing is near [m]. @eq{surface-start}
+/// By how much lower a barrier begins to press on what starts at a gap: there, so that nothing is
+/// stored at the start, but a twentieth of the band is left. Zero outside of the band, and for NaN,
+/// where nothing is near [m]. @eq{surface-start}
 [[nodiscard]] double lowered_for(const SurfaceLaw& law, double gap_at_start);
-/// The same law with a band that ends lower; the pressure in its middle stays.
+/// The law of meshes on each other with a band that ends lower; the pressure in its middle stays.
 [[nodiscard]] SurfaceLaw with_band_lowered(const SurfaceLaw& law, double by);
-/// By how much the band ends lower that stores this energy at a gap within, per area [m].
-/// @param most  Where it ends no lower than this it stores no less: of the band at hand [m].
+/// The law of points on rigid shapes with the same band, in which force begins lower; deeper down
+/// it is nearly the same. @eq{contact-later}
+[[nodiscard]] SurfaceLaw beginning_later(const SurfaceLaw& law, double by);
+/// By how much lower it begins to store this energy at a gap within, per area [m].
+/// @param least  Lower than this at least: the law at hand [m].
 /// @eq{surface-turn}
 [[nodiscard]] double lowered_to_store(const SurfaceLaw& law, double gap, double energy,
-                                      double most);
+                                      double least);
+/// By how much lower it begins to press so much at a gap within [m]; `least` as above.
+/// @eq{surface-held}
+[[nodiscard]] double lowered_to_press(const SurfaceLaw& law, double gap, double pressure,
+                                      double least);
 
 /// What a point remembers of closing and opening, as numbers of its history.
 struct PointPhase {
-  double lowered = 0.0;      ///< Its band ends lower by that [m].
+  double lowered = 0.0;      ///< It begins to press lower by that [m].
   double phase = 0.0;        ///< 0: it is open; else 1 and the number of its ContactPhase.
   double restitution = 0.0;  ///< e of its impact.
 
@@ -37,9 +44,11 @@ struct PointPhase {
   [[nodiscard]] PointPhase in_step(const SurfaceLaw& law, double gap, double speed) const;
   /// At the end of a step in which it had this phase.
   [[nodiscard]] PointPhase at_end(const SurfaceLaw& law, double gap) const;
-  /// After its turn at a gap: the part e² is still stored; then it parts, or rests.
+  /// After its turn at a gap: the part e² is still stored, or as much as presses back on what
+  /// holds it there; then it parts, or rests.
+  /// @param held  Pressure by which others press it on [Pa].
   /// @returns what it stores no more, per area.
-  double turn(const SurfaceLaw& law, double gap);
+  double turn(const SurfaceLaw& law, double gap, double held);
   /// The law of a step in this phase.
   [[nodiscard]] SurfaceLaw law(const SurfaceLaw& law) const;
 };

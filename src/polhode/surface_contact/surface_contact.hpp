@@ -87,7 +87,7 @@ class SurfaceContact final : public ElementGroup,
 
   void impacts(const NodeStep& step, const double* history,
                std::vector<SurfaceImpact>& list) const override;
-  double turn(const SurfaceImpact& impact, double* history) const override;
+  double turn(const SurfaceImpact& impact, double held, double* history) const override;
   void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
                double* history) const override;
 
@@ -153,7 +153,7 @@ class SurfaceContact final : public ElementGroup,
   }
   /// At an instant.
   [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
-    return with_band_lowered(law_, memory[kPhase]);
+    return beginning_later(law_, memory[kPhase]);
   }
   /// Velocity in the surface's coordinates.
   [[nodiscard]] Vec3 local_rate(const double* x, const double* v, int point) const;

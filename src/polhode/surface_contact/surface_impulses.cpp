@@ -37,16 +37,17 @@ void SurfaceContact::impacts(const NodeStep& step, const double* history,
     s.mu = law_.mu;
     s.given = step.context.dt * point.area * a.pressure;
     s.gap = a.gap_n1;
+    s.stored = point.area * a.phase.law(law_).normal.energy(a.gap_n1);
     s.beyond = std::max(0.0, a.gap_n1 - a.phase.law(law_).normal.reach());
   }
 }
 
-double SurfaceContact::turn(const SurfaceImpact& impact, double* history) const {
+double SurfaceContact::turn(const SurfaceImpact& impact, double held, double* history) const {
   double* memory = history + kMemory * static_cast<std::size_t>(impact.point);
   PointPhase phase = phase_of(memory);
-  const double released = phase.turn(law_, impact.gap);
+  const double area = points_.points[static_cast<std::size_t>(impact.point)].area;
+  const double energy = area * phase.turn(law_, impact.gap, held / area);
   keep(phase, memory);
-  const double energy = points_.points[static_cast<std::size_t>(impact.point)].area * released;
   history[kMemory * points_.points.size() +
           offsetof(SurfaceTotals, normal_loss) / sizeof(double)] += energy;
   return energy;

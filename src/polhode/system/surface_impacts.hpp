@@ -16,11 +16,12 @@ struct SurfaceImpact {
   std::vector<std::pair<int, double>> nodes;  ///< With N, each once.
   Vec3 normal = Vec3::UnitZ();                ///< At t_{n+1}, unit, world.
   double restitution = 0.0;                   ///< e of this impact.
-  double apart = 0.0;                         ///< Normal speed at t_n after a turn before, or 0.
   double mu = 0.0;                            ///< Coefficient of friction.
   double given = 0.0;                         ///< Normal impulse of the step [N s].
   double gap = 0.0;                           ///< At t_{n+1} [m].
   double beyond = 0.0;                        ///< Of its band at t_{n+1} [m]; 0 within.
+  double stored = 0.0;                        ///< At t_{n+1} [J].
+  double before = 0.0;                        ///< Normal speed at t_n [m/s].
   bool turned = false;                        ///< Before the step.
 };
 
@@ -34,8 +35,9 @@ class SurfaceImpacts {
   virtual void impacts(const NodeStep& step, const double* history,
                        std::vector<SurfaceImpact>& list) const = 0;
   /// What one of them does after it has turned (or come back): its history is at t_{n+1}.
+  /// @param held  Force by which others press it on [N].
   /// @returns the energy that it stores no more [J].
-  virtual double turn(const SurfaceImpact& impact, double* history) const = 0;
+  virtual double turn(const SurfaceImpact& impact, double held, double* history) const = 0;
   /// The impulse that it took at the end of the step, for its report.
   virtual void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
                        double* history) const = 0;

@@ -195,6 +195,15 @@ void add_connections(Json& manifest, const ResultsReader& results, const Model* 
         for (const char* key : {"stiffness", "damping"})
           if (const auto value = load->parameters.find(key); value != load->parameters.end())
             entry[key] = value->second;
+        if (load_types[k] == "spring_damper") {
+          const auto has = [&](const char* number, const char* law) {
+            const auto value = load->parameters.find(number);
+            return (value != load->parameters.end() && value->second != 0.0) ||
+                   load->laws.count(law) > 0;
+          };
+          entry["coil"] = has("stiffness", "spring_force") || has("quadratic", "spring_force");
+          entry["damper"] = has("damping", "damper_force");
+        }
       }
     loads.push_back(std::move(entry));
   }

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source package holds what a build needs."""
+
+import pathlib
+import subprocess
+import sys
+import tarfile
+
+import pytest
+
+import polhode
+from conftest import ROOT
+
+
+def test_the_source_package_holds_every_file_of_the_repository(tmp_path: pathlib.Path) -> None:
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode != 0:
+        pytest.skip("this is no clone, so nothing tells what there should be")
+    code = f"from scikit_build_core.build import build_sdist; build_sdist({str(tmp_path)!r})"
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
+    name = f"polhode-{polhode.__version__}"
+    with tarfile.open(tmp_path / f"{name}.tar.gz") as package:
+        inside = set(package.getnames())
+    wanted = [file for file in listed.stdout.splitlines() if not file.startswith("docs/images/")]
+    missing = [file for file in wanted if (ROOT / file).exists() and f"{name}/{file}" not in inside]
+    assert "viewer/dist/viewer.html" in wanted and not missing, missing

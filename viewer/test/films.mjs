@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films and pictures by `polhode convert`.
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { program } from "./browser.mjs";
+import { browser, expect, folder, made, page_of, refusal, run, test } from "./support.mjs";
+
+await test("a film has the pictures that were asked for", async () => {
+  made("all.html");
+  run("convert", "all.results", "film.gif", "--size", "160x120", "--rate", "8", "--to", "0.5", "--turn", "30");
+  const { page } = await page_of("all.html");
+  // Decoded by the browser, which is no work of ours.
+  const found = await page.evaluate(async (text) => {
+    const decoder = new ImageDecoder({ data: Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), type: "image/gif" });
+    await decoder.tracks.ready;
+    await decoder.completed;
+    const pictures = [];
+    for (let k = 0; k < decoder.tracks.selectedTrack.frameCount; k++) {
+      const { image } = await decoder.decode({ frameIndex: k }), canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight), context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      const data = context.getImageData(0, 0, canvas.width, canvas.height).data, seen = new Set();
+      for (let i = 0; i < data.length; i += 4) seen.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+      pictures.push({ size: `${canvas.width}x${canvas.height}`, colours: seen.size, sum: data.reduce((s, v, i) => (s + v * (i % 65521)) % 4294967291, 0) });
+    }
+    return pictures;
+  }, readFileSync(join(folder, "film.gif")).toString("base64"));
+  expect(found.length === 5 && found[0].size === "160x120" && found.every((p) => p.colours > 20), JSON.stringify(found));
+  expect(new Set(found.map((p) => p.sum)).size === 5, "pictures are alike");
+  run("convert", "all.results", "pictures", "--size", "64x48", "--rate", "2");
+  expect(readFileSync(join(folder, "pictures/00002.png")).subarray(1, 4).toString() === "PNG", "no pictures in the folder");
+  mkdirSync(join(folder, "made/film.gif"), { recursive: true });  // a folder of that name: what fails when all is drawn
+  for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"],
+    [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: cannot be replaced"]])
+    expect(refusal(["convert", "all.results", ...words]).includes(text), refusal(["convert", "all.results", ...words]));
+});
+
+await test("what films need is told where it is missing", async () => {
+  made("all.html");
+  const told = (file, env) => refusal(["convert", "all.results", file], { PATH: "/nowhere", ...env });
+  const film = told("film.mp4", { CHROMIUM: program });
+  expect(film.includes("an .mp4 file is written by ffmpeg, which is missing. Install the Debian package ffmpeg, or write a .gif file"), film);
+  const none = told("film.gif", { CHROMIUM: "" });
+  expect(none.includes("films are drawn by Chromium, which is missing. Install the Debian package chromium, or name a Chromium or Chrome with CHROMIUM"), none);
+});
+
+await test("an .mp4 film has the size, the rate, the duration and the pictures that were asked for", async () => {
+  if (spawnSync("ffmpeg", ["-version"]).error || spawnSync("ffprobe", ["-version"]).error) return console.log("        not looked at: there is no ffmpeg (Debian package ffmpeg)");
+  made("all.html");
+  const words = ["--size", "161x120", "--rate", "8", "--from", "0.25", "--to", "1", "--turn", "60"];
+  run("convert", "all.results", "film.mp4", ...words);
+  run("convert", "all.results", "same", ...words);
+  const of = (name, ...words) => execFileSync(name, ["-v", "error", ...words], { cwd: folder, maxBuffer: 1 << 28 });
+  const { streams: [film], format } = JSON.parse(of("ffprobe", "-count_frames", "-show_streams", "-show_format", "-of", "json", "film.mp4"));
+  // Numbers of pixels are even in what every player takes: 161 become 162.
+  expect(film.codec_name === "h264" && film.pix_fmt === "yuv420p" && film.width === 162 && film.height === 120, JSON.stringify(film));
+  expect(film.color_space === "bt709" && film.color_range === "tv", "players must guess its colours");
+  expect(film.r_frame_rate === "8/1" && Number(film.nb_read_frames) === 7 && Math.abs(Number(format.duration) - 7 / 8) < 0.01, JSON.stringify([film, format]));
+  // Its pictures are those of the folder, but for what compression loses, and each differs more from the next one.
+  const raw = (...words) => of("ffmpeg", ...words, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"), pad = ["-vf", "pad=162:120"];
+  const pictures = raw("-i", "film.mp4", "-vf", "scale=in_color_matrix=bt709:in_range=tv"), drawn = raw("-i", "same/%05d.png", ...pad), size = 162 * 120 * 3;
+  expect(pictures.length === 7 * size && drawn.length === 7 * size, `${pictures.length} and ${drawn.length} bytes`);
+  const apart = (a, i, b, j) => { let sum = 0; for (let k = 0; k < size; k++) if (k % 486 < 480) sum += Math.abs(a[i * size + k] - b[j * size + k]); return sum / size; };
+  for (let i = 0; i < 7; i++) {
+    const lost = apart(pictures, i, drawn, i), moved = Math.min(...[i - 1, i + 1].filter((j) => j >= 0 && j < 7).map((j) => apart(drawn, i, drawn, j)));
+    expect(lost < 5 && lost < 0.5 * moved, `picture ${i}: ${lost} levels from the one that was drawn, ${moved} between two`);
+  }
+});

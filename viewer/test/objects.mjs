@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects are found, chosen, read, hidden and measured.
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { channels, chosen, expect, folder, model, page_of, picture, recorded, run, shot, test } from "./support.mjs";
+
+await test("a name chooses an object with its values and its line of the model", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByLabel("Search objects by name").fill("hinge");
+  await page.getByRole("button", { name: /hinge/ }).first().click();
+  const details = page.locator(".details");
+  await details.locator("td.number").first().waitFor();
+  expect((await details.textContent()).includes("revolute joint"), "no kind");
+  expect((await details.locator("pre").textContent()).includes("hinge: {type: revolute"), "another line of the model");
+  const value = await details.locator("td.number").first().textContent();
+  await page.getByLabel("Time", { exact: true }).fill("30");
+  expect(value !== await details.locator("td.number").first().textContent(), "the values stand still");
+});
+
+await test("values are those of the results", async () => {
+  const { page } = await page_of("all.html");
+  const row = channels("all", "bodies.arm.position")[30];
+  await page.getByRole("button", { name: /^arm/ }).first().click();
+  await page.getByLabel("Time", { exact: true }).fill("30");
+  const shown = (await page.locator(".details td.number").first().textContent()).trim().split(/\s+/).map(Number);
+  for (let k = 0; k < 3; k++) expect(Math.abs(shown[k] - row[k + 1]) < 1e-3 * (1 + Math.abs(row[k + 1])), `${shown} is not ${row.slice(1)}`);
+});
+
+await test("a click in the picture chooses what is there", async () => {
+  const { page } = await page_of("all.html");
+  const box = await page.locator(".view > canvas").boundingBox();
+  let found = "";
+  for (let i = 2; i < 9 && !found; i++)
+    for (let j = 2; j < 9 && !found; j++) {
+      await page.mouse.click(box.x + box.width * i / 10, box.y + box.height * j / 10);
+      found = await chosen(page);
+    }
+  expect(found !== "", "no click meets anything");
+  await page.keyboard.press("Escape");
+  expect(await page.locator(".details h2").count() === 0, "Escape keeps the choice");
+});
+
+await test("hidden, ghost and isolated bodies change the picture", async () => {
+  const { page } = await page_of("all.html");
+  await page.getByRole("button", { name: /^arm/ }).first().click();
+  const pictures = [await picture(page)];
+  for (const key of ["h", "a", "g", "i"]) { await page.keyboard.press(key); pictures.push(await picture(page)); }
+  expect(pictures[0] !== pictures[1] && pictures[1] !== pictures[3] && pictures[0] === pictures[2] && pictures[3] !== pictures[4], "pictures do not differ as they should");
+});
+
+await test("two clicks measure a distance, three an angle", async () => {
+  // Points on two sides of a cube of 1 m, seen in parallel from its front: what they measure is known.
+  recorded("cube", "format: 1\nbodies: {cube: {fixed: true, shape: {box: [1, 1, 1]}}, far: {shape: {box: [1, 1, 1]}, density: 1, position: [3, 0, 0]}}\nanalysis: {duration: 0.1 s, step: 0.1 s}\n");
+  const { page } = await page_of("cube.html");
+  await page.keyboard.press("1");
+  await page.keyboard.press("o");
+  const { x, y, width, height } = await page.locator(".view > canvas").boundingBox(), ruler = page.locator(".measure");
+  // Where the edges of both cubes lie in the picture: the first and last click along a row that meets something.
+  await page.waitForTimeout(300);
+  const name = async (u, v) => { await page.mouse.click(u, v); return chosen(page); };
+  const edge = async (from, to, wanted) => {  // halves the way between a point within and one outside
+    for (let k = 0; k < 9; k++) { const m = (from + to) / 2; if (await name(m, y + height / 2) === wanted) from = m; else to = m; }
+    return from;
+  };
+  let middle = 0;
+  for (let i = 1; i < 40 && !middle; i++) if (await name(x + width * i / 40, y + height / 2) === "cube") middle = x + width * i / 40;
+  const left = await edge(middle, x, "cube"), right = await edge(middle, x + width, "cube"), scale = right - left;  // pixels in a metre
+  expect(scale > 20, `the cube is ${scale} pixels wide`);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("m");
+  expect(await ruler.isVisible() && (await ruler.textContent()).includes("Click two points"), "no ruler");
+  const at = (a, b) => page.mouse.click((left + right) / 2 + a * scale, y + height / 2 - b * scale);
+  await at(-0.3, 0);
+  await at(0.3, 0);
+  const distance = parseFloat(await ruler.textContent());
+  expect(Math.abs(distance - 0.6) < 0.03 && / m$/.test(await ruler.textContent()), `0.6 m reads '${await ruler.textContent()}'`);
+  await at(0.3, 0.3);
+  const angle = (await ruler.textContent()).match(/, ([\d.]+)°/);
+  expect(angle && Math.abs(Number(angle[1]) - 90) < 3, `a right angle reads '${await ruler.textContent()}'`);
+});
+
+await test("a model that overlaps is shown with what overlaps", async () => {
+  writeFileSync(join(folder, "overlap.yaml"), `format: 1
+bodies:
+  one: {shape: {box: [1, 1, 1]}, density: 1000}
+  two: {shape: {sphere: 0.5}, density: 1000, position: [0.7, 0, 0]}
+  far: {shape: {sphere: 0.5}, density: 1000, position: [3, 0, 0]}
+contacts: {}
+analysis: {duration: 1 s, step: 1 ms}
+`);
+  run("view", "overlap.yaml", "--html", "overlap.html", "--quiet");
+  const { page } = await page_of("overlap.html");
+  const note = await page.locator(".notes").textContent();
+  expect(note.includes("overlap at the start") && note.includes("contacts.overlaps: resolve"), note);
+  await page.getByRole("button", { name: /^two/ }).first().click();
+  expect((await page.locator(".details .warn").textContent()) === "overlaps at the start", "the body has no mark");
+  await page.getByRole("button", { name: /^far/ }).first().click();
+  await page.waitForFunction(() => document.querySelector(".details h2").textContent === "far");
+  expect(await page.locator(".details .warn").count() === 0, "a body apart has a mark");
+  await shot(page, "overlap");
+});
