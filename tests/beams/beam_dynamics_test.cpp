@@ -52,7 +52,7 @@ Matrices matrices(const System& system) {
               m.K.block<6, 6>(6 * ref.a, 6 * ref.b) -= t.D_ab;
               m.K.block<6, 6>(6 * ref.b, 6 * ref.a) -= t.D_ba;
               m.K.block<6, 6>(6 * ref.b, 6 * ref.b) -= t.D_bb;
-              const double c = system.group(ref.group).coupled_mass(ref.item);
+              const double c = system.traits(ref).coupled_mass;
               for (int k = 0; k < 3; ++k) {
                 m.M(6 * ref.a + k, 6 * ref.a + k) -= c;
                 m.M(6 * ref.b + k, 6 * ref.b + k) -= c;

@@ -73,7 +73,7 @@ class Scene {
     const auto seen_from = [&](int body) {
       return body == kGround ? place : Vec3(place - starts_.at(body).r);
     };
-    system.group<Joint>().items.emplace_back(
+    system.group<Joint>().add(
         "joint", type, Participants{a, b},
         joint_kind(type).recipe({.Z_a = seen_from(a), .Z_b = seen_from(b)}, {}));
     if (a != kGround) contacts->exclude(a, b);

@@ -63,9 +63,8 @@ struct Scene {
     system.add_elements(std::move(bars));
     if (o.hinge) {
       const Vec3 at(-0.4, 0.1, 0.0);
-      system.group<Joint>().items.emplace_back(
-          "pin", "spherical", Participants{kGround, hub},
-          joint_kind("spherical").recipe({.Z_a = at, .Z_b = at}, {}));
+      system.group<Joint>().add("pin", "spherical", Participants{kGround, hub},
+                                joint_kind("spherical").recipe({.Z_a = at, .Z_b = at}, {}));
     }
     system.finish();
     ga = GeneralizedAlpha::from_spectral_radius(o.rho_inf);

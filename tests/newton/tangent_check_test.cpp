@@ -40,7 +40,7 @@ TEST(CheckTangents, NamesAWrongEntry) {
   WrongSpring spring;
   spring.name = "wrong";
   spring.bodies = {kGround, 0};
-  system.group<WrongSpring>().items.push_back(spring);
+  system.group<WrongSpring>().add(spring);
   system.finish();
   const TangentReport report = check_tangents(system, system.initial_state(), 0.1, 1.0);
   EXPECT_GT(report.error, 0.1);

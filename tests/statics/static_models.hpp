@@ -28,7 +28,7 @@ inline void add_joint(System& system, const std::string& type, const std::string
                       int b, const Vec3& Z_a, const Vec3& Z_b, const Mat3& R = Mat3::Identity()) {
   const JointRecipe recipe =
       joint_kind(type).recipe({.Z_a = Z_a, .Z_b = Z_b, .R_a = R, .R_b = R}, {});
-  system.group<Joint>().items.emplace_back(name, type, Participants{a, b}, recipe);
+  system.group<Joint>().add(name, type, Participants{a, b}, recipe);
 }
 
 inline void add_load(System& system, const std::string& type, const LoadDescription& load) {

@@ -38,7 +38,7 @@ TEST(Statics, ARodOnATorsionalSpringFindsTheAngleOfItsTranscendentalEquation) {
   system.set_gravity({0, -g, 0});
   const int rod = add_body(system, "rod", m, {a, 0, 0});
   add_joint(system, "revolute", "hinge", kGround, rod, Vec3::Zero(), {-a, 0, 0});
-  const auto angle = system.group<Joint>().items[0].axis_angle();
+  const auto angle = system.group<Joint>().items()[0].axis_angle();
   ASSERT_TRUE(angle);
   add_load(
       system, "torsional_spring",

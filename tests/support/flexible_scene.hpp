@@ -86,13 +86,12 @@ struct FlexibleScene {
     d.X = X;
     system.add_elements(make_solid_elements(std::move(d)));
     if (o.hinge)
-      system.group<Joint>().items.emplace_back(
-          "pin", "revolute", Participants{kGround, hub},
-          joint_kind("revolute").recipe({.Z_a = pivot, .Z_b = pivot}, {}));
+      system.group<Joint>().add("pin", "revolute", Participants{kGround, hub},
+                                joint_kind("revolute").recipe({.Z_a = pivot, .Z_b = pivot}, {}));
     if (o.hinge && o.two_bodies) {  // the second joint: a link from the tip to a third body
       const Vec3 at = tip_at + Vec3(0.5, 0, 0), r = tip_at + Vec3(1.0, 0, 0);
       const int link = body(r, "link");
-      system.group<Joint>().items.emplace_back(
+      system.group<Joint>().add(
           "elbow", "spherical", Participants{tip, link},
           joint_kind("spherical").recipe({.Z_a = at - tip_at, .Z_b = at - r}, {}));
     }

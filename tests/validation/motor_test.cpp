@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motors in joints: closed forms of driven mechanisms, balance of energy, orders, kinks.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -50,28 +49,6 @@ analysis: {type: dynamics, duration: 1 s, step: )" +
          step + R"(}
 output: {hdf5: false}
 )";
-}
-
-// W = Δ(J φ̇²/2 − m g l sin φ): of the order of the method, though velocities at the ends of steps
-// are only of order 2 along the drive. @tests{drive-work}
-TEST(Motor, ReportsItsWorkToTheOrderOfTheMethod) {
-  const double J = 0.52, mgl = 2.0 * kG * 0.5;
-  for (const int order : {2, 4, 6}) {
-    const auto error = [&](const char* h) {
-      const Driven d = run(arm("angle: \"sin(4*t)\""), {std::string("variables.h=") + h,
-                                                        "analysis.order=" + std::to_string(order)});
-      double most = 0.0;
-      for (std::size_t k = 0; k < d.t.size(); ++k) {
-        const double rate = 4.0 * std::cos(4.0 * d.t[k]);
-        const double work = 0.5 * J * (rate * rate - 16.0) - mgl * std::sin(std::sin(4.0 * d.t[k]));
-        most = std::max(most, std::abs(d.report[k].back() - work));
-      }
-      return most;
-    };
-    const double coarse = error("40 ms"), fine = error("20 ms"), finest = error("1 ms");
-    EXPECT_GT(std::log2(coarse / fine), order - 0.5) << order << ' ' << coarse << ' ' << fine;
-    EXPECT_LT(finest, 2.0 * coarse * std::pow(1.0 / 40.0, order) + 1e-12) << order;
-  }
 }
 
 // J φ̈ = M + m g l cos φ about the hinge, J = 0.02 + 2·0.25. @tests{drive-row}

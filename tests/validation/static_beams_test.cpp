@@ -51,7 +51,7 @@ class ClampedBeam {
                                     Vec3::Zero(), Vec3::Zero());
       };
       set_reference(spec, at(i), at(i + 1));
-      system_.group<BeamElement>().items.emplace_back(spec);
+      system_.group<BeamElement>().add(spec);
     }
     tip_ = elements - 1;
     start_ = position(elements);

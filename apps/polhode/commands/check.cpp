@@ -27,7 +27,7 @@ std::vector<std::string> drives(const Simulation& simulation) {
   const System& system = simulation.system();
   std::vector<std::string> names;
   for (const InteractionRef& ref : system.interactions())
-    if (const InteractionGroup& group = system.group(ref.group); group.prescribes(ref.item))
+    if (const InteractionGroup& group = system.group(ref.group); group.traits(ref.item).prescribes)
       names.push_back(format("{} {}", group.kind(), quote(system.name(ref))));
   return names;
 }
@@ -147,8 +147,8 @@ struct TouchingGroup {
 
 TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Surface& s) {
   const ElementGroup& group = simulation.system().nodes().group(s.group);
-  const auto& surface = dynamic_cast<const TouchingSurface&>(group);
-  return {group.name(), surface.law(), surface.places(), group.kind() == EdgeContact::kKind};
+  return {group.name(), s.touching->law(), s.touching->places(),
+          group.kind() == EdgeContact::kKind};
 }
 
 /// What surfaces of solids and cables meet, and how.

@@ -11,6 +11,8 @@
 
 namespace polhode {
 
+class SolidContact;
+class TouchingSurface;
 namespace contact {
 class ContactSet;
 }
@@ -33,6 +35,9 @@ struct ContactMap {
     int side = 0;           ///< What it meets, see contact_spec.hpp.
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
+    const TouchingSurface* touching = nullptr;  ///< That group; the System keeps it.
+    /// Likewise, if it meets the mesh of a solid; else null.
+    const SolidContact* on_mesh = nullptr;
   };
   std::vector<Surface> surfaces;
 };

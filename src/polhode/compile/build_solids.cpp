@@ -42,7 +42,10 @@ class SolidBuilder {
     make_elements();
     weigh();
     add_nodes();
-    for (auto& group : groups_) map_.groups.push_back(system_.add_elements(std::move(group)));
+    for (auto& group : groups_) {
+      map_.elements.push_back(group.get());
+      map_.groups.push_back(system_.add_elements(std::move(group)));
+    }
     return std::move(map_);
   }
 

@@ -9,13 +9,16 @@
 
 namespace polhode {
 
+class SolidElements;
+
 /// A deformable solid in a System.
 struct SolidMap {
   SolidPlan plan;
-  int first_node = 0;          ///< Its node k is the System's first_node + k.
-  std::vector<int> groups;     ///< Of elements, by block of the mesh.
-  double mass = 0.0;           ///< [kg]
-  Vec3 centre = Vec3::Zero();  ///< Of mass at the start, world [m].
+  int first_node = 0;                          ///< Its node k is the System's first_node + k.
+  std::vector<int> groups;                     ///< Of elements, by block of the mesh.
+  std::vector<const SolidElements*> elements;  ///< Of these groups; the System keeps them.
+  double mass = 0.0;                           ///< [kg]
+  Vec3 centre = Vec3::Zero();                  ///< Of mass at the start, world [m].
 
   [[nodiscard]] int node_count() const { return static_cast<int>(plan.start.size()); }
 };

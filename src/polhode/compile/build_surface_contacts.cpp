@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <set>
 
@@ -69,6 +71,16 @@ class SurfacesBuilder {
   }
 
  private:
+  /// Adds elements to the system, and what they are of to the map.
+  template <class Elements>
+  void add_elements(const SurfacePair& pair, std::unique_ptr<Elements> elements) {
+    ContactMap::Surface surface{pair.own, pair.side, is_surface_side(pair.side) ? 0 : pair.shape};
+    surface.touching = elements.get();
+    if constexpr (std::same_as<Elements, SolidContact>) surface.on_mesh = elements.get();
+    surface.group = system_.add_elements(std::move(elements));
+    map_.surfaces.push_back(surface);
+  }
+
   void add(const SurfacePair& pair) {
     const int own = solid_of_side(pair.own);
     const SolidMap& solid = solids_[static_cast<std::size_t>(own)];
@@ -94,10 +106,9 @@ class SurfacesBuilder {
       } catch (const InputError&) {
         continue;  // everything there is bonded to the body
       }
-      const int group = system_.add_elements(std::make_unique<SurfaceContact>(
-          where, std::move(points), X, rigid_surface(where, shape, law.normal.tolerance), place,
-          law));
-      map_.surfaces.push_back({pair.own, pair.side, pair.shape, group});
+      add_elements(pair, std::make_unique<SurfaceContact>(
+                             where, std::move(points), X,
+                             rigid_surface(where, shape, law.normal.tolerance), place, law));
     }
   }
 
@@ -133,10 +144,9 @@ class SurfacesBuilder {
                                   .edge = std::min(mean_piece(a.line), mean_piece(b.line)),
                                   .way = way_of_step(nodes),
                                   .self = pair.own == pair.side};
-    const int group = system_.add_elements(std::make_unique<EdgeContact>(
-        format("{} on {}", a.cable.name, start.self ? "itself" : b.cable.name),
-        cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
-    map_.surfaces.push_back({pair.own, pair.side, 0, group});
+    add_elements(pair, std::make_unique<EdgeContact>(
+                           format("{} on {}", a.cable.name, start.self ? "itself" : b.cable.name),
+                           cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
   }
 
   /// The centre line of a cable, all of it at its radius from what it meets.
@@ -163,9 +173,8 @@ class SurfacesBuilder {
           return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
         });
     if (points.arc.empty()) return;
-    const int group = system_.add_elements(
-        std::make_unique<SurfaceContact>(where, std::move(points.points), X, surface, place, law));
-    map_.surfaces.push_back({pair.own, pair.side, pair.shape, group});
+    add_elements(pair, std::make_unique<SurfaceContact>(where, std::move(points.points), X, surface,
+                                                        place, law));
   }
 
   /// The centre line of a cable on the triangles of a solid.
@@ -208,7 +217,7 @@ class SurfacesBuilder {
                  inside.overlap(places[p].at(X[0].data()), line.radius);
         });
     if (points.arc.empty()) return;
-    map_.surfaces.push_back({pair.own, pair.side, 0, system_.add_elements(contact(points))});
+    add_elements(pair, contact(points));
   }
 
   /// Body of each node.
@@ -272,8 +281,10 @@ class SurfacesBuilder {
       return std::make_unique<SolidContact>(where, std::move(points), surfaces[1 - k], law, start);
     };
     for (int k = 0; k < (self ? 1 : 2); ++k) {
-      const int group = system_.add_elements(contact(k));
-      map_.surfaces.push_back({side_of_solid(solids[k]), side_of_solid(solids[1 - k]), 0, group});
+      SurfacePair sides = pair;
+      sides.own = side_of_solid(solids[k]);
+      sides.side = side_of_solid(solids[1 - k]);
+      add_elements(sides, contact(k));
     }
     add_edges(pair, surfaces, X, law, start);
   }
@@ -286,11 +297,10 @@ class SurfacesBuilder {
     if (sides.first.edges.empty() || sides.second.edges.empty()) return;
     law.normal.tolerance *= kEdgeBand;
     law.normal.stiffness /= kEdgeBand;
-    const int group = system_.add_elements(
-        std::make_unique<EdgeContact>(format("edges of {} on {}", model_.side_name(pair.own),
-                                             start.self ? "itself" : model_.side_name(pair.side)),
-                                      std::move(sides), law, start));
-    map_.surfaces.push_back({pair.own, pair.side, 0, group});
+    add_elements(pair, std::make_unique<EdgeContact>(
+                           format("edges of {} on {}", model_.side_name(pair.own),
+                                  start.self ? "itself" : model_.side_name(pair.side)),
+                           std::move(sides), law, start));
   }
 
   [[nodiscard]] std::vector<int> nodes_of(const std::vector<int>& solids) const {

@@ -148,11 +148,11 @@ class Builder {
       refuse_turning(where, joint.a);
     if (is_point_mass(joint.b) && (parts.axes > 0 || !joint.Z_b.isZero(0.0)))
       refuse_turning(where, joint.b);
-    system_.group<Joint>().items.emplace_back(
+    Joint& item = system_.group<Joint>().add(
         joint.name, joint.type, Participants{system_body(joint.a), system_body(joint.b)}, r);
     if (joint.friction || joint.limits || joint.angle_limits)
-      system_.group<Joint>().items.back().set_resistance(joint_resistance(model_, joint));
-    if (joint.motion) system_.group<Joint>().items.back().set_motion(*joint.motion);
+      item.set_resistance(joint_resistance(model_, joint));
+    if (joint.motion) item.set_motion(*joint.motion);
   }
 
   /// A load along a coordinate that its joint does not leave free.
@@ -198,7 +198,7 @@ class Builder {
       const JointSpec& joint = model_.joints[static_cast<std::size_t>(index)];
       a = joint.a;
       b = joint.b;
-      const Joint& item = system_.group<Joint>().items[static_cast<std::size_t>(index)];
+      const Joint& item = system_.group<Joint>().items()[static_cast<std::size_t>(index)];
       if (item.frame_moves())
         throw InputError(where + ".joint",
                          format("the frame of '{}' has a prescribed motion", joint.name),
@@ -289,7 +289,7 @@ class Builder {
     std::array<GearJoint, 2> pair;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto index = static_cast<std::size_t>(model_.joint_index(joints[i]));
-      pair[i] = {&system_.group<Joint>().items[index], coordinates[i],
+      pair[i] = {&system_.group<Joint>().items()[index], coordinates[i],
                  model_.joints[index].assembled_start};
     }
     std::vector<GearPose> poses;
@@ -300,7 +300,7 @@ class Builder {
   }
 
   void add_beam(const BeamSpec& beam) {
-    auto& items = system_.group<BeamElement>().items;
+    auto& group = system_.group<BeamElement>();
     for (int k = 0; k < static_cast<int>(beam.mesh.size()); ++k) {
       const BeamSpec::Element& element = beam.mesh[static_cast<std::size_t>(k)];
       const int a = beam.first_node + k, b = a + 1;
@@ -316,7 +316,7 @@ class Builder {
       set_reference(e, instant(a), instant(b));
       e.coupled_mass =
           coupled_part(e.length * beam.section.section.mass_per_length, beam.consistent_mass);
-      items.emplace_back(e);
+      group.add(e);
     }
   }
 
@@ -350,29 +350,32 @@ class Builder {
     r.friction = cable.friction;
     for (const double turns : cable.wraps) r.wrapped.push_back(2.0 * std::numbers::pi * turns);
     for (const CableLineSpec::Piece& piece : cable.pieces) r.pieces.push_back(piece.free_length);
-    map_.running_cable.back() = system_.add_elements(std::make_unique<RunningCable>(std::move(r)));
+    auto elements = std::make_unique<RunningCable>(std::move(r));
+    SystemMap::Running& running = map_.running_cable.back();
+    running.cable = elements.get();
+    running.group = system_.add_elements(std::move(elements));
   }
 
   void add_cable(const CableLineSpec& cable) {
-    map_.running_cable.push_back(-1);
+    map_.running_cable.emplace_back();
     if (cable.slides) return add_running_cable(cable);
     const std::string where = format("cables.{}", cable.name);
-    auto& items = system_.group<Cable>().items;
+    auto& group = system_.group<Cable>();
     const auto pieces = static_cast<double>(cable.pieces.size());
     for (const CableLineSpec::Piece& piece : cable.pieces) {
       check_movable(where, piece.a.body, piece.b.body);
       for (const AttachmentSpec& at : {piece.a, piece.b})
         if (is_point_mass(at.body) && !at.Z.isZero(0.0)) refuse_turning(where, at.body);
-      items.emplace_back(CableSpec{.name = cable.name,
-                                   .bodies = {system_body(piece.a.body), system_body(piece.b.body)},
-                                   .Z_a = point(piece.a.body, piece.a.Z),
-                                   .Z_b = point(piece.b.body, piece.b.Z),
-                                   .stiffness = cable.stiffness,
-                                   .free_length = piece.free_length,
-                                   .damping = cable.damping * pieces,
-                                   .tension_only = cable.tension_only,
-                                   .strain = cable.strain,
-                                   .coupled_mass = coupled_part(piece.mass, 0.5)});
+      group.add(CableSpec{.name = cable.name,
+                          .bodies = {system_body(piece.a.body), system_body(piece.b.body)},
+                          .Z_a = point(piece.a.body, piece.a.Z),
+                          .Z_b = point(piece.b.body, piece.b.Z),
+                          .stiffness = cable.stiffness,
+                          .free_length = piece.free_length,
+                          .damping = cable.damping * pieces,
+                          .tension_only = cable.tension_only,
+                          .strain = cable.strain,
+                          .coupled_mass = coupled_part(piece.mass, 0.5)});
     }
   }
 
@@ -461,9 +464,7 @@ System build_system(const Model& model, SystemMap* map) { return Builder(model).
 
 const Joint& joint_at(const System& system, int interaction) {
   const InteractionRef& ref = system.interactions().at(static_cast<std::size_t>(interaction));
-  const auto* joints = dynamic_cast<const Group<Joint>*>(&system.group(ref.group));
-  if (!joints) throw std::logic_error("joint_at: the interaction is no joint");
-  return joints->items[static_cast<std::size_t>(ref.item)];
+  return items_of<Joint>(system.group(ref.group))[static_cast<std::size_t>(ref.item)];
 }
 
 }  // namespace polhode

@@ -30,6 +30,8 @@ struct ControllerMemory {
   }
 };
 
+class RunningCable;
+
 /// Where the things of a Model went in its System.
 struct SystemMap {
   std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
@@ -39,8 +41,13 @@ struct SystemMap {
   std::vector<SolidMap> solids;         ///< By Model::solids.
   std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
   std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
-  std::vector<int> running_cable;  ///< By Model::cables: group of elements; −1: it does not slide.
-  std::vector<EventSpec> events;   ///< With those of joints that break.
+  /// A cable that slides through its points.
+  struct Running {
+    int group = -1;                       ///< Of elements; −1: the cable does not slide.
+    const RunningCable* cable = nullptr;  ///< That group; the System keeps it.
+  };
+  std::vector<Running> running_cable;             ///< By Model::cables.
+  std::vector<EventSpec> events;                  ///< With those of joints that break.
   std::shared_ptr<contact::ContactSet> contacts;  ///< Null if nothing touches.
   ContactMap contact;
 };

@@ -56,14 +56,13 @@ class Finder {
   std::vector<SideOverlap> find() {
     const NodeStep instant = node_instant(system_, state_, still_);
     for (const ContactMap::Surface& surface : map_.contact.surfaces) {
-      const ElementGroup& group = system_.nodes().group(surface.group);
-      const auto& touching = dynamic_cast<const TouchingSurface&>(group);
-      free_gap_ = kFree * touching.law().normal.tolerance;
-      if (const auto found = touching.overlap(instant)) note(surface.own, surface.side, *found);
+      free_gap_ = kFree * surface.touching->law().normal.tolerance;
+      if (const auto found = surface.touching->overlap(instant))
+        note(surface.own, surface.side, *found);
       if (is_solid_side(surface.own) && !is_surface_side(surface.side))
         look_for_body(surface);
-      else if (const auto* contact = dynamic_cast<const SolidContact*>(&group))
-        look_for_points(surface, *contact);
+      else if (surface.on_mesh)
+        look_for_points(surface, *surface.on_mesh);
     }
     return std::move(list_);
   }

@@ -4,7 +4,7 @@
 #include <polhode/contact/gap.hpp>
 #include <polhode/contact_laws/contact_phase.hpp>
 #include <polhode/contact_laws/normal_law.hpp>
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode::contact {
 

@@ -94,6 +94,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] static std::vector<double> totals_in(const State& state);
   [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
 
+  ImpulsiveContacts* impulsive() override { return this; }
+  PointwiseContacts* pointwise() override { return this; }
   void prepare(const System& system) override;
   bool begin_step(const State& state, std::span<const BodyStep> steps,
                   const StepContext& context) override;

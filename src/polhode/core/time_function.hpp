@@ -45,6 +45,8 @@ class TimeFunction {
   virtual ~TimeFunction() = default;
   [[nodiscard]] virtual double operator()(double t) const = 0;
   [[nodiscard]] virtual bool is_constant() const { return false; }
+  /// Number of the controller that sets it during a run; -1: none does.
+  [[nodiscard]] virtual int controller() const { return -1; }
   /// Limits from one side of t. Here by differences over 0.2 ms on that side: for functions that
   /// do not know better, with an error of order (0.1 ms)².
   [[nodiscard]] virtual TimeRates rates(double t, TimeSide side) const;

@@ -39,7 +39,7 @@ constexpr double kPartOfApproach = 1e-3;
 
 bool CrowdEngine::suits(const System& system) {
   if (!system.contacts() || system.rows() > 0 || !system.nodes().empty()) return false;
-  if (!dynamic_cast<PointwiseContacts*>(system.contacts().get())) return false;
+  if (!system.contacts()->pointwise()) return false;
   return std::none_of(
       system.interactions().begin(), system.interactions().end(),
       [](const InteractionRef& ref) { return ref.a != kGround && ref.b != kGround; });
@@ -48,7 +48,7 @@ bool CrowdEngine::suits(const System& system) {
 CrowdEngine::CrowdEngine(const System& system, double residual)
     : system_(&system),
       contacts_(system.contacts().get()),
-      pointwise_(dynamic_cast<PointwiseContacts*>(contacts_)),
+      pointwise_(contacts_ ? contacts_->pointwise() : nullptr),
       loads_(system),
       tolerance_(residual) {
   if (!suits(system))

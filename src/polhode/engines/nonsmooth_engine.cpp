@@ -29,14 +29,15 @@ constexpr double kPartOfSpeed = 1e-2;
 }  // namespace
 
 bool NonsmoothEngine::has_impulses(const System& system) {
-  const auto* c = dynamic_cast<const ImpulsiveContacts*>(system.contacts().get());
+  if (!system.contacts()) return false;
+  const ImpulsiveContacts* c = system.contacts()->impulsive();
   return c && c->impulses();
 }
 
 NonsmoothEngine::NonsmoothEngine(const System& system)
     : system_(&system),
       contacts_(system.contacts().get()),
-      impulsive_(dynamic_cast<ImpulsiveContacts*>(contacts_)),
+      impulsive_(contacts_ ? contacts_->impulsive() : nullptr),
       bodies_(system.body_count()),
       loads_(system) {
   if (!has_impulses(system) || system.rows() > 0 || !system.nodes().empty())

@@ -203,7 +203,7 @@ void TreeEngine::fill_joint_constants() {
     const int body = tree.body_of_slot[s];
     if (body >= 0) {
       const InteractionRef& ref = system_->interactions()[tree.link[body].interaction];
-      basis = *system_->group(ref.group).motion_basis(ref.item);
+      basis = *system_->group(ref.group).describe(ref.item).motion_basis;
       tree_joints_.push_back(
           {joint_[s / kLanes] + 8 * l.lambda() + s % kLanes, ref.first_row, ref.rows});
     }

@@ -86,7 +86,7 @@ void TreeEngine::lay_out_loop_joints() {
     block.S[lane] = plan_.loops[x.loop].S;
     block.nu[lane] = plan_.loops[x.loop].nu;
     block.row[lane] = ref.first_row;
-    put_joint_constants(*system_->group(ref.group).motion_basis(ref.item), layout,
+    put_joint_constants(*system_->group(ref.group).describe(ref.item).motion_basis, layout,
                         loop_data_[0].x + block.data + lane);
   }
   view_.loop_blocks = static_cast<int>(loop_joints_.size());

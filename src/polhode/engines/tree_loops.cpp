@@ -47,7 +47,7 @@ class Planner {
     for (int s : {x.slot_a, x.slot_b})
       if (s >= 0 && plan_.extra_of_slot[s] < 0) plan_.extra_of_slot[s] = plan_.extra_count++;
     int unknowns = x.rows;
-    const Coupling coupling = system_.group(ref.group).coupling(ref.item);
+    const Coupling coupling = system_.traits(ref).coupling;
     x.rotations_only = coupling != Coupling::all;
     if (x.slot_a >= 0 && x.slot_b >= 0 && coupling != Coupling::none) {
       const bool b_is_child = parent_[x.slot_b] == x.slot_a;
@@ -67,7 +67,7 @@ class Planner {
         }
       }
     }
-    if (const auto basis = system_.group(ref.group).motion_basis(ref.item))
+    if (const auto basis = system_.group(ref.group).describe(ref.item).motion_basis)
       x.in_lanes = basis->coincident && x.edge < 0;
     if (unknowns > 0) {
       x.loop = static_cast<int>(plan_.loops.size());

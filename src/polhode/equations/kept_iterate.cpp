@@ -15,7 +15,7 @@ std::size_t each_group(const System& system, const Visit& visit) {
   const Nodes& nodes = system.nodes();
   std::size_t at = 0;
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const auto* group = dynamic_cast<const InternalUnknowns*>(&nodes.group(g))) {
+    if (const InternalUnknowns* group = nodes.group(g).internal_unknowns()) {
       visit(*group, nodes.first_scratch(g), at);
       at += group->unknowns_size();
     }

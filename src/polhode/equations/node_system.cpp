@@ -7,7 +7,7 @@ NodeSystem::NodeSystem(const System& system) : system_(&system) {
   const Nodes& nodes = system.nodes();
   residual_.assign(3 * static_cast<std::size_t>(nodes.count()), 0.0);
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const auto* pattern = dynamic_cast<const MovingPattern*>(&nodes.group(g)))
+    if (const MovingPattern* pattern = nodes.group(g).moving_pattern())
       moving_groups_.push_back({g, pattern, 0});
 }
 

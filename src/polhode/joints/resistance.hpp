@@ -10,7 +10,7 @@
 #include <polhode/joints/parts/configuration.hpp>
 #include <polhode/joints/stop.hpp>
 #include <polhode/system/free_coordinate.hpp>
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode {
 

@@ -193,8 +193,6 @@ std::vector<double> Bushing::report(const PairStep& step) const {
   return list;
 }
 
-void add_bushing(System& system, const LoadDescription& load) {
-  system.group<Bushing>().items.emplace_back(load);
-}
+void add_bushing(System& system, const LoadDescription& load) { system.group<Bushing>().add(load); }
 
 }  // namespace polhode

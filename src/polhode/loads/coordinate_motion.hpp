@@ -4,7 +4,7 @@
 #include <variant>
 
 #include <polhode/system/free_coordinate.hpp>
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode {
 

@@ -111,12 +111,10 @@ std::vector<double> VectorDamper::report(const PairStep& step) const {
   return list;
 }
 
-void add_drag(System& system, const LoadDescription& load) {
-  system.group<Drag>().items.emplace_back(load);
-}
+void add_drag(System& system, const LoadDescription& load) { system.group<Drag>().add(load); }
 
 void add_vector_damper(System& system, const LoadDescription& load) {
-  system.group<VectorDamper>().items.emplace_back(load);
+  system.group<VectorDamper>().add(load);
 }
 
 }  // namespace polhode

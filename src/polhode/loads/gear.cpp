@@ -241,12 +241,8 @@ void Gear::commit(const PairStep& step, double* history) const {
   history[kNow + 1] = now[1];
 }
 
-void add_gear(System& system, const LoadDescription& load) {
-  system.group<Gear>().items.emplace_back(load);
-}
+void add_gear(System& system, const LoadDescription& load) { system.group<Gear>().add(load); }
 
-void add_screw(System& system, const LoadDescription& load) {
-  system.group<Screw>().items.emplace_back(load);
-}
+void add_screw(System& system, const LoadDescription& load) { system.group<Screw>().add(load); }
 
 }  // namespace polhode

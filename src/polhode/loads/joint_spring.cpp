@@ -62,11 +62,11 @@ void JointSpring::commit(const PairStep& step, double* history) const {
 }
 
 void add_torsional_spring(System& system, const LoadDescription& load) {
-  system.group<TorsionalSpring>().items.emplace_back(load);
+  system.group<TorsionalSpring>().add(load);
 }
 
 void add_translational_spring(System& system, const LoadDescription& load) {
-  system.group<TranslationalSpring>().items.emplace_back(load);
+  system.group<TranslationalSpring>().add(load);
 }
 
 }  // namespace polhode

@@ -23,8 +23,6 @@ std::vector<double> Moment::report(const PairStep& step) const {
   return numbers(moment_.at_instant(step, Vec3::Zero()));
 }
 
-void add_moment(System& system, const LoadDescription& load) {
-  system.group<Moment>().items.emplace_back(load);
-}
+void add_moment(System& system, const LoadDescription& load) { system.group<Moment>().add(load); }
 
 }  // namespace polhode

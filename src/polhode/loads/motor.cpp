@@ -130,11 +130,11 @@ void Motor::commit_off(const PairStep& step, double* history) const {
 }
 
 void add_rotary_motor(System& system, const LoadDescription& load) {
-  system.group<RotaryMotor>().items.emplace_back(load);
+  system.group<RotaryMotor>().add(load);
 }
 
 void add_linear_motor(System& system, const LoadDescription& load) {
-  system.group<LinearMotor>().items.emplace_back(load);
+  system.group<LinearMotor>().add(load);
 }
 
 }  // namespace polhode

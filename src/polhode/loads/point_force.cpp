@@ -30,7 +30,7 @@ std::vector<double> PointForce::report(const PairStep& step) const {
 }
 
 void add_point_force(System& system, const LoadDescription& load) {
-  system.group<PointForce>().items.emplace_back(load);
+  system.group<PointForce>().add(load);
 }
 
 }  // namespace polhode

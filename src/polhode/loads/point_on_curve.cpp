@@ -130,7 +130,7 @@ bool PointOnCurve::acceptable(const PairStep& step) const {
 }
 
 void add_point_on_curve(System& system, const LoadDescription& load) {
-  system.group<PointOnCurve>().items.emplace_back(load);
+  system.group<PointOnCurve>().add(load);
 }
 
 }  // namespace polhode

@@ -75,7 +75,7 @@ void add_point_on_surface(System& system, const LoadDescription& load) {
   if (load.values.contains("semi_axes.x") && largest == 0.0)
     throw InputError(format("loads.{}.semi_axes", load.name), "are all zero",
                      "Give at least one above 0");
-  system.group<PointOnSurface>().items.emplace_back(load);
+  system.group<PointOnSurface>().add(load);
 }
 
 }  // namespace polhode

@@ -21,8 +21,7 @@ namespace {
 
 template <class Item>
 std::vector<double> report_of(const InteractionGroup& group, int item, const PairStep& step) {
-  const auto& items = dynamic_cast<const Group<Item>&>(group).items;
-  return items[static_cast<std::size_t>(item)].report(step);
+  return items_of<Item>(group)[static_cast<std::size_t>(item)].report(step);
 }
 
 }  // namespace

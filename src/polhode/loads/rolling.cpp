@@ -135,7 +135,7 @@ void add_rolling(System& system, const LoadDescription& load) {
     throw InputError(format("loads.{}.edge_radius", load.name),
                      format("is {:g} m, larger than the radius of {:g} m", edge, radius),
                      "Give a smaller one; a sphere has both alike");
-  system.group<Rolling>().items.emplace_back(load);
+  system.group<Rolling>().add(load);
 }
 
 }  // namespace polhode

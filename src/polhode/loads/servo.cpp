@@ -107,11 +107,11 @@ void Servo::switch_on(const PairStep& step, double* history) const {
 }
 
 void add_rotary_servo(System& system, const LoadDescription& load) {
-  system.group<RotaryServo>().items.emplace_back(load);
+  system.group<RotaryServo>().add(load);
 }
 
 void add_linear_servo(System& system, const LoadDescription& load) {
-  system.group<LinearServo>().items.emplace_back(load);
+  system.group<LinearServo>().add(load);
 }
 
 }  // namespace polhode

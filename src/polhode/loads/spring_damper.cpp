@@ -151,7 +151,7 @@ std::vector<double> SpringDamper::report(const PairStep& step) const {
 double SpringDamper::length(const PairStep& step) const { return stretch(step).l_n1; }
 
 void add_spring_damper(System& system, const LoadDescription& load) {
-  system.group<SpringDamper>().items.emplace_back(load);
+  system.group<SpringDamper>().add(load);
 }
 
 Attraction::Attraction(const LoadDescription& load)
@@ -171,15 +171,15 @@ PotentialForce::PotentialForce(const LoadDescription& load)
       }()) {}
 
 void add_potential_force(System& system, const LoadDescription& load) {
-  system.group<PotentialForce>().items.emplace_back(load);
+  system.group<PotentialForce>().add(load);
 }
 
 void add_axial_force(System& system, const LoadDescription& load) {
-  system.group<AxialForce>().items.emplace_back(load);
+  system.group<AxialForce>().add(load);
 }
 
 void add_attraction(System& system, const LoadDescription& load) {
-  system.group<Attraction>().items.emplace_back(load);
+  system.group<Attraction>().add(load);
 }
 
 }  // namespace polhode

@@ -30,7 +30,7 @@ class ControlledValue final : public TimeFunction {
   /// @param output      Of one simulation; null in a model that does not run.
   explicit ControlledValue(int controller, std::shared_ptr<const ControllerOutput> output = nullptr)
       : controller_(controller), output_(std::move(output)) {}
-  [[nodiscard]] int controller() const { return controller_; }
+  [[nodiscard]] int controller() const override { return controller_; }
   [[nodiscard]] double operator()(double t) const override {
     if (!output_) return 0.0;
     const ControllerOutput& o = *output_;

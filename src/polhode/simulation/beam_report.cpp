@@ -19,9 +19,9 @@ auto of_each(const System& system, const State& state, const std::vector<int>& i
   std::vector<decltype(what(std::declval<const Item&>(), std::declval<const PairStep&>()))> values;
   for (int i : interactions) {
     const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(i)];
-    const auto& group = dynamic_cast<const Group<Item>&>(system.group(ref.group));
+    const Item& item = items_of<Item>(system.group(ref.group))[static_cast<std::size_t>(ref.item)];
     const PairView view = system.instant(state, ref, nullptr);
-    values.push_back(what(group.items[static_cast<std::size_t>(ref.item)], view.step()));
+    values.push_back(what(item, view.step()));
   }
   return values;
 }
@@ -62,12 +62,11 @@ void add_ends(CableReport& report, const Simulation& simulation, const CableLine
 }  // namespace
 
 CableReport running_cable_report(const Simulation& simulation, const CableLineSpec& spec,
-                                 int group) {
+                                 const RunningCable& cable, int group) {
   CableReport report;
   add_ends(report, simulation, spec);
   StepContext still;
   still.t_n = simulation.time();
-  const auto& cable = dynamic_cast<const RunningCable&>(simulation.system().nodes().group(group));
   report.whole = cable.report(
       node_instant(simulation.system(), simulation.state(), still),
       simulation.state().element_history.data() + simulation.system().nodes().first_history(group));

@@ -10,6 +10,7 @@
 
 namespace polhode {
 
+class RunningCable;
 class Simulation;
 
 /// What a beam is like at an instant.
@@ -39,8 +40,9 @@ struct CableReport {
 /// Likewise, of a cable's pieces.
 [[nodiscard]] CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
                                        const std::vector<int>& pieces);
-/// Likewise, of a cable that slides. @param group  Its group of elements.
+/// Likewise, of a cable that slides. @param group  Its group of elements, `cable`.
 [[nodiscard]] CableReport running_cable_report(const Simulation& simulation,
-                                               const CableLineSpec& spec, int group);
+                                               const CableLineSpec& spec, const RunningCable& cable,
+                                               int group);
 
 }  // namespace polhode

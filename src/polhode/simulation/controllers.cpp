@@ -29,9 +29,8 @@ ControllerOutputs own_outputs(Model& model) {
   for (std::size_t k = 0; k < model.controllers.size(); ++k)
     outputs.push_back(std::make_shared<ControllerOutput>());
   const auto own = [&](TimeFunctionPtr& f) {
-    if (const auto* value = dynamic_cast<const ControlledValue*>(f.get()))
-      f = std::make_shared<ControlledValue>(
-          value->controller(), outputs.at(static_cast<std::size_t>(value->controller())));
+    if (const int k = f ? f->controller() : -1; k >= 0)
+      f = std::make_shared<ControlledValue>(k, outputs.at(static_cast<std::size_t>(k)));
   };
   for (LoadSpec& load : model.loads) {
     own(load.value);

@@ -89,15 +89,14 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
 /// Surfaces of solids touch.
 bool has_surfaces(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g)
-    if (dynamic_cast<const BarrierPoints*>(&system.nodes().group(g))) return true;
+    if (system.nodes().group(g).barrier_points()) return true;
   return false;
 }
 
 bool has_touching_cables(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g) {
-    if (system.nodes().group(g).kind() == kCableContact) return true;
-    if (const auto* edges = dynamic_cast<const EdgeContact*>(&system.nodes().group(g)))
-      if (edges->of_cables()) return true;
+    const std::string kind = system.nodes().group(g).kind();
+    if (kind == kCableContact || kind == EdgeContact::kCablesKind) return true;
   }
   return false;
 }
@@ -105,8 +104,7 @@ bool has_touching_cables(const System& system) {
 /// Bodies hang together by beams or cables, of which the tree makes loops.
 bool has_elastic_pairs(const System& system) {
   for (const InteractionRef& ref : system.interactions())
-    if (ref.rows == 0 && ref.a != kGround && ref.b != kGround &&
-        system.group(ref.group).reach(ref.item) > 0.0)
+    if (ref.rows == 0 && ref.a != kGround && ref.b != kGround && system.traits(ref).reach > 0.0)
       return true;
   return false;
 }

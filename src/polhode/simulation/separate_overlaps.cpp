@@ -166,8 +166,8 @@ class Separation {
     const NodeStep instant = node_instant(system_, state_, still);
     for (const ContactMap::Surface& surface : map_.contact.surfaces) {
       const Nodes& nodes = system_.nodes();
-      dynamic_cast<const TouchingSurface&>(nodes.group(surface.group))
-          .begin_at(instant, state_.element_history.data() + nodes.first_history(surface.group));
+      surface.touching->begin_at(
+          instant, state_.element_history.data() + nodes.first_history(surface.group));
     }
   }
 

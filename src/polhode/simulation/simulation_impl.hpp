@@ -92,9 +92,9 @@ struct Simulation::Impl {
       return largest_energy > least_energy ? std::sqrt(energy / largest_energy) : 0.0;
     }
   };
-  std::map<int, ProbeTarget> probes;            ///< Those asked for by name.
-  std::deque<SolidWatch> solid_watches;         ///< Made when asked for; references to them stay.
-  std::map<int, LeastStretch> least_stretches;  ///< By group of elements, see watch_stretches().
+  std::map<int, ProbeTarget> probes;     ///< Those asked for by name.
+  std::deque<SolidWatch> solid_watches;  ///< Made when asked for; references to them stay.
+  std::map<const SolidElements*, LeastStretch> least_stretches;  ///< See watch_stretches().
 
   explicit Impl(Model m)
       : model(std::move(m)),
@@ -286,26 +286,24 @@ struct Simulation::Impl {
     StepContext still;
     still.t_n = state.t;
     const Nodes& nodes = system.nodes();
-    for (int g = 0; g < nodes.group_count(); ++g) {
-      const auto* solid = dynamic_cast<const SolidElements*>(&nodes.group(g));
-      if (!solid || solid->element().least_stretch == 0.0) continue;
-      const LeastStretch now =
-          solid->least_stretch(node_instant(system, state, still),
-                               state.element_history.data() + nodes.first_history(g));
-      LeastStretch& least = least_stretches[g];
-      if (now.value < least.value) least = now;
-    }
+    for (const SolidMap& solid : map.solids)
+      for (std::size_t b = 0; b < solid.groups.size(); ++b) {
+        const SolidElements& elements = *solid.elements[b];
+        if (elements.element().least_stretch == 0.0) continue;
+        const LeastStretch now = elements.least_stretch(
+            node_instant(system, state, still),
+            state.element_history.data() + nodes.first_history(solid.groups[b]));
+        LeastStretch& least = least_stretches[&elements];
+        if (now.value < least.value) least = now;
+      }
   }
 
   SolidWatch& solid_watch(int solid) {
     while (solid_watches.size() <= static_cast<std::size_t>(solid)) {
       const SolidMap& next = map.solids[solid_watches.size()];
-      const auto& elements =
-          dynamic_cast<const SolidElements&>(system.nodes().group(next.groups.front()));
       double volume = 0.0;
-      for (const int g : next.groups)
-        volume += dynamic_cast<const SolidElements&>(system.nodes().group(g)).volume();
-      const LinearModuli moduli = elements.material().linear();
+      for (const SolidElements* elements : next.elements) volume += elements->volume();
+      const LinearModuli moduli = next.elements.front()->material().linear();
       solid_watches.push_back({NodalRecovery(next.plan.mesh, moduli),
                                moduli.shear * volume * kRoundedStrain * kRoundedStrain});
     }
@@ -315,11 +313,13 @@ struct Simulation::Impl {
   /// Findings of steps and of watch_stretches() that deserve a look.
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> list = stepper->warnings();
-    for (const auto& [g, least] : least_stretches) {
-      const auto& solid = dynamic_cast<const SolidElements&>(system.nodes().group(g));
-      const std::string text = solid.stretch_warning(least);
-      if (!text.empty()) list.push_back(text);
-    }
+    for (const SolidMap& solid : map.solids)
+      for (const SolidElements* elements : solid.elements) {
+        const auto least = least_stretches.find(elements);
+        if (least == least_stretches.end()) continue;
+        const std::string text = elements->stretch_warning(least->second);
+        if (!text.empty()) list.push_back(text);
+      }
     warn_of_errors(list);
     for (std::size_t i = 0; i < solid_watches.size(); ++i) {
       const SolidWatch& watch = solid_watches[i];

@@ -81,7 +81,7 @@ std::vector<double> Simulation::load(int load) const {
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
-  if (system.group(ref.group).prescribes(ref.item)) {
+  if (system.traits(ref).prescribes) {
     auto at = report.begin();
     for (const LoadChannel& channel : kind.channels) {
       if (channel.name == "work") *at += impl_->work_of_projection(ref);
@@ -108,7 +108,8 @@ BeamReport Simulation::beam(int beam) const {
 CableReport Simulation::cable(int cable) const {
   const auto k = static_cast<std::size_t>(cable);
   const CableLineSpec& spec = impl_->model.cables.at(k);
-  if (spec.slides) return running_cable_report(*this, spec, impl_->map.running_cable.at(k));
+  if (const SystemMap::Running& running = impl_->map.running_cable.at(k); running.cable)
+    return running_cable_report(*this, spec, *running.cable, running.group);
   return cable_report(*this, spec, impl_->map.cable.at(k));
 }
 
@@ -256,13 +257,13 @@ ContactLosses Simulation::contact_losses() const {
 }
 
 std::vector<SurfacePointReport> Simulation::surface_points(int surface) const {
-  const int group = impl_->map.contact.surfaces.at(static_cast<std::size_t>(surface)).group;
+  const ContactMap::Surface& s = impl_->map.contact.surfaces.at(static_cast<std::size_t>(surface));
   const Nodes& nodes = impl_->system.nodes();
   StepContext still;
   still.t_n = impl_->state.t;
-  return dynamic_cast<const TouchingSurface&>(nodes.group(group))
-      .point_reports(node_instant(impl_->system, impl_->state, still),
-                     impl_->state.element_history.data() + nodes.first_history(group));
+  return s.touching->point_reports(
+      node_instant(impl_->system, impl_->state, still),
+      impl_->state.element_history.data() + nodes.first_history(s.group));
 }
 
 const std::vector<contact::TouchingPoint>& Simulation::contact_points() const {

@@ -11,14 +11,10 @@ namespace polhode {
 
 namespace {
 
-const TouchingSurface& contact_of(const System& system, const ContactMap::Surface& surface) {
-  return dynamic_cast<const TouchingSurface&>(system.nodes().group(surface.group));
-}
-
 SurfaceReport report_of(const System& system, const State& state,
                         const ContactMap::Surface& surface) {
-  return contact_of(system, surface)
-      .report(state.element_history.data() + system.nodes().first_history(surface.group));
+  return surface.touching->report(state.element_history.data() +
+                                  system.nodes().first_history(surface.group));
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ struct LeastStretch {
 /// work() over a step needs the history of t_n: call it before commit().
 class SolidElements : public ElementGroup, public InternalUnknowns {
  public:
+  const InternalUnknowns* internal_unknowns() const override { return this; }
   [[nodiscard]] virtual const ElementKind& element() const = 0;
   [[nodiscard]] virtual const Material& material() const = 0;
   /// What the user should be told of the choice of element; empty if nothing.

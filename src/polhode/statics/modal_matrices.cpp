@@ -95,7 +95,7 @@ void ModalMatrices::put_masses(const State& state) {
   const KktMap map = kkt_map(system_);
   for (std::size_t i = 0; i < system_.interactions().size(); ++i) {
     const InteractionRef& ref = system_.interactions()[i];
-    const double m = system_.group(ref.group).coupled_mass(ref.item);
+    const double m = system_.traits(ref).coupled_mass;
     if (m == 0.0) continue;
     for (int body : {ref.a, ref.b})
       if (body != kGround) values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= m;
@@ -169,7 +169,8 @@ void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>&
     const auto turns = [&](int body) {
       return body != kGround && !spin[static_cast<std::size_t>(body)].isZero(0.0);
     };
-    if (ref.rows > 0 || !group.dissipates(ref.item) || (!turns(ref.a) && !turns(ref.b))) continue;
+    if (ref.rows > 0 || !group.traits(ref.item).dissipates || (!turns(ref.a) && !turns(ref.b)))
+      continue;
     any = true;
     const auto wrenches = [&](int moved, int component, double by, bool turning) {
       const auto at = [&](int body) {

@@ -57,11 +57,12 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
-    if (group.history_size(ref.item) > 0 && group.lazy_history(ref.item)) turns_.push_back(i);
+    if (group.traits(ref.item).history_size > 0 && group.traits(ref.item).lazy_history)
+      turns_.push_back(i);
   }
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const auto* pattern = dynamic_cast<const MovingPattern*>(&nodes.group(g)))
-      meetings_.push_back({pattern, &dynamic_cast<const BarrierPoints&>(nodes.group(g)),
+    if (const MovingPattern* pattern = nodes.group(g).moving_pattern())
+      meetings_.push_back({pattern, nodes.group(g).barrier_points(),
                            static_cast<std::size_t>(nodes.first_history(g))});
 }
 
@@ -206,7 +207,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
   step.worst.clear();
   int worst_body = -1, worst_node = -1;
   for (const InteractionRef& ref : system_->interactions()) {
-    if (system_->group(ref.group).history_size(ref.item) == 0) continue;
+    if (system_->traits(ref).history_size == 0) continue;
     const auto of = [&](int body) -> Vec6 {
       return body == kGround ? Vec6::Zero() : Vec6(x_.segment<6>(6 * body));
     };
@@ -355,7 +356,7 @@ std::string StaticNewton::refused(StaticStep& step) const {
                         work_.history.data() + ref.first_history};
     if (group.acceptable(ref.item, pair)) continue;
     step.worst = format("{} '{}'", group.kind(), system_->name(ref));
-    return group.refusal(ref.item);
+    return group.traits(ref.item).refusal;
   }
   return {};
 }
@@ -363,7 +364,7 @@ std::string StaticNewton::refused(StaticStep& step) const {
 void StaticNewton::commit(State& state, double load_factor) {
   const Nodes& nodes = system_->nodes();
   for (const InteractionRef& ref : system_->interactions()) {
-    if (system_->group(ref.group).history_size(ref.item) == 0) continue;
+    if (system_->traits(ref).history_size == 0) continue;
     const BodyStep a = system_->instant(work_, ref.a), b = system_->instant(work_, ref.b);
     double* history = work_.history.data() + ref.first_history;
     system_->group(ref.group).commit(

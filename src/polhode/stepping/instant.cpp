@@ -26,7 +26,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
       [&](int i, const PairStep&, const PairTerms& terms) {
         const InteractionRef& ref = system.interactions()[i];
         const Vec6 v_a = velocity(ref.a), v_b = velocity(ref.b);
-        const bool driven = system.group(ref.group).prescribes(ref.item);
+        const bool driven = system.traits(ref).prescribes;
         const Vec6 rate = driven ? s.rates(state, ref, TimeSide::kAfter) : Vec6::Zero();
         for (int k = 0; k < ref.rows; ++k) {
           if (terms.compliance[k] != 0.0) continue;
@@ -51,15 +51,11 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   for (int b = 0; b < bodies; ++b) given.segment<6>(6 * b) = velocity(b);
   s.rhs.setZero();
   s.rows_times(given, s.rhs.tail(system.rows()));
-  const Vec before = s.rhs.tail(system.rows());
   s.subtract_rates(state, TimeSide::kAfter, s.rhs.tail(system.rows()));
   s.rhs = -s.rhs;
-  const Vec change = s.rhs.tail(system.rows());
   const Impl::Outcome outcome = s.solve(state);
   report.solves = outcome.solves;
   if (!outcome.solved) return report;
-  const Vec work = system.mean_mass() * s.x.tail(system.rows()).cwiseProduct(before + 0.5 * change);
-  report.work.assign(work.begin(), work.end());
   report.residual = outcome.residual;
   for (int b = 0; b < bodies; ++b) {
     const Vec3 D_v = s.x.segment<3>(6 * b), D_omega = s.x.segment<3>(6 * b + 3);

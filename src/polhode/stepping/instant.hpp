@@ -30,8 +30,6 @@ struct VelocityReport {
   double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;
   int solves = 0;  ///< 0: G v was at round-off already.
-  /// By row: what the impulses that changed the velocities did [J]; empty: nothing.
-  std::vector<double> work;
 };
 
 /// Accelerations and multipliers at an instant.

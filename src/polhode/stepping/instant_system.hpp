@@ -48,7 +48,7 @@ struct InstantSolver::Impl {
     no_lambda.assign(system.rows(), 0.0);
     for (std::size_t i = 0; i < system.interactions().size(); ++i) {
       const InteractionRef& ref = system.interactions()[i];
-      const double mass = system.group(ref.group).coupled_mass(ref.item);
+      const double mass = system.traits(ref).coupled_mass;
       if (mass != 0.0) coupled.push_back({ref.a, ref.b, map.pair[i], mass});
     }
     context.ga = GeneralizedAlpha::from_spectral_radius(0.0);  // α_f = 1: the instant itself

@@ -18,8 +18,7 @@ constexpr double kReadsAs = 1e-10;
 std::vector<int> with_work(const System& system) {
   std::vector<int> list;
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i)
-    if (const InteractionRef& ref = system.interactions()[i];
-        system.group(ref.group).works(ref.item))
+    if (const InteractionRef& ref = system.interactions()[i]; system.traits(ref).works)
       list.push_back(i);
   return list;
 }
@@ -56,7 +55,7 @@ LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   for (const InteractionRef& ref : system.interactions()) {
-    const double mass = system.group(ref.group).coupled_mass(ref.item);
+    const double mass = system.traits(ref).coupled_mass;
     const auto slot = [&](int body) { return body == kGround ? -1 : system.slot(body); };
     if (mass != 0.0) coupled_.push_back({slot(ref.a), slot(ref.b), mass});
   }

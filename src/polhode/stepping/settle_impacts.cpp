@@ -39,7 +39,7 @@ SettleImpacts::SettleImpacts(const System& system) : system_(&system) {
     if (a != kGround && b != kGround) impact_rows::join(tie_, a, b);
   };
   for (const InteractionRef& ref : system.interactions())
-    if (ref.rows > 0 || system.group(ref.group).coupled_mass(ref.item) != 0.0) tie(ref.a, ref.b);
+    if (ref.rows > 0 || system.traits(ref).coupled_mass != 0.0) tie(ref.a, ref.b);
   const Nodes& nodes = system.nodes();
   for (int i = 0; i < nodes.count(); ++i)
     if (nodes[i].body >= 0) tied_[nodes[i].body] = true;
@@ -49,7 +49,7 @@ SettleImpacts::SettleImpacts(const System& system) : system_(&system) {
     if (const NodePiece& piece = nodes.pieces()[p]; !piece.bodies.empty())
       impact_rows::join(tie_, piece.bodies.front(), static_cast<int>(n + p));
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const auto* group = dynamic_cast<const SurfaceImpacts*>(&nodes.group(g)))
+    if (const SurfaceImpacts* group = nodes.group(g).surface_impacts())
       groups_.emplace_back(g, group);
 }
 

@@ -66,9 +66,9 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
-    if (group.always_asked(ref.item)) always_asked_.push_back(i);
-    if (group.history_size(ref.item) > 0)
-      (group.lazy_history(ref.item) ? lazy_ : eager_).push_back(i);
+    if (group.traits(ref.item).always_asked) always_asked_.push_back(i);
+    if (group.traits(ref.item).history_size > 0)
+      (group.traits(ref.item).lazy_history ? lazy_ : eager_).push_back(i);
   }
 }
 
@@ -174,7 +174,7 @@ bool SingleStep::refused(const State& state, NewtonReport& report) const {
     const InteractionGroup& group = system_->group(ref.group);
     if (group.acceptable(ref.item, view.step())) return false;
     report.reason =
-        format("{}: {} '{}'", group.refusal(ref.item), group.kind(), system_->name(ref));
+        format("{}: {} '{}'", group.traits(ref.item).refusal, group.kind(), system_->name(ref));
     report.worst.clear();
     return true;
   };

@@ -157,7 +157,7 @@ void initialize_histories(const System& system, State& state) {
   context.conserving = false;
   for (const InteractionRef& ref : system.interactions()) {
     const InteractionGroup& group = system.group(ref.group);
-    if (group.history_size(ref.item) == 0) continue;
+    if (group.traits(ref.item).history_size == 0) continue;
     PairView view = system.instant(state, ref, state.lambda.data());
     view.context = context;
     group.initialize(ref.item, view.step(), state.history.data() + ref.first_history);

@@ -33,7 +33,7 @@ double state_difference(const System& system, const State& x, const State& y, do
                    per_length * H * distance(x.node_v, y.node_v)});
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const auto* inner = dynamic_cast<const InternalUnknowns*>(&nodes.group(g))) {
+    if (const InternalUnknowns* inner = nodes.group(g).internal_unknowns()) {
       const std::size_t first = nodes.first_history(g);
       most = std::max(most, per_length * inner->difference(x.element_history.data() + first,
                                                            y.element_history.data() + first));

@@ -38,7 +38,8 @@ class EdgeContact final : public ElementGroup,
   EdgeContact(std::string name, Sides sides, const SurfaceLaw& law, const SolidContactStart& start);
 
   static constexpr const char* kKind = "contact of edges";
-  std::string kind() const override { return of_cables() ? "contact of cables" : kKind; }
+  static constexpr const char* kCablesKind = "contact of cables";
+  std::string kind() const override { return of_cables() ? kCablesKind : kKind; }
   [[nodiscard]] bool of_cables() const { return sides_.retreat > 0.0; }  ///< Round edges.
   const std::string& name() const override { return name_; }
   int size() const override { return 0; }  // its blocks are those of MovingPattern
@@ -47,6 +48,8 @@ class EdgeContact final : public ElementGroup,
   bool has_tangent() const override { return false; }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
+  const BarrierPoints* barrier_points() const override { return this; }
+  const MovingPattern* moving_pattern() const override { return this; }
   std::size_t history_size() const override;
   void initialize(double* history) const override;
 

@@ -41,6 +41,8 @@ class SolidContact final : public ElementGroup,
   bool has_tangent() const override { return false; }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
+  const BarrierPoints* barrier_points() const override { return this; }
+  const MovingPattern* moving_pattern() const override { return this; }
   std::size_t history_size() const override;
   void initialize(double* history) const override;
 

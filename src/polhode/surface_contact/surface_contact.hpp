@@ -60,6 +60,8 @@ class SurfaceContact final : public ElementGroup,
   }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
+  const BarrierPoints* barrier_points() const override { return this; }
+  const SurfaceImpacts* surface_impacts() const override { return this; }
   bool external() const override { return frame_ == 0; }
   std::size_t history_size() const override {
     return kMemory * points_.points.size() + SurfaceTotals::kCount;

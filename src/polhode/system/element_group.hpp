@@ -5,11 +5,17 @@
 #include <string>
 #include <vector>
 
+#include <polhode/core/time_function.hpp>
 #include <polhode/system/element_sample.hpp>
-#include <polhode/system/interaction.hpp>
 #include <polhode/system/node_step.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode {
+
+class BarrierPoints;
+class InternalUnknowns;
+class MovingPattern;
+class SurfaceImpacts;
 
 /// Where elements put the forces they exert on nodes, and the derivatives of these.
 struct ElementSink {
@@ -65,6 +71,12 @@ class ElementGroup {
   [[nodiscard]] virtual std::vector<TimeFunctionPtr> time_functions() const { return {}; }
   [[nodiscard]] virtual std::size_t history_size() const { return 0; }  ///< Of the whole group.
   [[nodiscard]] virtual std::size_t scratch_size() const { return 0; }
+
+  // What a group may be besides; null where it is not.
+  [[nodiscard]] virtual const BarrierPoints* barrier_points() const { return nullptr; }
+  [[nodiscard]] virtual const InternalUnknowns* internal_unknowns() const { return nullptr; }
+  [[nodiscard]] virtual const MovingPattern* moving_pattern() const { return nullptr; }
+  [[nodiscard]] virtual const SurfaceImpacts* surface_impacts() const { return nullptr; }
 
   /// Consistent mass of element, n × n numbers (per direction), row by row; returns false if this
   /// group carries no mass. [kg]

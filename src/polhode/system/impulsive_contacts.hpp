@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 #include <polhode/system/state.hpp>
 
 namespace polhode {

@@ -5,6 +5,12 @@
 
 namespace polhode {
 
+void InteractionGroup::finish() {
+  traits_.clear();
+  traits_.reserve(static_cast<std::size_t>(size_));
+  for (int i = 0; i < size_; ++i) traits_.push_back(describe(i).traits);
+}
+
 void PairTerms::set_zero() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
 
 void PairTerms::set_sums_zero() {

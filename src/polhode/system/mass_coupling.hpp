@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode {
 

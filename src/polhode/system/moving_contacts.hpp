@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 #include <polhode/system/state.hpp>
 
 namespace polhode {
 
+class ImpulsiveContacts;
+class PointwiseContacts;
 class System;
 
 /// Phase of an impact with friction in a step, for the law that follows it where it shares its
@@ -44,6 +46,10 @@ struct SettledImpact {
 class MovingContacts {
  public:
   virtual ~MovingContacts() = default;
+  // What contacts may be besides; null where they are not.
+  [[nodiscard]] virtual ImpulsiveContacts* impulsive() { return nullptr; }
+  [[nodiscard]] virtual PointwiseContacts* pointwise() { return nullptr; }
+
   /// Once, when the system is finished.
   virtual void prepare(const System& system) = 0;
   /// Before the first iteration of a step, nobody having moved yet: finds what is near.

@@ -193,8 +193,7 @@ void Nodes::find_pieces() {
   // What may meet is of one piece.
   std::vector<const MovingPattern*> moving;
   for (const auto& g : groups_)
-    if (const auto* pattern = dynamic_cast<const MovingPattern*>(g.get()))
-      moving.push_back(pattern);
+    if (const MovingPattern* pattern = g->moving_pattern()) moving.push_back(pattern);
   for (const MovingPattern* pattern : moving) {
     int first = -1;
     for (int i : pattern->reach()) {

@@ -6,7 +6,6 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/system/barrier_points.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -37,50 +36,55 @@ void System::finish() {
   std::vector<TreeCandidate> candidates;
   std::vector<int> shapes;
   int histories = 0;
-  for (int g = 0; g < static_cast<int>(groups_.size()); ++g)
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
+    groups_[g]->finish();
     for (int i = 0; i < groups_[g]->size(); ++i) {
-      const auto [a, b] = groups_[g]->bodies(i);
+      const InteractionTraits& traits = groups_[g]->traits(i);
+      const auto [a, b] = traits.bodies;
       if (a < kGround || a >= n || b < kGround || b >= n || (a == b))
         throw InputError(
-            format("{} '{}'", groups_[g]->kind(), groups_[g]->name(i)),
+            format("{} '{}'", groups_[g]->kind(), traits.name),
             a == b ? "acts between a body and itself" : "names a body that is not there",
             "Give two different bodies of this system, or one and the ground");
-      const auto basis = groups_[g]->motion_basis(i);
+      const auto basis = groups_[g]->describe(i).motion_basis;
       const int index = static_cast<int>(refs_.size());
-      if (groups_[g]->has_barrier(i)) barriers_.push_back(index);
-      if (groups_[g]->prescribes(i)) drives_.push_back(index);
-      stiff_ = stiff_ || (groups_[g]->rows(i) > 0 && groups_[g]->works(i));
-      if (basis) candidates.push_back({a, b, index, groups_[g]->reversible(i)});
+      if (traits.has_barrier) barriers_.push_back(index);
+      if (traits.prescribes) drives_.push_back(index);
+      stiff_ = stiff_ || (traits.rows > 0 && traits.works);
+      if (basis) candidates.push_back({a, b, index, traits.reversible});
       shapes.push_back(shape_code(basis));
-      refs_.push_back({g, i, a, b, groups_[g]->rows(i), rows_, histories});
-      rows_ += refs_.back().rows;
-      histories += groups_[g]->history_size(i);
-      conservative_ = conservative_ && groups_[g]->conservative(i);
-      dissipates_ = dissipates_ || groups_[g]->dissipates(i);
+      refs_.push_back({g, i, a, b, traits.rows, rows_, histories});
+      rows_ += traits.rows;
+      histories += traits.history_size;
+      conservative_ = conservative_ && traits.conservative;
+      dissipates_ = dissipates_ || traits.dissipates;
     }
+  }
   tree_ = build_spanning_tree(n, static_cast<int>(refs_.size()), candidates, shapes);
   for (int index : tree_.reversed) {
     InteractionRef& ref = refs_[index];
     groups_[ref.group]->reverse(ref.item);
     std::swap(ref.a, ref.b);
   }
+  if (!tree_.reversed.empty())
+    for (const auto& group : groups_) group->finish();
 
   // Scales: mean mass, and the mean reach of a body (joint arms, radius of gyration).
   std::vector<double> reach(n);
   for (int b = 0; b < n; ++b)
     reach[b] = std::sqrt(0.5 * bodies_[b].inertia.trace() / bodies_[b].mass);
   for (const InteractionRef& ref : refs_) {
-    const double length = groups_[ref.group]->reach(ref.item);
+    const double length = traits(ref).reach;
     if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], length);
     if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], length);
-    if (const auto basis = groups_[ref.group]->motion_basis(ref.item)) {
+    if (const auto basis = groups_[ref.group]->describe(ref.item).motion_basis) {
       if (ref.a != kGround) reach[ref.a] = std::max(reach[ref.a], basis->Z_a.norm());
       if (ref.b != kGround) reach[ref.b] = std::max(reach[ref.b], basis->Z_b.norm());
     }
   }
   nodes_.finish(n);
   for (int g = 0; g < nodes_.group_count(); ++g)
-    stiff_ = stiff_ || dynamic_cast<const BarrierPoints*>(&nodes_.group(g));
+    stiff_ = stiff_ || nodes_.group(g).barrier_points();
   conservative_ = conservative_ && nodes_.conservative();
   dissipates_ = dissipates_ || nodes_.dissipates();
   for (int i = 0; i < nodes_.count(); ++i)
@@ -119,7 +123,7 @@ void System::finish() {
   initial_.lambda.assign(rows_, 0.0);
   initial_.history.assign(static_cast<std::size_t>(histories + memory_size_), 0.0);
   for (const InteractionRef& ref : refs_)
-    if (groups_[ref.group]->switching(ref.item) == Switching::starts_off)
+    if (traits(ref).switching == Switching::starts_off)
       groups_[ref.group]->switch_off(ref.item, initial_.history.data() + ref.first_history);
   for (int i = 0; i < nodes_.count(); ++i)
     for (int c = 0; c < 3; ++c) {

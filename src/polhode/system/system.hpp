@@ -103,8 +103,11 @@ class System {
   [[nodiscard]] bool conservative() const { return conservative_; }
   /// Something takes energy for good, as dampers do.
   [[nodiscard]] bool dissipates() const { return dissipates_; }
+  [[nodiscard]] const InteractionTraits& traits(const InteractionRef& ref) const {
+    return groups_[ref.group]->traits(ref.item);
+  }
   [[nodiscard]] const std::string& name(const InteractionRef& ref) const {
-    return groups_[ref.group]->name(ref.item);
+    return traits(ref).name;
   }
 
   /// The state the bodies were added with; not yet assembled, projected or started.
@@ -139,7 +142,7 @@ class System {
 template <class Item>
 Group<Item>& System::group() {
   for (auto& g : groups_)
-    if (auto* found = dynamic_cast<Group<Item>*>(g.get())) return *found;
+    if (g->is_of(kTypeTag<Item>)) return static_cast<Group<Item>&>(*g);
   groups_.push_back(std::make_unique<Group<Item>>());
   return static_cast<Group<Item>&>(*groups_.back());
 }

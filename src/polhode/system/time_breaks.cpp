@@ -27,9 +27,10 @@ TimeBreaks::TimeBreaks(const System& system, double until, int most_derivative)
       if (other.function == f && other.added == added) return;
     followed_.push_back({f, added, f->bounds(0.0, until).size, {}});
   };
-  for (const InteractionRef& ref : system.interactions())
-    for (const TimeFunctionPtr& f : system.group(ref.group).time_functions(ref.item))
-      follow(f, system.group(ref.group).time_order(ref.item));
+  for (const InteractionRef& ref : system.interactions()) {
+    const InteractionDescription item = system.group(ref.group).describe(ref.item);
+    for (const TimeFunctionPtr& f : item.time_functions) follow(f, item.traits.time_order);
+  }
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     for (const TimeFunctionPtr& f : nodes.group(g).time_functions()) follow(f, 2);

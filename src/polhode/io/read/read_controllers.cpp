@@ -33,8 +33,8 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
     Field field = controller_fields().at("setpoint");
     field.dimension = channel_dimension(context, controller.channel);
     controller.setpoint = read_time_number(context, *setpoint, section.path("setpoint"), field);
-    const auto* outer = dynamic_cast<const ControlledValue*>(controller.setpoint.get());
-    if (outer && outer->controller() >= static_cast<int>(context.model.controllers.size()))
+    const int outer = controller.setpoint ? controller.setpoint->controller() : -1;
+    if (outer >= static_cast<int>(context.model.controllers.size()))
       section.fault("setpoint", "follows a controller that acts after this one",
                     "List that controller first.");
   }
@@ -62,9 +62,7 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
   }
 }
 
-bool is_controlled(const TimeFunctionPtr& f) {
-  return dynamic_cast<const ControlledValue*>(f.get()) != nullptr;
-}
+bool is_controlled(const TimeFunctionPtr& f) { return f && f->controller() >= 0; }
 
 /// Positions and speeds that are prescribed may not jump, as what a controller sets does.
 void refuse_controlled_motion(ReadContext& context) {

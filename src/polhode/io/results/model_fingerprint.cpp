@@ -67,7 +67,7 @@ class Fingerprint {
   void one(const TimeFunctionPtr& f) {
     one(f != nullptr);
     if (!f) return;
-    if (const auto* set = dynamic_cast<const ControlledValue*>(f.get())) add(set->controller());
+    if (f->controller() >= 0) add(f->controller());
     one((*f)(0.0));
     double t = kFirstTime;
     for (int k = 0; k < kTimes; ++k, t *= kGrowth) one((*f)(t));

@@ -232,8 +232,8 @@ json definitions() {
   defs["time_number"] = {
       {"description",
        "A number or expression, of the time t too, a table over time, or what a controller sets."},
-      {"anyOf",
-       json::array({reference("number"), reference("table"), reference(definition_name(controlled_value_fields().title))})}};
+      {"anyOf", json::array({reference("number"), reference("table"),
+                             reference(definition_name(controlled_value_fields().title))})}};
   defs["vector"] = list_of(reference("number"), 3, 3);
   defs["direction"] = {
       {"description", "x, y, z, -x, -y, -z, or three numbers of any length but zero."},

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/math/hat.hpp>
-#include <polhode/system/interaction.hpp>
+#include <polhode/system/pair_terms.hpp>
 
 namespace polhode {
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <polhode/core/time_function.hpp>
+#include <polhode/system/motion_basis.hpp>
+#include <polhode/system/pair_terms.hpp>
+
+namespace polhode {
+
+/// What does not change about an interaction while it runs; see the functions of InteractionItem
+/// of the same names. Read once, when the system is finished.
+struct InteractionTraits {
+  std::string name;  ///< As in the user's file.
+  Participants bodies;
+  int rows = 0;
+  int history_size = 0;  ///< With the entries of one that may be switched.
+  int off = -1;          ///< Entry of the history that is 1 while it is switched off; -1: none.
+  Coupling coupling = Coupling::all;
+  Switching switching = Switching::never;
+  bool lazy_history = false, conservative = true, dissipates = false;
+  bool works = false;  ///< work() is asked for.
+  bool prescribes = false, has_barrier = false, always_asked = false, reversible = false;
+  double coupled_mass = 0.0;  ///< [kg]
+  double reach = 0.0;         ///< [m]
+  int time_order = 2;
+  const char* refusal = "";
+};
+
+/// Traits with what is asked for only where engines are made.
+struct InteractionDescription {
+  InteractionTraits traits;
+  std::optional<MotionBasis> motion_basis;
+  std::vector<TimeFunctionPtr> time_functions;  ///< Null where a component has none.
+};
+
+/// Address that stands for a type.
+template <class Type>
+inline constexpr char kTypeTag = 0;
+
+/// All interactions of one type, in one contiguous array: the assembler makes one virtual call
+/// per group, never per item.
+///
+/// An item that is switched off has no wrench, no work and rows λ = 0. It has no place in the tree.
+class InteractionGroup {
+ public:
+  virtual ~InteractionGroup() = default;
+  InteractionGroup(const InteractionGroup&) = delete;
+  InteractionGroup& operator=(const InteractionGroup&) = delete;
+
+  [[nodiscard]] const std::string& kind() const { return kind_; }  ///< "joint", "force" ...
+  [[nodiscard]] int size() const { return size_; }
+  /// @param type  kTypeTag of an item's type: is it this group's?
+  [[nodiscard]] bool is_of(const char& type) const { return &type == type_; }
+  /// Reads the traits of all items; System::finish() does.
+  void finish();
+  /// After finish(). @param i  Item.
+  [[nodiscard]] const InteractionTraits& traits(int i) const {
+    return traits_[static_cast<std::size_t>(i)];
+  }
+  /// @param history  Of the item.
+  [[nodiscard]] bool is_off(int i, const double* history) const {
+    const int off = traits(i).off;
+    return off >= 0 && history[off] != 0.0;
+  }
+  void switch_off(int i, double* history) const { history[traits(i).off] = 1.0; }
+
+  [[nodiscard]] virtual InteractionDescription describe(int i) const = 0;
+  virtual void set_switching(int i, Switching how) = 0;  ///< Before finish().
+  virtual void reverse(int i) = 0;                       ///< Likewise.
+  /// Limits from one side of t_{n+1}.
+  [[nodiscard]] virtual PrescribedRows prescribed(int i, const PairStep& step,
+                                                  TimeSide side) const = 0;
+  /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
+  virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
+                        std::span<PairTerms> terms) const = 0;
+  virtual void acceleration_terms(int i, const PairStep& step, Vec6& gamma) const = 0;
+  [[nodiscard]] virtual Work work(int i, const PairStep& step) const = 0;
+  virtual void initialize(int i, const PairStep& step, double* history) const = 0;
+  virtual void commit(int i, const PairStep& step, double* history) const = 0;
+  [[nodiscard]] virtual bool acceptable(int i, const PairStep& step) const = 0;
+  virtual void extrapolate(int i, const PairStep& step, const Vec6& of_a, const Vec6& of_b,
+                           double* history) const = 0;
+  [[nodiscard]] virtual double clearance(int i, const PairStep& step) const = 0;
+  virtual void impacts(int i, const PairStep& step, std::vector<Impact>& list) const = 0;
+  /// Makes an item act from an instant on; its rows keep the values that they have there.
+  /// @returns the largest of these [m or -].
+  virtual double switch_on(int i, const PairStep& step, double* history) const = 0;
+
+ protected:
+  InteractionGroup(std::string kind, const char& type) : kind_(std::move(kind)), type_(&type) {}
+  int size_ = 0;
+
+ private:
+  std::string kind_;
+  const char* type_;
+  std::vector<InteractionTraits> traits_;
+};
+
+}  // namespace polhode
