@@ -133,6 +133,16 @@ class Model(Section):
         """Adds a deformable solid, and returns it."""
         return self._add("solids", name, fields)
 
+    def add_event(self, name: str, **fields: Any) -> Section:
+        """Adds an event, which switches joints and loads, and returns it.
+
+        It comes at a time, at ("0.2 s"), or when a number begins to be above or below a level:
+        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}. off and on: lists of joints and loads, or
+        their names; after: the event that must have come before; repeat, stop: True or False.
+        The ledger of a run has `events`: when each came, what it lost [J] and its largest impulse.
+        """
+        return self._add("events", name, fields)
+
     def add_probe(self, name: str, **fields: Any) -> Section:
         """Adds an entry of output.probes: a table that a run writes at its own rate."""
         return self.output.probes.add(name, **fields)  # type: ignore[no-any-return]
@@ -144,6 +154,10 @@ class Model(Section):
     def add_contact_pair(self, name: str, **fields: Any) -> Section:
         """Adds the law of a pair of bodies or contact materials."""
         return self.contacts.pairs.add(name, **fields)  # type: ignore[no-any-return]
+
+    def add_contact_sensor(self, name: str, **fields: Any) -> Section:
+        """Adds a sensor that tells when two bodies begin and cease to overlap, without force."""
+        return self.contacts.sensors.add(name, **fields)  # type: ignore[no-any-return]
 
     def attach(
         self,

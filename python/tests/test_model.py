@@ -4,6 +4,7 @@
 import copy
 import pathlib
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 import polhode
 from conftest import EXAMPLES, make_pendulum
-from polhode import _native, _text
+from polhode import _native, _schema, _text
 
 
 def test_a_model_in_code_is_the_model_of_the_file(pendulum: polhode.Model) -> None:
@@ -43,6 +44,56 @@ def test_values_are_read_and_set_by_name(pendulum: polhode.Model) -> None:
     assert body._ipython_key_completions_() == ["shape", "position", "mass"]
     assert repr(body) == "<body 'arm' {shape: {box: [1, 0.05, 0.05]}, position: [0.5, 0, 0.25], mass: 2}>"
     assert repr(pendulum) == "<polhode.Model: 1 body, 1 joint>"
+
+
+def lists_of_the_schema() -> "list[tuple[tuple[str, ...], str]]":
+    """Where things stand by name in a model, and what they are: (("contacts", "pairs"), "contact_pair")."""
+    found: "list[tuple[tuple[str, ...], str]]" = []
+    for key in _schema.keys(""):
+        section = _schema.section_of("", key)
+        inner = [((key, k), _schema.named_of(section, k)) for k in _schema.keys(section)] if section else []
+        for path, table in [((key,), _schema.named_of("", key)), *inner]:
+            if table:
+                found.append((path, table))
+    return found
+
+
+def test_every_list_of_the_model_file_has_a_method_that_adds_to_it() -> None:
+    given: "dict[str, tuple[object, ...]]" = {"load": ("force",), "material": ("elastic",),
+                                              "joint": ("revolute", ["ground", "b"])}
+
+    def add(m: polhode.Model, table: str) -> Any:
+        if table == "part":
+            return m.attach("leg.yaml", name="x")
+        return getattr(m, f"add_{table}")("x", *given.get(table, ()))
+
+    lists = lists_of_the_schema()
+    assert (("events",), "event") in lists and (("output", "probes"), "probe") in lists and len(lists) >= 14
+    for path, table in lists:
+        assert table == "part" or hasattr(polhode.Model, f"add_{table}"), f"no add_{table} for {'.'.join(path)}"
+        m = polhode.Model()
+        added, tree = add(m, table), m.to_dict()
+        for key in path:
+            tree = tree[key]
+        assert list(tree) == ["x"] and added.name == "x" and added._path() == ".".join((*path, "x"))
+        with pytest.raises(polhode.ModelError, match="'x' is taken"):
+            add(m, table)
+
+
+def test_an_event_lets_go_and_ends_the_run() -> None:
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 3, "step": "5 ms"})
+    ball = m.add_body("ball", mass=2, inertia=[0.05, 0.05, 0.05])
+    hook = m.add_joint("hook", "fixed", ["ground", ball], at=[0, 0, 0])
+    m.add_event("let_go", at="0.2 s", off=[hook])
+    down = m.add_event("down", when={"body": ball, "channel": "z", "below": -1}, after="let_go", stop=True)
+    assert polhode.from_text(m.to_yaml()) == m and down.when.below == -1
+    r = polhode.run(m)
+    fall = 0.2 + (2 / 9.81) ** 0.5  # of 1 m, from rest
+    assert [e["event"] for e in r.ledger.events] == ["let_go", "down"]
+    assert abs(r.ledger.events[0]["time"] - 0.2) < 1e-12 and abs(r.ledger.events[1]["time"] - fall) < 1e-9
+    assert abs(r.ledger.t - fall) < 1e-9
+    with pytest.raises(polhode.ModelError, match="of"):
+        m.add_event("again", at=1, of=[hook])
 
 
 def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum: polhode.Model) -> None:
