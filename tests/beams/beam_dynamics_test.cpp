@@ -216,7 +216,7 @@ TEST(BeamSystem, HasTheTangentOfItsResidual) {
     State state = system.initial_state();
     start(system, state, GeneralizedAlpha::from_spectral_radius(rho_inf), 0.02);
     const TangentReport report = check_tangents(system, state, 0.02, rho_inf);
-    EXPECT_LT(report.error, kTangentTolerance) << report.text();
+    EXPECT_LT(report.error(), kTangentTolerance) << report.text();
   }
 }
 
