@@ -3,6 +3,7 @@
 #
 #   scripts/test.sh              all of it but the sanitizers
 #   scripts/test.sh --sanitize   the unit tests under address and undefined-behaviour sanitizers too
+#   scripts/test.sh --threads    simulations in several threads under the thread sanitizer, nothing else
 #   scripts/test.sh --quick      release build and unit tests only
 #
 # Ends with a line "N passed, N failed" and exits 1 if something failed.
@@ -11,6 +12,8 @@ cd "$(dirname "$0")/.."
 
 quick=no
 sanitize=no
+threads=no
+[ "${1:-}" = --threads ] && threads=yes
 [ "${1:-}" = --quick ] && quick=yes
 [ "${1:-}" = --sanitize ] && sanitize=yes
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 POLHODE_WERROR=ON
@@ -87,6 +90,14 @@ check "packages" bash scripts/packages.sh build test || finish
 if [ "$quick" = yes ]; then
   targets="polhode_cli polhode_unit_tests" check "release build" configure_and_build release || finish
   tests "unit tests" build/release -L unit
+  finish
+fi
+
+# Everything is compiled for the sanitizer, but only one program of tests is made.
+if [ "$threads" = yes ]; then
+  targets=polhode_thread_tests check "thread sanitizer build" configure_and_build threads &&
+    check "simulations in threads" env TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
+      build/threads/tests/polhode_thread_tests
   finish
 fi
 

@@ -3,6 +3,8 @@
 
     tools/check_layers.py                checks
     tools/check_layers.py --picture FILE draws the layers and what includes what, as SVG
+
+Nor is a type asked for at run time, and the interface of interactions stays small (docs/decisions/0008).
 """
 # From the ground up; what stands on one line does not know each other.
 LAYERS = [
@@ -32,6 +34,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src/polhode"
 RANK = {folder: i for i, layer in enumerate(LAYERS) for folder in layer}
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/([\w/]+)/\w+\.\w+[>"]')
+INTERACTIONS = SOURCE / "system/interaction_group.hpp"
+MOST_VIRTUALS = 14
+VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 
@@ -56,6 +61,8 @@ def survey():
             problems.append(f"{place}: its folder is not in LAYERS of tools/check_layers.py.")
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):
+            if "dynamic_cast<" in line:
+                problems.append(f"{place}:{number}: asks for a type. See docs/decisions/0008-casts-and-virtuals.md.")
             if HEADERS_OF_OTHERS.match(line):
                 problems.append(f"{place}:{number}: include our headers as <polhode/…>.")
             if not (match := INCLUDE.match(line)):
@@ -69,6 +76,10 @@ def survey():
                 if RANK[there] >= RANK[here]:
                     problems.append(f"{place}:{number}: {here}/ may not include {there}/ "
                                     "(see LAYERS in tools/check_layers.py).")
+    virtuals = len(VIRTUAL.findall(INTERACTIONS.read_text()))
+    if virtuals > MOST_VIRTUALS:
+        problems.append(f"{INTERACTIONS.relative_to(ROOT)}: {virtuals} virtual functions, at most {MOST_VIRTUALS}. "
+                        "What does not change during a run belongs to InteractionTraits.")
     return problems, includes, edges
 
 
