@@ -67,7 +67,6 @@ struct Simulation::Impl {
   InstantSolution instant;
   State projected;  ///< The state with velocities on G v = 0: what is reported.
   std::int64_t instant_step = -1;
-  std::vector<double> projection_work;  ///< By row, of the projection; empty: none [J].
   /// Largest |G v| at output times and when [s], and the largest magnitudes of its terms.
   double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
   /// Smallest of surfaces of solids after any step [m].
@@ -424,16 +423,6 @@ struct Simulation::Impl {
               "set contacts.overlaps: resolve");
   }
 
-  /// What the projection of velocities that are reported did by the rows of an interaction: a
-  /// drive's multipliers leave a part of that to it, of order Δt², as velocities carry a part
-  /// normal to its row. @eq{drive-work}
-  [[nodiscard]] double work_of_projection(const InteractionRef& ref) const {
-    double sum = 0.0;
-    for (int k = 0; k < ref.rows && !projection_work.empty(); ++k)
-      sum += projection_work[static_cast<std::size_t>(ref.first_row + k)];
-    return sum;
-  }
-
   const InstantSolution& at_instant() {
     if (instant_step == state.ledger.steps) return instant;
     if (statics) {
@@ -447,8 +436,7 @@ struct Simulation::Impl {
     }
     if (!instant_solver) instant_solver = std::make_unique<InstantSolver>(system);
     projected = state;
-    VelocityReport v = instant_solver->project_velocities(projected);
-    projection_work = std::move(v.work);
+    const VelocityReport v = instant_solver->project_velocities(projected);
     figures.velocity_constraint_residual_max =
         std::max(figures.velocity_constraint_residual_max, v.residual_before);
     velocity_scale = std::max(velocity_scale, v.scale);

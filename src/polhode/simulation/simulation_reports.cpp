@@ -57,7 +57,7 @@ JointReport Simulation::joint(int joint, bool joint_axes) const {
       item.rows() > 0 ? item.residual(step).head(item.rows()).lpNorm<Eigen::Infinity>() : 0.0;
   if (item.frame_moves()) {
     report.power = {item.drive_power(step)};
-    report.work = {item.drive_work(step) + impl_->work_of_projection(ref)};
+    report.work = {item.drive_work(step)};
   }
   if (!item.resistance()) return report;
   const ResistanceReport resistance = item.resistance_report(step);
@@ -81,13 +81,6 @@ std::vector<double> Simulation::load(int load) const {
   const PairView view = system.instant(impl_->projected, ref, now.lambda.data());
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
-  if (system.traits(ref).prescribes) {
-    auto at = report.begin();
-    for (const LoadChannel& channel : kind.channels) {
-      if (channel.name == "work") *at += impl_->work_of_projection(ref);
-      at += channel.size;
-    }
-  }
   if (!system.is_off(impl_->state, impl_->map.load[load])) return report;
   // What is switched off neither acts nor stores.
   auto at = report.begin();
