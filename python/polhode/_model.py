@@ -143,6 +143,16 @@ class Model(Section):
         """
         return self._add("events", name, fields)
 
+    def add_controller(self, name: str, **fields: Any) -> Section:
+        """Adds a controller of a channel, and returns it: loads follow it by {"controller": name}.
+
+        joint, body or load with channel, as in an event; setpoint, a number, an expression of t or a table.
+        Gains proportional, integral, derivative with filter [s]; or numerator and denominator, polynomials in s with the
+        highest power first. sample [s]: it acts then and keeps its output between; left out: it is continuous.
+        minimum and maximum bound what it sets.
+        """
+        return self._add("controllers", name, fields)
+
     def add_probe(self, name: str, **fields: Any) -> Section:
         """Adds an entry of output.probes: a table that a run writes at its own rate."""
         return self.output.probes.add(name, **fields)  # type: ignore[no-any-return]

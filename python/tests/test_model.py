@@ -96,6 +96,23 @@ def test_an_event_lets_go_and_ends_the_run() -> None:
         m.add_event("again", at=1, of=[hook])
 
 
+def test_a_controller_holds_a_speed() -> None:
+    m = polhode.Model(analysis={"duration": 5, "step": "5 ms"})
+    disc = m.add_body("disc", mass=1, inertia=[0.1, 0.1, 0.2])
+    axle = m.add_joint("axle", "revolute", ["ground", disc], at=[0, 0, 0], axis="z")
+    m.add_controller("pi", joint=axle, channel="rate rz", setpoint=10, proportional=1.1, integral=2)
+    m.add_load("motor", "rotary_motor", joint=axle, moment={"controller": "pi"})
+    assert polhode.from_text(m.to_yaml()) == m and m.controllers["pi"].integral == 2
+    speed = polhode.run(m).bodies["disc"].angular_velocity[:, 2]
+    # J w'' + kp w' + ki w = ki 10, from rest with J w'(0) = kp 10
+    decay, turn = 1.1 / 0.4, (2 / 0.2 - (1.1 / 0.4) ** 2) ** 0.5
+    t = 5.0
+    exact = 10 - np.exp(-decay * t) * (10 * np.cos(turn * t) + (10 * decay - 55) / turn * np.sin(turn * t))
+    assert abs(speed[-1] - exact) < 1e-4
+    with pytest.raises(polhode.ModelError, match="gain"):
+        m.add_controller("p", joint=axle, channel="rate rz", gain=3)
+
+
 def test_an_unknown_key_is_refused_at_once_with_the_nearest(pendulum: polhode.Model) -> None:
     with pytest.raises(polhode.ModelError) as error:
         pendulum.bodies["arm"].densty = 3
