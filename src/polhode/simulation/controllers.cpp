@@ -103,8 +103,8 @@ double Controllers::next_time(const State& state, double until) const {
   return next;
 }
 
-bool Controllers::act(const Simulation& simulation, State& state) const {
-  bool any = false;
+Controllers::Acted Controllers::act(const Simulation& simulation, State& state) const {
+  Acted acted;
   for (const Item& item : items_) {
     const double* memory = state.history.data() + item.memory;
     const double count = memory[ControllerMemory::kCount];
@@ -112,14 +112,14 @@ bool Controllers::act(const Simulation& simulation, State& state) const {
     const bool due = item.spec->sample ? state.t + same >= count * *item.spec->sample
                                        : count == 0.0 || state.t > memory[ControllerMemory::kTime];
     if (!due) continue;
-    act(item, simulation, state);
-    any = true;
+    acted.any = true;
+    acted.jumps = act(item, simulation, state) || acted.jumps;
   }
-  return any;
+  return acted;
 }
 
 /// @eq{controller} @eq{controller-steps}
-void Controllers::act(const Item& item, const Simulation& simulation, State& state) {
+bool Controllers::act(const Item& item, const Simulation& simulation, State& state) {
   const ControllerSpec& spec = *item.spec;
   const StateSpace& filter = item.filter;
   const double y = item.channel.value(simulation);
@@ -139,7 +139,8 @@ void Controllers::act(const Item& item, const Simulation& simulation, State& sta
            spec.derivative * (spec.filter > 0.0 ? lag : e.rate);
   };
   double slope = 0.0;
-  if (memory[ControllerMemory::kCount] == 0.0) {
+  const bool first = memory[ControllerMemory::kCount] == 0.0;
+  if (first) {
     lag = after.rate;
   } else {
     const double h = state.t - memory[ControllerMemory::kTime];
@@ -166,6 +167,7 @@ void Controllers::act(const Item& item, const Simulation& simulation, State& sta
   memory[ControllerMemory::kError] = after.value;
   memory[ControllerMemory::kRate] = after.rate;
   set_output(item, memory);
+  return first || spec.sample || before.value != after.value || before.rate != after.rate;
 }
 
 void Controllers::set_output(const Item& item, const double* memory) {

@@ -33,8 +33,12 @@ class Controllers {
 
   /// The first time after the state's at which a step must end [s].
   [[nodiscard]] double next_time(const State& state, double until) const;
-  /// Lets those act whose time has come. @returns whether there was one.
-  bool act(const Simulation& simulation, State& state) const;
+  struct Acted {
+    bool any = false;    ///< The time of a controller has come.
+    bool jumps = false;  ///< What it sets jumps: forces before tell nothing of those to come.
+  };
+  /// Lets those act whose time has come.
+  Acted act(const Simulation& simulation, State& state) const;
   /// What a controller aims at, sees, and sets at the instant.
   [[nodiscard]] std::array<double, 3> report(int controller, const Simulation& simulation) const;
   /// Puts the outputs where a state left them.
@@ -56,7 +60,8 @@ class Controllers {
     int memory = 0;  ///< Where its numbers are in State::history.
   };
   [[nodiscard]] static StateSpace state_space(const ControllerSpec& spec);
-  static void act(const Item& item, const Simulation& simulation, State& state);
+  /// @returns whether its output jumps.
+  static bool act(const Item& item, const Simulation& simulation, State& state);
   static void set_output(const Item& item, const double* memory);
 
   std::vector<Item> items_;

@@ -152,7 +152,9 @@ struct Simulation::Impl {
   }
   /// Lets controllers set what acts from now on.
   void let_act(const Simulation& simulation) {
-    if (controllers->act(simulation, state)) instant_step = -1;
+    const Controllers::Acted acted = controllers->act(simulation, state);
+    if (acted.any) instant_step = -1;
+    if (acted.jumps) stepper->forces_jump(state);
   }
   /// What acts has changed, though positions and time have not.
   void forget_instant() {

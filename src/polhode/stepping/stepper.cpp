@@ -449,10 +449,14 @@ StepReport Stepper::advance(State& state, double t_limit) { return impl_->advanc
 SwitchReport Stepper::switch_over(State& state, std::span<const int> on, std::span<const int> off) {
   Impl& s = *impl_;
   const SwitchReport report = switch_interactions(s.system, state, on, off, s.single.ledger());
-  s.begin_anew(state);
-  if (!s.system.contacts())
-    restart_accelerations(s.system, state, s.ga, state.t * (1.0 + kJustBeside));
+  forces_jump(state);
   return report;
+}
+
+void Stepper::forces_jump(State& state) {
+  impl_->begin_anew(state);
+  if (!impl_->system.contacts())
+    restart_accelerations(impl_->system, state, impl_->ga, state.t * (1.0 + kJustBeside));
 }
 
 void Stepper::leave() { impl_->single.ledger().forget(); }

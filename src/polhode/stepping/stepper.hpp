@@ -42,6 +42,8 @@ class Stepper {
   StepReport advance(State& state, double t_limit);
   /// Switches interactions between two steps; the next one starts without a past.
   SwitchReport switch_over(State& state, std::span<const int> on, std::span<const int> off);
+  /// What sets forces made them jump at the state: as switch_over().
+  void forces_jump(State& state);
   /// The next step starts at another state than the last one ended at.
   void leave();
   [[nodiscard]] const NewtonEngine& engine() const;
