@@ -122,6 +122,67 @@ TEST(BlockCg, FollowsNormalForcesWithFriction) {
   }
 }
 
+/// Ties between bodies and rows between them and the ground, some of them redundant, beside points
+/// whose friction follows normal forces. @tests{crowd-rows}
+TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
+  for (const bool rubbing : {false, true}) {
+    Crowd c = crowd(40, 20.0, 3);
+    Numbers number(8);
+    if (rubbing)
+      for (ContactSpring& s : c.springs) {
+        s.normal = Vec3(number(), number(), number()).normalized();
+        s.rub = 3.0 * s.normal.cross(Vec3(number(), number(), number())).normalized();
+        s.C = 20.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
+      }
+    std::vector<BlockCg::Tie> ties;
+    std::vector<BlockCg::Row> rows;
+    const std::vector<Vec6> G = numbers(40, 11);
+    for (int k = 0; k < 12; ++k) {
+      const int a = k % 3 == 0 ? kGround : 2 * k, b = 2 * k + 1;
+      rows.push_back({a, b, G[2 * k], G[2 * k + 1], 0.3 * number()});
+      if (k % 4 == 0)
+        rows.push_back({a, b, 2.0 * G[2 * k], 2.0 * G[2 * k + 1], 2.0 * rows.back().g});
+      if (k % 3 == 1) {
+        Mat6 K;
+        for (int i = 0; i < 36; ++i) K(i / 6, i % 6) = 0.1 * number();
+        ties.push_back({a, b, K});
+      }
+    }
+    const auto n = 240, m = static_cast<int>(rows.size());
+    Eigen::MatrixXd A = assembled(c), KKT = Eigen::MatrixXd::Zero(n + m, n + m);
+    for (const BlockCg::Tie& t : ties) {
+      A.block<6, 6>(6 * t.a, 6 * t.b) += t.K_ab;
+      A.block<6, 6>(6 * t.b, 6 * t.a) += t.K_ab.transpose();
+    }
+    KKT.topLeftCorner(n, n) = A;
+    const std::vector<Vec6> rhs = numbers(40, 5);
+    Vec right(n + m);
+    right.head(n) = flat(rhs);
+    for (int i = 0; i < m; ++i) {
+      const BlockCg::Row& row = rows[static_cast<std::size_t>(i)];
+      if (row.a != kGround) KKT.block<1, 6>(n + i, 6 * row.a) = row.G_a.transpose();
+      KKT.block<1, 6>(n + i, 6 * row.b) = row.G_b.transpose();
+      right[n + i] = -row.g;
+    }
+    const Eigen::MatrixXd constraints = KKT.bottomLeftCorner(m, n);
+    KKT.topRightCorner(n, m) = -constraints.transpose();
+    const Vec reference = KKT.completeOrthogonalDecomposition().solve(right);
+
+    BlockCg cg;
+    set(cg, c);
+    cg.set_ties(ties);
+    ASSERT_TRUE(cg.set_rows(rows));
+    std::vector<Vec6> x;
+    cg.solve(rhs, x, 1e-13, 2000, rubbing ? 4 : 0);
+    const double close = rubbing ? 2e-2 : 1e-4;
+    EXPECT_LT((constraints * flat(x) - right.tail(m)).norm(), 1e-4 * right.tail(m).norm());
+    EXPECT_LT((flat(x) - reference.head(n)).norm(), close * reference.head(n).norm()) << rubbing;
+    const Vec carried = constraints.transpose() * cg.multipliers();
+    const Vec expected = constraints.transpose() * reference.tail(m);
+    EXPECT_LT((carried - expected).norm(), close * expected.norm()) << rubbing;
+  }
+}
+
 /// What Newton iterations do: the rest of one solution is what the next one is asked for.
 TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
   for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness

@@ -30,19 +30,44 @@ constexpr int kRings = 2;
 /// flips between sticking and sliding: half of it takes nearly all.
 constexpr double kDecrease = 0.25;
 constexpr double kCrowdRoundOff = 4.4e-16;
+/// Rows of joints may stay that far open where iterations do not close them, as part of ℓ.
+constexpr double kRowsHold = 1e-12;
 /// In shorter steps less residual is left, in proportion [s].
 constexpr double kWholeStep = 1e-3;
 /// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
 constexpr double kPartOfApproach = 1e-3;
 
+/// It acts between two bodies, or holds one.
+bool couples(const InteractionRef& ref) {
+  return ref.rows > 0 || (ref.a != kGround && ref.b != kGround);
+}
+
+/// Numbers of the bodies of interactions, ascending.
+template <class Which>
+std::vector<int> bodies_of(const System& system, Which&& which) {
+  std::vector<int> list;
+  for (const InteractionRef& ref : system.interactions())
+    for (const int body : {ref.a, ref.b})
+      if (body != kGround && which(ref)) list.push_back(body);
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
 }  // namespace
 
 bool CrowdEngine::suits(const System& system) {
-  if (!system.contacts() || system.rows() > 0 || !system.nodes().empty()) return false;
+  if (!system.contacts() || !system.nodes().empty()) return false;
   if (!system.contacts()->pointwise()) return false;
-  return std::none_of(
-      system.interactions().begin(), system.interactions().end(),
-      [](const InteractionRef& ref) { return ref.a != kGround && ref.b != kGround; });
+  if (system.stiff() || !system.barriers().empty()) return false;
+  return std::none_of(system.interactions().begin(), system.interactions().end(),
+                      [&](const InteractionRef& ref) {
+                        return ref.rows == 0 && couples(ref) && system.traits(ref).reach > 0.0;
+                      });
+}
+
+int CrowdEngine::free_bodies(const System& system) {
+  return system.body_count() - static_cast<int>(bodies_of(system, couples).size());
 }
 
 CrowdEngine::CrowdEngine(const System& system, double residual)
@@ -50,10 +75,14 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
       contacts_(system.contacts().get()),
       pointwise_(contacts_ ? contacts_->pointwise() : nullptr),
       loads_(system),
-      tolerance_(residual) {
+      tolerance_(residual),
+      acted_on_(bodies_of(system, [](const InteractionRef&) { return true; })),
+      coupled_(bodies_of(system, couples)) {
   if (!suits(system))
-    throw InputError("solver", "'crowd' needs bodies that contacts alone couple",
-                     "Choose another solver for models with joints or forces between bodies");
+    throw InputError("solver",
+                     "'crowd' needs bodies that contacts and joints without friction couple",
+                     "Choose another solver for models with solids, beams, cables, friction in "
+                     "joints or stops");
   contacts_->prepare(system);
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.resize(n + 1);
@@ -118,17 +147,27 @@ void CrowdEngine::begin_step(const State& state, Trial& trial) {
     fastest = std::max(fastest, s.v_n.squaredNorm());
   }
   start_inertia(state, trial.context);
+  for (std::size_t i = 0; i < system_->interactions().size(); ++i) {
+    const InteractionRef& ref = system_->interactions()[i];
+    if (ref.rows > 0 && system_->is_off(state, static_cast<int>(i)))
+      std::fill_n(trial.lambda.begin() + ref.first_row, ref.rows, 0.0);
+  }
   weight_ = system_->gravity().norm();
   if (weight_ == 0.0) weight_ = kPartOfApproach * std::sqrt(fastest) / std::abs(trial.context.dt);
   weight_ = std::max(weight_, std::numeric_limits<double>::min());
   contacts_->begin_step(state, steps_, trial.context);
   contacts_->cover(steps_, trial.context, x_);
+  std::vector<Vec6> predicted;  // bodies of joints stay as predicted: their rows hold there
+  for (const int b : coupled_) predicted.push_back(x_[b]);
   pointwise_->place_impacts(steps_, trial.context, x_);
+  for (std::size_t k = 0; k < coupled_.size(); ++k) x_[coupled_[k]] = predicted[k];
   const double part = contacts_->filter(steps_, x_);
   for (int b = 0; b < system_->body_count(); ++b)
     move(b, part * x_[b].head<3>(), part * x_[b].tail<3>());
   searches_ = 0;
   slow_ = false;
+  blocks_ = own_;
+  rows_off_before_ = std::numeric_limits<double>::infinity();
   move_all();
   evaluated_ = false;
 }
@@ -151,10 +190,41 @@ void CrowdEngine::move_late() {
       if (a != kGround && b != kGround && ring_[a] != ring_[b]) moves_[a] = moves_[b] = 1;
     }
   }
+  for (const int b : acted_on_) moves_[b] = 1;
   moving_.clear();
   for (std::size_t b = 0; b < n; ++b)
     if (moves_[b]) moving_.push_back(static_cast<int>(b));
   if (static_cast<double>(moving_.size()) > kMostCrowd * static_cast<double>(n)) move_all();
+}
+
+/// Rows that are switched off have no motion of their own.
+void CrowdEngine::add_interaction(int interaction, const PairTerms& t, const Trial& trial) {
+  const InteractionRef& ref = system_->interactions()[interaction];
+  if (ref.a != kGround) {
+    rhs_[ref.a] += t.wrench_a;
+    blocks_[ref.a] -= t.D_aa;
+  }
+  if (ref.b != kGround) {
+    rhs_[ref.b] += t.wrench_b;
+    blocks_[ref.b] -= t.D_bb;
+  }
+  if (!couples(ref)) return;
+  if (ref.a != kGround && ref.b != kGround && trial.context.tangents)
+    ties_.push_back({ref.a, ref.b, -0.5 * (t.D_ab + t.D_ba.transpose())});
+  for (int k = 0; k < ref.rows; ++k) {
+    if (t.compliance[k] != 0.0) continue;
+    rows_.push_back({ref.a, ref.b, t.G_a.row(k), t.G_b.row(k), t.g[k]});
+    row_number_.push_back(ref.first_row + k);
+  }
+}
+
+/// Rounding of positions, or what no iteration takes away any more.
+bool CrowdEngine::rows_hold() const {
+  if (rows_.empty()) return true;
+  double far = system_->length_scale();
+  for (const int b : coupled_) far = std::max(far, far_[b]);
+  return rows_off_ <= 4.0 * kCrowdRoundOff * far ||
+         (rows_off_ <= kRowsHold * far && rows_off_ > 0.5 * rows_off_before_);
 }
 
 /// Forces of bodies, loads and contacts at the trial, whose steps are up to date.
@@ -168,19 +238,17 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
         inertia_[b].moment - per_speed * (s.Lambda_n1 * (body.inertia * s.W_n1));
   }
   rhs_ = of_motion_;
-  if (!loads_.empty()) blocks_ = own_;
+  for (const int b : acted_on_) blocks_[b] = own_[b];
+  ties_.clear();
+  rows_.clear();
+  row_number_.clear();
   loads_.run(steps_, context, trial.lambda.data(), state.history.data(),
              [&](int interaction, const PairStep&, const PairTerms& t) {
-               const InteractionRef& ref = system_->interactions()[interaction];
-               if (ref.a != kGround) {
-                 rhs_[ref.a] += t.wrench_a;
-                 blocks_[ref.a] -= t.D_aa;
-               }
-               if (ref.b != kGround) {
-                 rhs_[ref.b] += t.wrench_b;
-                 blocks_[ref.b] -= t.D_bb;
-               }
+               add_interaction(interaction, t, trial);
              });
+  rows_off_ = 0.0;
+  for (const BlockCg::Row& row : rows_)
+    if (!(std::abs(row.g) <= rows_off_)) rows_off_ = std::abs(row.g);
   acting_ = pointwise_->evaluate_pointwise(steps_, context, moves_);
   double noise = 0.0;  // what rounding of positions leaves of stiff contacts
   for (const ActingPoint& p : acting_) {
@@ -213,19 +281,31 @@ void CrowdEngine::evaluate(const State& state, const Trial& trial) {
   evaluated_ = true;
 }
 
+/// Increments of bodies that move, and of multipliers.
+bool CrowdEngine::solve(const Trial& trial) {
+  if (searches_ == 0 && !cg_.set_bodies(own_)) return false;
+  if (!acted_on_.empty() && !cg_.update_bodies(acted_on_, blocks_)) return false;
+  cg_.set_springs(acting_, moving_);
+  cg_.set_ties(ties_);
+  if (!rows_.empty() && !cg_.set_rows(rows_)) return false;
+  inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner,
+                      slow_ && residual_ < kRubbing ? kCrowdDirections : 0);
+  start_lambda_.clear();
+  for (const int row : row_number_) start_lambda_.push_back(trial.lambda[row]);
+  rows_off_before_ = rows_off_;
+  return true;
+}
+
 Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double damping) {
   Iteration done;
   if (!evaluated_) evaluate(state, trial);
-  done.solved = std::isfinite(merit_);
-  if (!done.solved || residual_ < enough_) return done;
-  if (loads_.empty()) move_late();
-  if ((searches_ == 0 || !loads_.empty()) && !cg_.set_bodies(loads_.empty() ? own_ : blocks_)) {
+  done.solved = std::isfinite(merit_) && std::isfinite(rows_off_);
+  if (!done.solved || (residual_ < enough_ && rows_hold())) return done;
+  move_late();
+  if (!solve(trial)) {
     done.solved = false;
     return done;
   }
-  cg_.set_springs(acting_, moving_);
-  inner_ += cg_.solve(rhs_, x_, searches_ < kCoarseIterations ? kCoarse : kFine, kMostInner,
-                      slow_ && residual_ < kRubbing ? kCrowdDirections : 0);
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
   double part = std::min(damping, contacts_->filter(steps_, x_));
@@ -246,6 +326,9 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
       done.rotation = std::max(done.rotation, turned.norm());
       move(b, start_[b].head<3>() + part * D_r, turned);
     }
+    for (std::size_t i = 0; i < start_lambda_.size(); ++i)
+      trial.lambda[row_number_[i]] =
+          start_lambda_[i] + part * cg_.multipliers()[static_cast<Eigen::Index>(i)];
     evaluate(state, trial);
     const double left = at_stake - (before - merit_);
     if (cut == kMostCuts || left <= (1.0 - kDecrease * part) * at_stake || residual_ < enough_)
@@ -257,7 +340,7 @@ Iteration CrowdEngine::iterate(const State& state, Trial& trial, bool, double da
   if (part == 1.0 && residual_before < kRubbing)
     slow_ = slow_ || residual_ > kSlow * residual_before;
   // What the residual says is final: the increment is no measure of the next one.
-  if (residual_ < enough_) {
+  if (residual_ < enough_ && rows_hold()) {
     done.increment = 0.0;
     done.applied = 1.0;
   } else {
@@ -282,6 +365,20 @@ void CrowdEngine::add_ground_wrench(double* force, double* moment) const {
     force[i] += f[i];
     moment[i] += m[i];
   }
+}
+
+ConstraintCheck CrowdEngine::check(const State& state, Trial& trial) {
+  ConstraintCheck check;
+  StepContext context = trial.context;
+  context.tangents = false;
+  loads_.run(
+      steps_, context, trial.lambda.data(), state.history.data(),
+      [&](int interaction, const PairStep& step, const PairTerms& terms) {
+        add_rows(system_->interactions()[interaction], step, terms, trial, system_->length_scale(),
+                 check);
+      },
+      true);
+  return check;
 }
 
 double CrowdEngine::stored(const State& state) const {

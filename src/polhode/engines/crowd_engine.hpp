@@ -11,11 +11,12 @@
 
 namespace polhode {
 
-/// Newton iterations of a crowd: many bodies without joints that only contacts couple. Conjugate
-/// gradients instead of a factorisation; the tangent is the symmetric positive part of the true
-/// one, so Newton contracts by a factor. A step is solved when the residual of every body is below
-/// a part of its weight. Most bodies are there after a few iterations: only the others, and those
-/// they touch, are moved from then on.
+/// Newton iterations of a crowd: many bodies that contacts couple, with joints, springs and motors
+/// among them. Conjugate gradients instead of a factorisation, on the motions that rows allow; the
+/// tangent is the symmetric positive part of the true one, so Newton contracts by a factor. A step
+/// is solved when the residual of every body is below a part of its weight, and rows hold to
+/// round-off. Most bodies are there after a few iterations: only the others, those they touch, and
+/// those that interactions act on are moved from then on.
 class CrowdEngine final : public NewtonEngine {
  public:
   /// Residual that counts as solved, as part of a body's weight; in steps below 1 ms less in
@@ -23,12 +24,12 @@ class CrowdEngine final : public NewtonEngine {
   /// one it only shifts when energy is lost; with neither it is what energy is lost or gained by.
   static constexpr double kResidual = 1e-6;
 
-  /// @throws InputError if the system has no contacts, or has joints or forces between bodies.
+  /// @throws InputError if suits() says no.
   explicit CrowdEngine(const System& system, double residual = kResidual);
   [[nodiscard]] std::string name() const override { return "crowd: conjugate gradients"; }
   void begin_step(const State& state, Trial& trial) override;
   Iteration iterate(const State& state, Trial& trial, bool refactor, double damping) override;
-  [[nodiscard]] ConstraintCheck check(const State&, Trial&) override { return {}; }
+  [[nodiscard]] ConstraintCheck check(const State& state, Trial& trial) override;
   [[nodiscard]] int worst_body() const override { return worst_body_; }
   [[nodiscard]] std::string worst_other() const override { return contacts_->tightest(); }
   [[nodiscard]] bool may_grow() const override { return true; }
@@ -41,8 +42,11 @@ class CrowdEngine final : public NewtonEngine {
   /// Iterations of conjugate gradients so far.
   [[nodiscard]] long inner_iterations() const { return inner_; }
 
-  /// Whether a system's bodies are coupled by contacts alone.
+  /// Whether a system's bodies are coupled by contacts, by joints without friction and stops, and
+  /// by forces without length, such as springs; beams and cables are too stiff.
   [[nodiscard]] static bool suits(const System& system);
+  /// Bodies that contacts alone couple to others.
+  [[nodiscard]] static int free_bodies(const System& system);
 
  private:
   void start_inertia(const State& state, const StepContext& context);
@@ -50,6 +54,9 @@ class CrowdEngine final : public NewtonEngine {
   void evaluate(const State& state, const Trial& trial);
   void move_all();
   void move_late();
+  void add_interaction(int interaction, const PairTerms& terms, const Trial& trial);
+  [[nodiscard]] bool rows_hold() const;
+  [[nodiscard]] bool solve(const Trial& trial);
 
   const System* system_;
   MovingContacts* contacts_;
@@ -65,7 +72,14 @@ class CrowdEngine final : public NewtonEngine {
   };
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<Inertia> inertia_;
-  std::vector<Mat6> own_, blocks_;                 ///< Of inertia alone; and with loads.
+  std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; and with loads, of bodies with loads.
+  std::vector<int> acted_on_;       ///< Bodies with loads or joints, ascending.
+  std::vector<int> coupled_;        ///< Those of them that are held or tied to others.
+  std::vector<BlockCg::Tie> ties_;
+  std::vector<BlockCg::Row> rows_;
+  std::vector<int> row_number_;                    ///< Of each of rows_.
+  std::vector<double> start_lambda_;               ///< Of each of rows_.
+  double rows_off_ = 0.0, rows_off_before_ = 0.0;  ///< Largest |g| [m or -].
   std::vector<Vec6> of_motion_, rhs_, x_, start_;  ///< rhs_: of the motion, loads and contacts.
   struct PerMass {
     double moved, turned;  ///< One over the mass, and one over the mean moment of inertia.

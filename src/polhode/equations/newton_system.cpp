@@ -181,28 +181,34 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
     v.C[k] = terms.compliance[k] == 0.0 ? kProximal : terms.compliance[k] / s;
 }
 
+void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& terms,
+              const Trial& trial, double length_scale, ConstraintCheck& check) {
+  const double reach =
+      length_scale + std::max(step.a.r_n1.cwiseAbs().sum(), step.b.r_n1.cwiseAbs().sum());
+  for (int k = 0; k < ref.rows; ++k) {
+    const int row = ref.first_row + k;
+    const double lambda = trial.lambda[row];
+    const double g = terms.g[k] + terms.compliance[k] * lambda;
+    if (!(std::abs(g) <= check.residual)) {  // a NaN is the worst
+      check.residual = std::abs(g);
+      check.worst_row = row;
+    }
+    check.work_defect += std::abs(lambda * g);
+    check.work_scale += std::abs(lambda) * reach;
+  }
+}
+
 ConstraintCheck NewtonSystem::check(const State& state, const Trial& trial) {
   take_steps(state, trial);
   ConstraintCheck check;
-  const double l = system_->length_scale();
   sweep_.run(
       steps_, trial.context, trial.lambda.data(), state.history.data(),
       [&](int interaction, const PairStep& step, const PairTerms& terms) {
         const InteractionRef& ref = system_->interactions()[interaction];
-        const double reach =
-            l + std::max(step.a.r_n1.cwiseAbs().sum(), step.b.r_n1.cwiseAbs().sum());
-        for (int k = 0; k < ref.rows; ++k) {
-          const int row = ref.first_row + k;
-          const double lambda = trial.lambda[row];
-          const double g = terms.g[k] + terms.compliance[k] * lambda;
-          row_residual_[row] = g;
-          if (!(std::abs(g) <= check.residual)) {  // a NaN is the worst
-            check.residual = std::abs(g);
-            check.worst_row = row;
-          }
-          check.work_defect += std::abs(lambda * g);
-          check.work_scale += std::abs(lambda) * reach;
-        }
+        for (int k = 0; k < ref.rows; ++k)
+          row_residual_[ref.first_row + k] =
+              terms.g[k] + terms.compliance[k] * trial.lambda[ref.first_row + k];
+        add_rows(ref, step, terms, trial, system_->length_scale(), check);
       },
       true);
   return check;

@@ -63,6 +63,10 @@ class InteractionSweep {
   std::vector<PairTerms> terms_;
 };
 
+/// Adds the rows of an interaction, with tangents or without, to how well constraints hold.
+void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& terms,
+              const Trial& trial, double length_scale, ConstraintCheck& check);
+
 /// Residual and tangent of one step, assembled and scaled.
 ///
 ///   [ s·K  −B ] [ Δ(r,θ) ]     [ s·R              ]      s = βΔt²/m_ref,  λ̂ = s λ

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/linear/block_cg.hpp>
+#include <polhode/linear/block_cg_blocks.hpp>
 
 namespace polhode {
 
@@ -22,28 +22,6 @@ bool invert(const Mat3& M, Mat3& inverse) {
 }
 
 }  // namespace
-
-inline BlockCg::Four BlockCg::cross(Four a, Four b) {
-  const Four turned =
-      a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
-  return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
-}
-
-inline BlockCg::Pair BlockCg::times(const Block& block, const Pair& x) {
-  Pair y{x.moved[0] * block.column[0].moved, x.moved[0] * block.column[0].turned};
-  for (int k = 1; k < 6; ++k) {
-    const float s = k < 3 ? x.moved[k] : x.turned[k - 3];
-    y.moved += s * block.column[k].moved;
-    y.turned += s * block.column[k].turned;
-  }
-  return y;
-}
-
-inline double BlockCg::dot(const Pair& x, const Pair& y) {
-  const Four s = x.moved * y.moved + x.turned * y.turned;
-  return (static_cast<double>(s[0]) + static_cast<double>(s[1])) +
-         (static_cast<double>(s[2]) + static_cast<double>(s[3]));
-}
 
 /// Adds Pᵀ C P with P = [I, −arm^].
 inline void BlockCg::add(const Spring& spring, Four arm, Block& block) {
@@ -96,19 +74,28 @@ bool BlockCg::set_bodies(std::span<const Mat6> blocks) {
   per_turn_ = 1.0 / std::sqrt(turning);
   own_.resize(blocks.size());
   own_inverse_.resize(blocks.size());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (int j = 0; j < 6; ++j) {
-      const double scale = j < 3 ? per_length_ : per_turn_;
-      Pair& to = own_[b].column[j];
-      to = Pair{};
-      for (int i = 0; i < 3; ++i) {
-        const auto half = [&](int k) { return 0.5 * (blocks[b](k, j) + blocks[b](j, k)); };
-        to.moved[i] = static_cast<float>(per_length_ * scale * half(i));
-        to.turned[i] = static_cast<float>(per_turn_ * scale * half(3 + i));
-      }
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (!scale_body(blocks[b], own_[b], own_inverse_[b])) return false;
+  return true;
+}
+
+bool BlockCg::scale_body(const Mat6& from, Block& block, Block& inverse) const {
+  for (int j = 0; j < 6; ++j) {
+    const double scale = j < 3 ? per_length_ : per_turn_;
+    Pair& to = block.column[j];
+    to = Pair{};
+    for (int i = 0; i < 3; ++i) {
+      const auto half = [&](int k) { return 0.5 * (from(k, j) + from(j, k)); };
+      to.moved[i] = static_cast<float>(per_length_ * scale * half(i));
+      to.turned[i] = static_cast<float>(per_turn_ * scale * half(3 + i));
     }
-    if (!invert(own_[b], own_inverse_[b])) return false;
   }
+  return invert(block, inverse);
+}
+
+bool BlockCg::update_bodies(std::span<const int> bodies, std::span<const Mat6> blocks) {
+  for (const int b : bodies)
+    if (!scale_body(blocks[b], own_[b], own_inverse_[b])) return false;
   return true;
 }
 
@@ -129,6 +116,8 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
   inverse_ = block_;
   springs_.clear();
   rubs_.clear();
+  ties_.clear();
+  rows_.clear();
   for (const ActingPoint& point : points) {
     const ContactSpring& from = point.spring;
     Spring s;
@@ -165,11 +154,18 @@ void BlockCg::multiply() {
     y_[s.b].moved -= F;
     y_[s.b].turned -= cross(s.arm_b, F);
   }
+  for (const ScaledTie& t : ties_) {
+    const Pair on_a = times(t.ab, p_[t.b]), on_b = times(t.ba, p_[t.a]);
+    y_[t.a].moved += on_a.moved;
+    y_[t.a].turned += on_a.turned;
+    y_[t.b].moved += on_b.moved;
+    y_[t.b].turned += on_b.turned;
+  }
 }
 
-double BlockCg::scale(std::span<const Vec6> rhs, Vectors& b) const {
+double BlockCg::scale(std::span<const Vec6> rhs, double least, Vectors& b) const {
   // Forces of any unit fit into single precision.
-  double size = 0.0;
+  double size = least;
   for (const int body : moving_) {
     const Vec6& f = rhs[body];
     size = std::max(size, per_length_ * f.head<3>().lpNorm<Eigen::Infinity>());
@@ -204,6 +200,8 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
   p_.assign(n + 1, zero);
   y_.assign(n + 1, zero);
   double rz = 0.0;
+  carried_.setZero();
+  if (!rows_.empty()) project(r_);
   for (std::size_t k = 0; k < n; ++k) {
     z_[k] = p_[k] = times(inverse_[k], r_[k]);
     rz += dot(r_[k], z_[k]);
@@ -226,6 +224,14 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
       z_[k] = times(inverse_[k], r_[k]);
       next += dot(r_[k], z_[k]);
     }
+    if (!rows_.empty()) {
+      for (const int k : row_bodies_) next -= dot(r_[k], z_[k]);
+      project(r_);
+      for (const int k : row_bodies_) {
+        z_[k] = times(inverse_[k], r_[k]);
+        next += dot(r_[k], z_[k]);
+      }
+    }
     const auto beta = static_cast<float>(next / rz);
     rz = next;
     for (std::size_t k = 0; k < n; ++k) {
@@ -239,11 +245,20 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
 int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part, int most,
                    int directions) {
   x.assign(rhs.size(), Vec6::Zero());
-  const double size = scale(rhs, basis_[0]);
+  multipliers_.setZero(static_cast<Eigen::Index>(rows_.size()));
+  const double size = scale(rhs, force_of_rows(), basis_[0]);
   if (size == 0.0) return 0;
+  const Vectors asked = rows_.empty() ? Vectors{} : fulfil_rows(size, basis_[0]);
   const int iterations = rubs_.empty() || directions == 0
                              ? iterate(basis_[0], part, most)
                              : iterate_rubbing(part, most, std::min(directions, kMostDirections));
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    x_[k].moved += asked[k].moved;
+    x_[k].turned += asked[k].turned;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    multipliers_[static_cast<Eigen::Index>(i)] =
+        -size * rows_[i].scale * carried_[static_cast<Eigen::Index>(i)];
   unscale(x_, size, x);
   return iterations;
 }
@@ -276,10 +291,14 @@ int BlockCg::iterate_rubbing(double part, int most, int directions) {
       to[k].turned += s * p[k].turned;
     }
   };
+  carried_.setZero();
+  if (!rows_.empty()) project(basis_[0]);
   const double length = std::sqrt(product(basis_[0], basis_[0]));
   add_times(1.0 / length - 1.0, basis_[0], basis_[0]);
+  const Vec before = carried_;
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(directions + 1, directions);
   Eigen::VectorXd weights;
+  std::vector<Vec> carried;
   int iterations = 0;
   for (int j = 0; j < directions; ++j) {
     iterations += iterate(basis_[j], part, most);
@@ -292,6 +311,12 @@ int BlockCg::iterate_rubbing(double part, int most, int directions) {
     subtract_rubs(x_, w);
     w.resize(n);
     found_[j] = x_;
+    if (!rows_.empty()) {  // w has their multipliers, too
+      Vec of_both = carried_;
+      carried_.setZero();
+      project(w);
+      carried.push_back(of_both - carried_);
+    }
     for (int i = 0; i <= j; ++i) {
       H(i, j) = product(basis_[i], w);
       add_times(-H(i, j), basis_[i], w);
@@ -305,7 +330,11 @@ int BlockCg::iterate_rubbing(double part, int most, int directions) {
     add_times(1.0 / H(j + 1, j) - 1.0, w, w);
   }
   x_.assign(n, Pair{});
-  for (int j = 0; j < weights.size(); ++j) add_times(weights[j], found_[j], x_);
+  carried_ = before;
+  for (int j = 0; j < weights.size(); ++j) {
+    add_times(weights[j], found_[j], x_);
+    if (!rows_.empty()) carried_ += weights[j] * carried[static_cast<std::size_t>(j)];
+  }
   return iterations;
 }
 

@@ -127,9 +127,9 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
       throw InputError("analysis.solver", "'tree' has no contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
     if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
-        system.body_count() >= kCrowd && CrowdEngine::suits(system)) {
+        CrowdEngine::suits(system) && CrowdEngine::free_bodies(system) >= kCrowd) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
-                          system.body_count());
+                          CrowdEngine::free_bodies(system));
       return std::make_unique<CrowdEngine>(
           system, a.newton_tolerance > 0.0 ? a.newton_tolerance : CrowdEngine::kResidual);
     }
