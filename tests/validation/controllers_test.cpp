@@ -69,7 +69,10 @@ TEST(Controllers, HaveTheStepResponseOfPd) {
         Simulation s = made(cart("setpoint: 0.1, proportional: 50, derivative: 6"),
                             {format("h={:.17g}", h), format("rho={}", rho)});
         const RunSummary r = finished(s);
-        if (std::string(rho) == "1") EXPECT_LT(r.energy_drift, 1e-11);  // its work is put in
+        // Its work is put in.
+        if (std::string(rho) == "1") {
+          EXPECT_LT(r.energy_drift, 1e-11);
+        }
         return s.body(0).r[0];
       },
       x, 0.02);
