@@ -5,6 +5,7 @@
 
 #include <loads/load_samples.hpp>
 #include <polhode/core/error.hpp>
+#include <polhode/loads/curve_on_curve.hpp>
 #include <polhode/loads/point_on_curve.hpp>
 #include <polhode/loads/rolling.hpp>
 
@@ -32,15 +33,16 @@ Sample sample(unsigned seed, const StepContext& context) {
 /// An ellipse, with exact derivatives.
 class Wave : public TimeFunction {
  public:
-  Wave(double size, double phase) : size_(size), phase_(phase) {}
-  double operator()(double s) const override { return size_ * std::cos(s - phase_); }
+  Wave(double size, double phase, double middle = 0.0)
+      : size_(size), phase_(phase), middle_(middle) {}
+  double operator()(double s) const override { return middle_ + size_ * std::cos(s - phase_); }
   TimeRates rates(double s, TimeSide) const override {
-    return {size_ * std::cos(s - phase_), -size_ * std::sin(s - phase_),
+    return {middle_ + size_ * std::cos(s - phase_), -size_ * std::sin(s - phase_),
             -size_ * std::cos(s - phase_)};
   }
 
  private:
-  double size_, phase_;
+  double size_, phase_, middle_;
 };
 
 void ellipse(LoadDescription& d) {
@@ -167,6 +169,23 @@ void groove(LoadDescription& d) {
   d.words["side"] = "left";
 }
 
+/// An ellipse of this size about a point of its plane; "other_" before the words of b's.
+void add_ellipse(LoadDescription& d, const std::string& prefix, double x, double y, double a,
+                 double b) {
+  d.laws[prefix + "curve_x"] = std::make_shared<Wave>(a, 0.0, x);
+  d.laws[prefix + "curve_y"] = std::make_shared<Wave>(b, 0.5 * 3.14159265358979323846, y);
+}
+/// Beside each other, and the small one within the large one.
+void outside(LoadDescription& d) {
+  add_ellipse(d, "", 6.0, 1.0, 2.0, 1.5);
+  add_ellipse(d, "other_", 0.2, -0.1, 0.8, 0.5);
+}
+void inside(LoadDescription& d) {
+  add_ellipse(d, "", 6.0, 1.0, 11.0, 12.0);
+  add_ellipse(d, "other_", 0.2, -0.1, 0.8, 0.5);
+  d.words["side"] = "left";
+}
+
 }  // namespace
 
 // @tests{rolling-height} @tests{rolling-slip}
@@ -209,6 +228,45 @@ TEST(PointOnCurve, DistancesOfACircleAreThoseOfItsCentre) {
         EXPECT_NEAR(d.curvature, side / r, 1e-12);
       }
   }
+}
+
+// @tests{curves-distance} @tests{curves-derivatives} @tests{curves-gradient}
+TEST(CurveOnCurve, DoesNoWorkAndHasItsTangents) {
+  expect_laws<CurveOnCurve>(outside);
+  expect_laws<CurveOnCurve>(inside);
+}
+
+TEST(CurveOnCurve, KnowsItsAccelerations) {
+  expect_accelerations<CurveOnCurve>(outside);
+  expect_accelerations<CurveOnCurve>(inside);
+}
+
+// Two circles are apart by the distance of their centres less both radii, and the first search
+// finds the same pair of places from any side.
+TEST(CurveOnCurve, DistancesOfCirclesAreThoseOfTheirCentres) {
+  const auto circle = [](double r, double x, double side) {
+    return PlanarCurve(std::make_shared<Wave>(r, 0.0, x),
+                       std::make_shared<Wave>(r, 0.5 * 3.14159265358979323846),
+                       2.0 * 3.14159265358979323846, false, side);
+  };
+  const CurvePair beside(circle(2.0, 0.5, 1.0), circle(0.7, 0.3, 1.0));
+  const CurvePair within(circle(2.0, 0.5, -1.0), circle(0.7, 0.3, 1.0));
+  for (const double phi : {0.1, 2.0, 4.5})
+    for (const double turn : {0.0, 1.0, 4.0}) {
+      const double c = std::cos(turn), s = std::sin(turn);
+      const auto at = [&](double r) {
+        return CurvePair::Vec4(0.5 + r * std::cos(phi) - 0.3 * c, r * std::sin(phi) - 0.3 * s, c,
+                               s);
+      };
+      const CurvePair::Vec4 far = at(2.9), near = at(1.1);
+      const auto d = beside.distance(far, beside.first(far));
+      EXPECT_NEAR(d.value, 0.2, 1e-13);
+      EXPECT_NEAR(std::remainder(d.at.a - phi, 2.0 * 3.14159265358979323846), 0.0, 1e-7);
+      EXPECT_TRUE(d.touches);
+      const auto i = within.distance(near, within.first(near));
+      EXPECT_NEAR(i.value, 0.2, 1e-13);
+      EXPECT_TRUE(i.touches);
+    }
 }
 
 TEST(Rolling, RefusesAnEdgeRounderThanTheWheel) {

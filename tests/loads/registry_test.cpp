@@ -34,7 +34,7 @@ TEST(LoadRegistry, ListsTheNamesWhenOneIsUnknown) {
                  "spring_damper, potential, axial_force, vector_damper, bushing, attraction, drag, "
                  "torsional_spring, translational_spring, rotary_motor, linear_motor, "
                  "rotary_servo, linear_servo, gear, screw, point_on_surface, "
-                 "point_on_curve, rolling.");
+                 "point_on_curve, curve_on_curve, rolling.");
   }
 }
 

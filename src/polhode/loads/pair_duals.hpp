@@ -46,13 +46,19 @@ class PairDuals {
     add_side(force, cross(arm_b, force), 1.0, t.wrench_b, t.D_ba, t.D_bb);
     add_side(force, cross(arm_a, force), -1.0, t.wrench_a, t.D_aa, t.D_ab);
   }
-  /// Sets value, row and column of a constraint whose multiplier is a force along `direction`.
+  /// Adds a moment on b and its opposite on a.
+  void add_couple(const Vector& moment, PairTerms& t) const {
+    add_side({}, moment, 1.0, t.wrench_b, t.D_ba, t.D_bb);
+    add_side({}, moment, -1.0, t.wrench_a, t.D_aa, t.D_ab);
+  }
+  /// Sets value, row and column of a constraint whose multiplier is a force along `direction`, and
+  /// a moment along `couple`.
   void set_row(int row, const Dual& g, const Vector& direction, const Vector& arm_a,
-               const Vector& arm_b, PairTerms& t) const {
+               const Vector& arm_b, PairTerms& t, const Vec3& couple = Vec3::Zero()) const {
     const Vec3 d = contact::value(direction);
     t.g[row] = g.v;
-    t.B_a.col(row) << -d, -contact::value(arm_a).cross(d);
-    t.B_b.col(row) << d, contact::value(arm_b).cross(d);
+    t.B_a.col(row) << -d, -contact::value(arm_a).cross(d) - couple;
+    t.B_b.col(row) << d, contact::value(arm_b).cross(d) + couple;
     if (!step_.context.tangents) return;
     for (int k = 0; k < 6; ++k) {
       t.G_a(row, k) = g.d[k];

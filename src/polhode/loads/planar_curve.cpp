@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
+#include <polhode/loads/load_description.hpp>
 #include <polhode/loads/planar_curve.hpp>
 
 namespace polhode {
@@ -20,10 +22,11 @@ PlanarCurve::PlanarCurve(TimeFunctionPtr x, TimeFunctionPtr y, double length, bo
                          double side)
     : x_(std::move(x)), y_(std::move(y)), length_(length), ends_(ends), side_(side) {
   Vec2 least = at(0.0).X, most = least;
+  samples_ = {least};
   for (int i = 1; i <= kSamples; ++i) {
-    const Vec2 X = at(length_ * i / kSamples).X;
-    least = least.cwiseMin(X);
-    most = most.cwiseMax(X);
+    samples_.push_back(at(length_ * i / kSamples).X);
+    least = least.cwiseMin(samples_.back());
+    most = most.cwiseMax(samples_.back());
   }
   size_ = (most - least).norm();
 }
@@ -70,13 +73,20 @@ PlanarCurve::Distance PlanarCurve::distance(const Vec2& P, double near) const {
 double PlanarCurve::nearest(const Vec2& P) const {
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSamples; ++i) {
-    const double s = length_ * i / kSamples, d = (at(s).X - P).squaredNorm();
+    const double d = (samples_[static_cast<std::size_t>(i)] - P).squaredNorm();
     if (d < least) {
       least = d;
-      best = s;
+      best = length_ * i / kSamples;
     }
   }
   return distance(P, best).foot;
+}
+
+PlanarCurve planar_curve(const LoadDescription& load, const std::string& prefix, double side) {
+  const TimeFunctionPtr x = load.law(prefix + "curve_x"), y = load.law(prefix + "curve_y");
+  if (!x || !y) return {};
+  return {x, y, load.value(prefix + "period", 2.0 * std::numbers::pi),
+          load.value(prefix + "open", 0.0) != 0.0, side};
 }
 
 }  // namespace polhode

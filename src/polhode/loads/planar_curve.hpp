@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <polhode/core/time_function.hpp>
@@ -38,6 +41,9 @@ class PlanarCurve {
   [[nodiscard]] Distance distance(const Vec2& P, double near) const;
   /// The foot nearest to a point on the whole curve.
   [[nodiscard]] double nearest(const Vec2& P) const;
+  /// Places along the whole curve, at equal distances of s, its beginning and end among them.
+  [[nodiscard]] const std::vector<Vec2>& samples() const { return samples_; }
+  [[nodiscard]] double length() const { return length_; }  ///< Of s.
   /// Within the ends of an open curve.
   [[nodiscard]] bool contains(double s) const { return !ends_ || (s >= 0.0 && s <= length_); }
   [[nodiscard]] double size() const { return size_; }  ///< Of its bounding box [m].
@@ -48,6 +54,15 @@ class PlanarCurve {
   double length_ = 1.0;
   bool ends_ = false;
   double side_ = 1.0, size_ = 1.0;
+  std::vector<Vec2> samples_;
 };
+
+struct LoadDescription;
+
+/// The curve of a load's laws curve_x and curve_y, values period and open; one that is not known
+/// where it has none.
+/// @param prefix  Before these words: "", or "other_" of a second curve.
+[[nodiscard]] PlanarCurve planar_curve(const LoadDescription& load, const std::string& prefix,
+                                       double side);
 
 }  // namespace polhode

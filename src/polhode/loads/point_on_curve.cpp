@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-#include <numbers>
-
-#include <polhode/core/error.hpp>
-#include <polhode/core/format.hpp>
 #include <polhode/loads/pair_duals.hpp>
 #include <polhode/loads/point_on_curve.hpp>
 
@@ -45,10 +40,7 @@ PointOnCurve::PointOnCurve(const LoadDescription& load)
       in_plane_(load.word("holds") == "point") {
   name = load.name;
   bodies = load.bodies;
-  if (load.law("curve_x") && load.law("curve_y"))
-    curve_ = PlanarCurve(load.law("curve_x"), load.law("curve_y"),
-                         load.value("period", 2.0 * std::numbers::pi),
-                         load.value("open", 0.0) != 0.0, load.word("side") == "left" ? -1.0 : 1.0);
+  curve_ = planar_curve(load, "", load.word("side") == "left" ? -1.0 : 1.0);
 }
 
 Vec2 PointOnCurve::place(const PairStep& step) const {

@@ -2,6 +2,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/loads/bushing.hpp>
+#include <polhode/loads/curve_on_curve.hpp>
 #include <polhode/loads/drag.hpp>
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/joint_spring.hpp>
@@ -399,7 +400,41 @@ const std::vector<LoadKind>& load_kinds() {
        {},
        {},
        {"points", "curve_x"},
-       true},
+       {""}},
+      {"curve_on_curve",
+       "constraint that keeps two curves in parallel planes of two bodies touching each other: a "
+       "cam and a shaped follower, cams that drive each other",
+       LoadPlace::curves,
+       "",
+       {{"period",
+         "-",
+         {},
+         kAboveZero,
+         kMost,
+         "of s: the curve of curve_x and curve_y closes; left out: 2 pi"},
+        {"other_period", "-", {}, kAboveZero, kMost, "likewise of the second body's curve"}},
+       {},
+       true,
+       add_curve_on_curve,
+       {{"force", "N", 3},
+        {"parameter", "-"},
+        {"other_parameter", "-"},
+        {"normal_force", "N"},
+        {"sliding", "m/s"},
+        {"point", "m", 3}},
+       report_of<CurveOnCurve>,
+       {{"curve_x", "m", "s", "-", "x of the first body's curve over its parameter s"},
+        {"curve_y", "m", "s", "-", "y of the first body's curve over its parameter s"},
+        {"other_curve_x", "m", "s", "-", "x of the second body's curve over its own parameter s"},
+        {"other_curve_y", "m", "s", "-", "y of the second body's curve over its own parameter s"}},
+       {{"side",
+         {"right", "left"},
+         "of the first curve's direction as seen against z, on which the second one is; the "
+         "outside of a curve that runs counter-clockwise is its right"}},
+       {},
+       {},
+       {"points", "curve_x"},
+       {"", "other_"}},
       {"rolling",
        "constraint that lets a wheel or ball roll without slip on a plane of another body",
        LoadPlace::wheel,

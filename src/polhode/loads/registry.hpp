@@ -17,6 +17,7 @@ enum class LoadPlace {
   joints,   ///< Free coordinates of two joints: `joints`.
   surface,  ///< Two points of two bodies and axes on the first one.
   frames,   ///< Two frames of two bodies: `bodies`, `at` or `at_body`, `axis`.
+  curves,   ///< Likewise, and an x axis of its own on the second one.
   wheel,    ///< A point of a plane and the centre of a wheel, normal and axle.
   centres   ///< The centres of mass of two bodies: `bodies`.
 };
@@ -71,9 +72,10 @@ struct LoadKind {
   std::vector<Parameter> matrices{};  ///< Of six rows of six numbers each, SI.
   /// Parameters, laws, vectors and matrices of which at least one must be there.
   std::vector<std::string> needs_one_of{};
-  /// Takes a curve in the plane of x and y, through points: `points`. It becomes the laws curve_x
-  /// and curve_y, the value period, and the value open, 1 for one with ends.
-  bool curve = false;
+  /// Curves in the plane of x and y that it takes, by what stands before the names: `points`, which
+  /// become the laws curve_x and curve_y, the value period, and the value open, 1 for one with
+  /// ends.
+  std::vector<std::string> curves{};
 
   [[nodiscard]] int report_size() const;  ///< Numbers in a report.
   /// Key of the force or moment that code may give as a function of the motion; "" for none.

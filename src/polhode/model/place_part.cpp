@@ -183,7 +183,7 @@ class Placer {
     if (load.vector)
       load.vector = turned(here.vector_map(load.body_fixed, axial_vector), *load.vector, where);
     if (!mirrored_) return;
-    if (load.type == "rolling" || load.type == "point_on_curve")
+    if (load.type == "rolling" || load.type == "point_on_curve" || load.type == "curve_on_curve")
       refuse_mirror(where, format("'{}'", load.type), "Give the mirror image in a part of its own");
     if (load.type == "screw")
       load.parameters["pitch"] *= -1.0;

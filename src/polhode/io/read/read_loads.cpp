@@ -99,6 +99,7 @@ class LoadReader {
         read_frames();
         break;
       case LoadPlace::surface:
+      case LoadPlace::curves:
         read_bodies();
         read_points();
         read_axes();
@@ -186,16 +187,26 @@ class LoadReader {
     int least = 0;
     z.cwiseAbs().minCoeff(&least);
     const Vec3 x = wish.value_or(Vec3::Unit(least));
+    const auto F = axes_about(z, x, "x_axis");
+    if (!F) return;
+    load_.R_a = axes_on(load_.a, *F);
+    load_.R_b = axes_on(load_.b, *F);
+    if (!table_.find("other_x_axis")) return;
+    if (const auto x_b = section_.direction("other_x_axis"))
+      if (const auto F_b = axes_about(z, *x_b, "other_x_axis")) load_.R_b = axes_on(load_.b, *F_b);
+  }
+
+  /// Axes with this z and this x, made perpendicular to it.
+  std::optional<Mat3> axes_about(const Vec3& z, const Vec3& x, const char* key) {
     if (x.cross(z).norm() < 1e-3) {
-      section_.fault("x_axis", "is parallel to the axis", "Give a direction across the axis.");
-      return;
+      section_.fault(key, "is parallel to the axis", "Give a direction across the axis.");
+      return std::nullopt;
     }
     Mat3 F;
     F.col(2) = z;
     F.col(0) = (x - x.dot(z) * z).normalized();
     F.col(1) = z.cross(F.col(0));
-    load_.R_a = axes_on(load_.a, F);
-    load_.R_b = axes_on(load_.b, F);
+    return F;
   }
 
   /// Axes given in the world at the start, in those of a body.
@@ -276,7 +287,7 @@ class LoadReader {
       load_.laws[l.name] = law;
       if (l.variable == "v") check_resistance(l, *law);
     }
-    if (kind.curve) read_curve();
+    for (const std::string& prefix : kind.curves) read_curve(prefix);
     for (const ChoiceParameter& w : kind.words)
       if (const auto word = section_.choice(w.name)) load_.words[w.name] = *word;
     for (const Parameter& p : kind.vectors)
@@ -287,34 +298,40 @@ class LoadReader {
   }
 
   /// A spline through points over their distances from each other, or a curve over s.
-  void read_curve() {
-    section_.refuse_both("points", "curve_x", "Give one of them.");
-    if (section_.misses("points")) {
-      if (load_.laws.size() == 1)
-        section_.fault(
-            format("'{}' is missing", load_.laws.contains("curve_x") ? "curve_y" : "curve_x"),
-            "Give both coordinates of the curve.");
+  /// @param prefix  Before the names: "", or "other_" of a second curve.
+  void read_curve(const std::string& prefix) {
+    const std::string points = prefix + "points", x_key = prefix + "curve_x";
+    const std::string y_key = prefix + "curve_y";
+    section_.refuse_both(points.c_str(), x_key.c_str(), "Give one of them.");
+    if (section_.misses(points)) {
+      const bool has_x = load_.laws.contains(x_key), has_y = load_.laws.contains(y_key);
+      if (has_x != has_y)
+        section_.fault(format("'{}' is missing", has_x ? y_key : x_key),
+                       "Give both coordinates of the curve.");
+      else if (!has_x && !prefix.empty())
+        section_.fault(format("'{}' is missing", points),
+                       format("Give {}, or {} and {}.", points, x_key, y_key));
       return;
     }
-    const SourceNode* node = section_.find("points");
+    const SourceNode* node = section_.find(points);
     if (!node) return;
     if (!node->is_list() || node->children.size() < 3) {
-      section_.fault("points", "expects a list of at least three points",
+      section_.fault(points, "expects a list of at least three points",
                      "Write [[0, 0, 0], [0.1, 0.02, 0], [0.2, 0, 0]].");
       return;
     }
     std::vector<double> s, x, y;
     for (const SourceNode& child : node->children) {
-      const auto point = read_vector(context_, child, section_.path("points"), table_.at("points"));
+      const auto point = read_vector(context_, child, section_.path(points), table_.at(points));
       if (!point) return;
       if (point->z() != 0.0) {
-        section_.fault("points", "leave the plane: z is not 0",
+        section_.fault(points, "leave the plane: z is not 0",
                        "Turn the frame with axis and x_axis, so that the curve has x and y only.");
         return;
       }
       const double way = s.empty() ? 0.0 : std::hypot(point->x() - x.back(), point->y() - y.back());
       if (!s.empty() && !(way > 0.0)) {
-        section_.fault("points", "give a point twice in a row", "Leave one of them out.");
+        section_.fault(points, "give a point twice in a row", "Leave one of them out.");
         return;
       }
       s.push_back(s.empty() ? 0.0 : s.back() + way);
@@ -322,10 +339,10 @@ class LoadReader {
       y.push_back(point->y());
     }
     const bool closed = x.front() == x.back() && y.front() == y.back();
-    load_.parameters["period"] = s.back();
-    load_.parameters["open"] = closed ? 0.0 : 1.0;
-    load_.laws["curve_x"] = std::make_shared<TableFunction>(s, x, Interpolation::kCubic, closed);
-    load_.laws["curve_y"] = std::make_shared<TableFunction>(s, y, Interpolation::kCubic, closed);
+    load_.parameters[prefix + "period"] = s.back();
+    load_.parameters[prefix + "open"] = closed ? 0.0 : 1.0;
+    load_.laws[x_key] = std::make_shared<TableFunction>(s, x, Interpolation::kCubic, closed);
+    load_.laws[y_key] = std::make_shared<TableFunction>(s, y, Interpolation::kCubic, closed);
   }
 
   /// A resistance takes energy at any rate.

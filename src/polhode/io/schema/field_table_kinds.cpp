@@ -179,6 +179,12 @@ const Field kPlaneNormal{
     .kind = kDirection,
     .meaning = "The plane's normal at the start, world; it points to the wheel.",
     .standard = "z"};
+const Field kOtherXAxis{.name = "other_x_axis",
+                        .kind = kDirection,
+                        .meaning =
+                            "The x of the second curve at the start, world; made "
+                            "perpendicular to z.",
+                        .standard = "x_axis"};
 const Field kAxle{.name = "axle",
                   .kind = kDirection,
                   .meaning = "The wheel's axle at the start, world; of no meaning to a ball.",
@@ -222,6 +228,11 @@ KindTable load_table(const LoadKind& kind) {
       fields.insert(fields.end(), {kLoadBodies, kPointsAt, kLoadPointsBody, kAxis, kXAxis});
       fields[fields.size() - 2].standard = "z";
       break;
+    case LoadPlace::curves:
+      fields.insert(fields.end(),
+                    {kLoadBodies, kPointsAt, kLoadPointsBody, kAxis, kXAxis, kOtherXAxis});
+      fields[fields.size() - 3].standard = "z";
+      break;
     case LoadPlace::wheel:
       fields.insert(fields.end(),
                     {kLoadBodies, kWheelAt, kLoadPointsBody, kPlaneNormal, kXAxis, kAxle});
@@ -246,13 +257,14 @@ KindTable load_table(const LoadKind& kind) {
                       .meaning = sentence(l.meaning),
                       .variable = l.variable,
                       .of = l.of == "-" ? kNone : read_unit(l.of).unit.value().dimension});
-  if (kind.curve)
-    fields.push_back(
-        {.name = "points",
-         .kind = kPoints,
-         .dimension = kLength,
-         .meaning = "Points of the curve in the frame on a, z = 0: a cubic spline goes "
-                    "through them, closed if the last is the first. Or curve_x and curve_y."});
+  for (const std::string& prefix : kind.curves)
+    fields.push_back({.name = prefix + "points",
+                      .kind = kPoints,
+                      .dimension = kLength,
+                      .meaning = format("Points of the curve in the frame on {}, z = 0: a cubic "
+                                        "spline goes through them, closed if the last is the "
+                                        "first. Or {}curve_x and {}curve_y.",
+                                        prefix.empty() ? "a" : "b", prefix, prefix)});
   for (const ChoiceParameter& w : kind.words)
     fields.push_back({.name = w.name,
                       .kind = kChoice,

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <polhode/loads/curve_pair.hpp>
+#include <polhode/loads/load_description.hpp>
+
+namespace polhode {
+
+/// A cam on a cam: two curves in planes that stay parallel, one on each body, touch each other and
+/// slide freely.
+///
+/// Its row is their distance, a function of two displacements that are quadratic themselves and of
+/// the cosine and sine of an angle, which are products of directions: by Gonzalez its discrete
+/// gradient is that at the middle of the step and a part along the step that makes its change
+/// exact. So the force does no work, and acts on both bodies along one line. @eq{curves-distance}
+/// @eq{curves-gradient}
+class CurveOnCurve : public InteractionItem {
+ public:
+  static constexpr const char* kKind = "curve_on_curve";
+  /// @param load  Points; x, y of the planes are those of R_a, R_b; laws curve_x, curve_y, values
+  ///              period and open for a curve with ends, each also with other_ before it; word
+  ///              side.
+  explicit CurveOnCurve(const LoadDescription& load);
+
+  [[nodiscard]] int rows() const { return 1; }
+  [[nodiscard]] int history_size() const { return 2; }  ///< s of both places.
+  void evaluate(const PairStep& step, PairTerms& terms) const;
+  void acceleration_terms(const PairStep& step, Vec6& gamma) const;
+  /// At an instant: force on b [N], s on a's and on b's curve, force along the normal [N], speed at
+  /// which b slides along a's direction of s [m/s], where they touch [m].
+  [[nodiscard]] std::vector<double> report(const PairStep& step) const;
+  void initialize(const PairStep& step, double* history) const;
+  void commit(const PairStep& step, double* history) const;
+  void switch_on(const PairStep& step, double* history) const { initialize(step, history); }
+  [[nodiscard]] bool acceptable(const PairStep& step) const;
+  [[nodiscard]] bool always_asked() const { return true; }
+  [[nodiscard]] const char* refusal() const {
+    return "two curves came to the end of one of them, fit each other where they touch, so that "
+           "the place would jump, or do not lie in parallel planes";
+  }
+
+ private:
+  [[nodiscard]] FreeDisplacement along(int axis) const { return {Z_a_, Z_b_, R_a_.col(axis)}; }
+  [[nodiscard]] CurvePair::Vec4 place(const PairStep& step) const;
+  [[nodiscard]] CurvePair::Distance touch(const PairStep& step) const;
+
+  Vec3 Z_a_, Z_b_;
+  Mat3 R_a_, R_b_;
+  CurvePair curves_;
+};
+
+/// Adds a CurveOnCurve to the system.
+void add_curve_on_curve(System& system, const LoadDescription& load);
+
+}  // namespace polhode

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polhode/loads/curve_pair.hpp>
+
+namespace polhode {
+
+namespace {
+
+using Vec2 = PlanarCurve::Vec2;
+
+constexpr int kMostPlaces = 60;
+/// Longest step of a search along the second curve, as a part of it.
+constexpr double kLongestPlaceStep = 0.02;
+/// After a step of this part of the curve the search has converged, by its quadratic order.
+constexpr double kLastPlaceStep = 1e-9;
+
+/// X turned by a quarter of a turn.
+Vec2 quarter(const Vec2& X) { return {-X.y(), X.x()}; }
+
+}  // namespace
+
+CurvePair::Distance CurvePair::distance(const Vec4& q, const Places& near) const {
+  const auto turned = [&](const Vec2& X) -> Vec2 { return q[2] * X + q[3] * quarter(X); };
+  const double longest = kLongestPlaceStep * b_.length(), last = kLastPlaceStep * b_.length();
+  double u = near.b, s = near.a, bend = 0.0, along = 0.0, least = 0.0;
+  PlanarCurve::Point p;
+  PlanarCurve::Distance d;
+  for (int i = 0;; ++i) {
+    p = b_.at(u);
+    d = a_.distance(q.head<2>() + turned(p.X), s);
+    s = d.foot;
+    const Vec2 slope = turned(p.slope);
+    along = d.tangent.dot(slope);
+    bend = d.normal.dot(turned(p.second)) + d.curvature * along * along;
+    // Where the curves fit each other, downhill at the pace of curves of their size.
+    const double pace = p.slope.squaredNorm() / size();
+    least = 1e-3 * pace;
+    const double step = -d.normal.dot(slope) / (bend > least ? bend : pace);
+    if (std::abs(step) < 1e-15 * b_.length() || i == kMostPlaces) break;
+    u += std::clamp(step, -longest, longest);
+    if (std::abs(step) < last) i = kMostPlaces - 1;  // once more, for the values there
+  }
+  Eigen::Matrix<double, 2, 4> by_q;
+  by_q << Eigen::Matrix2d::Identity(), p.X, quarter(p.X);
+  Vec4 by_u = d.curvature * along * (by_q.transpose() * d.tangent);
+  by_u[2] += d.normal.dot(p.slope);
+  by_u[3] += d.normal.dot(quarter(p.slope));
+  const Vec4 across = by_q.transpose() * d.tangent;
+  Distance result;
+  result.value = d.value;
+  result.at = {s, u};
+  result.gradient = by_q.transpose() * d.normal;
+  result.hessian = d.curvature * across * across.transpose() -
+                   (1.0 / std::max(bend, least)) * by_u * by_u.transpose();
+  result.normal = d.normal;
+  result.tangent = d.tangent;
+  result.own = p.X;
+  result.touches = bend > 0.0 && d.room > 0.0;
+  return result;
+}
+
+CurvePair::Places CurvePair::first(const Vec4& q) const {
+  const int count = static_cast<int>(b_.samples().size()) - 1;
+  // Every fourth sample: the search between them ends in the least distance on either side.
+  constexpr int kStride = 4;
+  std::vector<Places> places;
+  std::vector<double> heights;
+  for (int i = 0; i <= count; i += kStride) {
+    const Vec2& X = b_.samples()[static_cast<std::size_t>(i)];
+    const Vec2 P = q.head<2>() + q[2] * X + q[3] * quarter(X);
+    places.push_back({a_.nearest(P), b_.length() * i / count});
+    heights.push_back(a_.distance(P, places.back().a).value);
+  }
+  Places best = places.front();
+  double closest = std::numeric_limits<double>::infinity();
+  const std::size_t n = heights.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if ((i > 0 && heights[i - 1] < heights[i]) || (i + 1 < n && heights[i + 1] < heights[i]))
+      continue;
+    const Distance d = distance(q, places[i]);
+    if (!d.touches || !contains(d.at) || std::abs(d.value) >= closest) continue;
+    closest = std::abs(d.value);
+    best = d.at;
+  }
+  return best;
+}
+
+}  // namespace polhode
