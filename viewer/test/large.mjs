@@ -18,7 +18,7 @@ async function measured(name, pictures = 8) {
   await page.keyboard.press(" ");
   await page.waitForTimeout(1500);  // until a slow machine has found what it can draw
   const from = await drawn(), busy = await spent(), alone = await spent("renderer"), issued = await page.evaluate(() => window.drawCalls);
-  await page.waitForFunction((n) => Number(document.documentElement.dataset.frames) >= n, from + pictures, { timeout: 60000 });
+  await page.waitForFunction((n) => Number(document.documentElement.dataset.frames) >= n, from + pictures, { timeout: 240000 });
   const count = await drawn() - from, each = 1000 * (await spent() - busy) / count, script = 1000 * (await spent("renderer") - alone) / count;
   const calls = (await page.evaluate(() => window.drawCalls) - issued) / count;
   await page.keyboard.press(" ");
