@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures what the Python package costs beside the engine: import, a run, a force in Python.
 
-Run it with the interpreter that the package is installed for.
+Run it with the interpreter that the package is installed for. All times are of processors, so that other programs
+disturb little: medians of runs that alternate, with the quarters between which half of them lie.
 """
 import json
 import os
+import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -18,36 +21,58 @@ import polhode
 COMMAND = os.path.join(os.path.dirname(polhode.__file__), "bin", "polhode")
 
 
-def wall_time(code, runs=10):
-    def once():
-        start = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True)
-        return time.perf_counter() - start
+def children():
+    """CPU time of all programs that have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
-    return min(once() for _ in range(runs))
+
+def differences(ours, other, runs):
+    """Of the CPU times of two functions that are called in turn: both medians, and quarters of their differences [s]."""
+    pairs = []
+    for k in range(runs):
+        pair = [one() for one in ((ours, other) if k % 2 else (other, ours))]
+        pairs.append(pair if k % 2 else pair[::-1])
+    a, b = (statistics.median(column) for column in zip(*pairs))
+    return a, b, statistics.quantiles((x - y for x, y in pairs), n=4)
+
+
+def of_a_program(*words):
+    """CPU time of a program [s]."""
+    before = children()
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+    return children() - before
 
 
 def import_time():
     """Of polhode, without the interpreter's own start [s]."""
-    return wall_time("import polhode") - wall_time("pass")
+    return differences(lambda: of_a_program(sys.executable, "-c", "import polhode"),
+                       lambda: of_a_program(sys.executable, "-c", "pass"), 20)
 
 
 def run_times(folder):
-    """CPU time of N-four-bar N = 40, 10 s in steps of 1 ms: from Python, and by the command [s]."""
+    """N-four-bar N = 40, 10 s in steps of 1 ms: whole programs, from Python and by the command [s]."""
     path = os.path.join(folder, "model.yaml")
-    subprocess.run([COMMAND, "examples", "n_four_bar", "--set", "N=40", "-o", path], check=True)
+    subprocess.run([COMMAND, "examples", "n_four_bar", "--set", "N=40", "-o", path], check=True, stdout=subprocess.DEVNULL)
     changes = {"output.every": "1 s", "analysis.step": "1 ms"}
     options = [word for key, value in changes.items() for word in ("--set", f"{key}={value}")]
-    own, commands = [], []
-    for _ in range(4):
-        start = time.process_time()
+
+    def ours():
+        before = time.process_time()
         result = polhode.run(polhode.load(path), overrides=changes, progress=False)
-        own.append(time.process_time() - start)
-        words = [COMMAND, "run", path, *options, "--json", "--quiet"]
-        figures = json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE).stdout)
-        commands.append(figures["cpu_time_s"])
-        assert figures["result_hash"] == result.ledger.result_hash
-    return min(own), min(commands)
+        hashes.add(result.ledger.result_hash)
+        return time.process_time() - before
+
+    def command():
+        before = children()
+        words = [COMMAND, "run", path, *options, "-o", os.path.join(folder, "out"), "--json", "--quiet"]
+        hashes.add(json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE).stdout)["result_hash"])
+        return children() - before
+
+    hashes = set()
+    found = differences(ours, command, 9)
+    assert len(hashes) == 1, hashes
+    return found
 
 
 def callback_time():
@@ -60,7 +85,7 @@ def callback_time():
         return m
 
     def cpu_time(force):
-        return min(polhode.run(model(force), progress=False).ledger.cpu_time_s for _ in range(3))
+        return polhode.run(model(force), progress=False).ledger.cpu_time_s
 
     calls = 0
     value = (0.0, 0.0, 1.0)
@@ -70,7 +95,9 @@ def callback_time():
         calls += 1
         return value
 
-    return (cpu_time(force) - cpu_time(["0*t", "0*t", "1+0*t"])) / (calls / 3)
+    runs = 9
+    spent = differences(lambda: cpu_time(force), lambda: cpu_time(["0*t", "0*t", "1+0*t"]), runs)[2]
+    return [t / (calls / runs) for t in spent]
 
 
 def motion_callback_times():
@@ -87,16 +114,11 @@ def motion_callback_times():
         return function
 
     def cpu_time(load):
-        nonlocal calls
-        m = polhode.Model(analysis={"duration": 50, "step": 0.001}, output={"every": 50})
+        m = polhode.Model(analysis={"duration": 20, "step": 0.001}, output={"every": 20})
         m.add_body("b", mass=1, inertia=[1, 1, 1])
         m.add_joint("j", "prismatic", ["ground", "b"], at=[0, 0, 0], axis="z")
         m.add_load("p", **load)
-        times = []
-        for _ in range(3):
-            calls = 0
-            times.append(polhode.run(m, progress=False).ledger.cpu_time_s)
-        return min(times)
+        return polhode.run(m, progress=False).ledger.cpu_time_s
 
     body = {"type": "force", "body": "b", "at": [0, 0, 0]}
     joint = {"type": "linear_motor", "joint": "j"}
@@ -107,8 +129,9 @@ def motion_callback_times():
     ):
         of_tangent = count(tangent) if tangent is not None else None
         function = polhode.StateFunction(count(given), tangent=of_tangent)
-        time_used, of_run = cpu_time({**place, key: function}), calls
-        result.append((time_used - cpu_time({**place, key: plain})) / of_run)
+        runs, calls = 9, 0
+        spent = differences(lambda: cpu_time({**place, key: function}), lambda: cpu_time({**place, key: plain}), runs)[2]  # noqa: B023
+        result.append([t / (calls / runs) for t in spent])
     return result
 
 
@@ -124,13 +147,18 @@ def reading_time():
     return elapsed
 
 
+def spread(quarters, unit, digits):
+    low, middle, high = (unit * x for x in quarters)
+    return f"{middle:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
+
+
 if __name__ == "__main__":
-    print(f"import               {1e3 * import_time():.0f} ms")
+    with_it, without, more = import_time()
+    print(f"import               {spread(more, 1e3, 0)} ms; {1e3 * with_it:.0f} ms with the interpreter, {1e3 * without:.0f} ms without polhode")
     with tempfile.TemporaryDirectory() as place:
-        python, command = run_times(place)
-    print(f"N-four-bar, N = 40   {python:.3f} s from Python, {command:.3f} s by the command")
-    print(f"force in Python      {1e6 * callback_time():.2f} µs a call more than an expression")
-    given, differences, joint = motion_callback_times()
-    print(f"force of the motion  {1e6 * given:.2f} µs a call with a tangent, {1e6 * differences:.2f} µs by differences")
-    print(f"force in a joint     {1e6 * joint:.2f} µs a call with a tangent")
+        python, command, more = run_times(place)
+    print(f"N-four-bar, N = 40   {python:.3f} s from Python, {command:.3f} s by the command, more by {spread(more, 100 / command, 1)} %")
+    print(f"force in Python      {spread(callback_time(), 1e6, 2)} µs a call more than an expression")
+    for name, of_one in zip(("of the motion, tangent", "of the motion, differences", "in a joint, tangent"), motion_callback_times()):
+        print(f"{name:27} {spread(of_one, 1e6, 2)} µs a call")
     print(f"a million positions  {1e6 * reading_time():.0f} µs to read")

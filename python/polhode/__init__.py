@@ -24,6 +24,7 @@ from ._native import version as __version__
 
 if TYPE_CHECKING:
     from . import rotations
+    from ._equations import StepEquations, step_equations
     from ._linear import StateSpace, inverse_dynamics, linearize
     from ._modes import Matrices, Mode, Modes, matrices, modes
     from ._result import Result, open
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 # Loaded when they are first wanted: NumPy takes longer to import than all the rest.
 _LATER = {
+    "_equations": ["StepEquations", "step_equations"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
     "_modes": ["Matrices", "Mode", "Modes", "matrices", "modes"],
     "_result": ["Result", "open"],
@@ -46,8 +48,8 @@ _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
     "BodyReading", "Fault", "Fit", "Matrices", "Mode", "Model", "ModelError", "Modes", "NotConverged", "Result",
-    "Simulation", "StateFunction", "StateSpace", "Step", "__version__", "fit", "from_text", "inverse_dynamics",
-    "linearize", "load", "matrices", "modes", "open", "rotations", "run", "sweep",
+    "Simulation", "StateFunction", "StateSpace", "Step", "StepEquations", "__version__", "fit", "from_text",
+    "inverse_dynamics", "linearize", "load", "matrices", "modes", "open", "rotations", "run", "step_equations", "sweep",
 ]
 
 

@@ -287,17 +287,22 @@ class Result:
     def __getitem__(self, channel: str) -> Any:
         """An array or group by its dotted name: r["joints.A.force"]; of vectors and quaternions a
         component too: r["joints.A.force.z"]."""
+        above, index = self._component(channel)
+        return self._resolve(channel)[1] if index < 0 else self._resolve(above)[1][..., index]
+
+    def _component(self, channel: str) -> "tuple[str, int]":
+        """The vector or quaternion of a component, and which it is; the channel and -1 if it is none."""
         above, _, last = channel.rpartition(".")
         if above and last in ("w", "x", "y", "z"):
             found = self._resolve(above)[1]
             letters = {3: "xyz", 4: "wxyz"}.get(found.shape[-1], "") if isinstance(found, np.ndarray) else ""
             if last in letters:
-                return found[..., letters.index(last)]
-        return self._resolve(channel)[1]
+                return above, letters.index(last)
+        return channel, -1
 
     def unit(self, channel: str) -> str:
         """Unit of a channel: r.unit("bodies.crank.velocity") is "m/s"."""
-        path = self._resolve(channel)[0]
+        path = self._resolve(self._component(channel)[0])[0]
         above, _, name = path.rpartition("/")
         if name in self._children().get(above, ()):
             return self._store.unit(path)

@@ -47,6 +47,13 @@ class FileStore:
     def __init__(self, file: str) -> None:
         self.file = file
         self._reader = _native.ResultsReader(file)
+        version, known = self._reader.attribute("/", "format_version"), _native.results_format_version
+        if not isinstance(version, float):
+            raise OSError(f"{file}: holds no results of Polhode. Give the path of a file results.h5 that a run has "
+                          "written.")
+        if version > known:
+            raise OSError(f"{file}: has format version {version:g}, and this program reads versions up to {known}. "
+                          "Use the version of Polhode that wrote it, or a later one.")
         self._paths = self._reader.paths()
         self._known = set(self._paths)
         self._kept: "dict[str, Any]" = {}

@@ -194,11 +194,22 @@ class Fit(NamedTuple):
     covariance: Any  #: (p, p), in the order of `parameters`, from the residuals' own scatter.
     residuals: Any  #: (m,) at the estimates.
     result: Result  #: The run with them.
+    data: "dict[str, Any]"  #: What was measured, by channel, the time among it.
 
     @property
     def errors(self) -> "dict[str, float]":
         """Standard errors of the estimates."""
         return dict(zip(self.parameters, np.sqrt(np.diag(self.covariance)).tolist()))
+
+    def plot(self) -> Any:
+        """Draws the run with the estimates and what was measured, a panel for each channel. Returns the figure."""
+        names = [name for name in self.data if name != "time"]
+        figure = self.result.plot(*names)
+        for panel, name in zip(figure.axes, names):
+            panel.plot(self.data["time"], np.reshape(self.data[name], (len(self.data["time"]), -1)), "k.", markersize=3,
+                       zorder=1, label="measured")
+            panel.legend(loc="best", fontsize="small")
+        return figure
 
 
 def fit(
@@ -257,4 +268,5 @@ def fit(
     found = least_squares(residuals, start, bounds=(low, high), diff_step=1e-5, x_scale="jac", xtol=1e-12, ftol=1e-12)
     freedoms = max(1, len(found.fun) - len(names))
     covariance = np.linalg.inv(found.jac.T @ found.jac) * (found.fun @ found.fun / freedoms) * np.outer(scale, scale)
-    return Fit(dict(zip(names, (found.x * scale).tolist())), covariance, found.fun, run_at(found.x))
+    return Fit(dict(zip(names, (found.x * scale).tolist())), covariance, found.fun, run_at(found.x),
+               {"time": times, **measured})

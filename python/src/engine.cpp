@@ -69,6 +69,7 @@ std::string Engine::run(Recording* recording, const std::string& folder,
                         const std::string& model_text, const std::vector<std::string>& overrides,
                         const nb::object& progress) {
   Attention attention(progress);
+  const Use used(*this);
   const nb::gil_scoped_release unlocked;
   std::optional<Recorder> file;
   if (!folder.empty()) {
@@ -103,8 +104,8 @@ std::string Engine::run(Recording* recording, const std::string& folder,
                                 .frames = recording ? recording->frames() : 0});
 }
 
-std::string Engine::summary() const {
-  const RunSummary summary = simulation_->summary();
+std::string Engine::summary() {
+  const RunSummary summary = use()->summary();
   return summary_json(summary, {.end = end_name(summary.end)});
 }
 
@@ -114,12 +115,14 @@ nb::bytes Engine::state() const {
 }
 
 void Engine::restore(const nb::bytes& bytes) {
+  const Use used(*this);
   State state = state_from_bytes(simulation_->system(), {bytes.c_str(), bytes.size()}, "state");
   simulation_ = std::make_unique<Simulation>(model(), std::move(state));
 }
 
 void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
   if (motions.empty()) return;
+  const Use used(*this);
   const Model& m = model();
   const std::string where = format("bodies.{}", m.bodies.at(motions.begin()->first).name);
   if (m.analysis.type != "dynamics" || !m.solids.empty() || simulation_->has_contacts())
@@ -155,9 +158,10 @@ void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
 namespace {
 
 nb::dict body_report(Engine& engine, int body) {
-  const BodyMotion m = engine.simulation().body(body);
+  const Engine::Use simulation = engine.use();
+  const BodyMotion m = simulation->body(body);
   const Quat q = m.q.w() < 0.0 ? Quat(-m.q.coeffs()) : m.q;
-  const auto point = engine.simulation().point(body, Vec3::Zero());
+  const auto point = simulation->point(body, Vec3::Zero());
   nb::dict result;
   result["position"] = array_of(m.r);
   result["orientation"] = array_of(std::vector<double>{q.w(), q.x(), q.y(), q.z()}, {4});
@@ -171,7 +175,7 @@ nb::dict body_report(Engine& engine, int body) {
   Vec3 alpha = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     const Vec3 arm = axes.col(k);
-    const Vec3 a = engine.simulation().point(body, Vec3::Unit(k)).acceleration;
+    const Vec3 a = simulation->point(body, Vec3::Unit(k)).acceleration;
     alpha += 0.5 * arm.cross(a - point.acceleration - omega.cross(omega.cross(arm)));
   }
   result["angular_acceleration"] = array_of(alpha);
@@ -179,7 +183,7 @@ nb::dict body_report(Engine& engine, int body) {
 }
 
 nb::dict joint_report(Engine& engine, int joint) {
-  JointReport r = engine.simulation().joint(joint);
+  JointReport r = engine.use()->joint(joint);
   const auto list = [](std::vector<double> numbers) {
     const std::size_t n = numbers.size();
     return array_of(std::move(numbers), {n});
@@ -194,7 +198,7 @@ nb::dict joint_report(Engine& engine, int joint) {
 }
 
 nb::dict energy(Engine& engine) {
-  const Balance b = engine.simulation().balance();
+  const Balance b = engine.use()->balance();
   nb::dict result;
   result["kinetic"] = b.kinetic;
   result["potential"] = b.potential;
@@ -216,7 +220,7 @@ Vec3 vector(const std::vector<double>& x, const char* what) {
 BodyMotion changed_motion(Engine& engine, int body, const Numbers& position,
                           const Numbers& orientation, const Numbers& velocity,
                           const Numbers& angular_velocity) {
-  BodyMotion m = engine.simulation().body(body);
+  BodyMotion m = engine.use()->body(body);
   const Vec3 omega = angular_velocity ? vector(*angular_velocity, "angular_velocity") : m.omega();
   if (position) m.r = vector(*position, "position");
   if (velocity) m.v = vector(*velocity, "velocity");
@@ -256,8 +260,9 @@ std::vector<std::string> names_of(const Specs& specs) {
 nb::tuple step(Engine& engine, double limit) {
   StepReport report;
   {
+    const Engine::Use simulation = engine.use();
     const nb::gil_scoped_release unlocked;
-    report = engine.simulation().step(limit);
+    report = simulation->step(limit);
   }
   return nb::make_tuple(report.accepted, report.t, report.dt, report.rejected,
                         report.newton.iterations, report.message);
@@ -269,13 +274,14 @@ void bind_engine(nb::module_& m) {
   nb::class_<Engine>(m, "Engine", "A compiled model with its state.",
                      nb::type_slots(CallSlots<Engine>::slots))
       .def(nb::init<const CompiledModel&>(), nb::arg("model"))
-      .def("record", [](Engine& e) { return Recording(e.simulation()); })
+      .def("record", [](Engine& e) { return Recording(*e.use()); })
       .def("run", &Engine::run, nb::arg("recording").none(), nb::arg("folder"),
            nb::arg("model_text"), nb::arg("overrides"), nb::arg("progress").none())
       .def("step", &step, nb::arg("limit"))
       .def("record_frame", [](Engine& e, Recording& r) {
-             r.frame(e.simulation());
-             r.step(e.simulation());
+             const Engine::Use simulation = e.use();
+             r.frame(*simulation);
+             r.step(*simulation);
            })
       .def("copy", &Engine::copy)
       .def("set_body", &set_body, nb::arg("index"), nb::arg("position").none(),
@@ -297,12 +303,13 @@ void bind_engine(nb::module_& m) {
       .def_prop_ro("state_hash", [](Engine& e) { return e.simulation().state_hash(); })
       .def("body", &body_report, nb::arg("index"))
       .def("joint", &joint_report, nb::arg("index"))
-      .def("load", [](Engine& e, int i) { return e.simulation().load(i); }, nb::arg("index"))
+      .def("load", [](Engine& e, int i) { return e.use()->load(i); }, nb::arg("index"))
       .def_prop_ro("probes", [](Engine& e) { return names_of(e.model().output.probes); })
       .def("probe",
            [](Engine& e, const std::string& name) {
-             return nb::make_tuple(nb::cast(e.simulation().probe_columns(name)),
-                                   nb::cast(e.simulation().probe(name)));
+             const Engine::Use simulation = e.use();
+             return nb::make_tuple(nb::cast(simulation->probe_columns(name)),
+                                   nb::cast(simulation->probe(name)));
            },
            nb::arg("name"))
       .def("energy", &energy)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 
 #include <polhode/io/results/write_results.hpp>
 #include <polhode/simulation/simulation_details.hpp>
@@ -10,6 +11,14 @@
 #include "recording.hpp"
 
 namespace polhode::python {
+
+/// A force in Python asked its own simulation for what needs forces.
+struct NestedUse : std::runtime_error {
+  NestedUse()
+      : std::runtime_error(
+            "A force cannot ask its simulation while forces are computed. Keep what it is to read after each step, in a "
+            "loop over the steps or in run(observe=...); only time can be asked for.") {}
+};
 
 /// A simulation with its names, as Python steps, runs, reads and sets it.
 class Engine {
@@ -22,7 +31,28 @@ class Engine {
       : calls(std::move(owner)),
         simulation_(std::make_unique<Simulation>(model, std::move(state))) {}
 
+  /// For what needs no forces.
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
+  /// A simulation in use by one call: steps and reports evaluate forces, and a force in Python that asks for a report
+  /// would be asked for itself.
+  class Use {
+   public:
+    /// @throws NestedUse if it is in use already.
+    explicit Use(Engine& engine) : busy_(engine.busy_), simulation_(*engine.simulation_) {
+      if (busy_) throw NestedUse();
+      busy_ = true;
+    }
+    ~Use() { busy_ = false; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    Simulation* operator->() const { return &simulation_; }
+    Simulation& operator*() const { return simulation_; }
+
+   private:
+    bool& busy_;
+    Simulation& simulation_;
+  };
+  [[nodiscard]] Use use() { return Use(*this); }
   [[nodiscard]] const Model& model() const { return simulation_->model(); }
 
   /// Runs to the end; looks for Ctrl-C and calls progress(time) every 50 ms of wall time.
@@ -30,11 +60,14 @@ class Engine {
   /// @returns the figures as JSON, see summary_json().
   std::string run(Recording* recording, const std::string& folder, const std::string& model_text,
                   const std::vector<std::string>& overrides, const nb::object& progress);
-  [[nodiscard]] std::string summary() const;
+  [[nodiscard]] std::string summary();
 
   [[nodiscard]] nb::bytes state() const;
   void restore(const nb::bytes& bytes);
-  [[nodiscard]] Engine copy() const { return {model(), simulation_->state(), calls}; }
+  [[nodiscard]] Engine copy() {
+    const Use used(*this);
+    return {model(), simulation_->state(), calls};
+  }
   /// Puts moving bodies, by index, in other places or motions at the present time. Then joints are
   /// assembled and velocities projected again, turns counted anew, and the ledger begins anew.
   /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
@@ -44,6 +77,7 @@ class Engine {
 
  private:
   std::unique_ptr<Simulation> simulation_;
+  bool busy_ = false;  ///< Guarded by Python's lock: set and asked while it is held.
 };
 
 }  // namespace polhode::python

@@ -66,7 +66,8 @@ Array matrix(const Mat& A) {
 
 /// M, C, K and G of a state, as modes take them.
 nb::tuple matrices(Engine& engine) {
-  ModalMatrices m(engine.simulation().system(), engine.simulation().state(), {});
+  const Engine::Use simulation = engine.use();
+  ModalMatrices m(simulation->system(), simulation->state(), {});
   const ModalMatrices::Dense d = m.dense();
   return nb::make_tuple(matrix(d.M), matrix(d.C), matrix(d.K), matrix(d.Gt.transpose()));
 }

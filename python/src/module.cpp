@@ -11,4 +11,5 @@ NB_MODULE(_native, m) {
   polhode::python::bind_results_reader(m);
   polhode::python::bind_rotations(m);
   polhode::python::bind_modes(m);
+  polhode::python::bind_equations(m);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hdf5.h>
 
+#include <polhode/io/results/results_format.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 #include "parts.hpp"
@@ -132,6 +133,7 @@ class ResultsReader {
 }  // namespace
 
 void bind_results_reader(nb::module_& m) {
+  m.attr("results_format_version") = results::kFormatVersion;
   nb::class_<ResultsReader>(m, "ResultsReader", "Reads a file results.h5.")
       .def(nb::init<std::string>(), nb::arg("path"))
       .def("paths", &ResultsReader::paths)

@@ -62,6 +62,17 @@ def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiff
     assert np.abs(A[2:, 0]).max() < 1e-4 * W**2  # the shaft's angle
 
 
+def test_python_control_takes_the_matrices() -> None:
+    control = pytest.importorskip("control")
+    s = polhode.linearize(cart_pole(), ["push.x"], ["joints.hinge.coordinates"])
+    inputs, outputs, states = ([n.replace(".", "_") for n in names] for names in (s.inputs, s.outputs, s.states))
+    plant = control.ss(s.A, s.B, s.C, s.D, inputs=inputs, outputs=outputs, states=states)
+    assert plant.input_labels == ["push_x"] and np.allclose(np.sort(plant.poles()), np.sort(np.linalg.eigvals(s.A)))
+    gain, _, poles = control.lqr(plant, np.eye(len(s.states)), [[1.0]])  # holds up what falls
+    assert np.max(np.real(np.linalg.eigvals(s.A))) > 0 > np.max(np.real(poles))
+    assert np.max(np.real(np.linalg.eigvals(s.A - s.B @ gain))) < 0
+
+
 def test_what_cannot_be_linearised_is_told() -> None:
     with pytest.raises(KeyError, match="unknown load 'pusch'. Did you mean 'push'"):
         polhode.linearize(cart_pole(), ["pusch.x"])

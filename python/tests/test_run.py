@@ -142,6 +142,9 @@ def test_results_go_to_other_libraries(pendulum: polhode.Model) -> None:
     figure = r.plot("energy", "joints.hinge.force")
     assert [a.get_ylabel() for a in figure.axes] == ["energy [J]", "joints.hinge.force [N]"]
     assert len(figure.axes[1].lines) == 3
+    one = r.plot("bodies.arm.position.z").axes[0]  # a component, with the unit of its vector
+    assert one.get_ylabel() == "bodies.arm.position.z [m]" and len(one.lines) == 1
+    assert r.unit("bodies.arm.orientation.w") == r.unit("bodies.arm.orientation")
     assert np.array_equal(figure.axes[1].lines[2].get_ydata(), r.joints["hinge"].force[:, 2])
 
 
@@ -254,3 +257,34 @@ def test_the_command_is_installed() -> None:
     program = os.path.join(os.path.dirname(sys.executable), "polhode")
     text = subprocess.run([program, "examples"], check=True, stdout=subprocess.PIPE, text=True).stdout
     assert "double_pendulum" in text
+
+
+def test_what_was_chosen_is_logged_and_what_deserves_a_look_is_warned(pendulum: polhode.Model,
+                                                                       caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level("INFO", logger="polhode"):
+        polhode.run(pendulum, overrides={"analysis.momentum_rate": "kinematic"})
+    assert {r.name for r in caplog.records} == {"polhode"} and all(r.levelname == "INFO" for r in caplog.records)
+    assert any("Solver: block LU, as the tree does not have this momentum_rate" in r.message for r in caplog.records)
+    assert any(r.message.startswith("reached t = 1 in ") for r in caplog.records)
+    caplog.clear()
+    with caplog.at_level("WARNING", logger="polhode"):
+        polhode.run(pendulum)
+    assert not caplog.records  # silent unless somebody asks
+
+
+def test_results_of_a_later_format_are_refused_with_what_to_do(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:
+    polhode.run(pendulum, output=tmp_path / "run")
+    file = tmp_path / "run" / "results.h5"
+    with h5py.File(file, "a") as f:
+        assert f.attrs["format_version"] == 1
+        f.attrs["format_version"] = 99.0
+    told = "has format version 99, and this program reads versions up to 1. Use the version of Polhode that wrote it"
+    with pytest.raises(OSError, match=told):
+        polhode.open(tmp_path / "run")
+    for words in (["view", file, "--html", tmp_path / "page.html"], ["plot", file, "energy", "-o", tmp_path / "a.svg"]):
+        ended = subprocess.run([CLI, *map(str, words)], capture_output=True, text=True)
+        assert ended.returncode != 0 and told in ended.stderr
+    with h5py.File(tmp_path / "other.h5", "w") as f:
+        f["x"] = [1.0]
+    with pytest.raises(OSError, match="holds no results of Polhode"):
+        polhode.open(tmp_path / "other.h5")

@@ -106,6 +106,17 @@ def test_a_fit_finds_stiffness_and_damper_in_noisy_data() -> None:
     assert abs(fit.parameters["variables.k"] - 40) < 4 * fit.errors["variables.k"]
     assert abs(fit.parameters["variables.c"] - 0.8) < 4 * fit.errors["variables.c"]
     assert np.std(fit.residuals) == pytest.approx(0.005, rel=0.15)
+    assert fit.covariance.shape == (2, 2) and np.all(np.linalg.eigvalsh(fit.covariance) > 0)
+    assert fit.errors["variables.k"] == pytest.approx(np.sqrt(fit.covariance[0, 0]))
+    assert fit.covariance == pytest.approx(fit.covariance.T)
+    import matplotlib
+
+    matplotlib.use("Agg")
+    (panel,) = fit.plot().axes
+    run, measured = panel.lines
+    assert panel.get_ylabel() == "bodies.b.position.z [m]" and len(run.get_xdata()) == len(fit.result.time)
+    assert np.array_equal(measured.get_xdata(), times) and measured.get_linestyle() == "None"
+    assert np.array_equal(measured.get_ydata(), fit.data["bodies.b.position.z"])
     with pytest.raises(ValueError, match="values at"):
         polhode.fit(make_pendulum(), {"time": times, "energy.total": [1]}, {"gravity.2": 9})
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion,
+  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Quaternion,
   Vector3,
 } from "three";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
@@ -25,6 +25,12 @@ interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh; dis
 /** Layer of what rays meet and nobody sees. */
 export const kUnseen = 1;
 
+/** How planes are shaded; unlit, they cost least for each pixel, but take no shadows. */
+const planeSurface = (lit: boolean, opacity: number): Surface | MeshBasicMaterial => {
+  const look = { color: kFixed, transparent: true, opacity, side: DoubleSide, depthWrite: false };
+  return lit ? surface(look) : new MeshBasicMaterial(look);
+};
+
 const kNothing = new Matrix4().makeScale(0, 0, 0);
 
 /** All bodies: each different shape is one instanced mesh, a second one for ghosts. */
@@ -35,6 +41,8 @@ export class Bodies {
   private readonly planes: { body: number; local: Matrix4; mesh: Mesh }[] = [];
   chosen = -1;
   plain = false;
+  private open = false;
+  private shadows = false;
   /** One colour for all, of a recording that is compared. */
   tint: Color | null = null;
 
@@ -64,8 +72,7 @@ export class Bodies {
         const local = new Matrix4().compose(vector(part.p), quaternion(part.q), new Vector3(1, 1, 1));
         if (part.plane) {
           const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), vector(part.plane).normalize());
-          const mesh = new Mesh(new PlaneGeometry(1, 1), new (software ? MeshBasicMaterial : MeshStandardMaterial)({ color: kFixed, transparent: true, opacity: 0.28, side: DoubleSide,
-            depthWrite: false }));
+          const mesh = new Mesh(new PlaneGeometry(1, 1), planeSurface(!software, 0.28));
           mesh.matrixAutoUpdate = false;
           mesh.receiveShadow = true;
           mesh.userData = { pick: () => ({ kind: "body", index }) };
@@ -106,10 +113,11 @@ export class Bodies {
 
   /** Whether a section opens the bodies, so that their insides are seen. */
   setOpen(open: boolean): void {
+    this.open = open;
     for (const { solid, discs } of this.batches)
       if (discs) {
-        discs.visible = !open;
-        solid.layers.set(open ? 0 : kUnseen);
+        discs.visible = !open && !this.shadows;
+        solid.layers.set(discs.visible ? kUnseen : 0);
       }
     for (const { solid, ghost } of this.batches)
       for (const mesh of [solid, ghost]) {
@@ -117,6 +125,17 @@ export class Bodies {
         material.side = open ? DoubleSide : FrontSide;
         material.needsUpdate = true;
       }
+  }
+
+  /** Whether bodies throw shadows: discs that stand for balls have none, nor do planes that are not lit take any. */
+  setShadows(on: boolean): void {
+    this.shadows = on;
+    for (const { mesh } of software ? this.planes : []) {
+      const before = mesh.material as Surface;
+      mesh.material = planeSurface(on, before.opacity);
+      before.dispose();
+    }
+    this.setOpen(this.open);
   }
 
   /** How much of what lies behind a ghost it hides. */

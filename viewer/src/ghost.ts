@@ -60,6 +60,7 @@ export class Ghost {
     for (const group of [solids.group, lines.group]) faint(group, !on);
   }
   setRange(range: [number, number]): void { this.solids.range = range; this.solids.fixedRange = true; }
+  setShadows(on: boolean): void { this.bodies.setShadows(on); }
   setFaintLight(on: boolean): void { this.bodies.setGhostOpacity(on ? kOpacity : 0.16); }
   /** What rays may meet. */
   get objects(): Object3D[] { return [this.bodies.group, this.solids.group, this.lines.group]; }

@@ -229,7 +229,7 @@ async function start(app: HTMLElement): Promise<void> {
   const loopFrame = (now: number): void => {
     // Three pictures in a row that took long while it plays: the machine wants less to draw.
     slow = player.playing && now - last > 120 ? slow + 1 : 0;
-    if (slow >= 3) { view.stage.lighten(); slow = 0; }
+    if (slow >= 3) { view.lighten(); slow = 0; }
     player.advance(Math.min(0.25, (now - last) / 1000));
     last = now;
     if (view.stage.dirty) { view.stage.draw(); document.documentElement.dataset.frames = String(++frames); }

@@ -139,9 +139,11 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
     view.bodies.setOpen(k >= 0);
     update();
   };
+  const shadows = check("Shadows", view.stage.shadows, (on) => { view.shadowsAsked = true; view.setShadows(on); });
+  view.onshadows = () => { (shadows.firstChild as HTMLInputElement).checked = view.stage.shadows; };
   return h("div", { class: "panel" }, camera,
     part("Show", view.ghost ? check(`Ghost of ${view.ghost.name} (c)`, true, (on) => view.showGhost(on)) : null, view.ghost ? check(`Side by side with ${view.ghost.name} (v)`, false, (on) => void view.setBeside(on).then(update)) : null, check("Bodies as ghosts", false, (on) => { view.bodies.plain = on; }), check("Joints", true, (on) => { view.joints.group.visible = on; }),
-      check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }),
+      check("Springs and motors", true, (on) => { view.loads.group.visible = on; }), check("Ground grid", true, (on) => { view.stage.grid.visible = on; }), check("World axes", true, (on) => { view.stage.axes.visible = on; }), shadows,
       check("Trails", false, (on) => view.setTrails(on)), check("Centres of mass", false, (on) => { view.centres.visible = on; }), check("Body axes", false, (on) => { view.frames.visible = on; }),
       m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
     all.length > 0 ? part("Forces", contacts ? check("Contact forces", true, (on) => { contacts.group.visible = on; }) : null, reactions ? check("Reactions of joints", false, (on) => { reactions.group.visible = on; }) : null,

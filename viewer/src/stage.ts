@@ -33,16 +33,15 @@ export class Stage {
   halves: ((half: number) => void) | null = null;
 
   constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
-    shadows &&= !software;
     this.renderer = new WebGLRenderer({ antialias: !software, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     this.renderer.debug.checkShaderErrors = false;  // to ask for them waits until all are compiled
-    this.renderer.shadowMap.enabled = shadows;
+    this.renderer.shadowMap.enabled = true;  // costs nothing while no light casts any
     this.renderer.shadowMap.type = PCFShadowMap;
     holder.prepend(this.renderer.domElement);
     for (const camera of [this.perspective, this.parallel]) camera.up.copy(up);
     this.world.add(new HemisphereLight(0xffffff, 0xa8b2bb, 1.9), new AmbientLight(0xffffff, 0.5), this.sun, this.sun.target, this.grid, this.axes);
-    this.sun.castShadow = shadows;
+    this.sun.castShadow = shadows && !software;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.controls = new OrbitControls(this.perspective, this.renderer.domElement);
     const before = new Vector3();  // a click alone moves no camera
@@ -60,8 +59,9 @@ export class Stage {
     const [e1, e2] = this.sides();
     this.sun.position.copy(middle).addScaledVector(this.up, this.size).addScaledVector(e1, 0.45 * this.size).addScaledVector(e2, -0.7 * this.size);
     this.sun.target.position.copy(middle);
+    // Far enough for a ground well below what moves: shadows of parallel light stay as wide as what casts them.
     const shadow = this.sun.shadow.camera, half = 0.62 * this.size;
-    Object.assign(shadow, { left: -half, right: half, top: half, bottom: -half, near: 0.1 * this.size, far: 2.6 * this.size });
+    Object.assign(shadow, { left: -half, right: half, top: half, bottom: -half, near: 0.1 * this.size, far: 12 * this.size });
     shadow.updateProjectionMatrix();
     this.sun.shadow.normalBias = 0.002 * this.size;
     this.makeGrid(box, middle);
@@ -174,10 +174,15 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Makes drawing cheaper, where a machine is too slow: first without shadows, then with fewer pixels. */
+  get shadows(): boolean { return this.sun.castShadow; }
+  set shadows(on: boolean) {
+    this.sun.castShadow = on;
+    this.dirty = true;
+  }
+
+  /** Makes drawing cheaper, where a machine is too slow: with fewer pixels. */
   lighten(): void {
-    if (this.sun.castShadow) this.sun.castShadow = false;
-    else if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
+    if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
     this.resize();
   }
 

@@ -22,7 +22,9 @@ export class View {
   readonly helical: Axes;
   ghost: Ghost | null = null;
   beside = false;
-  /** Called when something has moved. */
+  shadowsAsked = false;  // by somebody: then a slow machine leaves them as they are
+  /** Called when shadows came or went, and when something has moved. */
+  onshadows: () => void = () => undefined;
   onupdate: () => void = () => undefined;
   private t = 0;
   chosen: Choice | null = null;
@@ -192,6 +194,15 @@ export class View {
     this.bodies.showing.forEach((_, i) => { this.bodies.showing[i] = i === body ? "shown" : "ghost"; });
     this.update();
   }
+
+  setShadows(on: boolean): void {
+    this.stage.shadows = on;
+    this.bodies.setShadows(on);
+    this.ghost?.setShadows(on);
+    this.onshadows();
+  }
+  /** Makes drawing cheaper, where a machine is too slow: first without shadows. */
+  lighten(): void { if (this.stage.shadows && !this.shadowsAsked) this.setShadows(false); else this.stage.lighten(); }
 
   /** What is at a point of the window; in the picture of the other recording, what has the same name here. */
   pick(x: number, y: number): { choice: Choice; point: Vector3 } | null {

@@ -14,6 +14,14 @@ export async function launch() {
 /** A page that notes every message of the console, every fault and every request to a network. */
 export async function openPage(browser, address, options = {}) {
   const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, offline: !address.startsWith("http"), ...options });
+  // What the page has drawn, as commands to the graphics processor.
+  await context.addInitScript(() => {
+    window.drawCalls = 0;
+    for (const name of ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"]) {
+      const draw = WebGL2RenderingContext.prototype[name];
+      WebGL2RenderingContext.prototype[name] = function (...words) { window.drawCalls++; return draw.apply(this, words); };
+    }
+  });
   const page = await context.newPage();
   const faults = [], requests = [];
   // Chromium says so when a picture is read back from its software renderer; it is no fault of the page.

@@ -122,6 +122,68 @@ await test("trails, centres, axes, parallel projection, section and follow chang
   for (let k = 0; k < 3; k++) expect(Math.abs(moved[k] - first[k] - rows[80][k + 1] + rows[40][k + 1]) < 1e-3, `the camera goes from ${first} to ${moved}`);
 });
 
+await test("bodies throw shadows of parallel light on the ground, and none when shadows are off", async () => {
+  recorded("plate", `format: 1
+bodies:
+  floor: {fixed: true, shape: {plane: z}}
+  plate: {shape: {box: [1, 1, 0.02]}, density: 1000, position: [-2, 0, 2], velocity: [0, 0, 1]}
+  ball: {shape: {sphere: 0.5}, density: 1000, position: [2, 0, 2], velocity: [0, 0, 1]}
+analysis: {duration: 1 s, step: 0.1 s}
+output: {every: 1 s}
+`);
+  const distance = 20, { page } = await page_of(`plate.html#eye=0,-0.02,${distance}&at=0,0,0`);
+  await page.getByRole("tab", { name: "Display" }).click();
+  for (const label of ["Ground grid", "World axes", "Joints"]) await page.getByLabel(label, { exact: true }).click();
+  const shadows = page.getByLabel("Shadows", { exact: true });
+  expect(!await shadows.isChecked(), "without a graphics processor there are shadows that nobody wanted");
+  /** Seen from above: area and centre, in metres on the ground, of what is not as bright as the empty ground, left and right of the middle. */
+  const dark = async (except) => page.evaluate(async ([url, except, distance]) => {
+    const read = async (url) => {
+      const drawn = Object.assign(new Image(), { src: url });
+      await drawn.decode();
+      const flat = new OffscreenCanvas(drawn.width, drawn.height), context = flat.getContext("2d");
+      context.drawImage(drawn, 0, 0);
+      return context.getImageData(0, 0, flat.width, flat.height);
+    };
+    const { data, width, height } = await read(url), behind = except && await read(except), scale = height / 2 / (distance * Math.tan(17.5 * Math.PI / 180)), ground = 4 * ((height >> 1) * width + (width >> 1));
+    const differs = ({ data }, i) => [0, 1, 2].some((k) => Math.abs(data[i + k] - data[ground + k]) > 6), found = [0, 1].map(() => ({ area: 0, x: 0, y: 0, light: 0 }));
+    for (let y = 0; y < height; y++)
+      for (let x = 0, i = 4 * y * width; x < width; x++, i += 4) {
+        if (Math.max(Math.abs(x - width / 2), Math.abs(y - height / 2)) > 4 * scale || !differs({ data }, i) || (behind && differs(behind, i))) continue;
+        const side = found[x > width / 2 ? 1 : 0];
+        side.area += 1;
+        side.x += x + 0.5 - width / 2;
+        side.y += height / 2 - y - 0.5;
+        side.light += (data[i] + data[i + 1] + data[i + 2]) / (data[ground] + data[ground + 1] + data[ground + 2]);
+      }
+    return found.map(({ area, x, y, light }) => ({ area: area / scale ** 2, x: x / area / scale, y: y / area / scale, light: light / area }));
+  }, [await picture(page), except, distance]);
+  const seen = {};
+  for (const [time, height] of [["Home", 2], ["End", 3]]) {
+    await page.keyboard.press(time);
+    const off = await picture(page), bodies = await dark(null);
+    // The bodies alone, nearer to the eye than the ground: as large as perspective makes them.
+    expect(Math.abs(bodies[0].area - (distance / (distance - height - 0.01)) ** 2) < 0.05, `without shadows there is ${JSON.stringify(bodies)}`);
+    await shadows.click();
+    seen[height] = await dark(off);
+    await shot(page, `shadows_${time}`);
+    await shadows.click();
+    expect(await picture(page) === off, "shadows do not go");
+  }
+  for (const height of [2, 3]) {
+    const [plate, ball] = seen[height];
+    // Of parallel light, on a level ground: the shadow of a level plate is as large as it is, that of a ball longer by the slant of the light.
+    const dx = (plate.x + 2) / height, dy = plate.y / height, slant = Math.hypot(1, dx, dy);
+    expect(Math.abs(plate.area - 1) < 0.04 && Math.abs(ball.area - Math.PI * 0.25 ** 2 * slant) < 0.02, `${height}: ${JSON.stringify(seen[height])}`);
+    expect(Math.hypot(dx, dy) > 0.3 && Math.abs((ball.x - 2) / height - dx) < 0.02 && Math.abs(ball.y / height - dy) < 0.02, `${height}: ${JSON.stringify(seen[height])}`);
+    expect(plate.light < 0.96 && ball.light < 0.96, `${height}: ${JSON.stringify(seen[height])}`);
+  }
+  for (const k of [0, 1]) for (const axis of ["x", "y"]) {  // as far from the foot of what throws it as that is high
+    const foot = axis === "y" ? 0 : k ? 2 : -2;
+    expect(Math.abs((seen[3][k][axis] - foot) / (seen[2][k][axis] - foot) - 1.5) < 0.04, JSON.stringify(seen));
+  }
+});
+
 await test("forces are scaled and filtered", async () => {
   const { page } = await page_of("all.html");
   await page.getByRole("tab", { name: "Display" }).click();

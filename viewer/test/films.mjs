@@ -4,7 +4,7 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { program } from "./browser.mjs";
-import { browser, expect, folder, made, page_of, refusal, run, test } from "./support.mjs";
+import { browser, expect, folder, made, page_of, recorded, refusal, run, test } from "./support.mjs";
 
 await test("a film has the pictures that were asked for", async () => {
   made("all.html");
@@ -33,6 +33,31 @@ await test("a film has the pictures that were asked for", async () => {
   for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"],
     [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: cannot be replaced"]])
     expect(refusal(["convert", "all.results", ...words]).includes(text), refusal(["convert", "all.results", ...words]));
+});
+
+await test("the camera of a film goes round, and begins where a link says", async () => {
+  recorded("cube", "format: 1\nbodies: {cube: {shape: {box: [1, 0.5, 1]}, density: 1000}}\nanalysis: {duration: 1 s, step: 0.1 s}\noutput: {every: 0.5 s}\n");
+  const { page } = await page_of("cube.html"), at = (distance) => `#eye=0,-${distance},0&at=0,0,0`;
+  /** Parts of the picture that have the cube's colour, which is blue. */
+  const blue = (file) => page.evaluate(async (text) => {
+    const drawn = Object.assign(new Image(), { src: `data:image/png;base64,${text}` });
+    await drawn.decode();
+    const flat = new OffscreenCanvas(drawn.width, drawn.height), context = flat.getContext("2d");
+    context.drawImage(drawn, 0, 0);
+    const { data } = context.getImageData(0, 0, flat.width, flat.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += data[i + 2] > data[i] + 30 ? 1 : 0;
+    return count / (data.length / 4);
+  }, readFileSync(join(folder, file)).toString("base64"));
+  const film = (name, ...words) => run("convert", "cube.results", name, "--size", "240x240", "--rate", "4", ...words);
+  film("round", "--turn", "360", "--link", at(5));
+  const round = [];
+  for (let k = 0; k < 5; k++) round.push(await blue(`round/0000${k}.png`));
+  // Front, side, back, side, front of a box twice as wide as deep, in perspective.
+  const [front, side] = [1 / (5 - 0.25) ** 2, 0.5 / (5 - 0.5) ** 2].map((area) => area / (4 * Math.tan(17.5 * Math.PI / 180) ** 2));
+  [front, side, front, side, front].forEach((part, k) => expect(Math.abs(round[k] / part - 1) < 0.06, `picture ${k} has ${round[k]} of blue, not ${part}`));
+  film("far", "--to", "0", "--link", at(10));
+  expect(Math.abs(await blue("far/00000.png") / front / (4.75 / 9.75) ** 2 - 1) < 0.1, `from afar it has ${await blue("far/00000.png")} of blue`);
 });
 
 await test("what films need is told where it is missing", async () => {
