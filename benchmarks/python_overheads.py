@@ -70,7 +70,7 @@ def run_times(folder):
         return children() - before
 
     hashes = set()
-    found = differences(ours, command, 9)
+    found = differences(ours, command, 15)
     assert len(hashes) == 1, hashes
     return found
 

@@ -2,6 +2,7 @@
 """The source package holds what a build needs."""
 
 import pathlib
+import statistics
 import subprocess
 import sys
 import tarfile
@@ -24,3 +25,15 @@ def test_the_source_package_holds_every_file_of_the_repository(tmp_path: pathlib
     wanted = [file for file in listed.stdout.splitlines() if not file.startswith("docs/images/")]
     missing = [file for file in wanted if (ROOT / file).exists() and f"{name}/{file}" not in inside]
     assert "viewer/dist/viewer.html" in wanted and not missing, missing
+
+
+def test_the_import_is_light() -> None:
+    """Nothing that takes long is loaded before it is wanted, and a start takes below 150 ms of a processor."""
+    code = ("import resource, sys; before = resource.getrusage(resource.RUSAGE_SELF); import polhode; "
+            "after = resource.getrusage(resource.RUSAGE_SELF); "
+            "print(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "
+            "*({'numpy', 'scipy', 'pandas', 'matplotlib', 'tqdm'} & set(sys.modules)))")
+    starts = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+              for _ in range(7)]
+    assert all(len(words) == 1 for words in starts), starts
+    assert statistics.median(float(words[0]) for words in starts) < 0.15, starts
