@@ -64,6 +64,7 @@ class ContactsBuilder {
       return nullptr;
     }
     keep_pairs();
+    add_switches();
     return set_;
   }
 
@@ -174,6 +175,22 @@ class ContactsBuilder {
       }
     for (const auto& [a, b] : found) keep(a, b, "");
     map_.all_pairs = true;
+  }
+
+  /// Lets what events switch be switched; those at the start tell what is off there.
+  void add_switches() {
+    const auto named = [](const std::vector<std::string>& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    for (const ContactPairSpec& pair : spec_.pairs) {
+      bool switched = false, off = false;
+      for (const EventSpec& event : model_.events) {
+        const bool to_on = named(event.on, pair.name), to_off = named(event.off, pair.name);
+        switched = switched || to_on || to_off;
+        if ((to_on || to_off) && event.at && *event.at <= 0.0) off = to_off;
+      }
+      if (switched && of_bodies(pair)) set_->add_switch(pair.a, pair.b, off);
+    }
   }
 
   const Model& model_;

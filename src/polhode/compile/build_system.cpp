@@ -19,6 +19,7 @@
 #include <polhode/loads/gear.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/model/gear_geometry.hpp>
+#include <polhode/model/switched_contacts.hpp>
 
 namespace polhode {
 
@@ -403,6 +404,7 @@ class Builder {
                           Switching how) {
       for (const std::string& name : names) {
         try {
+          if (switched_contact(model_, name)) continue;  // see build_contacts()
           const SwitchTarget target = switch_target(model_, name);
           const auto index = static_cast<std::size_t>(target.index);
           const std::string kind = target.joint ? Joint::kKind : model_.loads[index].type;

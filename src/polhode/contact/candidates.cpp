@@ -120,8 +120,10 @@ void ContactSet::find_candidates(double dt) {
           shapes_[u].body != kGround)
         shape_pairs.emplace_back(std::min(i, u), std::max(i, u));
     }
-  std::erase_if(shape_pairs,
-                [&](const auto& p) { return !may_meet(shapes_[p.first], shapes_[p.second]); });
+  std::erase_if(shape_pairs, [&](const auto& p) {
+    const PlacedShape &a = shapes_[p.first], &b = shapes_[p.second];
+    return !may_meet(a, b) || is_off(a, b);
+  });
   std::sort(shape_pairs.begin(), shape_pairs.end());
 
   // Pairs of bodies, in order; the ground is always second.

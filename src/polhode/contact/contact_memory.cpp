@@ -19,6 +19,7 @@ void ContactSet::save(State& state) {
   out.assign(1, static_cast<double>(totals_.size()));
   out.insert(out.end(), totals_.begin(), totals_.end());
   out.push_back(longest_step_);
+  for (const Switch& s : switches_) out.push_back(s.off ? 1.0 : 0.0);
   const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
   for (const Reference& r : references_) {
     put(r.r);
@@ -58,11 +59,13 @@ void ContactSet::load(const State& state) {
   saved_ = in;
   for (Reference& r : references_) r.margin = -1.0;
   longest_step_ = 0.0;
+  for (Switch& s : switches_) s.off = s.starts_off;
   if (in.empty()) return;
   totals_ = totals_in(state);
-  const std::size_t head = 2 + totals_.size();
+  const std::size_t first = 2 + totals_.size(), head = first + switches_.size();
   if (in.size() < head) return;
-  longest_step_ = in[head - 1];
+  longest_step_ = in[first - 1];
+  for (std::size_t k = 0; k < switches_.size(); ++k) switches_[k].off = in[first + k] != 0.0;
   const std::size_t references = head + kReferenceNumbers * references_.size();
   if (in.size() < references) return;
   for (std::size_t k = 0; k < references_.size(); ++k) {

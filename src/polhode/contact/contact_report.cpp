@@ -86,10 +86,14 @@ void add_buried(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at, 
 }  // namespace
 
 std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep> instants) {
+  return overlaps_at(State(), instants);
+}
+
+std::vector<ShapeOverlap> ContactSet::overlaps_at(const State& state,
+                                                  std::span<const BodyStep> instants) {
   StepContext context;
   context.dt = 1e-2;
-  State none;
-  begin_step(none, instants, context);
+  begin_step(state, instants, context);
   Overlaps deepest;
   for (const Point& p : points_) {
     if (p.sensor || p.data.pair.weight < 0.0 || p.gap_n > -p.data.normal.tolerance) continue;
@@ -103,7 +107,11 @@ std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep>
     found = {std::min(p.a, p.b), std::max(p.a, p.b), -p.gap_n, sign * value(g.normal)};
   }
   add_buried(
-      shapes_, [&](int a, int b) { return may_meet(shapes_[a], shapes_[b]) && !law(a, b).sensor; },
+      shapes_,
+      [&](int a, int b) {
+        return may_meet(shapes_[a], shapes_[b]) && !is_off(shapes_[a], shapes_[b]) &&
+               !law(a, b).sensor;
+      },
       [&](int shape) {
         const BodyStep& step = step_of(shape, instants);
         return Placement<double>(step.r_n, step.Lambda_n, 0);
@@ -122,10 +130,12 @@ std::vector<ShapeOverlap> ContactSet::deepest_overlaps(std::span<const BodyStep>
 
 std::vector<std::string> ContactSet::overlaps(std::span<const BodyStep> instants) {
   std::vector<std::string> list;
-  for (const ShapeOverlap& o : deepest_overlaps(instants))
-    list.push_back(
-        format("'{}' in '{}' by {:.3g} m", shapes_[o.a].name, shapes_[o.b].name, o.depth));
+  for (const ShapeOverlap& o : deepest_overlaps(instants)) list.push_back(words_of(o));
   return list;
+}
+
+std::string ContactSet::words_of(const ShapeOverlap& o) const {
+  return format("'{}' in '{}' by {:.3g} m", shapes_[o.a].name, shapes_[o.b].name, o.depth);
 }
 
 std::string ContactSet::tightest() const {

@@ -128,9 +128,12 @@ bool ContactSet::may_meet(const PlacedShape& a, const PlacedShape& b) const {
   if (a.body == b.body) return false;
   if (!(a.groups & b.meets) || !(b.groups & a.meets)) return false;
   if (!a.shape.bounded() && !b.shape.bounded()) return false;
-  if (excluded_.empty()) return true;
-  const auto owner = [](const PlacedShape& s) { return s.owner == -2 ? s.body : s.owner; };
-  return !excluded_.contains(std::minmax(owner(a), owner(b)));
+  return excluded_.empty() || !excluded_.contains(owners(a, b));
+}
+
+std::pair<int, int> ContactSet::owners(const PlacedShape& a, const PlacedShape& b) {
+  const int x = a.owner == -2 ? a.body : a.owner, y = b.owner == -2 ? b.body : b.owner;
+  return {std::min(x, y), std::max(x, y)};
 }
 
 void ContactSet::prepare(const System& system) {

@@ -71,7 +71,18 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void set_impulses(const ImpulseOptions& options) { impulses_ = options; }
   /// Shapes of these owners (bodies, if none is stated) do not meet.
   void exclude(int owner_a, int owner_b);
-  /// Whether two shapes touch when they are near: bodies, groups and exclusions allow it.
+  /// Lets the contact of two owners be switched off and on.
+  void add_switch(int owner_a, int owner_b, bool starts_off);
+  /// Number of a switch that was added.
+  [[nodiscard]] int switch_of(int owner_a, int owner_b) const;
+  /// Switches at an instant. What points that are gone remembered is forgotten.
+  void switch_over(State& state, std::span<const int> switches, bool off);
+  /// Shapes that would overlap if these were switched on, in words.
+  [[nodiscard]] std::vector<std::string> overlaps_if_on(const State& state,
+                                                        std::span<const BodyStep> instants,
+                                                        std::span<const int> switches);
+  /// Whether two shapes touch when they are near and nothing is switched off: bodies, groups and
+  /// exclusions allow it.
   [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
 
   [[nodiscard]] const std::vector<PlacedShape>& shapes() const { return shapes_; }
@@ -201,6 +212,11 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
                                std::span<const Vec6> increments, double most);
   void load(const State& state);
   void save(State& state);
+  [[nodiscard]] std::vector<ShapeOverlap> overlaps_at(const State& state,
+                                                      std::span<const BodyStep> instants);
+  [[nodiscard]] std::string words_of(const ShapeOverlap& overlap) const;
+  [[nodiscard]] bool is_off(const PlacedShape& a, const PlacedShape& b) const;
+  [[nodiscard]] static std::pair<int, int> owners(const PlacedShape& a, const PlacedShape& b);
   void refer(std::span<const BodyStep> steps, const StepContext& context);
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
@@ -235,6 +251,12 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   ContactLaw default_law_;
   std::map<std::pair<int, int>, ContactLaw> laws_;
   std::set<std::pair<int, int>> excluded_;
+  struct Switch {
+    std::pair<int, int> owners;
+    bool starts_off = false;
+    bool off = false;  ///< At the state that was loaded or saved last.
+  };
+  std::vector<Switch> switches_;
   mutable std::map<std::pair<int, int>, ContactLaw> combined_;
 
   const System* system_ = nullptr;

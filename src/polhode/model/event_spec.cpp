@@ -22,11 +22,16 @@ SwitchTarget switch_target(const Model& model, const std::string& name) {
   };
   look(model.joints, true);
   look(model.loads, false);
-  if (count == 0)
+  if (count == 0) {
+    const bool pairs = !model.contacts.pairs.empty();
+    for (const ContactPairSpec& pair : model.contacts.pairs) names.push_back(pair.name);
+    const std::string what = pairs ? "joint, load or pair of contacts" : "joint or load";
+    const char* kinds = pairs ? "Joints, loads and pairs: " : "Joints and loads: ";
     throw InputError(
-        name, format("unknown joint or load '{}'", name),
-        did_you_mean(name, names) + (names.empty() ? "The model has neither joints nor loads"
-                                                   : "Joints and loads: " + name_list(names)));
+        name, format("unknown {} '{}'", what, name),
+        did_you_mean(name, names) +
+            (names.empty() ? "The model has neither joints nor loads" : kinds + name_list(names)));
+  }
   if (count > 1)
     throw InputError(name, format("'{}' is a joint and a load", name), "Rename one of them");
   if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid >= 0)

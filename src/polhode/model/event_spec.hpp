@@ -25,14 +25,14 @@ struct ConditionSpec {
   bool above = true;   ///< It holds from the level up; else from the level down.
 };
 
-/// Something that switches joints and loads, at a time or when a condition comes to hold.
+/// Something that switches joints, loads and contacts, at a time or when a condition comes to hold.
 struct EventSpec {
   std::string name;
   Place place;
   std::optional<double> at;           ///< [s]; at 0 it tells how the model starts.
   std::optional<ConditionSpec> when;  ///< Instead of a time.
   std::string after;                  ///< Event that must have come before; "" for none.
-  std::vector<std::string> on, off;   ///< Joints and loads by name.
+  std::vector<std::string> on, off;   ///< Joints, loads, pairs of contacts.
   bool repeat = false;                ///< Comes again each time the condition comes to hold.
   bool stop = false;                  ///< Ends the run.
 };

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/contact/contact_set.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/model/switched_contacts.hpp>
 #include <polhode/simulation/event_watch.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -22,11 +24,20 @@ EventWatch::EventWatch(const Model& model, const SystemMap& map, const System& s
     : system_(&system), events_(&map.events) {
   for (const EventSpec& event : *events_) {
     Watched w;
-    for (const auto& [names, list] : {std::pair(&event.on, &w.on), std::pair(&event.off, &w.off)})
-      for (const std::string& name : *names) {
+    const auto add = [&](const std::vector<std::string>& names, std::vector<int>& interactions,
+                         std::vector<int>& contacts) {
+      for (const std::string& name : names) {
+        if (const auto pair = switched_contact(model, name)) {
+          const ContactPairSpec& of = model.contacts.pairs[at(*pair)];
+          if (map.contacts) contacts.push_back(map.contacts->switch_of(of.a, of.b));
+          continue;
+        }
         const SwitchTarget target = switch_target(model, name);
-        list->push_back((target.joint ? map.joint : map.load)[at(target.index)]);
+        interactions.push_back((target.joint ? map.joint : map.load)[at(target.index)]);
       }
+    };
+    add(event.on, w.on, w.contacts_on);
+    add(event.off, w.off, w.contacts_off);
     if (event.when)
       w.channel = ChannelReader(model, map, system, event.when->channel,
                                 format("events.{}.when.channel", event.name));

@@ -22,6 +22,14 @@ class EventWatch {
   [[nodiscard]] const std::vector<int>& on(int event) const { return watched_[at(event)].on; }
   [[nodiscard]] const std::vector<int>& off(int event) const { return watched_[at(event)].off; }
 
+  /// Contacts that an event switches on, off: switches of the ContactSet.
+  [[nodiscard]] const std::vector<int>& contacts_on(int event) const {
+    return watched_[at(event)].contacts_on;
+  }
+  [[nodiscard]] const std::vector<int>& contacts_off(int event) const {
+    return watched_[at(event)].contacts_off;
+  }
+
   /// The next time that is given for an event [s]; infinity if there is none.
   [[nodiscard]] double next_time(const State& state) const;
   /// Whether a condition may come to hold in the next step.
@@ -44,6 +52,7 @@ class EventWatch {
  private:
   struct Watched {
     std::vector<int> on, off;
+    std::vector<int> contacts_on, contacts_off;
     ChannelReader channel;
     int after = -1;
   };

@@ -16,14 +16,6 @@ constexpr int kMostSurfaceRounds = 50;
 /// Part of the depth by which a pair moves beyond just touching, so that rounds end.
 constexpr double kBeyond = 1e-6;
 
-std::vector<BodyStep> instants_of(const System& system, const State& state) {
-  std::vector<BodyStep> instants(static_cast<std::size_t>(system.body_count()) + 1);
-  for (int b = 0; b < system.body_count(); ++b)
-    instants[static_cast<std::size_t>(b)] = system.instant(state, b);
-  instants.back() = BodyStep::ground(1.0);
-  return instants;
-}
-
 /// What moves as one: a body, or solids with the bodies that they are bonded to. Numbers are those
 /// of the System's bodies, then those of the model's solids.
 class Parts {
@@ -179,6 +171,14 @@ class Separation {
 };
 
 }  // namespace
+
+std::vector<BodyStep> instants_of(const System& system, const State& state) {
+  std::vector<BodyStep> instants(static_cast<std::size_t>(system.body_count()) + 1);
+  for (int b = 0; b < system.body_count(); ++b)
+    instants[static_cast<std::size_t>(b)] = system.instant(state, b);
+  instants.back() = BodyStep::ground(1.0);
+  return instants;
+}
 
 std::vector<std::string> overlaps_at(const System& system, contact::ContactSet& contacts,
                                      const State& state) {

@@ -15,6 +15,9 @@ struct StartMove {
   double distance = 0.0;  ///< [m]
 };
 
+/// Bodies at a state as contacts want them: the ground last.
+[[nodiscard]] std::vector<BodyStep> instants_of(const System& system, const State& state);
+
 /// Names of the shapes that overlap at a state by more than their tolerance: "'a' in 'b' by 1 m".
 /// @param contacts  Prepared for the system.
 [[nodiscard]] std::vector<std::string> overlaps_at(const System& system,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <polhode/simulation/simulation_impl.hpp>
+#include <polhode/simulation/switch_contacts.hpp>
 
 namespace polhode {
 
@@ -112,6 +113,15 @@ bool Simulation::let_events_come(StepReport& report) {
       SwitchReport done;
       const EventSpec& event = events.events()[static_cast<std::size_t>(e)];
       const bool at_start = event.at && *event.at <= 0.0;  // the start was assembled with it
+      if (!at_start && s.map.contacts) {
+        const auto overlaps = switch_contacts(s.system, *s.map.contacts, s.state,
+                                              events.contacts_on(e), events.contacts_off(e));
+        if (!overlaps.empty()) {
+          report.accepted = false;
+          report.message = s.cannot_touch(event, overlaps);
+          return false;
+        }
+      }
       if (!at_start && (!event.on.empty() || !event.off.empty())) {
         done = s.stepper->switch_over(s.state, events.on(e), events.off(e));
         s.forget_instant();

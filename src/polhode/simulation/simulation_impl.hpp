@@ -161,6 +161,14 @@ struct Simulation::Impl {
     instant_solver.reset();
     instant_step = -1;
   }
+  [[nodiscard]] std::string cannot_touch(const EventSpec& event,
+                                         const std::vector<std::string>& overlaps) const {
+    return format(
+        "event '{}' at t = {:.6g} s: shapes whose contact would begin overlap: {}. Let it come "
+        "when "
+        "they are apart or just touch",
+        event.name, state.t, name_list(overlaps, 12));
+  }
   [[nodiscard]] std::string cannot_switch(const EventSpec& event, const SwitchReport& done) const {
     if (done.worst < 0)
       return format(

@@ -5,6 +5,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/model/switched_contacts.hpp>
 
 namespace polhode {
 
@@ -39,7 +40,7 @@ void read_targets(ReadContext& context, Section& section, const char* key,
   if (!list) return;
   for (const std::string& name : *list) {
     try {
-      (void)switch_target(context.model, name);
+      if (!switched_contact(context.model, name)) (void)switch_target(context.model, name);
     } catch (const InputError& e) {
       section.fault(key, e.what_is_wrong(), e.mend() + ".");
       return;

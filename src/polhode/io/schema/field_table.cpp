@@ -96,7 +96,7 @@ const FieldTable& model_fields() {
            .table = "controller"},
           {.name = "events",
            .kind = kNamed,
-           .meaning = "Events that switch joints and loads, by name.",
+           .meaning = "Events that switch joints, loads and contacts, by name.",
            .table = "event"},
           {.name = "analysis",
            .kind = kSection,

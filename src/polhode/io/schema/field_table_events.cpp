@@ -9,7 +9,8 @@ using enum FieldKind;
 const FieldTable& event_fields() {
   static const FieldTable table{
       "event",
-      "Switches joints and loads off and on: at a time, or when a reported number crosses a value. "
+      "Switches joints, loads and contacts off and on: at a time, or when a reported number "
+      "crosses a value. "
       "An event at time 0 tells how the model starts. Positions are continuous, velocities too "
       "unless a joint closes or a drive begins.",
       {
@@ -26,8 +27,10 @@ const FieldTable& event_fields() {
            .kind = kText,
            .meaning = "Name of an event before which this one does not come.",
            .standard = "it may come from the start"},
-          {.name = "off", .kind = kNames, .meaning = "Joints and loads that cease to act."},
-          {.name = "on", .kind = kNames, .meaning = "Joints and loads that begin to act."},
+          {.name = "off",
+           .kind = kNames,
+           .meaning = "Joints, loads, and pairs and sensors of contacts that cease to act."},
+          {.name = "on", .kind = kNames, .meaning = "Likewise what begins to act."},
           {.name = "repeat",
            .kind = kBoolean,
            .meaning = "Comes each time the condition begins to hold, not only the first time.",

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts that events switch: a lid that opens, a net that catches, against closed forms.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <polhode/simulation/simulation_details.hpp>
+#include <polhode/system/state_archive.hpp>
+#include <support/run_text.hpp>
+
+namespace polhode::test::events_contact_tests {
+namespace {
+
+constexpr double kG = 9.81;
+
+/// A ball of radius 50 mm above, on or within a lid whose upper side is at z = 0, and a floor at −1
+/// m.
+/// @param z  Of the ball's centre [m].
+std::string lid(const std::string& z, const std::string& events, const std::string& T,
+                const std::string& law = "restitution: 0", const std::string& joints = "") {
+  return R"(
+format: 1
+gravity: [0, 0, -9.81]
+variables: {h: 1 ms}
+bodies:
+  ball: {shape: {sphere: 100 mm}, mass: 0.4, position: [0, 0, )" +
+         z + R"(]}
+  lid: {shape: {box: [0.4, 0.4, 0.02]}, fixed: true, position: [0, 0, -0.01]}
+  floor: {shape: {plane: z}, fixed: true, position: [0, 0, -1]}
+)" + joints +
+         R"(
+contacts: {default: {)" +
+         law + R"(}, pairs: {on_lid: {between: [ball, lid]}}}
+events:
+)" + events +
+         R"(
+analysis: {type: dynamics, duration: )" +
+         T + R"( s, step: h}
+output: {hdf5: false}
+)";
+}
+
+}  // namespace
+
+// A lid opens under a ball that lies on it: the ball falls as bodies do, from where it lay, past
+// the lid's inside, and the spring that bore it is lost energy. @tests{switch-loss}
+TEST(ContactEvents, LetABallFallThroughALid) {
+  for (const double h : {0.01, 0.001, 0.00002}) {
+    const double t_e = h < 1e-4 ? 0.03 : 0.3, T = t_e + (h < 1e-4 ? 0.07 : 0.4);
+    const std::string at = std::to_string(t_e);
+    Simulation s =
+        made(lid("50 mm", "  open: {at: " + at + " s, off: [on_lid]}", std::to_string(T)),
+             {"h=" + std::to_string(h)});
+    while (s.time() < t_e - 1e-12) ASSERT_TRUE(s.step(t_e).accepted);
+    const double z = s.body(0).r[2], v = s.body(0).v[2], tau = T - t_e;
+    EXPECT_NEAR(z, 0.05, 1e-4) << h;
+    EXPECT_NEAR(v, 0.0, h < 1e-4 ? 2e-3 : 1e-4) << h;
+    const RunSummary r = finished(s);
+    EXPECT_EQ(r.events[0].count, 1);
+    EXPECT_NEAR(s.body(0).r[2], z + v * tau - 0.5 * kG * tau * tau, 1e-11) << h;
+    EXPECT_NEAR(s.body(0).v[2], v - kG * tau, 1e-11) << h;
+    EXPECT_LT(r.energy_drift, 1e-11) << h;
+  }
+}
+
+// Held on a lid whose contact is off, then handed over to it: it lies still, and no energy comes or
+// goes but what bears it.
+TEST(ContactEvents, HandABallOverToALid) {
+  for (const double h : {0.01, 0.001, 0.0001}) {
+    Simulation s =
+        made(lid("50 mm",
+                 "  begin: {at: 0, off: [on_lid]}\n"
+                 "  over: {at: 0.1 s, on: [on_lid], off: [hook]}",
+                 "0.5", "restitution: 0",
+                 "joints: {hook: {type: fixed, bodies: [ground, ball], at: [0, 0, 0.05]}}"),
+             {"h=" + std::to_string(h)});
+    const RunSummary r = finished(s);
+    EXPECT_NEAR(s.body(0).r[2], 0.05, 1e-4) << h;
+    EXPECT_NEAR(s.body(0).v[2], 0.0, 1e-4) << h;
+    EXPECT_LT(r.energy_drift, 1e-9) << h;
+  }
+}
+
+// On again while the ball is above: it rebounds from there with all of its speed; before that it
+// has been through the lid and back.
+TEST(ContactEvents, CatchWhatComesBack) {
+  // Up from below at v, through the lid that is off; on at the top; then it stays above.
+  const double v = 4.0, start = -0.5, top = start + 0.5 * v * v / kG;
+  for (const double h : {0.002, 0.0005}) {
+    std::string text = lid("-0.5",
+                           "  begin: {at: 0, off: [on_lid]}\n"
+                           "  top: {when: {body: ball, channel: vz, below: 0}, on: [on_lid]}",
+                           "0.95", "restitution: 1");
+    text.replace(text.find("mass: 0.4,"), 10, "mass: 0.4, velocity: [0, 0, 4],");
+    Simulation s = made(text, {"h=" + std::to_string(h)});
+    const RunSummary r = finished(s);
+    EXPECT_NEAR(r.events[1].time, v / kG, 1e-9) << h;
+    EXPECT_LT(r.energy_drift, 1e-9) << h;
+    // It falls from the top by what is between it and the lid, and rises to it again.
+    const double fall = std::sqrt(2.0 * (top - 0.05) / kG), since = 0.95 - v / kG - 2.0 * fall;
+    EXPECT_NEAR(s.body(0).r[2], top - 0.5 * kG * since * since, 5e-3) << h;
+    EXPECT_GT(s.body(0).r[2], 0.05);
+  }
+}
+
+TEST(ContactEvents, RefuseToBeginWhereShapesOverlap) {
+  Simulation s = made(lid("0.2",
+                          "  begin: {at: 0, off: [on_lid]}\n"
+                          "  in: {when: {body: ball, channel: z, below: 0}, on: [on_lid]}",
+                          "1"));
+  const RunSummary r = s.run();
+  EXPECT_EQ(r.end, RunEnd::not_converged);
+  EXPECT_NE(r.message.find("event 'in' at t = 0.20"), std::string::npos) << r.message;
+  EXPECT_NE(r.message.find("shapes whose contact would begin overlap: 'ball' in 'lid' by 0.0"),
+            std::string::npos)
+      << r.message;
+}
+
+// In two parts, cut before, between and after the events: the same bits.
+TEST(ContactEvents, GoOnBitForBitAfterARestart) {
+  const std::string text =
+      lid("0.1",
+          "  open: {at: 0.25 s, off: [on_lid]}\n"
+          "  shut: {when: {body: ball, channel: z, below: -0.3}, on: [on_lid]}",
+          "0.9", "restitution: 0.5, friction: 0.3");
+  for (const char* law : {"h=1 ms", "contacts.default.law=nonsmooth"}) {
+    Simulation straight = made(text, {law});
+    (void)finished(straight);
+    for (const double cut : {0.1, 0.3, 0.7}) {
+      Simulation first = made(text, {law});
+      while (first.time() < cut) ASSERT_TRUE(first.step(1.0).accepted);
+      const std::string bytes = state_bytes(first.system(), first.state());
+      Model model = first.model();
+      Simulation second(std::move(model), state_from_bytes(first.system(), bytes, "here"));
+      (void)finished(second);
+      EXPECT_EQ(second.state_hash(), straight.state_hash()) << law << ' ' << cut;
+      EXPECT_LT(straight.body(0).r[2], -0.3) << law;
+    }
+  }
+}
+
+TEST(ContactEvents, SayWhatIsWrong) {
+  const auto with = [](const std::string& names) {
+    return lid("0.1", "  e: {at: 1 s, off: [" + names + "]}", "1");
+  };
+  tells(with("on_lidd"),
+        "events.e.off: unknown joint, load or pair of contacts 'on_lidd'. Did you mean 'on_lid'?");
+  std::string both = with("on_lid");
+  both.replace(both.find("contacts:"), 9,
+               "joints: {on_lid: {type: spherical, bodies: [ground, ball], at: [0, 0, 0.1]}}\n"
+               "contacts:");
+  tells(both, "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
+}
+
+}  // namespace polhode::test::events_contact_tests
