@@ -77,9 +77,9 @@ inline Mat tangent(const SolidContact& contact, const MovingNodes& nodes,
                    const std::vector<double>& history) {
   return tangent_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
-/// Numbers that a point of solids in contact remembers: its bristle comes first, last by how much
-/// its band ends lower.
-inline constexpr std::size_t kPointNumbers = 12;
+/// Numbers that a point of solids in contact remembers: its bristle comes first, then, among
+/// others, by how much its band ends lower.
+inline constexpr std::size_t kPointNumbers = 14, kLoweredNumber = 11;
 inline std::size_t first_of_points(const MovingNodes& nodes) { return 3 * nodes.X.size() + 1; }
 
 /// At the start, but with the whole band for points that start within.
@@ -87,7 +87,7 @@ inline std::vector<double> with_whole_bands(const SolidContact& contact, const M
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
   for (std::size_t p = 1; p <= contact.points().size(); ++p)
-    history[first_of_points(nodes) + kPointNumbers * p - 1] = 0.0;
+    history[first_of_points(nodes) + kPointNumbers * (p - 1) + kLoweredNumber] = 0.0;
   return history;
 }
 /// A history in which every point has a bristle, and its whole band.

@@ -85,5 +85,98 @@ analysis: {{duration: 20 ms, step: {}}}
     }
 }
 
+/// A straight cable that falls across another one at 1 m/s, without weight, both of one piece.
+Model crossing_cables(double e, double mu, double along, double step) {
+  return read_model_text(format(R"(
+format: 1
+gravity: [0, 0, 0]
+bodies:
+  left: {{mass: 1e-3, inertia: [1e-8, 1e-8, 1e-8], position: [-0.1, 0, 0.011], velocity: [{1}, 0, -1]}}
+  right: {{mass: 1e-3, inertia: [1e-8, 1e-8, 1e-8], position: [0.1, 0, 0.011], velocity: [{1}, 0, -1]}}
+  front: {{mass: 1e-3, inertia: [1e-8, 1e-8, 1e-8], position: [0, -0.1, 0]}}
+  back: {{mass: 1e-3, inertia: [1e-8, 1e-8, 1e-8], position: [0, 0.1, 0]}}
+cables:
+  rope: {{through: [[left], [right]], stiffness: 1e4, mass_per_length: 0.1, elements: 1, contact: {{radius: 5 mm}}}}
+  stay: {{through: [[front], [back]], stiffness: 1e4, mass_per_length: 0.1, elements: 1, contact: {{radius: 5 mm}}}}
+contacts: {{default: {{restitution: {0}, friction: {2}}}}}
+analysis: {{duration: 6 ms, step: {3}}}
+)",
+                                e, along, mu, step),
+                         "cables.yaml");
+}
+
+/// Equal masses part with the mean of their velocities and half of e times the approach.
+// @tests{cable-impact}
+TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) {
+  for (const double e : {0.0, 0.3, 0.7, 1.0})
+    for (const double step : {2e-3, 4e-4, 2e-5}) {
+      SCOPED_TRACE(format("e = {}, step {} s", e, step));
+      Simulation simulation(crossing_cables(e, 0.0, 0.0, step));
+      const RunSummary summary = simulation.run();
+      ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+      for (const char* end : {"left", "right"})
+        EXPECT_NEAR(simulation.body(end).v.z(), 0.5 * (e - 1.0), 1e-4);
+      for (const char* end : {"front", "back"})
+        EXPECT_NEAR(simulation.body(end).v.z(), -0.5 * (1.0 + e), 1e-4);
+      EXPECT_LT(summary.energy_drift, 1e-10) << "what is lost is told";
+      EXPECT_LT(summary.linear_momentum_drift, 1e-12);
+      EXPECT_LT(summary.angular_momentum_drift, 1e-12);
+    }
+}
+
+/// Each has half of the approach's momentum; what friction takes from one the other one gets.
+// @tests{cable-impact}
+TEST(SurfaceImpacts, OfCablesAcrossEachOtherRubByTheirImpulse) {
+  const double mu = 0.1, along = 1.0;
+  for (const double e : {0.0, 0.5})
+    for (const double step : {2e-3, 4e-4, 4e-5}) {
+      SCOPED_TRACE(format("e = {}, step {} s", e, step));
+      Simulation simulation(crossing_cables(e, mu, along, step));
+      const RunSummary summary = simulation.run();
+      ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+      const auto mean = [&](const char* one, const char* other) {
+        return 0.5 * (simulation.body(one).v.x() + simulation.body(other).v.x());
+      };
+      const double given = 0.5 * mu * (1.0 + e);
+      EXPECT_NEAR(mean("left", "right"), along - given, 1e-2 * given);
+      EXPECT_NEAR(mean("front", "back"), given, 1e-2 * given);
+      EXPECT_LT(summary.energy_drift, 1e-10);
+      EXPECT_LT(summary.angular_momentum_drift, 1e-12);
+    }
+}
+
+/// Two equal bodies, each wholly within a solid that moves with it: as rigid ones.
+// @tests{mesh-impact}
+TEST(SurfaceImpacts, OfSolidsOnEachOtherReboundByTheirRestitution) {
+  for (const double e : {0.0, 0.5, 1.0})
+    for (const double step : {1e-3, 2e-4, 2e-5}) {
+      SCOPED_TRACE(format("e = {}, step {} s", e, step));
+      Simulation simulation(read_model_text(format(R"(
+format: 1
+gravity: [0, 0, 0]
+materials: {{rubber: {{type: neo_hookean, youngs_modulus: 1e6, poisson_ratio: 0.3, density: 1000}}}}
+bodies:
+  below: {{mass: 1.784, inertia: [1e-2, 1e-2, 1e-2], position: [0, 0, 0], velocity: [0, 0, 1]}}
+  above: {{mass: 2.568, inertia: [1e-2, 1e-2, 1e-2], position: [0, 0, 0.082], velocity: [0, 0, -1]}}
+solids:
+  low: {{mesh: {{block: {{size: [0.1, 0.1, 0.1], cells: [1, 1, 1]}}, position: [0, 0, 0]}}, material: rubber, velocity: [0, 0, 1],
+        bonded: {{below: {{sphere: {{centre: [0, 0, 0], radius: 9}}}}}}}}
+  high: {{mesh: {{block: {{size: [0.06, 0.06, 0.06], cells: [1, 1, 1]}}, position: [0, 0, 0.082]}}, material: rubber, velocity: [0, 0, -1],
+         bonded: {{above: {{sphere: {{centre: [0, 0, 0], radius: 9}}}}}}}}
+contacts: {{default: {{restitution: {}}}}}
+analysis: {{duration: 6 ms, step: {}}}
+)",
+                                                   e, step),
+                                            "blocks.yaml"));
+      const RunSummary summary = simulation.run();
+      ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+      EXPECT_NEAR(simulation.body("below").v.z(), -e, 1e-3);
+      EXPECT_NEAR(simulation.body("above").v.z(), e, 1e-3);
+      EXPECT_LT(summary.energy_drift, 1e-10);
+      EXPECT_LT(summary.linear_momentum_drift, 1e-12);
+      EXPECT_LT(summary.angular_momentum_drift, 1e-12);
+    }
+}
+
 }  // namespace
 }  // namespace polhode::test::surface_impacts_tests

@@ -9,7 +9,7 @@ namespace polhode {
 template <class Use>
 void SettleImpacts::for_bodies(int row, Use&& use) const {
   if (const SurfaceImpact* hit = surface(row)) {
-    for (const auto& [node, N] : hit->nodes) {
+    for (const auto& [node, rate] : hit->nodes) {
       const int body = system_->nodes()[node].body, piece = system_->nodes().piece(node);
       if (body >= 0) use(body);
       if (body == kFreeNode && piece >= 0) use(system_->body_count() + piece);
@@ -41,7 +41,7 @@ std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
       island.tied = island.tied || body >= bodies || tied_[body];
     });
     if (const SurfaceImpact* hit = surface(k))
-      for (const auto& [node, N] : hit->nodes)
+      for (const auto& [node, rate] : hit->nodes)
         if (system_->nodes()[node].body == kFreeNode) island.nodes.push_back(node);
   }
   const auto sort = [](std::vector<int>& list) {
@@ -131,15 +131,16 @@ std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const
         }
       on.emplace_back(place, J);
     };
-    for (const auto& [node, N] : hit.nodes) {
+    for (const auto& [node, rate] : hit.nodes) {
       const NodeData& data = system_->nodes()[node];
       Vec6 J = Vec6::Zero();
-      J.head<3>() = N * t;
+      J.head<3>() = rate.transpose() * t;
       if (data.body == kFreeNode) {
         const auto at = std::lower_bound(island.nodes.begin(), island.nodes.end(), node);
         push(bodies + static_cast<int>(at - island.nodes.begin()), J);
       } else if (data.body != kGround) {
-        J.tail<3>() = N * Vec3(system_->motion(state, data.body).q * data.Z).cross(t);
+        const Vec3 arm = system_->motion(state, data.body).q * data.Z;
+        J.tail<3>() = arm.cross(J.head<3>());
         push(place_[data.body], J);
       }
     }

@@ -65,8 +65,8 @@ void SettleImpacts::find(const State& state, const Trial& trial) {
       hit.clear();
       group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
       for (SurfaceImpact& impact : hit) {
-        for (const auto& [node, N] : impact.nodes)
-          impact.before += N * impact.normal.dot(velocity_of_node(state, node));
+        for (const auto& [node, J] : impact.nodes)
+          impact.before += impact.normal.dot(J * velocity_of_node(state, node));
         surfaces_.push_back({g, group, std::move(impact)});
       }
     }

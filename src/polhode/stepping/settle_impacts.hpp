@@ -70,6 +70,7 @@ class SettleImpacts {
   [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
   [[nodiscard]] double speed(const State& state, int row) const;
   void find_held(const std::vector<Row>& rows, std::vector<Vec6> v);
+  void share_held(std::vector<Row>& rows, std::vector<Vec6> v) const;
   [[nodiscard]] Work turn_surfaces(State& state) const;
   void tell_surfaces(State& state) const;
   double rub(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;

@@ -8,8 +8,8 @@ namespace polhode {
 
 namespace {
 
-/// Sweeps that find what presses points on end when no impulse changes by more than this part of
-/// the largest one, or after so many.
+/// Conjugate gradients that find what presses points on end when the speeds that are left are this
+/// part of those at first, or after so many.
 constexpr double kHeldConverged = 1e-10;
 constexpr int kMostHeldSweeps = 200;
 /// An impact is over before it turns where others press the point on by this part of what it
@@ -23,10 +23,10 @@ constexpr double kHeldOn = 0.9, kNoImpact = 1e-2;
 double SettleImpacts::wanted_of(const SurfaceImpact& impact, double speed) const {
   const double e = impact.restitution;
   if (e == 1.0) return speed;
-  double falls = 0.0;
-  for (const auto& [node, N] : impact.nodes)
-    if (system_->nodes()[node].body != kGround) falls += N;
-  const double lost = -2.0 * falls * impact.normal.dot(system_->gravity()) * impact.beyond;
+  Vec3 fall = Vec3::Zero();
+  for (const auto& [node, J] : impact.nodes)
+    if (system_->nodes()[node].body != kGround) fall += J * system_->gravity();
+  const double lost = -2.0 * impact.normal.dot(fall) * impact.beyond;
   return std::sqrt(std::max(e * e * (speed * speed + lost) - lost, 0.0));
 }
 
@@ -35,7 +35,7 @@ void SettleImpacts::find_turns(const State& state) {
   for (Surface& surface : surfaces_) {
     const SurfaceImpact& hit = surface.impact;
     Vec3 v = Vec3::Zero();
-    for (const auto& [node, N] : hit.nodes) v += N * velocity_of_node(state, node);
+    for (const auto& [node, J] : hit.nodes) v += J * velocity_of_node(state, node);
     PairImpact& row = rows_.emplace_back();
     Impact& impact = row.impact;
     const double speed = hit.normal.dot(v);
@@ -53,6 +53,39 @@ void SettleImpacts::find_turns(const State& state) {
   before_contacts_ = rows_.size();
 }
 
+/// Impulses that give rows the speeds that they had before the step, by conjugate gradients from
+/// none in the metric of what each was given: many points that no motion tells apart have parts in
+/// that proportion. @eq{surface-held}
+void SettleImpacts::share_held(std::vector<Row>& rows, std::vector<Vec6> v) const {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  Vec scale(n), residual(n), direction, moved(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Row& row = rows[static_cast<std::size_t>(i)];
+    scale[i] = row.mobility > 0.0 ? std::sqrt(surface(row.impact)->given) : 0.0;
+    residual[i] = scale[i] * (surface(row.impact)->before - row.speed(v));
+  }
+  direction = residual;
+  double square = residual.squaredNorm();
+  const double end = kHeldConverged * kHeldConverged * square;
+  for (int k = 0; k < kMostHeldSweeps && square > end; ++k) {
+    for (Vec6& x : v) x.setZero();
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (const auto& [place, x] : rows[static_cast<std::size_t>(i)].answer)
+        v[static_cast<std::size_t>(place)] += scale[i] * direction[i] * x;
+    for (Eigen::Index i = 0; i < n; ++i)
+      moved[i] = scale[i] * rows[static_cast<std::size_t>(i)].speed(v);
+    const double work = direction.dot(moved);
+    if (!(work > 0.0)) break;
+    const double step = square / work;
+    for (Eigen::Index i = 0; i < n; ++i)
+      rows[static_cast<std::size_t>(i)].impulse += step * scale[i] * direction[i];
+    residual -= step * moved;
+    const double before = square;
+    square = residual.squaredNorm();
+    direction = residual + square / before * direction;
+  }
+}
+
 /// Forces that hold points in place: what changed normal speeds over the step, but for the impacts.
 /// An impact is over where they press as much as the point presses back and it has little speed
 /// left. @eq{surface-held}
@@ -68,17 +101,7 @@ void SettleImpacts::find_held(const std::vector<Row>& rows, std::vector<Vec6> v)
     normals.back().impulse = 0.0;
   }
   if (!find) return;
-  for (int sweep = 0; sweep < kMostHeldSweeps; ++sweep) {
-    double change = 0.0, largest = 0.0;
-    for (Row& row : normals) {
-      if (!(row.mobility > 0.0)) continue;
-      const double p = (surface(row.impact)->before - row.speed(v)) / row.mobility;
-      row.push(p, v);
-      change = std::max(change, std::abs(p));
-      largest = std::max(largest, std::abs(row.impulse));
-    }
-    if (!(change > kHeldConverged * largest)) break;
-  }
+  share_held(normals, std::move(v));
   for (const Row& row : normals) {
     Surface& of = of_surface(row.impact);
     of.held = std::max(0.0, of.impact.given + row.impulse) / dt_;
@@ -130,8 +153,8 @@ double SettleImpacts::speed(const State& state, int row) const {
   const SurfaceImpact* hit = surface(row);
   if (!hit) return speed(state, rows_[row]);
   double sum = 0.0;
-  for (const auto& [node, N] : hit->nodes)
-    sum += N * hit->normal.dot(velocity_of_node(state, node));
+  for (const auto& [node, J] : hit->nodes)
+    sum += hit->normal.dot(J * velocity_of_node(state, node));
   return sum;
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include <polhode/surface_contact/edge_contact.hpp>
+#include <polhode/surface_contact/edge_touch.hpp>
 
 namespace polhode {
 
@@ -73,38 +73,58 @@ std::size_t EdgeContact::history_size() const {
          1;
 }
 
-struct EdgeContact::Touch {
-  int e, f;
-  int slot_n = -1, slot_n1 = -1;  ///< Where its bristle is kept; −1: nowhere.
-  EdgePair pair;
-  FourSlide slide;
-  LineSlide along;
-  double by_friction = 0.0, bristle_n1 = 0.0;  ///< Energies [J/m²].
-};
+/// With what the history keeps of it. Where all of it closes within a step, an impact begins.
+EdgeContact::Touch EdgeContact::touch(const NodeStep& step, const double* history, int e,
+                                      int f) const {
+  FourMoves moves;
+  const bool instant = step.x_n == step.x_n1;
+  for (int k = 0; k < 4; ++k) {
+    const MeshPoint& p = end(e, f, k);
+    moves.x_n1[k] = p.at(step.x_n1);
+    moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
+  }
+  int slot = -1;
+  if (memory(history, e)[0] == f + 1.0)
+    slot = e;
+  else if (memory(history, slot_of_second(f))[0] == e + 1.0)
+    slot = slot_of_second(f);
+  PointPhase phase = phase_of(history, slot);
+  const auto pair = [&] {
+    const SurfaceLaw law = phase.law(law_, with_band_lowered);
+    return EdgePair(moves, data(e, f), law, step.alpha_f, step.context.conserving);
+  };
+  Touch t{e, f, slot, -1, phase, pair(), {}, {}};
+  if (!t.pair.acts() || !phase.open() || !step.context.conserving || !(step.context.dt > 0.0))
+    return t;
+  const bool closed = t.pair.within(false);
+  double speed = 0.0;
+  if (!closed) {
+    Vec3 x_n[4], y = Vec3::Zero(), v = Vec3::Zero();
+    moves.at(0.0, x_n);
+    const NearestFour nearest = nearest_of_edges(x_n);
+    for (int k = 0; k < 4; ++k) {
+      y += nearest.c[k] * (x_n[k] - x_n[0]);
+      v += nearest.c[k] * end(e, f, k).at(step.v_n);
+    }
+    speed = y.normalized().dot(v);
+  }
+  const contact::NormalLaw& normal = law_.normal;
+  t.phase = phase =
+      phase.in_step(law_, closed ? normal.floor() : normal.reach(), speed, with_band_lowered);
+  if (phase.in_impact()) t.pair = pair();
+  return t;
+}
 
 std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const double* history,
                                                      bool tangent) const {
   std::vector<Touch> list;
-  const SurfaceLaw law = law_now(history);
-  const bool instant = step.x_n == step.x_n1, rubs = law_.mu > 0.0 && step.context.dt > 0.0;
+  const auto stays = [&](const Touch& t) { return t.pair.gap_n1() < law_.normal.reach(); };
   for (const auto& [e, f] : search(history).pairs) {
-    FourMoves moves;
-    for (int k = 0; k < 4; ++k) {
-      const MeshPoint& p = end(e, f, k);
-      moves.x_n1[k] = p.at(step.x_n1);
-      moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
-    }
-    Touch t{e, f, -1, -1, {moves, data(e, f), law, step.alpha_f, step.context.conserving}, {}, {}};
-    if (!t.pair.acts()) continue;
-    const int first = e, second = slot_of_second(f);
-    if (memory(history, first)[0] == f + 1.0)
-      t.slot_n = first;
-    else if (memory(history, second)[0] == e + 1.0)
-      t.slot_n = second;
-    list.push_back(std::move(t));
+    Touch t = touch(step, history, e, f);
+    // What a pair that has opened remembers goes on until it is out of the band of all.
+    if (t.pair.acts() || (t.slot_n >= 0 && stays(t))) list.push_back(std::move(t));
   }
   std::vector<char> taken(static_cast<std::size_t>(slots()), 0);
-  const auto stays = [&](const Touch& t) { return t.pair.gap_n1() < law.normal.reach(); };
   for (Touch& t : list)
     if (t.slot_n >= 0 && stays(t)) taken[static_cast<std::size_t>(t.slot_n1 = t.slot_n)] = 1;
   for (Touch& t : list)
@@ -112,7 +132,8 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
       if (t.slot_n1 < 0 && stays(t) && !taken[static_cast<std::size_t>(slot)])
         taken[static_cast<std::size_t>(t.slot_n1 = slot)] = 1;
   for (Touch& t : list) {
-    if (!rubs) continue;
+    if (!(law_.mu > 0.0 && step.context.dt > 0.0) || !t.pair.acts() || t.phase.in_impact())
+      continue;
     Vec3 kept = Vec3::Zero();
     double kept_along = 0.0;
     if (t.slot_n >= 0) {
@@ -122,7 +143,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
     t.slide = t.pair.slide(kept, tangent);
     t.along = t.pair.slide_along(kept_along, tangent);
     const double half_k = 0.5 * law_.bristle;
-    if (t.slot_n1 >= 0)
+    if (t.slot_n1 >= 0 && t.pair.within(true))
       t.bristle_n1 =
           half_k * (t.slide.bristle.squaredNorm() + t.along.bristle_n1 * t.along.bristle_n1);
     t.by_friction =
@@ -173,7 +194,7 @@ Work EdgeContact::work(const NodeStep& step, const double* history,
 }
 
 double EdgeContact::taken_by_pressure(const NodeStep& step, const Touch& t) const {
-  if (!(law_.end_share > 0.0) && step.alpha_f == 0.5) return 0.0;
+  if (!(t.phase.law(law_, with_band_lowered).end_share > 0.0) && step.alpha_f == 0.5) return 0.0;
   // Of pairs that share a node only the sum is not negative.
   return of_cables() ? t.pair.dissipated() : std::max(0.0, t.pair.dissipated());
 }
@@ -206,13 +227,19 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     double* const kept = memory(history, t.slot_n1);
     kept[0] = (t.slot_n1 == t.e ? t.f : t.e) + 1.0;
     kept[4] = slips ? 1.0 : 0.0;
+    const bool closed = t.pair.within(true);
+    const double reach = law_.normal.reach();
+    t.phase
+        .at_end(law_,
+                closed ? law_.normal.floor() : std::max(t.pair.gap_n1(), reach - t.phase.lowered))
+        .keep(kept + kPhase);
     for (int k = 0; k < 3; ++k) {
-      kept[1 + k] = t.slide.bristle_n1[k];
+      kept[1 + k] = closed ? t.slide.bristle_n1[k] : 0.0;
       kept[5 + k] = on_first[k];
       kept[8 + k] = rubbing[k];
     }
     kept[11] = normal;
-    kept[kAlong] = t.along.bristle_n1;
+    kept[kAlong] = closed ? t.along.bristle_n1 : 0.0;
   }
   if (sums.normal_force > 0.0) moment /= sums.normal_force;
   for (int k = 0; k < 3; ++k) {
@@ -244,7 +271,8 @@ std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& insta
       at.x_n1[k] = end(e, f, k).at(instant.x_n1);
       at.u[k].setZero();
     }
-    const EdgePair pair(at, data(e, f), law_now(history), 1.0, true);
+    const SurfaceLaw law = with_band_lowered(law_, phase_of(history, slot).lowered);
+    const EdgePair pair(at, data(e, f), law, 1.0, true);
     list.push_back({.point = pair.point(),
                     .normal = pair.normal(),
                     .force = Vec3(kept + 5),

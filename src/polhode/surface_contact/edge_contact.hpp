@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ namespace polhode {
 class EdgeContact final : public ElementGroup,
                           public BarrierPoints,
                           public MovingPattern,
-                          public TouchingSurface {
+                          public TouchingSurface,
+                          public SurfaceImpacts {
  public:
   struct Sides {
     EdgeLines first, second;  ///< Of one surface with itself: the same twice.
@@ -77,11 +79,17 @@ class EdgeContact final : public ElementGroup,
                                                               const double* history) const override;
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
+  void impacts(const NodeStep& step, const double* history,
+               std::vector<SurfaceImpact>& list) const override;
+  double turn(const SurfaceImpact& impact, double held, double* history) const override;
+  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+               double* history) const override;
+
  private:
   /// Of an edge: its partner's number and one, or 0; the bristle in the world, whether it slips,
   /// of the last step the force on the first edge, its tangential part and the normal force; and
-  /// the bristle lengthwise.
-  static constexpr std::size_t kMemory = 13, kAlong = 12;
+  /// the bristle lengthwise; then its PointPhase.
+  static constexpr std::size_t kAlong = 12, kPhase = 13, kMemory = kPhase + PointPhase::kNumbers;
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<std::pair<int, int>> pairs;
@@ -105,12 +113,19 @@ class EdgeContact final : public ElementGroup,
   [[nodiscard]] int slot_of_second(int f) const;
   [[nodiscard]] std::vector<Touch> touches(const NodeStep& step, const double* history,
                                            bool tangent) const;
+  [[nodiscard]] Touch touch(const NodeStep& step, const double* history, int e, int f) const;
   [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
   void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
-  /// The band of all of it ends lower by what the history keeps behind the totals, as some of it
-  /// started within.
-  [[nodiscard]] SurfaceLaw law_now(const double* history) const {
-    return with_band_lowered(law_, memory(history, slots())[SurfaceTotals::kCount]);
+  /// The band of all of it ends lower by that, kept behind the totals, as some of it started
+  /// within [m].
+  [[nodiscard]] double lowered(const double* history) const {
+    return memory(history, slots())[SurfaceTotals::kCount];
+  }
+  /// Of a pair by its slot: its own band may end lower still.
+  [[nodiscard]] PointPhase phase_of(const double* history, int slot) const {
+    PointPhase phase = slot < 0 ? PointPhase{} : PointPhase::of(memory(history, slot) + kPhase);
+    phase.lowered = std::max(phase.lowered, lowered(history));
+    return phase;
   }
   /// Of all terms of the potential the least; ∞ if none is near [m].
   [[nodiscard]] double least_of_terms(const double* x, const double* history) const;

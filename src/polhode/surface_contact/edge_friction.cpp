@@ -93,6 +93,32 @@ EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceL
 
 }  // namespace
 
+/// Along the mean direction t of round edges that hardly cross it is the rate of t·y, as in
+/// cable-along, which has no use for the rotation of the pair. @eq{cable-impact}
+std::array<Mat3, 4> EdgePair::slip_rates(const Vec3& n) const {
+  const Vec3(&x)[4] = moves_.x_n1;
+  const Vec3 e = x[1] - x[0], f = x[3] - x[2];
+  const Rolling<double> rolling(contact::v3(e), contact::v3(f), round());
+  std::array<Mat3, 4> across{};
+  if (rolling.w > 0.0) across = polhode::slip_rates(x, nearest_.c, n, {0, 1, 2, 3});
+  if (rolling.w == 1.0) return across;
+  const Vec3 t = contact::value(rolling.t), b = n.cross(t).normalized(), a = b.cross(n);
+  const double per_e = 1.0 / e.norm(), per_f = (e.dot(f) < 0.0 ? -1.0 : 1.0) / f.norm();
+  const Vec3 on_e = per_e * e, on_f = per_f * f;
+  Vec3 y = Vec3::Zero();
+  for (int k = 1; k < 4; ++k) y += nearest_.c[k] * (x[k] - x[0]);
+  const Vec3 turns = (y - t.dot(y) * t) / (on_e + on_f).norm();
+  const Vec3 by_e = per_e * (turns - on_e.dot(turns) * on_e),
+             by_f = per_f * (turns - on_f.dot(turns) * on_f);
+  const Vec3 by_turn[4] = {-by_e, by_e, -by_f, by_f};
+  std::array<Mat3, 4> rates;
+  for (std::size_t k = 0; k < 4; ++k) {
+    rates[k] = a * (nearest_.c[static_cast<int>(k)] * t + by_turn[k]).transpose();
+    if (rolling.w > 0.0) rates[k] += rolling.w * b * b.transpose() * across[k];
+  }
+  return rates;
+}
+
 FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
   if (round() && !(pressure_ > 0.0)) return {};
   const auto rub = [&](const auto& p, bool seeded) {

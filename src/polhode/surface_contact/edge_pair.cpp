@@ -135,6 +135,18 @@ double EdgePair::dissipated() const {
   return factor_ * (taken - (B_n1_ - B_n_));
 }
 
+bool EdgePair::within(bool at_end) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) {
+    return (at_end ? p.gap_n1 : p.gap_n) < law_.normal.reach();
+  });
+}
+
+std::vector<GapTerm> EdgePair::terms() const {
+  std::vector<GapTerm> list;
+  for (const Part& p : parts_) list.push_back({factor_n1_ * p.sign, p.gap_n1});
+  return list;
+}
+
 EdgePair::Force EdgePair::gap_slope(const Part& part) const {
   if (!part.across || !round()) return part.gap.slope();
   return part.gap.slope() - data_.retreat * m_slope();

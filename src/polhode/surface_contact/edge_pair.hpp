@@ -6,6 +6,8 @@
 #include <polhode/surface_contact/edge_lines.hpp>
 #include <polhode/surface_contact/line_friction.hpp>
 #include <polhode/surface_contact/plane_friction.hpp>
+#include <polhode/surface_contact/slip_rates.hpp>
+#include <polhode/system/surface_impacts.hpp>
 
 namespace polhode {
 
@@ -63,6 +65,14 @@ class EdgePair {
   [[nodiscard]] FourSlide slide(const Vec3& kept, bool tangent) const;
   /// Round edges that lie along each other.
   [[nodiscard]] LineSlide slide_along(double kept, bool tangent) const;
+  /// Whether any of its distances is within the reach of the law, at t_n or t_{n+1}.
+  [[nodiscard]] bool within(bool at_end) const;
+  /// What it stores at t_{n+1}.
+  [[nodiscard]] std::vector<GapTerm> terms() const;
+  /// Of the nearest points at t_{n+1} across n, by the velocities of the four ends, as far as edges
+  /// rub and do not roll on each other.
+  [[nodiscard]] std::array<Mat3, 4> slip_rates(const Vec3& n) const;
+  [[nodiscard]] const NearestFour& nearest() const { return nearest_; }  ///< At t_{n+1}.
   /// Middle of the nearest points, of round edges of all that press, and direction from the second
   /// to the first edge at t_{n+1}.
   [[nodiscard]] Vec3 point() const;

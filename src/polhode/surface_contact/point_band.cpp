@@ -40,35 +40,61 @@ SurfaceLaw beginning_later(const SurfaceLaw& law, double by) {
   return own;
 }
 
+namespace {
+
+double energy_of(const contact::NormalLaw& law, std::span<const GapTerm> terms) {
+  double sum = 0.0;
+  for (const GapTerm& t : terms) sum += t.weight * law.energy(t.gap);
+  return sum;
+}
+
+double force_of(const contact::NormalLaw& law, std::span<const GapTerm> terms) {
+  double sum = 0.0;
+  for (const GapTerm& t : terms) sum += t.weight * law.force(t.gap);
+  return sum;
+}
+
+/// Of the deepest one that counts, from the floor; the band if none does.
+double least_height(const SurfaceLaw& law, std::span<const GapTerm> terms) {
+  double least = law.normal.band();
+  for (const GapTerm& t : terms)
+    if (t.weight > 0.0) least = std::min(least, t.gap - law.normal.floor());
+  return least;
+}
+
+}  // namespace
+
 /// b(g) grows with the gap where it begins.
-double lowered_to_store(const SurfaceLaw& law, double gap, double energy, double least) {
-  const double x = gap - law.normal.floor(), whole = law.normal.band();
+double lowered_to_store(const SurfaceLaw& law, std::span<const GapTerm> terms, double energy,
+                        double least, LoweredLaw own) {
+  const double x = least_height(law, terms), whole = law.normal.band();
   double low = least, high = std::max(low, whole - std::max(x, kLeftAfterImpact * whole));
   for (int k = 0; k < kHalvings && energy > 0.0; ++k) {
     const double middle = 0.5 * (low + high);
-    (beginning_later(law, middle).normal.energy(gap) > energy ? low : high) = middle;
+    (energy_of(own(law, middle).normal, terms) > energy ? low : high) = middle;
   }
   return high;
 }
 
-/// f(g) less what the force would be where it begins.
-double lowered_to_press(const SurfaceLaw& law, double gap, double pressure, double least) {
+/// So does f(g).
+double lowered_to_press(const SurfaceLaw& law, std::span<const GapTerm> terms, double pressure,
+                        double least, LoweredLaw own) {
   const double whole = law.normal.band();
-  double low = least, high = std::max(low, whole - (gap - law.normal.floor()));
+  double low = least, high = std::max(low, whole - least_height(law, terms));
   if (!(pressure > 0.0)) return high;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (low + high);
-    (beginning_later(law, middle).normal.force(gap) > pressure ? low : high) = middle;
+    (force_of(own(law, middle).normal, terms) > pressure ? low : high) = middle;
   }
   return high;
 }
 
-PointPhase PointPhase::in_step(const SurfaceLaw& law, double gap, double speed) const {
+PointPhase PointPhase::in_step(const SurfaceLaw& law, double gap, double speed,
+                               LoweredLaw own) const {
   PointPhase now = *this;
   if (law.normal.potential != NormalPotential::barrier || !open()) return now;
-  const SurfaceLaw own = beginning_later(law, lowered);
   now.set(ContactPhase::rest);
-  if (!(gap >= own.normal.reach() && speed < 0.0)) return now;
+  if (!(gap >= own(law, lowered).normal.reach() && speed < 0.0)) return now;
   now.set(ContactPhase::compression);
   now.restitution = 1.0 - 2.0 * law.end_share;
   return now;
@@ -82,24 +108,25 @@ PointPhase PointPhase::at_end(const SurfaceLaw& law, double gap) const {
   return then;
 }
 
-double PointPhase::turn(const SurfaceLaw& law, double gap, double held) {
+double PointPhase::turn(const SurfaceLaw& law, std::span<const GapTerm> terms, double held,
+                        LoweredLaw own) {
   if (open()) return 0.0;
   const bool first = is(ContactPhase::compression);
   const double e = restitution;
   set(first && e > 0.0 ? ContactPhase::restitution : ContactPhase::rest);
   if (!first || e == 1.0) return 0.0;
-  const double energy = beginning_later(law, lowered).normal.energy(gap);
-  lowered = std::min(lowered_to_store(law, gap, e * e * energy, lowered),
-                     lowered_to_press(law, gap, held, lowered));
-  return energy - beginning_later(law, lowered).normal.energy(gap);
+  const double energy = energy_of(own(law, lowered).normal, terms);
+  lowered = std::min(lowered_to_store(law, terms, e * e * energy, lowered, own),
+                     lowered_to_press(law, terms, held, lowered, own));
+  return energy - energy_of(own(law, lowered).normal, terms);
 }
 
-SurfaceLaw PointPhase::law(const SurfaceLaw& law) const {
-  SurfaceLaw own = beginning_later(law, lowered);
-  if (!in_impact()) return own;
-  own.mu = 0.0;
-  own.end_share = is(ContactPhase::compression) && restitution == 0.0 ? 1.0 : 0.0;
-  return own;
+SurfaceLaw PointPhase::law(const SurfaceLaw& law, LoweredLaw own) const {
+  SurfaceLaw now = own(law, lowered);
+  if (!in_impact()) return now;
+  now.mu = 0.0;
+  now.end_share = is(ContactPhase::compression) && restitution == 0.0 ? 1.0 : 0.0;
+  return now;
 }
 
 }  // namespace polhode

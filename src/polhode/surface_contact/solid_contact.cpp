@@ -72,7 +72,9 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
                                        std::span<const int> triangles, int point,
                                        const double* memory) const {
   Action a;
-  const contact::NormalLaw law = law_of(memory).normal;
+  SurfaceLaw in_step = law_of(memory);
+  const contact::NormalLaw law = in_step.normal;
+  a.phase = PointPhase::of(memory + kPhase);
   const Nearest to = nearest(x_n1, triangles, point);
   const Nearest from = step.x_n == step.x_n1 ? to : nearest(x_n, triangles, point);
   const double reach = law.reach();
@@ -80,6 +82,12 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
   a.gap_n1 = to.four.distance - centre_;
   if (a.gap_n >= reach && a.gap_n1 >= reach) return a;
   a.acts = true;
+  if (step.context.conserving && step.context.dt > 0.0) {
+    const bool open = a.phase.open() && a.gap_n >= reach;
+    a.phase = a.phase.in_step(law_, a.gap_n, open ? rate_n(step, x_n, from, point) : 0.0,
+                              with_band_lowered);
+    in_step = a.phase.law(law_, with_band_lowered);
+  }
   a.at_n1 = gap(x_n1, triangles, point, to, law);
   a.at_n = step.x_n == step.x_n1 ? a.at_n1 : gap(x_n, triangles, point, from, law);
   const double resultant = a.gap_n < reach ? a.at_n.resultant : a.at_n1.resultant;
@@ -92,7 +100,7 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
                                            .at_n1 = a.gap_n1,
                                            .alpha_f = step.alpha_f,
                                            .conserving = step.context.conserving,
-                                           .end_share = law_.end_share});
+                                           .end_share = in_step.end_share});
   a.push = {resultant * a.pressure.value, resultant * a.pressure.slope};
   return a;
 }
@@ -128,7 +136,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
             nodes_.add(s.blocks, at(i), at(j), area * K.template block<3, 3>(3 * i, 3 * j),
                        sink.tangent);
       }
-      if (law_.mu == 0.0 || step.context.dt == 0.0) return;
+      if (!a.rubs(law_) || step.context.dt == 0.0) return;
       const Slide slide =
           this->slide(step, x_n1, u, triangles, p, a.push.value, memory(history, p), tangent);
       for (int k = 0; k < 4; ++k)

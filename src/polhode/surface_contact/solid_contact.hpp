@@ -12,6 +12,7 @@
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_points.hpp>
 #include <polhode/system/element_group.hpp>
+#include <polhode/system/surface_impacts.hpp>
 
 namespace polhode {
 
@@ -28,7 +29,8 @@ namespace polhode {
 class SolidContact final : public ElementGroup,
                            public BarrierPoints,
                            public MovingPattern,
-                           public TouchingSurface {
+                           public TouchingSurface,
+                           public SurfaceImpacts {
  public:
   SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
                const SurfaceLaw& law, const SolidContactStart& start, RoundLine cable = {});
@@ -76,11 +78,16 @@ class SolidContact final : public ElementGroup,
                                                               const double* history) const override;
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const override;
 
+  void impacts(const NodeStep& step, const double* history,
+               std::vector<SurfaceImpact>& list) const override;
+  double turn(const SurfaceImpact& impact, double held, double* history) const override;
+  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+               double* history) const override;
+
  private:
   /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
-  /// its tangential part and the pressure; then by how much its band ends lower as it started
-  /// within.
-  static constexpr std::size_t kMemory = 12, kLowered = 11;
+  /// its tangential part and the pressure; then its PointPhase.
+  static constexpr std::size_t kPhase = 11, kMemory = kPhase + PointPhase::kNumbers;
   struct Field;
   struct Slide;
 
@@ -101,7 +108,12 @@ class SolidContact final : public ElementGroup,
     contact::ForceAndSlope pressure;   ///< Conjugate to the distance.
     contact::ForceAndSlope push;       ///< Of what acts on the point: the resultant.
     double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
+    PointPhase phase;                  ///< In the step.
     bool acts = false;
+
+    [[nodiscard]] bool rubs(const SurfaceLaw& law) const {
+      return acts && law.mu > 0.0 && !phase.in_impact();
+    }
   };
   struct Energies {
     double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
@@ -118,7 +130,7 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
                                 int point) const;
   [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
-    return with_band_lowered(law_, memory[kLowered]);
+    return with_band_lowered(law_, memory[kPhase]);
   }
   [[nodiscard]] MeshGap gap(const Field& field, std::span<const int> triangles, int point,
                             const Nearest& nearest, const contact::NormalLaw& law) const;
@@ -139,6 +151,10 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
   [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
                            std::span<const int> triangles, int point, const double* memory) const;
+  /// Of the gap at t_n.
+  [[nodiscard]] double rate_n(const NodeStep& step, const Field& x_n, const Nearest& nearest,
+                              int point) const;
+  void add_rates(const Field& x, const MeshGap& gap, int point, SurfaceImpact& impact) const;
   [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
                             std::span<const int> triangles, int point, double pressure,
                             const double* memory, bool tangent) const;

@@ -13,7 +13,8 @@ namespace polhode {
 SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
                                               const Slide& slide, const double* memory) const {
   const Vec3 kept(memory[0], memory[1], memory[2]);
-  const contact::NormalLaw law = law_of(memory).normal;
+  const SurfaceLaw in_step = a.phase.law(law_, with_band_lowered);
+  const contact::NormalLaw& law = in_step.normal;
   const bool stays = a.gap_n1 < law.reach();
   const double half_k = 0.5 * law_.bristle;
   const double bristle_n1 = stays ? half_k * slide.bristle.squaredNorm() : 0.0;
@@ -22,7 +23,7 @@ SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action
   e.stored = e_n1 + bristle_n1;
   e.by_friction =
       std::max(0.0, -slide.friction.dot(slide.slid) - bristle_n1 + half_k * kept.squaredNorm());
-  if (law_.end_share > 0.0 || step.alpha_f != 0.5)
+  if (in_step.end_share > 0.0 || step.alpha_f != 0.5)
     e.by_pressure =
         std::max(0.0, -a.pressure.value * (a.gap_n1 - a.gap_n) - e_n1 + law.energy(a.gap_n));
   return e;
@@ -51,7 +52,7 @@ Work SolidContact::work(const NodeStep& step, const double* history,
     }
     const Action a = act(step, x_n, x_n1, triangles, p, kept);
     if (!a.acts) continue;
-    const Slide slide = law_.mu > 0.0
+    const Slide slide = a.rubs(law_)
                             ? this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false)
                             : Slide{};
     const Energies e = energies(step, a, slide, kept);
@@ -81,8 +82,7 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       t.gap = std::min(t.gap, a.gap_n1 + centre_ - cable_.radius);
     }
     if (a.acts) {
-      if (law_.mu > 0.0)
-        slide = this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false);
+      if (a.rubs(law_)) slide = this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false);
       h = slide.friction;
       with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& /*at*/) {
         const auto f = gap.force(a.pressure.value);
@@ -111,7 +111,9 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
     }
     kept[3] = stays && slide.slips ? 1.0 : 0.0;
     kept[10] = pressure;
-    if (triangles.empty() || !(a.gap_n1 < law_.normal.reach())) kept[kLowered] = 0.0;
+    const double gap = triangles.empty() ? std::numeric_limits<double>::infinity() : a.gap_n1;
+    const PointPhase phase = a.acts ? a.phase : PointPhase::of(kept + kPhase);
+    phase.at_end(law_, gap).keep(kept + kPhase);
   }
   if (!std::isfinite(t.gap)) t.gap = std::numeric_limits<double>::quiet_NaN();
   if (t.normal_force > 0.0) moment /= t.normal_force;
@@ -152,8 +154,8 @@ void SolidContact::write_start(double* history) const {
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const double d = nearest(start, found(s, p), p).four.distance;
     least = std::min(least, d - cable_.radius);
-    history[memory(history, p) - history + static_cast<std::ptrdiff_t>(kLowered)] =
-        lowered_for(law_, d - centre_);
+    const std::ptrdiff_t own = memory(history, p) - history;
+    PointPhase{lowered_for(law_, d - centre_)}.keep(history + own + kPhase);
   }
   numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
       std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();

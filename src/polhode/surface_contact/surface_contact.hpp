@@ -146,13 +146,9 @@ class SurfaceContact final : public ElementGroup,
     return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }
   [[nodiscard]] static PointPhase phase_of(const double* memory) {
-    return {memory[kPhase], memory[kPhase + 1], memory[kPhase + 2]};
+    return PointPhase::of(memory + kPhase);
   }
-  static void keep(const PointPhase& phase, double* memory) {
-    memory[kPhase] = phase.lowered;
-    memory[kPhase + 1] = phase.phase;
-    memory[kPhase + 2] = phase.restitution;
-  }
+  static void keep(const PointPhase& phase, double* memory) { phase.keep(memory + kPhase); }
   /// At an instant.
   [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
     return beginning_later(law_, memory[kPhase]);

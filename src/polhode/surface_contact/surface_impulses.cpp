@@ -23,20 +23,20 @@ void SurfaceContact::impacts(const NodeStep& step, const double* history,
     s.point = i;
     const std::span<const int> own = nodes(i);
     for (int k = 0; k < n_; ++k)
-      if (point.N[k] != 0.0) s.nodes.emplace_back(own[static_cast<std::size_t>(k)], point.N[k]);
+      if (point.N[k] != 0.0) s.add(own[static_cast<std::size_t>(k)], point.N[k] * Mat3::Identity());
     if (frame_ > 0) {
       // Its place on the body is affine in the nodes of the frame.
       const Vec3 y = local(step.x_n1, i) / place_.size;
-      s.nodes.emplace_back(place_.nodes[0], y.sum() - 1.0);
+      s.add(place_.nodes[0], (y.sum() - 1.0) * Mat3::Identity());
       for (std::size_t k = 0; k < 3; ++k)
-        s.nodes.emplace_back(place_.nodes[k + 1], -y[static_cast<int>(k)]);
+        s.add(place_.nodes[k + 1], -y[static_cast<int>(k)] * Mat3::Identity());
     }
     s.normal = R * a.normal / length;
     s.restitution = a.phase.restitution;
     s.turned = a.phase.is(contact::ContactPhase::restitution);
     s.mu = law_.mu;
     s.given = step.context.dt * point.area * a.pressure;
-    s.gap = a.gap_n1;
+    s.terms.push_back({1.0, a.gap_n1});
     s.stored = point.area * a.phase.law(law_).normal.energy(a.gap_n1);
     s.beyond = std::max(0.0, a.gap_n1 - a.phase.law(law_).normal.reach());
   }
@@ -46,7 +46,7 @@ double SurfaceContact::turn(const SurfaceImpact& impact, double held, double* hi
   double* memory = history + kMemory * static_cast<std::size_t>(impact.point);
   PointPhase phase = phase_of(memory);
   const double area = points_.points[static_cast<std::size_t>(impact.point)].area;
-  const double energy = area * phase.turn(law_, impact.gap, held / area);
+  const double energy = area * phase.turn(law_, impact.terms, held / area);
   keep(phase, memory);
   history[kMemory * points_.points.size() +
           offsetof(SurfaceTotals, normal_loss) / sizeof(double)] += energy;

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Only the sources of EdgeContact include this.
+#pragma once
+
+#include <polhode/surface_contact/edge_contact.hpp>
+
+namespace polhode {
+
+/// A pair of edges that acts over a step, or remembers its impact.
+struct EdgeContact::Touch {
+  int e, f;
+  int slot_n = -1, slot_n1 = -1;  ///< Where its bristle is kept; −1: nowhere.
+  PointPhase phase;               ///< In the step.
+  EdgePair pair;
+  FourSlide slide;
+  LineSlide along;
+  double by_friction = 0.0, bristle_n1 = 0.0;  ///< Energies [J/m²].
+};
+
+}  // namespace polhode
