@@ -134,11 +134,11 @@ class Model(Section):
         return self._add("solids", name, fields)
 
     def add_event(self, name: str, **fields: Any) -> Section:
-        """Adds an event, which switches joints and loads, and returns it.
+        """Adds an event, which switches joints, loads and contacts, and returns it.
 
         It comes at a time, at ("0.2 s"), or when a number begins to be above or below a level:
-        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}. off and on: lists of joints and loads, or
-        their names; after: the event that must have come before; repeat, stop: True or False.
+        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}. off and on: lists of joints, loads and pairs of
+        contacts, or their names; after: the event that must have come before; repeat, stop: True or False.
         The ledger of a run has `events`: when each came, what it lost [J] and its largest impulse.
         """
         return self._add("events", name, fields)
