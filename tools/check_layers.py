@@ -37,6 +37,9 @@ INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/([\w/]+)/\w+\.\w+[>"]')
 INTERACTIONS = SOURCE / "system/interaction_group.hpp"
 MOST_VIRTUALS = 14
 VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
+# What a group of elements may be besides, and the function by which it says so.
+FACETS = {"BarrierPoints": "barrier_points", "InternalUnknowns": "internal_unknowns",
+          "MovingPattern": "moving_pattern", "SurfaceImpacts": "surface_impacts"}
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 
@@ -60,7 +63,10 @@ def survey():
         if here is None:
             problems.append(f"{place}: its folder is not in LAYERS of tools/check_layers.py.")
             continue
-        for number, line in enumerate(path.read_text().splitlines(), 1):
+        text = path.read_text()
+        problems += [f"{place}: is {facet}, but does not override {asked}()." for facet, asked in FACETS.items()
+                     if re.search(rf"public {facet}\b", text) and f"{asked}() const override" not in text]
+        for number, line in enumerate(text.splitlines(), 1):
             if "dynamic_cast<" in line:
                 problems.append(f"{place}:{number}: asks for a type. See docs/decisions/0008-casts-and-virtuals.md.")
             if HEADERS_OF_OTHERS.match(line):

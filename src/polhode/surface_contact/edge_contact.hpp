@@ -52,6 +52,7 @@ class EdgeContact final : public ElementGroup,
   bool conservative() const override { return !dissipates(); }
   const BarrierPoints* barrier_points() const override { return this; }
   const MovingPattern* moving_pattern() const override { return this; }
+  const SurfaceImpacts* surface_impacts() const override { return this; }
   std::size_t history_size() const override;
   void initialize(double* history) const override;
 
