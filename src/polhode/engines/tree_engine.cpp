@@ -12,7 +12,7 @@ namespace {
 
 /// ε of loop rows. Tree joints have none, so redundant loops need a little more than the sparse
 /// engine's rows.
-constexpr double kProximalOfLoops = 1e-12;
+constexpr double kProximalOfLoops = 1e-11;
 
 /// What is evaluated one by one.
 std::vector<int> not_in_lanes(const TreeLoopPlan& plan) {

@@ -124,11 +124,14 @@ bool Controllers::act(const Item& item, const Simulation& simulation, State& sta
   const StateSpace& filter = item.filter;
   const double y = item.channel.value(simulation);
   const double y_rate = item.rate ? item.rate->value(simulation) : 0.0;
-  const auto error = [&](TimeSide side) {
-    const TimeRates r = spec.setpoint ? spec.setpoint->rates(state.t, side) : TimeRates{};
+  const auto target = [&](TimeSide side) {  // a step ends at a break but for rounding
+    return spec.setpoint ? spec.setpoint->rates(beside(state.t, side), side) : TimeRates{};
+  };
+  const auto error = [&](const TimeRates& r) {
     return Error{r.value - y, item.rate ? r.rate - y_rate : 0.0};
   };
-  const Error before = error(TimeSide::kBefore), after = error(TimeSide::kAfter);
+  const TimeRates r_before = target(TimeSide::kBefore), r_after = target(TimeSide::kAfter);
+  const Error before = error(r_before), after = error(r_after);
   double* memory = state.history.data() + item.memory;
   double& integral = memory[ControllerMemory::kIntegral];
   double& lag = memory[ControllerMemory::kLag];
@@ -167,7 +170,10 @@ bool Controllers::act(const Item& item, const Simulation& simulation, State& sta
   memory[ControllerMemory::kError] = after.value;
   memory[ControllerMemory::kRate] = after.rate;
   set_output(item, memory);
-  return first || spec.sample || before.value != after.value || before.rate != after.rate;
+  const auto sum = [](double a, double b) { return std::abs(a) + std::abs(b); };
+  return first || spec.sample ||
+         jump_at(state.t, r_before.value, r_after.value, sum(r_before.rate, r_after.rate)) != 0.0 ||
+         jump_at(state.t, r_before.rate, r_after.rate, sum(r_before.second, r_after.second)) != 0.0;
 }
 
 void Controllers::set_output(const Item& item, const double* memory) {
