@@ -147,7 +147,7 @@ class Model(Section):
         """Adds a controller of a channel, and returns it: loads follow it by {"controller": name}.
 
         joint, body or load with channel, as in an event; setpoint, a number, an expression of t or a table.
-        Gains proportional, integral, derivative with filter [s]; or numerator and denominator, polynomials in s with the
+        Gains proportional, integral, derivative with filter [s]; or numerator and denominator, polynomials in s, the
         highest power first. sample [s]: it acts then and keeps its output between; left out: it is continuous.
         minimum and maximum bound what it sets.
         """
