@@ -200,7 +200,7 @@ TangentReport tangents_of(Simulation& simulation, double at) {
   return report;
 }
 
-/// What was compared, part by part, and what was not.
+/// Rows of a table: the largest error of each part, and what was not compared.
 void add_tangent_rows(const TangentReport& report, std::vector<std::vector<std::string>>& rows) {
   const bool failed = !(report.error() <= kTangentTolerance);
   rows.push_back({"tangents", format("{:.1e}", report.error()),

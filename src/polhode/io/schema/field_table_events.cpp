@@ -40,32 +40,42 @@ const FieldTable& event_fields() {
   return table;
 }
 
+std::vector<Field> channel_fields() {
+  return {
+      {.name = "body", .kind = kBody, .meaning = "The body that reports."},
+      {.name = "joint", .kind = kJoint, .meaning = "The joint that reports."},
+      {.name = "load", .kind = kLoad, .meaning = "The load that reports."},
+      {.name = "point",
+       .kind = kVector,
+       .dimension = kLength,
+       .meaning = "Point of the body, body coordinates.",
+       .standard = "the centre of mass"},
+      {.name = "channel",
+       .kind = kText,
+       .meaning = "The number, named as the column of a probe: z, vz, 'rate rz', fx; also "
+                  "speed of a body, force and moment (magnitudes) of a joint.",
+       .required = true},
+  };
+}
+
 const FieldTable& condition_fields() {
-  static const FieldTable table{
-      "condition",
-      "A reported number beyond a value. Give one of body, joint and load, and one of above and "
-      "below.",
-      {
-          {.name = "body", .kind = kBody, .meaning = "The body that reports."},
-          {.name = "joint", .kind = kJoint, .meaning = "The joint that reports."},
-          {.name = "load", .kind = kLoad, .meaning = "The load that reports."},
-          {.name = "point",
-           .kind = kVector,
-           .dimension = kLength,
-           .meaning = "Point of the body, body coordinates.",
-           .standard = "the centre of mass"},
-          {.name = "channel",
-           .kind = kText,
-           .meaning = "The number, named as the column of a probe: z, vz, 'rate rz', fx; also "
-                      "speed of a body, force and moment (magnitudes) of a joint.",
-           .required = true},
-          {.name = "above",
-           .kind = kNumber,
-           .meaning = "The condition holds from here up. In the unit of the channel."},
-          {.name = "below",
-           .kind = kNumber,
-           .meaning = "The condition holds from here down. In the unit of the channel."},
-      }};
+  static const FieldTable table = [] {
+    FieldTable t{"condition",
+                 "A reported number beyond a value. Give one of body, joint and load, and one of "
+                 "above and below.",
+                 channel_fields()};
+    t.fields.insert(
+        t.fields.end(),
+        {
+            {.name = "above",
+             .kind = kNumber,
+             .meaning = "The condition holds from here up. In the unit of the channel."},
+            {.name = "below",
+             .kind = kNumber,
+             .meaning = "The condition holds from here down. In the unit of the channel."},
+        });
+    return t;
+  }();
   return table;
 }
 
