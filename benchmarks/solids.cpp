@@ -93,7 +93,7 @@ void add_joint(System& system, const char* name, const char* type, int body, con
                const Vec3& in_body) {
   Mat3 axes;  // z along the world's y
   axes << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  system.group<Joint>().items.emplace_back(
+  system.group<Joint>().add(
       name, type, Participants{kGround, body},
       joint_kind(type).recipe({.Z_a = in_world, .Z_b = in_body, .R_a = axes, .R_b = axes}, {}));
 }
