@@ -139,6 +139,14 @@ class Builder {
     }
   }
 
+  [[nodiscard]] double stiffest_augmented() const {
+    double most = 0.0;
+    for (const JointSpec& joint : model_.joints)
+      if (joint.enforcement && joint.enforcement->law == JointEnforcement::Law::augmented)
+        most = std::max({most, joint.enforcement->stiffness, joint.enforcement->turning_stiffness});
+    return most;
+  }
+
   void add_joint(const JointSpec& joint) {
     const std::string where = format("joints.{}", joint.name);
     check_movable(where, joint.a, joint.b);
@@ -154,6 +162,12 @@ class Builder {
     if (joint.friction || joint.limits || joint.angle_limits)
       item.set_resistance(joint_resistance(model_, joint));
     if (joint.motion) item.set_motion(*joint.motion);
+    if (!joint.enforcement) return;
+    try {
+      item.set_enforcement(*joint.enforcement, stiffest_augmented());
+    } catch (const InputError& e) {
+      throw InputError(format("{}.enforcement.{}", where, e.where()), e.what_is_wrong(), e.mend());
+    }
   }
 
   /// A load along a coordinate that its joint does not leave free.

@@ -62,7 +62,8 @@ bool CrowdEngine::suits(const System& system) {
   if (system.stiff() || !system.barriers().empty()) return false;
   return std::none_of(system.interactions().begin(), system.interactions().end(),
                       [&](const InteractionRef& ref) {
-                        return ref.rows == 0 && couples(ref) && system.traits(ref).reach > 0.0;
+                        const InteractionTraits& of = system.traits(ref);
+                        return of.compliant || (ref.rows == 0 && couples(ref) && of.reach > 0.0);
                       });
 }
 
@@ -79,10 +80,10 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
       acted_on_(bodies_of(system, [](const InteractionRef&) { return true; })),
       coupled_(bodies_of(system, couples)) {
   if (!suits(system))
-    throw InputError("solver",
-                     "'crowd' needs bodies that contacts and joints without friction couple",
-                     "Choose another solver for models with solids, beams, cables, friction in "
-                     "joints or stops");
+    throw InputError(
+        "solver", "'crowd' needs bodies that contacts and joints without friction couple",
+        "Choose another solver for models with solids, beams, cables, penalised joints, "
+        "friction in joints or stops");
   contacts_->prepare(system);
   const auto n = static_cast<std::size_t>(system.body_count());
   steps_.resize(n + 1);

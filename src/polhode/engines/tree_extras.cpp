@@ -134,8 +134,8 @@ void TreeEngine::write_loop(const TreeExtra& x, const PairTerms& terms, const Tr
   for (int k = 0; k < x.rows; ++k) {
     const bool exact = terms.compliance[k] == 0.0;
     const double lambda = trial.lambda[first + k];
-    softness[k] = exact ? view_.proximal : terms.compliance[k] / s;
-    nu[k] = terms.g[k] + (exact ? view_.proximal * s * (lambda - trial.lambda_centre[first + k])
+    softness[k] = exact ? view_.proximal * terms.weight[k] : terms.compliance[k] / s;
+    nu[k] = terms.g[k] + (exact ? softness[k] * s * (lambda - trial.lambda_centre[first + k])
                                 : terms.compliance[k] * lambda);
   }
   // Columns of multipliers and rows of constraints; unknowns beyond them follow.

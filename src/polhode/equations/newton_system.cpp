@@ -89,6 +89,7 @@ NewtonSystem::NewtonSystem(const System& system, MomentumRate form)
   body_residual_.assign(n, Vec6::Zero());
   body_scale_.assign(n, Vec6::Zero());
   row_residual_.assign(system.rows(), 0.0);
+  is_spring_.assign(system.rows(), false);
 }
 
 void NewtonSystem::couple(const std::vector<KktPair>& more) {
@@ -165,8 +166,10 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
     const int row = ref.first_row + k;
     const double lambda = trial.lambda[row];
     row_residual_[row] = terms.g[k] + terms.compliance[k] * lambda;
+    is_spring_[row] = terms.compliance[k] != 0.0;
     const double proximal =
-        terms.compliance[k] == 0.0 ? kProximal * s * (lambda - trial.lambda_centre[row]) : 0.0;
+        is_spring_[row] ? 0.0
+                        : kProximal * terms.weight[k] * s * (lambda - trial.lambda_centre[row]);
     rhs_[first + row] = -(row_residual_[row] + proximal);
   }
   if (!tangent) return;
@@ -178,7 +181,7 @@ void NewtonSystem::add_pair(int interaction, const PairTerms& terms, const Trial
   v.G_a = terms.G_a;
   v.G_b = terms.G_b;
   for (int k = 0; k < ref.rows; ++k)
-    v.C[k] = terms.compliance[k] == 0.0 ? kProximal : terms.compliance[k] / s;
+    v.C[k] = terms.compliance[k] == 0.0 ? kProximal * terms.weight[k] : terms.compliance[k] / s;
 }
 
 void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& terms,

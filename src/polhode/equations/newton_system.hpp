@@ -101,6 +101,8 @@ class NewtonSystem {
   [[nodiscard]] const Vec6& body_residual_scale(int body) const { return body_scale_[body]; }
   /// g + compliance·λ of a row [m or -].
   [[nodiscard]] double row_residual(int row) const { return row_residual_[row]; }
+  /// The row has a compliance: its multiplier is a spring's force.
+  [[nodiscard]] bool is_spring(int row) const { return is_spring_[row]; }
   [[nodiscard]] const System& system() const { return *system_; }
 
  private:
@@ -119,6 +121,7 @@ class NewtonSystem {
   Vec rhs_;
   std::vector<Vec6> body_residual_, body_scale_;
   std::vector<double> row_residual_;
+  std::vector<bool> is_spring_;
 };
 
 /// Where the assembled residual is farthest from round-off.

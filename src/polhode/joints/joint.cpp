@@ -124,6 +124,7 @@ void Joint::evaluate(const PairStep& step, PairTerms& t) const {
   });
   t.wrench_a = times(B.a, step.lambda, rows_);
   t.wrench_b = times(B.b, step.lambda, rows_);
+  if (held_by_) soften(step, t);
   if (resistance_)
     with_view(step, [&](const Resistance::View& view) { resistance_->add(view, t); });
   clear_ground_sides(step, t);
@@ -160,12 +161,16 @@ void Joint::impacts(const PairStep& step, std::vector<Impact>& list) const {
 }
 
 Work Joint::work(const PairStep& step) const {
-  return with_view(step, [&](const Resistance::View& v) { return resistance_->work(v); });
+  Work work;
+  if (resistance_)
+    work = with_view(step, [&](const Resistance::View& v) { return resistance_->work(v); });
+  work.stored += spring_energy(step);
+  return work;
 }
 
 /// As the arms of a joint that the tree holds: it has no MotionBasis to tell them.
 double Joint::reach() const {
-  if (!resistance_ && switching == Switching::never) return 0.0;
+  if (!resistance_ && !held_by_ && switching == Switching::never) return 0.0;
   return std::max(bodies.a == kGround ? 0.0 : frames_.Z_a.norm(),
                   bodies.b == kGround ? 0.0 : frames_.Z_b.norm());
 }
@@ -221,20 +226,8 @@ Vec6 Joint::drive_increments(const PairStep& step) const {
   Configuration q_alpha, q_n1;
   arrange(step, q_alpha, q_n1);
   const Rows G(parts_, q_alpha);
-  const BodyStep &a = step.a, &b = step.b;
-  const FrameMotion::Placement at_n = motion_->at(step.context.t_n, step.context.load_factor);
-  Configuration q_n;
-  q_n.z_a = a.Lambda_n * (frames_.Z_a + frames_.R_a * at_n.d);
-  q_n.z_b = b.Lambda_n * frames_.Z_b;
-  q_n.u = (b.r_n - a.r_n) + (q_n.z_b - q_n.z_a);
-  q_n.R_a = a.Lambda_n * frames_.R_a * at_n.D;
-  q_n.R_b = b.Lambda_n * frames_.R_b;
-  Vec6 change = Vec6::Zero(), before = Vec6::Zero();
-  parts_.for_each([&](const auto& part, int row) {
-    part.residual(q_n1, change.data() + row);
-    part.residual(q_n, before.data() + row);
-  });
-  return G.a * stacked(a.u, a.theta) + G.b * stacked(b.u, b.theta) - (change - before);
+  return G.a * stacked(step.a.u, step.a.theta) + G.b * stacked(step.b.u, step.b.theta) -
+         (residual(q_n1) - residual(at_n(step)));
 }
 
 void Joint::prescribed(const PairStep& step, TimeSide side, PrescribedRows& rows) const {
@@ -257,12 +250,13 @@ double Joint::drive_work(const PairStep& step) const {
   return motion_ ? step.history[angles()] : 0.0;
 }
 
-Vec6 Joint::residual(const PairStep& step) const {
-  const Configuration q = at_n1(step);
+Vec6 Joint::residual(const Configuration& q) const {
   Vec6 g = Vec6::Zero();
   parts_.for_each([&](const auto& part, int row) { part.residual(q, g.data() + row); });
   return g;
 }
+
+Vec6 Joint::residual(const PairStep& step) const { return residual(at_n1(step)); }
 
 template <class With>
 auto Joint::with_sides(const PairStep& step, With&& with) const {
@@ -294,9 +288,9 @@ bool Joint::acceptable(const PairStep& step) const {
 }
 
 std::optional<MotionBasis> Joint::motion_basis() const {
-  // Friction depends on the multipliers, and moving frames have work of their own: the tree, which
-  // eliminates multipliers, leaves both to loops.
-  if (resistance_ || motion_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
+  // Friction depends on the multipliers, moving frames have work of their own, and springs give
+  // way: the tree, which eliminates multipliers, leaves them to loops.
+  if (resistance_ || motion_ || held_by_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
     return std::nullopt;
   MotionBasis m;
   m.coincident = parts_.coincident;

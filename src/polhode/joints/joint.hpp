@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <polhode/joints/enforcement.hpp>
 #include <polhode/joints/moving_frame.hpp>
 #include <polhode/joints/recipe.hpp>
 #include <polhode/joints/resistance.hpp>
@@ -62,13 +63,21 @@ class Joint : public InteractionItem {
   /// Its power at an instant [W].
   [[nodiscard]] double drive_power(const PairStep& step) const;
 
+  /// Holds the rows by a stiffness, before the system is finished.
+  /// @param stiffest  Largest stiffness of all augmented joints [N/m or N m/rad].
+  /// @throws InputError if it has no rows, or a stiffness that they ask for is not positive.
+  void set_enforcement(const JointEnforcement& enforcement, double stiffest);
+  /// Its rows are springs, which give way.
+  [[nodiscard]] bool penalised() const { return held_by_ && !held_by_->compliance.isZero(0.0); }
+
   // The contract of an interaction.
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int history_size() const { return anchor() + (anchors() ? kAnchorSize : 0); }
   [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool conservative() const { return !resistance_ && !motion_; }
   [[nodiscard]] bool dissipates() const { return resistance_ != nullptr; }
-  [[nodiscard]] bool works() const { return resistance_ != nullptr; }
+  [[nodiscard]] bool works() const { return resistance_ != nullptr || penalised(); }
+  [[nodiscard]] bool compliant() const { return penalised(); }
   [[nodiscard]] bool has_barrier() const { return resistance_ && resistance_->has_limits(); }
   [[nodiscard]] double clearance(const PairStep& step) const;
   void impacts(const PairStep& step, std::vector<Impact>& list) const;
@@ -90,9 +99,9 @@ class Joint : public InteractionItem {
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
   [[nodiscard]] Coupling coupling() const {
-    return resistance_ || parts_.planes > 0 || parts_.distance ? Coupling::all
-           : parts_.turns()                                    ? Coupling::couple
-                                                               : Coupling::none;
+    return resistance_ || held_by_ || parts_.planes > 0 || parts_.distance ? Coupling::all
+           : parts_.turns()                                                ? Coupling::couple
+                                                                           : Coupling::none;
   }
   [[nodiscard]] bool reversible() const;
   void reverse();
@@ -139,12 +148,19 @@ class Joint : public InteractionItem {
   [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
   [[nodiscard]] bool translation_free(int user_axis) const;
   [[nodiscard]] Configuration at_n1(const PairStep& step) const;
+  /// With the frame on a where its motion has it then.
+  [[nodiscard]] Configuration at_n(const PairStep& step) const;
+  [[nodiscard]] Vec6 residual(const Configuration& q) const;
   /// Sides at t_{n+αf} and t_{n+1}, with what of them the parts need.
   void arrange(const PairStep& step, Configuration& q_alpha, Configuration& q_n1) const;
   /// γ without the accelerations of a moving frame. @param frame  Its velocities.
   [[nodiscard]] Vec6 velocity_terms(const PairStep& step, const FrameRates& frame) const;
   /// γ of the prescribed motion.
   [[nodiscard]] Vec6 acceleration_terms(const PairStep& step, TimeSide side) const;
+  /// Rows as springs, or exact ones that are weighted.
+  void soften(const PairStep& step, PairTerms& terms) const;
+  /// Energy of the springs at t_{n+1} [J].
+  [[nodiscard]] double spring_energy(const PairStep& step) const;
   /// Work of the prescribed motion over the step by unit multipliers.
   [[nodiscard]] Vec6 drive_increments(const PairStep& step) const;
   /// Result of with(a, b) for the sides in the user's order; a moving frame is at rest on its side.
@@ -165,6 +181,11 @@ class Joint : public InteractionItem {
   std::string type_;
   std::shared_ptr<const Resistance> resistance_;
   std::shared_ptr<const FrameMotion> motion_;
+  struct Held {
+    Vec6 compliance;  ///< Of springs, else zero [m/N] or [1/(N m)].
+    Vec6 weight;      ///< As in PairTerms.
+  };
+  std::shared_ptr<const Held> held_by_;
 };
 
 }  // namespace polhode

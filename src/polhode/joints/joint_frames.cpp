@@ -31,6 +31,26 @@ Configuration Joint::at_n1(const PairStep& step) const {
   return q;
 }
 
+Configuration Joint::at_n(const PairStep& step) const {
+  JointFrames own;
+  const JointFrames& frames = held_frames(step, own);
+  const BodyStep &a = step.a, &b = step.b;
+  Vec3 Z_a = frames.Z_a;
+  Mat3 R_a = frames.R_a;
+  if (motion_) {
+    const FrameMotion::Placement moved = motion_->at(step.context.t_n, step.context.load_factor);
+    Z_a += R_a * moved.d;
+    R_a *= moved.D;
+  }
+  Configuration q;
+  q.z_a = a.Lambda_n * Z_a;
+  q.z_b = b.Lambda_n * frames.Z_b;
+  q.u = (b.r_n - a.r_n) + (q.z_b - q.z_a);
+  q.R_a = a.Lambda_n * R_a;
+  q.R_b = b.Lambda_n * frames.R_b;
+  return q;
+}
+
 /// The frame of a, as b sees it now.
 void Joint::switch_on(const PairStep& step, double* history) const {
   count_turns(step, history);

@@ -91,6 +91,7 @@ struct JointSpec {
   std::optional<JointLimitsSpec> limits;        ///< Of the angle; with a displacement, of that.
   std::optional<JointLimitsSpec> angle_limits;  ///< Of the angle beside a displacement.
   std::optional<FrameMotion> motion;            ///< Prescribed, of the frame on a.
+  std::optional<JointEnforcement> enforcement;  ///< None: exact, by multipliers.
   JointStrengthSpec breaks;                     ///< None: it never does.
   bool assembled_start = false;  ///< Given with at_body or moving: the start must be assembled.
 };

@@ -56,6 +56,7 @@ ModalMatrices::ModalMatrices(const System& system, const State& state, const Mod
   newton_.assemble_at(state, options.load_factor);
   put_masses(state);
   put_damping(state, options);
+  put_springs_for_compliant_rows();
   asymmetry_ = K().asymmetry();
 }
 
@@ -110,6 +111,39 @@ void ModalMatrices::put_masses(const State& state) {
   damping_.place_like(K());
   shifted_.place_like(K());
   mass_.set(values, blocks, nullptr, 1.0);
+}
+
+/// G Δq + C Δλ̂ = 0 puts B C⁻¹ G into the stiffness; the row is left with Δλ̂ = 0.
+/// @eq{compliance-row}
+void ModalMatrices::put_springs_for_compliant_rows() {
+  const KktValues& given = newton_.bodies().values();
+  const KktTopology& topology = newton_.bodies().topology();
+  KktValues values = nothing();
+  bool any = false;
+  for (std::size_t i = 0; i < topology.pairs.size(); ++i) {
+    const KktPair& pair = topology.pairs[i];
+    const KktValues::Pair& from = given.pairs[i];
+    KktValues::Pair& to = values.pairs[i];
+    for (int k = 0; k < pair.rows; ++k) {
+      if (!newton_.bodies().is_spring(pair.first_row + k)) continue;
+      any = true;
+      const bool on_a = pair.a != kGround, on_b = pair.b != kGround;
+      if (on_a) values.diagonal[pair.a] += from.B_a.col(k) * from.G_a.row(k) / from.C[k];
+      if (on_b) values.diagonal[pair.b] += from.B_b.col(k) * from.G_b.row(k) / from.C[k];
+      if (on_a && on_b) {
+        to.K_ab += from.B_a.col(k) * from.G_b.row(k) / from.C[k];
+        to.K_ba += from.B_b.col(k) * from.G_a.row(k) / from.C[k];
+      }
+      to.B_a.col(k) = -from.B_a.col(k);
+      to.B_b.col(k) = -from.B_b.col(k);
+      to.G_a.row(k) = -from.G_a.row(k);
+      to.G_b.row(k) = -from.G_b.row(k);
+    }
+  }
+  if (!any) return;
+  SaddleMatrix more(mass_);
+  more.set(values, std::vector<double>(9 * system_->nodes().mass().size(), 0.0), nullptr, 1.0);
+  K().combine(K(), 1.0, more);
 }
 
 /// C is what the tangent gains with a rate, at velocities of zero, and what turning adds.
@@ -262,7 +296,6 @@ ModalMatrices::Dense ModalMatrices::dense() {
   Dense d;
   d.K = d.C = d.M = Mat::Zero(n(), n());
   Mat Gt = Mat::Zero(n(), rows());
-  Vec C = Vec::Zero(rows());
   const SaddleMatrix& k = K();
   for (std::size_t e = 0; e < k.values().size(); ++e) {
     const int i = k.row()[e], j = k.column()[e];
@@ -272,16 +305,11 @@ ModalMatrices::Dense ModalMatrices::dense() {
       d.M(i, j) += mass_.values()[e];
     } else if (i >= n() && j < n()) {
       Gt(j, i - n()) -= k.values()[e];
-    } else if (i >= n()) {
-      C[i - n()] -= k.values()[e];
     }
   }
   d.Gt.resize(n(), 0);
   for (int r = 0; r < rows(); ++r) {
-    if (C[r] > kProximal) {  // a compliant row is a spring
-      d.K += Gt.col(r) * Gt.col(r).transpose() / (C[r] * s());
-      continue;
-    }
+    if (newton_.bodies().is_spring(r)) continue;  // in K by now
     d.Gt.conservativeResize(n(), d.Gt.cols() + 1);
     d.Gt.rightCols<1>() = Gt.col(r).normalized();
   }

@@ -72,6 +72,7 @@ class ModalMatrices {
  private:
   void put_masses(const State& state);
   void put_damping(const State& state, const ModeOptions& options);
+  void put_springs_for_compliant_rows();
   [[nodiscard]] bool put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                     SaddleMatrix& gyroscopic) const;
   void put_circulatory(const State& state, const std::vector<Vec3>& spin);

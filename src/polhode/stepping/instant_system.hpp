@@ -151,7 +151,7 @@ struct InstantSolver::Impl {
     v.G_a = terms.G_a;
     v.G_b = terms.G_b;
     for (int k = 0; k < map.topology.pairs[pair].rows; ++k) {
-      v.C[k] = epsilon;
+      v.C[k] = epsilon * terms.weight[k];
       if (terms.compliance[k] == 0.0) continue;
       v.C[k] = 1.0;
       v.G_a.row(k).setZero();

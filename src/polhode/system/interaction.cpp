@@ -26,6 +26,7 @@ void PairTerms::set_values_zero() {
   wrench_b.setZero();
   g.setZero();
   compliance.setZero();
+  weight.setOnes();
 }
 
 void clear_ground_sides(const PairStep& step, PairTerms& t) {

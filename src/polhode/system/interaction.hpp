@@ -61,6 +61,7 @@ class Group final : public InteractionGroup {
     t.has_barrier = item.has_barrier();
     t.always_asked = item.always_asked();
     t.reversible = item.reversible();
+    t.compliant = item.compliant();
     t.coupled_mass = item.coupled_mass();
     t.reach = item.reach();
     t.time_order = item.time_order();

@@ -25,6 +25,7 @@ struct InteractionTraits {
   bool lazy_history = false, conservative = true, dissipates = false;
   bool works = false;  ///< work() is asked for.
   bool prescribes = false, has_barrier = false, always_asked = false, reversible = false;
+  bool compliant = false;
   double coupled_mass = 0.0;  ///< [kg]
   double reach = 0.0;         ///< [m]
   int time_order = 2;

@@ -24,6 +24,9 @@ struct PairTerms {
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> G_a, G_b;  ///< Row k: derivative of g_k at t_{n+1}.
   Vec6 g;                                                 ///< Constraint values at t_{n+1}.
   Vec6 compliance;  ///< Row k asks g_k + compliance_k·λ_k = 0; 0 is exact.
+  /// Times the proximal ε of exact rows, 1 where nothing is said: of redundant ones a larger weight
+  /// takes less. @eq{augmented-rows}
+  Vec6 weight;
 
   void set_zero();
   /// All but B and G, whose columns and rows an interaction with multipliers fills.

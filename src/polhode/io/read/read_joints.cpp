@@ -70,6 +70,7 @@ class JointReader {
     joint_.angle_limits = read_limits("angle_limits");
     read_frame_motion();
     read_strength();
+    read_enforcement();
     // What follows needs sound numbers, and bodies that stand where they should.
     const auto sound = [&](int body) {
       return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
@@ -291,6 +292,38 @@ class JointReader {
       section.fault("no limit is given", "Give force, moment, or both.");
   }
 
+  void read_enforcement() {
+    const SourceNode* node = takes("enforcement") ? section_.find("enforcement") : nullptr;
+    if (!node) return;
+    Section section(context_, *node, context_.tree.place_of(*node), section_.path("enforcement"),
+                    enforcement_fields());
+    if (!node->is_map()) return;
+    JointEnforcement e;
+    if (section.choice("type").value_or("") == "augmented")
+      e.law = JointEnforcement::Law::augmented;
+    e.stiffness = section.number("stiffness").value_or(0.0);
+    e.turning_stiffness = section.number("turning_stiffness").value_or(0.0);
+    joint_.enforcement = e;
+    enforcement_at_ = node;
+  }
+
+  /// A stiffness for each kind of row, and none for what the joint leaves free.
+  void check_enforcement(const JointParts& parts) {
+    if (!joint_.enforcement) return;
+    Section section(context_, *enforcement_at_, context_.tree.place_of(*enforcement_at_),
+                    section_.path("enforcement"), enforcement_fields());
+    const StiffnessDemand demand = stiffness_demand(parts);
+    const auto check = [&](const char* key, bool asked, const char* what) {
+      if (asked && section.misses(key))
+        section.fault(format("'{}' is missing", key),
+                      format("The joint holds {}: say how stiffly.", what));
+      if (!asked && section.has(key))
+        section.fault(key, format("the joint holds no {}", what), "Leave it out.");
+    };
+    check("stiffness", demand.displacements, "displacements");
+    check("turning_stiffness", demand.rotations, "rotations");
+  }
+
   /// Joints given with `at` stand at zero; others are looked at when the start is assembled.
   void check_start() {
     if (joint_.assembled_start) return;
@@ -325,9 +358,10 @@ class JointReader {
   /// The kind itself knows what else can be wrong.
   void check_recipe() {
     try {
-      joint_kind(joint_.type)
-          .recipe({joint_.Z_a, joint_.Z_b, joint_.R_a, joint_.R_b},
-                  {joint_.free, joint_.parameters});
+      check_enforcement(joint_kind(joint_.type)
+                            .recipe({joint_.Z_a, joint_.Z_b, joint_.R_a, joint_.R_b},
+                                    {joint_.free, joint_.parameters})
+                            .parts);
     } catch (const InputError& error) {
       const bool is_key = table_.find(error.where()) != nullptr;
       section_.fault(is_key ? error.where() : "type", error.what_is_wrong(), error.mend());
@@ -339,6 +373,7 @@ class JointReader {
   JointSpec& joint_;
   const FieldTable& table_;
   Section section_;
+  const SourceNode* enforcement_at_ = nullptr;
   Pose a_, b_;
 };
 

@@ -104,6 +104,9 @@ class Fingerprint {
         j.limits, j.angle_limits, j.motion);
     // What is not there leaves the fingerprints of older models alone.
     if (j.breaks.force || j.breaks.moment) add(j.breaks.force, j.breaks.moment);
+    if (j.enforcement)
+      add(static_cast<int>(j.enforcement->law), j.enforcement->stiffness,
+          j.enforcement->turning_stiffness);
   }
   void one(const ConditionSpec& c) {
     add(c.channel.kind, c.channel.target, c.channel.name, c.channel.point, c.level, c.above);

@@ -459,6 +459,7 @@ std::vector<const FieldTable*> all_field_tables() {
   tables.push_back(&stroke_limit_fields());
   tables.push_back(&distance_limit_fields());
   tables.push_back(&strength_fields());
+  tables.push_back(&enforcement_fields());
   for (const KindTable& kind : load_tables()) tables.push_back(&kind.table);
   for (const KindTable& kind : material_tables()) tables.push_back(&kind.table);
   tables.push_back(&viscosity_fields());

@@ -154,6 +154,7 @@ const FieldTable& controller_fields();
 const FieldTable& controlled_value_fields();
 const FieldTable& condition_fields();
 const FieldTable& strength_fields();
+const FieldTable& enforcement_fields();
 const FieldTable& analysis_fields();
 const FieldTable& output_fields();
 const FieldTable& probe_fields();

@@ -149,4 +149,28 @@ const FieldTable& distance_limit_fields() {
   return table;
 }
 
+const FieldTable& enforcement_fields() {
+  static const FieldTable table{
+      "enforcement",
+      "Stiffness by which a joint is held, where multipliers would hold it exactly.",
+      {
+          {.name = "type",
+           .kind = kChoice,
+           .meaning = "Springs that give way, or an augmented Lagrangian, which holds exactly.",
+           .required = true,
+           .choices = {"penalty", "augmented"}},
+          {.name = "stiffness",
+           .kind = kNumber,
+           .dimension = kStiffness,
+           .meaning = "Against displacements; of a joint that holds some.",
+           .range = kPositive},
+          {.name = "turning_stiffness",
+           .kind = kNumber,
+           .dimension = kAngularStiffness,
+           .meaning = "Against rotations; of a joint that holds some.",
+           .range = kPositive},
+      }};
+  return table;
+}
+
 }  // namespace polhode

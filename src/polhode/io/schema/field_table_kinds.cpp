@@ -131,6 +131,12 @@ KindTable joint_table(const JointKind& kind) {
                       .kind = kSection,
                       .meaning = "Prescribed motion of the joint's frame on the first body.",
                       .table = motion_fields().title});
+  if (kind.name != "slack_link")
+    fields.push_back({.name = "enforcement",
+                      .kind = kSection,
+                      .meaning = "Stiffness by which the joint is held.",
+                      .standard = "exact, by multipliers",
+                      .table = enforcement_fields().title});
   fields.push_back({.name = "breaks",
                     .kind = kSection,
                     .meaning = "Reaction at which the joint breaks.",

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <type_traits>
+
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/joints/joint.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// g of EqualTurns by a twist of aligned shafts: x_a·y_b and −y_a·x_b both grow by it.
+constexpr double kEqualTurnsByTwist = 2.0;
+/// Stiffnesses of augmented joints farther apart than this are not told apart: ε times it must stay
+/// small beside the masses.
+constexpr double kMostWeight = 1e6;
+
+/// Derivative of the part's rows by the rotation that they measure; 0 for those that measure a
+/// displacement.
+template <class Part>
+constexpr double by_rotation() {
+  return std::is_same_v<Part, EqualTurns>       ? kEqualTurnsByTwist
+         : std::is_same_v<Part, OrthogonalAxes> ? 1.0
+                                                : 0.0;
+}
+
+}  // namespace
+
+StiffnessDemand stiffness_demand(const JointParts& parts) {
+  StiffnessDemand demand;
+  parts.for_each([&](const auto& part, int) {
+    (by_rotation<std::decay_t<decltype(part)>>() > 0.0 ? demand.rotations : demand.displacements) =
+        true;
+  });
+  return demand;
+}
+
+Vec6 row_compliances(const JointParts& parts, const JointEnforcement& enforcement) {
+  Vec6 compliance = Vec6::Zero();
+  parts.for_each([&](const auto& part, int row) {
+    using Part = std::decay_t<decltype(part)>;
+    constexpr double turn = by_rotation<Part>();
+    const double k = turn > 0.0 ? enforcement.turning_stiffness : enforcement.stiffness;
+    if (!(k > 0.0))
+      throw InputError(turn > 0.0 ? "turning_stiffness" : "stiffness",
+                       "is not there, or not positive", "Give a positive number");
+    compliance.segment(row, Part::kRows).setConstant((turn > 0.0 ? turn * turn : 1.0) / k);
+  });
+  return compliance;
+}
+
+void Joint::set_enforcement(const JointEnforcement& e, double stiffest) {
+  if (rows_ == 0)
+    throw InputError("type", format("a {} holds nothing but its limits", type_),
+                     "Leave the enforcement out");
+  const Vec6 compliance = row_compliances(parts_, e);
+  if (e.law == JointEnforcement::Law::penalty) {
+    held_by_ = std::make_shared<const Held>(Held{compliance, Vec6::Ones()});
+    return;
+  }
+  Vec6 weight = Vec6::Ones();
+  weight.head(rows_) = (stiffest * compliance.head(rows_)).cwiseMax(1.0);
+  if (weight.maxCoeff() > kMostWeight)
+    throw InputError("type",
+                     format("augmented joints have stiffnesses from {:.3g} to {:.3g}",
+                            stiffest / weight.maxCoeff(), stiffest),
+                     format("Bring them within {:.0e} of each other", kMostWeight));
+  held_by_ = std::make_shared<const Held>(Held{Vec6::Zero(), weight});
+}
+
+/// A spring's force by the mean of its stretch at both ends of the step: G of the mean
+/// configuration then takes exactly the energy that the springs gain. @eq{compliance-row}
+void Joint::soften(const PairStep& step, PairTerms& t) const {
+  t.compliance = held_by_->compliance;
+  t.weight = held_by_->weight;
+  if (!penalised()) return;
+  const double af = step.a.alpha_f;
+  const Vec6 before = residual(at_n(step));
+  t.g.head(rows_) = (1.0 - af) * before.head(rows_) + af * t.g.head(rows_);
+  if (!step.context.tangents) return;
+  t.G_a.topRows(rows_) *= af;
+  t.G_b.topRows(rows_) *= af;
+}
+
+double Joint::spring_energy(const PairStep& step) const {
+  if (!penalised()) return 0.0;
+  Vec6 g = residual(step);
+  double energy = 0.0;
+  for (int k = 0; k < rows_; ++k) {
+    // A joint that was switched on keeps the values that its rows had then.
+    if (switching != Switching::never)
+      g[k] -= step.history[history_size() + SwitchMemory::kHeld + k];
+    energy += 0.5 * g[k] * g[k] / held_by_->compliance[k];
+  }
+  return energy;
+}
+
+}  // namespace polhode
