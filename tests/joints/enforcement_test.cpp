@@ -94,7 +94,7 @@ std::vector<std::string> kinds_with_rows() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryPenalisedJoint, testing::ValuesIn(kinds_with_rows()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& with) { return with.param; });
 
 TEST(JointEnforcement, AsksForTheStiffnessesThatTheRowsNeed) {
   const JointKind& hinge = joint_kind("revolute");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <polhode/joints/parts.hpp>
+#include <polhode/core/types.hpp>
 
 namespace polhode {
+
+struct JointParts;
 
 /// Stiffness by which a joint's rows are held.
 ///

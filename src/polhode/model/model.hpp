@@ -12,6 +12,7 @@
 #include <polhode/core/place.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
+#include <polhode/joints/enforcement.hpp>
 #include <polhode/joints/frame_motion.hpp>
 #include <polhode/loads/load_function.hpp>
 #include <polhode/model/beam_spec.hpp>
