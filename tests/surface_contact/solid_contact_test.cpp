@@ -93,6 +93,34 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
       }
 }
 
+// Increments of Newton follow the force where a point slides from one triangle to the next: along a
+// way of half a plate it has no jump, so its changes from place to place halve with their distance.
+// @tests{mesh-friction}
+TEST(SolidContact, RubsWithoutJumpsFromTriangleToTriangle) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Scene s = scene(seed, 1.0);
+    const SolidContact contact = s.contact(law(0.5));
+    const std::vector<double> history = bristles(contact, s, seed);
+    const auto first = 3 * static_cast<std::size_t>(s.upper.front().nodes.front());
+    const auto at = [&](double part) {
+      Scene to = s;
+      for (std::size_t k = first; k < to.X.size() * 3; k += 3) to.move(k, 0.6 * part);
+      return forces(contact, to, history);
+    };
+    const auto largest_change = [&](int places) {
+      double most = 0.0;
+      Vec before = at(0.0);
+      for (int i = 1; i <= places; ++i) {
+        const Vec here = at(static_cast<double>(i) / places);
+        most = std::max(most, (here - before).norm());
+        before = here;
+      }
+      return most;
+    };
+    EXPECT_LT(largest_change(3200), 0.6 * largest_change(1600)) << seed;
+  }
+}
+
 // @tests{mesh-contact}
 TEST(SolidContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
   for (const double way : {0.02, 0.12, 0.5})

@@ -28,6 +28,13 @@ constexpr int kMostPairChanges = 4;
 /// Round-off of a merit, as part of ℓ² m.
 constexpr double kNoForce = 1e-28;
 
+/// Whether surfaces of solids keep off something by barriers.
+bool meshes_meet(const Nodes& nodes) {
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (nodes.group(g).barrier_points()) return true;
+  return false;
+}
+
 }  // namespace
 
 CoupledEngine::CoupledEngine(const System& system, const std::string& solver, MomentumRate form,
@@ -38,6 +45,7 @@ CoupledEngine::CoupledEngine(const System& system, const std::string& solver, Mo
       newton_(system, form),
       solver_(make_linear_solver(solver)) {
   if (system.contacts()) touching_.emplace(system);
+  searches_ = touching_ || meshes_meet(system.nodes());
   set_up();
   reuse_ = policy == NodeFactor::reuse ||
            (policy == NodeFactor::automatic && system.nodes().unknowns() > kFactorAlways);
@@ -121,10 +129,12 @@ bool CoupledEngine::solve(const State& state, const Trial& trial) {
 
 double CoupledEngine::merit(const State& state, const Trial& trial) {
   newton_.assemble(state, trial, false);
-  touching_->evaluate(state, trial, false);
   const double s = trial.scale(*system_);
   rhs_ = newton_.right_hand_side();
-  touching_->add_wrenches(s, rhs_);
+  if (touching_) {
+    touching_->evaluate(state, trial, false);
+    touching_->add_wrenches(s, rhs_);
+  }
   std::fill(shares_.begin(), shares_.end(), Vec6::Zero());
   condensation_.gather(nodes_.residual(), s, shares_);
   for (int b = 0; b < system_->body_count(); ++b) rhs_.segment<6>(6 * b) -= shares_[b];
@@ -157,16 +167,16 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   }
   if (!solve(state, trial)) return done;
   done.solved = true;
-  if (touching_ || last_increment_ == 0.0 || last_increment_ > kHarmless)
+  if (searches_ || last_increment_ == 0.0 || last_increment_ > kHarmless)
     before_.keep(*system_, trial);
   else
     before_.forget();
   part_ = touching_ ? std::min(damping, touching_->filter()) : damping;
-  const double before = touching_ ? merit(state, trial) : 0.0;
+  const double before = searches_ ? merit(state, trial) : 0.0;
   move(state, trial, part_, done);
   move_nodes(state, trial, part_, done);
   if (!std::isfinite(done.increment)) done.solved = false;
-  if (touching_ && done.solved) {
+  if (searches_ && done.solved) {
     search(state, trial, before, done);
     done.applied = part_;
   }

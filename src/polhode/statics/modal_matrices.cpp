@@ -142,7 +142,7 @@ void ModalMatrices::put_springs_for_compliant_rows() {
   }
   if (!any) return;
   SaddleMatrix more(mass_);
-  more.set(values, std::vector<double>(9 * system_->nodes().mass().size(), 0.0), nullptr, 1.0);
+  more.set(values, std::vector<double>(9 * system_.nodes().mass().size(), 0.0), nullptr, 1.0);
   K().combine(K(), 1.0, more);
 }
 

@@ -43,7 +43,7 @@ void SolidContact::with_gap(const NodeStep& step, const Field& x_n1, const Field
 
 /// Friction of a point over a step.
 struct SolidContact::Slide : FourSlide {
-  int triangle = -1;  ///< Nearest in the middle of the step.
+  int triangle = -1;  ///< Nearest at t_n.
 };
 
 }  // namespace polhode

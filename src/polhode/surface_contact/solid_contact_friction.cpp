@@ -57,13 +57,15 @@ PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const
 SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1, const Field& u,
                                         std::span<const int> triangles, int point, double pressure,
                                         const double* memory, bool tangent) const {
+  // The triangle at t_n: where another one came next in the middle of the step, the plane of
+  // friction would jump, and with it a force that increments follow.
   Slide slide;
   FourMoves moves;
   double least = std::numeric_limits<double>::infinity();
   for (const int t : triangles) {
     const FourMoves m = this->moves(x_n1, u, point, t);
     Vec3 x[4];
-    m.at(step.alpha_f, x);
+    m.at(0.0, x);
     const double distance = nearest_of_triangle(x).distance;
     if (distance >= (1.0 - kAlike) * least) continue;
     least = distance;
