@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The examples of docs/reference/connectors.md run as they stand.
+// The examples of docs/reference/connectors.md and joints.md run as they stand.
 #include <support/page_examples.hpp>
 
 namespace polhode::test::connectors_page_tests {
@@ -7,5 +7,7 @@ namespace polhode::test::connectors_page_tests {
 TEST(ConnectorsPage, EveryExampleRuns) {
   EXPECT_EQ(run_page_examples("docs/reference/connectors.md"), 10);
 }
+
+TEST(JointsPage, EveryExampleRuns) { EXPECT_EQ(run_page_examples("docs/reference/joints.md"), 1); }
 
 }  // namespace polhode::test::connectors_page_tests
