@@ -137,8 +137,10 @@ class Model(Section):
         """Adds an event, which switches joints, loads and contacts, and returns it.
 
         It comes at a time, at ("0.2 s"), or when a number begins to be above or below a level:
-        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}. off and on: lists of joints, loads and pairs of
-        contacts, or their names; after: the event that must have come before; repeat, stop: True or False.
+        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}, of whatever probes record: body, joint, load,
+        solid, beam, cable or contact, and a column of its probe, {"cable": rope, "channel": "tension", "above": 500}.
+        off and on: lists of joints, loads, pairs of contacts, bodies whose contacts all are meant, or their names;
+        after: the event that must have come before; repeat, stop: True or False.
         The ledger of a run has `events`: when each came, what it lost [J] and its largest impulse.
         """
         return self._add("events", name, fields)
@@ -146,7 +148,8 @@ class Model(Section):
     def add_controller(self, name: str, **fields: Any) -> Section:
         """Adds a controller of a channel, and returns it: loads follow it by {"controller": name}.
 
-        joint, body or load with channel, as in an event; setpoint, a number, an expression of t or a table.
+        body, joint, load, solid, beam, cable or contact with channel, as in an event; setpoint, a number, an
+        expression of t or a table.
         Gains proportional, integral, derivative with filter [s]; or numerator and denominator, polynomials in s, the
         highest power first. sample [s]: it acts then and keeps its output between; left out: it is continuous.
         minimum and maximum bound what it sets.

@@ -96,6 +96,26 @@ def test_an_event_lets_go_and_ends_the_run() -> None:
         m.add_event("again", at=1, of=[hook])
 
 
+def test_events_and_controllers_read_cables_and_contacts() -> None:
+    m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 1, "step": "2 ms"})
+    floor = m.add_body("floor", fixed=True, shape={"plane": "z"})
+    crate = m.add_body("crate", mass=2, inertia=[1, 1, 1], shape={"box": [0.2, 0.2, 0.2]}, position=[0, 0, 1])
+    rope = m.add_cable("rope", through=[["ground", [0, 0, 2]], [crate]], stiffness="2 kN", free_length=0.99)
+    m.contacts.default = {"restitution": 0}
+    m.add_controller("hold", cable=rope, channel="tension", setpoint="10 N", proportional=0.2)
+    m.add_load("lift", "force", body=crate, force=[0, 0, {"controller": "hold"}])
+    m.add_event("tight", when={"cable": rope, "channel": "tension", "above": "23 N"}, off=[crate])
+    m.add_event("far", when={"contact": [crate, floor], "channel": "gap", "below": 0.5}, stop=True)
+    again = polhode.from_text(m.to_yaml())
+    assert again == m and again.events["tight"].off == ["crate"]
+    # Tension 22.025 - 2.025 cos(w t) with w^2 = 0.8 * 2000 / 2.
+    tight = next(e for e in polhode.run(m).ledger.events if e["event"] == "tight")
+    assert abs(tight["time"] - np.arccos(-0.975 / 2.025) / 800**0.5) < 2e-4
+    m.events["tight"].when.channel = "tensoin"
+    with pytest.raises(polhode.ModelError, match="no channel of the cable 'rope'. Did you mean 'tension'"):
+        m.check()
+
+
 def test_a_controller_holds_a_speed() -> None:
     m = polhode.Model(analysis={"duration": 5, "step": "5 ms"})
     disc = m.add_body("disc", mass=1, inertia=[0.1, 0.1, 0.2])

@@ -215,6 +215,63 @@ TEST(CurveOnCurve, EndsWhereACurveEnds) {
       << summary.message;
 }
 
+namespace {
+
+/// What turns within a ring of 55 mm that only goes up and down.
+std::string in_a_ring(const std::string& x, const std::string& y) {
+  return scene(R"(
+  cam: {mass: 1, inertia: [0.01, 0.01, 0.02]}
+  ring: {mass: 0.5, inertia: [0.01, 0.01, 0.01], position: [0, -5 mm, 0]})",
+               R"(
+  shaft: {type: revolute, bodies: [ground, cam], at: [0, 0, 0], axis: z}
+  guide: {type: prismatic, bodies: [ground, ring], at: [0, -5 mm, 0], axis: y})",
+               "  it: {type: curve_on_curve, bodies: [ring, cam], at: [[0, -5 mm, 0], [0, 0, 0]], "
+               "side: left, curve_x: 0.055*cos(s), curve_y: 0.055*sin(s), other_x_axis: y, "
+               "other_curve_x: " +
+                   x + ", other_curve_y: " + y +
+                   "}\n  drive: {type: rotary_motor, joint: shaft, speed: -10 rad/s}",
+               "0.3 s");
+}
+
+}  // namespace
+
+// An ellipse of semi-axes a and b turns in a ring of radius R that only goes up and down. Where its
+// own radius of curvature comes to R at P, the ring's centre P − R n is back on the guide at an
+// angle in closed form; from there on the place would jump. @tests{curves-distance}
+TEST(CurveOnCurve, EndsWhereTheCurvesFitEachOther) {
+  const double a = 0.05, b = 0.04, R = 0.055;
+  const double slope_2 = std::pow(a * b * R, 2.0 / 3.0);  // |dP/ds|² there
+  const double s = std::asin(std::sqrt((slope_2 - b * b) / (a * a - b * b)));
+  const double x = a * std::cos(s) - R * b * std::cos(s) / std::sqrt(slope_2);
+  const double y = b * std::sin(s) - R * a * std::sin(s) / std::sqrt(slope_2);
+  // The centre starts at the polar angle π of the ellipse's axes and goes round against the drive.
+  const double fit = (std::atan2(y, x) + kPi) / kOmega;
+  for (const Step& step : kAtSteps) {
+    Simulation run(read_model_text(in_a_ring("0.05*cos(s)", "0.04*sin(s)"), "curves.yaml",
+                                   {std::string("variables.h=") + step.text}));
+    const RunSummary summary = run.run();
+    EXPECT_EQ(summary.end, RunEnd::not_converged) << step.text;
+    EXPECT_LE(run.time(), fit + 1e-5) << step.text;
+    EXPECT_GT(run.time(), fit - 1.5 * step.h - 1e-4) << step.text;
+    EXPECT_NE(summary.message.find("fit each other where they touch"), std::string::npos)
+        << summary.message;
+  }
+}
+
+// A disc as large as its ring touches it everywhere, from the start.
+TEST(CurveOnCurve, DoesNotStartWhereTheCurvesFitEachOther) {
+  std::string message;
+  try {
+    Simulation run(
+        read_model_text(in_a_ring("0.055*cos(s) - 0.005", "0.055*sin(s)"), "curves.yaml"));
+    message = run.run().message;
+    EXPECT_EQ(run.time(), 0.0);
+  } catch (const std::exception& e) {
+    message = e.what();
+  }
+  EXPECT_NE(message.find("fit each other"), std::string::npos) << message;
+}
+
 TEST(CurveOnCurve, SaysWhatIsWrongWithItsCurves) {
   const auto message = [](const std::string& contact) {
     try {

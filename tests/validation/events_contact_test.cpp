@@ -104,6 +104,47 @@ TEST(ContactEvents, CatchWhatComesBack) {
   }
 }
 
+// A ball whose contacts all go falls through lid and floor as bodies do; a lid that goes leaves the
+// floor. @tests{switch-loss}
+TEST(ContactEvents, SwitchAllContactsOfABody) {
+  for (const double h : {0.01, 0.001, 0.00002}) {
+    const double t_e = h < 1e-4 ? 0.03 : 0.3, T = t_e + (h < 1e-4 ? 0.07 : 0.6);
+    for (const char* body : {"ball", "lid"}) {
+      Simulation s =
+          made(lid("50 mm", "  open: {at: " + std::to_string(t_e) + " s, off: [" + body + "]}",
+                   std::to_string(T)),
+               {"h=" + std::to_string(h)});
+      while (s.time() < t_e - 1e-12) ASSERT_TRUE(s.step(t_e).accepted);
+      const double z = s.body(0).r[2], v = s.body(0).v[2];
+      // Until it comes to the floor, if it does.
+      const double fall = std::sqrt(2.0 * (z + 0.95) / kG), tau = T - t_e;
+      const RunSummary r = finished(s);
+      EXPECT_LT(r.energy_drift, 1e-9) << h;
+      if (std::string(body) == "lid" && tau > fall) {
+        EXPECT_NEAR(s.body(0).r[2], -0.95, 1e-2) << h;
+        EXPECT_NEAR(s.body(0).v[2], 0.0, 0.2) << h;
+      } else {
+        EXPECT_NEAR(s.body(0).r[2], z + v * tau - 0.5 * kG * tau * tau, 1e-11) << h;
+      }
+    }
+  }
+}
+
+// A pair and a body of it are switched each by itself: they meet while both are on.
+TEST(ContactEvents, SwitchAPairAndABodyOfIt) {
+  const auto lies = [](const std::string& events) {
+    Simulation s = made(lid("50 mm", events, "0.3"));
+    const RunSummary r = finished(s);
+    EXPECT_LT(r.energy_drift, 1e-9);
+    return s.body(0).r[2] > 0.04;
+  };
+  const std::string both = "  a: {at: 0.1 s, off: [on_lid, ball]}\n";
+  EXPECT_FALSE(lies(both + "  b: {at: 0.1001 s, on: [on_lid]}"));
+  EXPECT_FALSE(lies(both + "  b: {at: 0.1001 s, on: [ball]}"));
+  EXPECT_TRUE(lies("  a: {at: 0, off: [lid, on_lid]}\n  b: {at: 0, on: [on_lid, lid]}"));
+  EXPECT_FALSE(lies("  a: {at: 0, off: [lid]}"));
+}
+
 TEST(ContactEvents, RefuseToBeginWhereShapesOverlap) {
   Simulation s = made(lid("0.2",
                           "  begin: {at: 0, off: [on_lid]}\n"
@@ -145,12 +186,67 @@ TEST(ContactEvents, SayWhatIsWrong) {
     return lid("0.1", "  e: {at: 1 s, off: [" + names + "]}", "1");
   };
   tells(with("on_lidd"),
-        "events.e.off: unknown joint, load or pair of contacts 'on_lidd'. Did you mean 'on_lid'?");
+        "events.e.off: unknown joint, load, pair of contacts or body 'on_lidd'. Did you mean "
+        "'on_lid'?");
+  tells(with("bal"),
+        "events.e.off: unknown joint, load, pair of contacts or body 'bal'. Did you "
+        "mean 'ball'?");
   std::string both = with("on_lid");
   both.replace(both.find("contacts:"), 9,
                "joints: {on_lid: {type: spherical, bodies: [ground, ball], at: [0, 0, 0.1]}}\n"
                "contacts:");
   tells(both, "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
+  std::string bare = with("ghost");
+  bare.replace(bare.find("  lid:"), 6, "  ghost: {mass: 1, inertia: [1, 1, 1]}\n  lid:");
+  tells(
+      bare,
+      "events.e.off: the body 'ghost' has no contact that could be switched. Give it a shape that "
+      "touches.");
+}
+
+// What contacts of solids, cables and materials do not know, each refused by its name.
+TEST(ContactEvents, RefuseContactsThatAreNotSwitched) {
+  const auto with = [](const std::string& name) {
+    return R"(
+format: 1
+gravity: [0, 0, -9.81]
+bodies:
+  ball: {shape: {sphere: 100 mm}, mass: 0.4, position: [0, 0, 0.5], contact: {material: steel}}
+  drum: {shape: {cylinder: [0.2, 0.2]}, fixed: true, position: [3, 0, 0]}
+  one: {mass: 1, inertia: [1, 1, 1], position: [2, 0, 0]}
+  two: {mass: 1, inertia: [1, 1, 1], position: [2, 0, -1]}
+  far: {shape: {sphere: 100 mm}, mass: 1, position: [9, 0, 0], contact: {groups: [out], meets: [out]}}
+materials: {rubber: {type: neo_hookean, youngs_modulus: 2 MPa, poisson_ratio: 0.4, density: 1100}}
+solids: {pad: {mesh: {block: {size: [0.1, 0.1, 0.1], cells: [1, 1, 1]}}, material: rubber, bonded: {ground: {plane: {axis: z, at: min}}}}}
+cables: {rope: {through: [[one], [two]], stiffness: 100 kN, mass_per_length: 0.1, elements: 4, contact: {radius: 5 mm}}}
+contacts:
+  materials: {steel: {friction: 0.1}}
+  pairs:
+    on_pad: {between: [ball, pad]}
+    on_rope: {between: [ball, rope]}
+    of_steel: {materials: [steel, steel]}
+events:
+  e: {at: 0.1 s, off: [)" +
+           name + R"(]}
+analysis: {type: dynamics, duration: 0.2 s, step: 1 ms}
+)";
+  };
+  tells(with("on_pad"),
+        "events.e.off: 'on_pad' is the contact of a solid, which is not switched. Name a pair of "
+        "bodies in contacts.pairs.");
+  tells(with("on_rope"),
+        "events.e.off: 'on_rope' is the contact of a cable, which is not switched. Name a pair of "
+        "bodies in contacts.pairs.");
+  tells(with("of_steel"),
+        "events.e.off: 'of_steel' is a pair of materials, which is not switched. Name a pair of "
+        "bodies in contacts.pairs.");
+  tells(
+      with("ball"),
+      "events.e.off: 'ball' meets 'pad', a contact that is not switched. Name the pairs of bodies "
+      "that are meant, or exclude the two in contacts.");
+  tells(with("drum"), "events.e.off: 'drum' meets 'pad', a contact that is not switched.");
+  tells(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
+  EXPECT_EQ(fault_of(with("far")), "");
 }
 
 }  // namespace polhode::test::events_contact_tests

@@ -14,6 +14,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/geometry/shapes.hpp>
+#include <polhode/model/switched_contacts.hpp>
 
 namespace polhode {
 
@@ -161,10 +162,10 @@ class ContactsBuilder {
     };
     for (const ContactPairSpec& pair : spec_.pairs)
       if (of_bodies(pair)) keep(pair.a, pair.b, pair.sensor ? pair.name : "");
-    for (const ProbeSpec& probe : model_.output.probes)
-      if (probe.kind == "contact" && !is_surface_side(probe.pair[0]) &&
-          !is_surface_side(probe.pair[1]))
-        keep(probe.pair[0], probe.pair[1], "");
+    for (const Reported& asked : reported(model_))
+      if (asked.of->kind == "contact" && !is_surface_side(asked.of->pair[0]) &&
+          !is_surface_side(asked.of->pair[1]))
+        keep(asked.of->pair[0], asked.of->pair[1], "");
     if (!spec_.record.value_or(true)) return;
     std::vector<std::pair<int, int>> found;
     for (int a = 0; a < static_cast<int>(shapes_of_.size()); ++a)
@@ -179,18 +180,23 @@ class ContactsBuilder {
 
   /// Lets what events switch be switched; those at the start tell what is off there.
   void add_switches() {
-    const auto named = [](const std::vector<std::string>& names, const std::string& name) {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    };
-    for (const ContactPairSpec& pair : spec_.pairs) {
-      bool switched = false, off = false;
-      for (const EventSpec& event : model_.events) {
-        const bool to_on = named(event.on, pair.name), to_off = named(event.off, pair.name);
-        switched = switched || to_on || to_off;
-        if ((to_on || to_off) && event.at && *event.at <= 0.0) off = to_off;
+    std::map<std::array<int, 2>, bool> off;  // by sides, at the start
+    const auto look = [&](const EventSpec& event, const std::vector<std::string>& names,
+                          bool to_off) {
+      for (const std::string& name : names) {
+        const auto sides = switched_contact(model_, name);
+        if (!sides) continue;
+        const bool starts = event.at && *event.at <= 0.0;
+        bool& is_off = off.try_emplace(*sides, false).first->second;
+        if (starts) is_off = to_off;
       }
-      if (switched && of_bodies(pair)) set_->add_switch(pair.a, pair.b, off);
+    };
+    for (const EventSpec& event : model_.events) {
+      look(event, event.on, false);
+      look(event, event.off, true);
     }
+    for (const auto& [sides, is_off] : off)
+      set_->add_switch(sides[0], sides[1] == kEverySide ? contact::kEveryOwner : sides[1], is_off);
   }
 
   const Model& model_;

@@ -406,8 +406,8 @@ class SurfacesBuilder {
     };
     for (const ContactPairSpec& pair : model_.contacts.pairs)
       if (!pair.of_materials) keep(pair.a, pair.b);
-    for (const ProbeSpec& probe : model_.output.probes)
-      if (probe.kind == "contact") keep(probe.pair[0], probe.pair[1]);
+    for (const Reported& asked : reported(model_))
+      if (asked.of->kind == "contact") keep(asked.of->pair[0], asked.of->pair[1]);
     if (!model_.contacts.record.value_or(true)) return;
     for (const SurfacePair& pair : pairs) keep(pair.own, pair.side);
   }

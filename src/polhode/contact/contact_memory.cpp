@@ -112,11 +112,12 @@ void ContactSet::load(const State& state) {
 void ContactSet::keep_totals(State& state, const std::vector<double>& totals) {
   totals_ = totals;
   if (state.contacts.size() <= totals.size()) return;  // nothing was saved yet
+  const bool own = saved_ == state.contacts;           // else points are those of another step
   const auto before = static_cast<std::ptrdiff_t>(state.contacts[0]);
   state.contacts.erase(state.contacts.begin() + 1, state.contacts.begin() + 1 + before);
   state.contacts[0] = static_cast<double>(totals.size());
   state.contacts.insert(state.contacts.begin() + 1, totals.begin(), totals.end());
-  saved_ = state.contacts;
+  if (own) saved_ = state.contacts;
 }
 
 std::vector<double> ContactSet::totals_in(const State& state) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -53,6 +54,9 @@ struct PlacedShape {
   int owner = -2;  ///< Whose it is, for exclude(): a number of the caller's; −2: the body.
 };
 
+/// Stands for all owners in a switch.
+inline constexpr int kEveryOwner = std::numeric_limits<int>::max();
+
 /// Contact between the shapes of bodies.
 ///
 /// Candidates are found when a body has moved by more than its margin since they were found last;
@@ -71,7 +75,8 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   void set_impulses(const ImpulseOptions& options) { impulses_ = options; }
   /// Shapes of these owners (bodies, if none is stated) do not meet.
   void exclude(int owner_a, int owner_b);
-  /// Lets the contact of two owners be switched off and on.
+  /// Lets the contact of two owners, or of one with kEveryOwner, be switched off and on. Two shapes
+  /// meet while no switch of theirs is off.
   void add_switch(int owner_a, int owner_b, bool starts_off);
   /// Number of a switch that was added.
   [[nodiscard]] int switch_of(int owner_a, int owner_b) const;
@@ -81,6 +86,9 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   [[nodiscard]] std::vector<std::string> overlaps_if_on(const State& state,
                                                         std::span<const BodyStep> instants,
                                                         std::span<const int> switches);
+  /// Distance of the shapes of two owners at an instant, however far apart they are and whether
+  /// they meet or not; negative: they overlap [m].
+  [[nodiscard]] double distance(int owner_a, int owner_b, std::span<const BodyStep> instants) const;
   /// Whether two shapes touch when they are near and nothing is switched off: bodies, groups and
   /// exclusions allow it.
   [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
@@ -252,7 +260,11 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   std::map<std::pair<int, int>, ContactLaw> laws_;
   std::set<std::pair<int, int>> excluded_;
   struct Switch {
-    std::pair<int, int> owners;
+    std::pair<int, int> owners;  ///< The second may be kEveryOwner.
+    [[nodiscard]] bool holds(const std::pair<int, int>& pair) const {
+      return owners == pair || (owners.second == kEveryOwner &&
+                                (owners.first == pair.first || owners.first == pair.second));
+    }
     bool starts_off = false;
     bool off = false;  ///< At the state that was loaded or saved last.
   };

@@ -23,7 +23,7 @@ bool ContactSet::is_off(const PlacedShape& a, const PlacedShape& b) const {
   if (switches_.empty()) return false;
   const std::pair<int, int> pair = owners(a, b);
   return std::any_of(switches_.begin(), switches_.end(),
-                     [&](const Switch& s) { return s.off && s.owners == pair; });
+                     [&](const Switch& s) { return s.off && s.holds(pair); });
 }
 
 /// The next step, and whoever asks before it, loads the state and finds candidates from the
@@ -52,7 +52,7 @@ std::vector<std::string> ContactSet::overlaps_if_on(const State& state,
   std::vector<std::string> list;
   for (const ShapeOverlap& o : overlaps_at(on, instants)) {
     const std::pair<int, int> pair = owners(shapes_[o.a], shapes_[o.b]);
-    const auto meant = [&](int k) { return switches_[static_cast<std::size_t>(k)].owners == pair; };
+    const auto meant = [&](int k) { return switches_[static_cast<std::size_t>(k)].holds(pair); };
     if (std::any_of(switches.begin(), switches.end(), meant)) list.push_back(words_of(o));
   }
   return list;

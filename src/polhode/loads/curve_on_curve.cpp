@@ -55,6 +55,14 @@ CurvePair::Vec4 CurveOnCurve::place(const PairStep& step) const {
           (step.a.Lambda_n1 * R_a_.col(0)).dot(e_b), (step.a.Lambda_n1 * R_a_.col(1)).dot(e_b)};
 }
 
+CurvePair::Vec4 CurveOnCurve::place_n(const PairStep& step) const {
+  const BodyStep &a = step.a, &b = step.b;
+  const Vec3 e_b = b.Lambda_n * R_b_.col(0);
+  const Vec3 u = b.r_n + b.Lambda_n * Z_b_ - a.r_n - a.Lambda_n * Z_a_;
+  const Vec3 e_x = a.Lambda_n * R_a_.col(0), e_y = a.Lambda_n * R_a_.col(1);
+  return {e_x.dot(u), e_y.dot(u), e_x.dot(e_b), e_y.dot(e_b)};
+}
+
 CurvePair::Distance CurveOnCurve::touch(const PairStep& step) const {
   return curves_.distance(place(step), {step.history[0], step.history[1]});
 }
@@ -155,8 +163,10 @@ void CurveOnCurve::commit(const PairStep& step, double* history) const {
 
 bool CurveOnCurve::acceptable(const PairStep& step) const {
   const CurvePair::Vec4 q = place(step);
-  const CurvePair::Distance d = curves_.distance(q, {step.history[0], step.history[1]});
-  return d.touches && curves_.contains(d.at) && q.tail<2>().squaredNorm() > kLeastSquare;
+  const CurvePair::Places before{step.history[0], step.history[1]};
+  const CurvePair::Distance d = curves_.distance(q, before);
+  return d.touches && curves_.contains(d.at) && q.tail<2>().squaredNorm() > kLeastSquare &&
+         curves_.leads_to(place_n(step), before, d.at);
 }
 
 void add_curve_on_curve(System& system, const LoadDescription& load) {

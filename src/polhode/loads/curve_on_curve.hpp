@@ -42,6 +42,7 @@ class CurveOnCurve : public InteractionItem {
  private:
   [[nodiscard]] FreeDisplacement along(int axis) const { return {Z_a_, Z_b_, R_a_.col(axis)}; }
   [[nodiscard]] CurvePair::Vec4 place(const PairStep& step) const;
+  [[nodiscard]] CurvePair::Vec4 place_n(const PairStep& step) const;  ///< At the start.
   [[nodiscard]] CurvePair::Distance touch(const PairStep& step) const;
 
   Vec3 Z_a_, Z_b_;

@@ -16,6 +16,15 @@ constexpr int kMostPlaces = 60;
 constexpr double kLongestPlaceStep = 0.02;
 /// After a step of this part of the curve the search has converged, by its quadratic order.
 constexpr double kLastPlaceStep = 1e-9;
+/// Relative curvature, by that of curves of their size, below which curves fit each other.
+constexpr double kFits = 1e-3;
+/// Longest way of a place in a step, as part of the curve: shorter steps make it shorter, unless it
+/// jumps.
+constexpr double kLongestWay = 0.1;
+/// Places that are looked at between two, if these are farther apart than this part of the curve,
+/// and how much the distance may fall in between, as part of the curves' size: rounding.
+constexpr int kBetween = 16;
+constexpr double kNearPlaces = 1e-4, kRoundedDistance = 1e-12;
 
 /// X turned by a quarter of a turn.
 Vec2 quarter(const Vec2& X) { return {-X.y(), X.x()}; }
@@ -37,7 +46,7 @@ CurvePair::Distance CurvePair::distance(const Vec4& q, const Places& near) const
     bend = d.normal.dot(turned(p.second)) + d.curvature * along * along;
     // Where the curves fit each other, downhill at the pace of curves of their size.
     const double pace = p.slope.squaredNorm() / size();
-    least = 1e-3 * pace;
+    least = kFits * pace;
     const double step = -d.normal.dot(slope) / (bend > least ? bend : pace);
     if (std::abs(step) < 1e-15 * b_.length() || i == kMostPlaces) break;
     u += std::clamp(step, -longest, longest);
@@ -58,8 +67,23 @@ CurvePair::Distance CurvePair::distance(const Vec4& q, const Places& near) const
   result.normal = d.normal;
   result.tangent = d.tangent;
   result.own = p.X;
-  result.touches = bend > 0.0 && d.room > 0.0;
+  result.touches = bend > least && d.room > 0.0;
   return result;
+}
+
+bool CurvePair::leads_to(const Vec4& q, const Places& from, const Places& to) const {
+  const double way = to.b - from.b;
+  if (std::abs(way) < kNearPlaces * b_.length()) return true;
+  if (std::abs(way) > kLongestWay * b_.length()) return false;
+  double foot = from.a, highest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kBetween; ++i) {
+    const Vec2 X = b_.at(from.b + way * i / kBetween).X;
+    const auto d = a_.distance(q.head<2>() + q[2] * X + q[3] * quarter(X), foot);
+    if (d.value < highest - kRoundedDistance * size()) return false;
+    highest = std::max(highest, d.value);
+    foot = d.foot;
+  }
+  return true;
 }
 
 CurvePair::Places CurvePair::first(const Vec4& q) const {

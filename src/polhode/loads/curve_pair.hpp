@@ -37,6 +37,10 @@ class CurvePair {
   [[nodiscard]] Distance distance(const Vec4& q, const Places& near) const;
   /// The pair of nearest places, among all of both curves, at which they come closest to touching.
   [[nodiscard]] Places first(const Vec4& q) const;
+  /// Whether the place on b may have moved like that over a step that began at q: the curves part
+  /// all the way there. Beyond a summit between them lies a place of its own, to which contact
+  /// would jump.
+  [[nodiscard]] bool leads_to(const Vec4& q, const Places& from, const Places& to) const;
   /// Both places are within the ends of their curves.
   [[nodiscard]] bool contains(const Places& at) const {
     return a_.contains(at.a) && b_.contains(at.b);

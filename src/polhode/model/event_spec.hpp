@@ -6,16 +6,14 @@
 #include <vector>
 
 #include <polhode/core/place.hpp>
-#include <polhode/core/types.hpp>
+#include <polhode/model/probe_spec.hpp>
 
 namespace polhode {
 
-/// One number that a simulation reports, by the name of its column in a probe.
+/// One number that a simulation reports: a column of a probe.
 struct ChannelSpec {
-  std::string kind;           ///< body, joint or load.
-  std::string target;         ///< Its name.
-  std::string name;           ///< Such as z, vx, rz, "rate rz", fx, force.
-  Vec3 point = Vec3::Zero();  ///< Of a body: from the centre of mass, body axes [m].
+  ProbeSpec of;      ///< Its own name, place and rate do not matter.
+  std::string name;  ///< Such as z, vx, rz, "rate rz", fx, tension, gap; or a magnitude: force.
 };
 
 /// A channel that crosses a value.
@@ -32,7 +30,7 @@ struct EventSpec {
   std::optional<double> at;           ///< [s]; at 0 it tells how the model starts.
   std::optional<ConditionSpec> when;  ///< Instead of a time.
   std::string after;                  ///< Event that must have come before; "" for none.
-  std::vector<std::string> on, off;   ///< Joints, loads, pairs of contacts.
+  std::vector<std::string> on, off;   ///< Joints, loads, pairs of contacts, bodies that touch.
   bool repeat = false;                ///< Comes again each time the condition comes to hold.
   bool stop = false;                  ///< Ends the run.
 };

@@ -69,4 +69,15 @@ int Model::load_index(const std::string& name) const {
   return index_of(loads, name, "load", "loads", {});
 }
 
+std::vector<Reported> reported(const Model& model) {
+  std::vector<Reported> list;
+  for (const ProbeSpec& probe : model.output.probes)
+    list.push_back({format("output.probes.{}", probe.name), &probe});
+  for (const EventSpec& event : model.events)
+    if (event.when) list.push_back({format("events.{}.when", event.name), &event.when->channel.of});
+  for (const ControllerSpec& controller : model.controllers)
+    list.push_back({format("controllers.{}", controller.name), &controller.channel.of});
+  return list;
+}
+
 }  // namespace polhode

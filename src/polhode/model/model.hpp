@@ -20,6 +20,7 @@
 #include <polhode/model/controller_spec.hpp>
 #include <polhode/model/event_spec.hpp>
 #include <polhode/model/material_spec.hpp>
+#include <polhode/model/probe_spec.hpp>
 #include <polhode/model/solid_spec.hpp>
 
 namespace polhode {
@@ -129,29 +130,6 @@ struct LoadSpec {
   PartAxes part_axes{};  ///< In which of_motion counts.
 };
 
-/// A channel recorded at its own rate.
-struct ProbeSpec {
-  std::string name;
-  Place place;
-  std::string kind;             ///< body, joint, load, solid, beam, cable, contact, controller.
-  std::string target;           ///< Its name.
-  std::array<int, 2> pair{};    ///< Of a contact probe: sides.
-  Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
-                                ///< solid probe: in the mesh's own coordinates [m].
-  std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
-  int element = 0;              ///< Of a beam, or piece of a cable: the first is 0.
-  std::string reaction_of;      ///< Of a solid probe: the bonded body or prescribed nodes whose
-                                ///< reaction is recorded.
-  bool stress = false;          ///< Of a point or node of a solid: stress too.
-  std::optional<double> every;  ///< [s]; else output.every.
-  std::string axes = "world";   ///< Of reactions: world or joint.
-  // Of a body probe: further columns.
-  std::string rotation;     ///< quaternion, vector, matrix or an Euler sequence; "" for none.
-  bool angular = false;     ///< Angular velocity and acceleration.
-  std::string helical;      ///< instantaneous or finite; "" for none.
-  int seen_from = kGround;  ///< Body from which all is seen: index into Model::bodies.
-};
-
 struct OutputSpec {
   std::optional<double> every;  ///< [s]; left out: every step.
   std::vector<ProbeSpec> probes;
@@ -218,5 +196,13 @@ struct Model {
   [[nodiscard]] int controller_index(const std::string& name) const;  ///< Likewise.
   [[nodiscard]] int probe_index(const std::string& name) const;  ///< In output.probes; likewise.
 };
+
+/// Something of a model whose numbers a run is asked for.
+struct Reported {
+  std::string where;              ///< Path of what asks, for messages.
+  const ProbeSpec* of = nullptr;  ///< The model keeps it.
+};
+/// Probes, and what events and controllers read.
+[[nodiscard]] std::vector<Reported> reported(const Model& model);
 
 }  // namespace polhode

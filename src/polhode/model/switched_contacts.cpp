@@ -18,26 +18,38 @@ std::string not_of_bodies(const ContactPairSpec& pair) {
   return {};
 }
 
+/// Whether a shape of a body takes part in contact.
+bool touches(const BodySpec& body) {
+  return std::any_of(body.shapes.begin(), body.shapes.end(), [&](const ShapeSpec& shape) {
+    return shape.contact.touches.value_or(body.contact.touches.value_or(true));
+  });
+}
+
 }  // namespace
 
-std::optional<int> switched_contact(const Model& model, const std::string& name) {
+std::optional<std::array<int, 2>> switched_contact(const Model& model, const std::string& name) {
   const auto named = [&](const auto& thing) { return thing.name == name; };
   const auto is_there = [&](const auto& list) {
     return std::any_of(list.begin(), list.end(), named);
   };
+  const bool joint = is_there(model.joints), other = joint || is_there(model.loads);
   const std::vector<ContactPairSpec>& pairs = model.contacts.pairs;
   const auto found = std::find_if(pairs.begin(), pairs.end(), named);
-  if (found == pairs.end()) return std::nullopt;
-  if (is_there(model.joints) || is_there(model.loads))
+  if (found == pairs.end()) {
+    if (other || !model.contacts.present) return std::nullopt;
+    const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), named);
+    if (body == model.bodies.end() || !touches(*body)) return std::nullopt;
+    return std::array{static_cast<int>(body - model.bodies.begin()), kEverySide};
+  }
+  if (other)
     throw InputError(name,
-                     format("'{}' is a pair of contacts and a {}", name,
-                            is_there(model.joints) ? "joint" : "load"),
+                     format("'{}' is a pair of contacts and a {}", name, joint ? "joint" : "load"),
                      "Rename one of them");
-  const std::string other = not_of_bodies(*found);
-  if (!other.empty())
-    throw InputError(name, format("'{}' {}, which is not switched", name, other),
+  const std::string no_bodies = not_of_bodies(*found);
+  if (!no_bodies.empty())
+    throw InputError(name, format("'{}' {}, which is not switched", name, no_bodies),
                      "Name a pair of bodies in contacts.pairs");
-  return static_cast<int>(found - pairs.begin());
+  return std::array{found->a, found->b};
 }
 
 }  // namespace polhode

@@ -4,6 +4,8 @@
 #include <string>
 
 #include <polhode/compile/build_system.hpp>
+#include <polhode/simulation/probe.hpp>
+#include <polhode/simulation/probe_columns.hpp>
 
 namespace polhode {
 
@@ -13,26 +15,25 @@ class Simulation;
 class ChannelReader {
  public:
   ChannelReader() = default;  ///< Reads nothing.
-  /// @param where  Path of the channel, for messages.
+  /// @param where  Path of what holds the channel, for messages.
   /// @throws InputError if there is no such channel.
-  ChannelReader(const Model& model, const SystemMap& map, const System& system,
-                const ChannelSpec& spec, const std::string& where);
+  ChannelReader(const Simulation& simulation, const SystemMap& map, const ChannelSpec& spec,
+                const std::string& where);
 
-  /// At the instant, in SI.
+  /// At the instant, in SI; a gap that is not known, of surfaces far apart, is infinite.
   [[nodiscard]] double value(const Simulation& simulation) const;
-  /// The channel that is its derivative by time: of a coordinate its rate, of positions of a body
+  /// The channel that is its derivative by time: of a coordinate its rate, of positions
   /// velocities, of these accelerations. @throws InputError if it has none.
-  [[nodiscard]] ChannelReader rate(const std::string& where) const;
+  [[nodiscard]] ChannelReader rate(const Simulation& simulation, const std::string& where) const;
 
  private:
-  ChannelSpec spec_;
+  [[nodiscard]] double far_gap(const Simulation& simulation) const;
+
+  ProbeTarget target_;
+  ProbeNumber column_;
   const SystemMap* map_ = nullptr;
-  const System* system_ = nullptr;
-  int index_ = -1;             ///< Into the model's bodies, joints or loads.
-  int component_ = -1;         ///< Of the report.
-  int rate_step_ = 0;          ///< From a component to its derivative.
-  int with_rate_ = 0;          ///< Components that have one: the first ones.
-  bool of_positions_ = false;  ///< Needs no velocities and forces.
+  std::size_t coordinate_ = 0;  ///< Of a joint.
+  bool of_positions_ = false;   ///< Needs no velocities and forces.
 };
 
 }  // namespace polhode

@@ -29,7 +29,11 @@ void ContactKeeper::begin(State& state) {
   if (!contacts_) return;
   totals_.assign(total_count(), 0.0);
   totals_[kLeastGap] = kNoGap;
-  look(state, false);
+  see(state);
+  summed_ = true;  // no step was taken
+  totals_[kLeastGap] = seen_.least_gap;
+  note_sensors(state);
+  contacts_->keep_totals(state, totals_);
 }
 
 void ContactKeeper::resume(const State& state) {
@@ -45,36 +49,32 @@ void ContactKeeper::resume(const State& state) {
   totals_[wanted - 1] = search.unconverged;
 }
 
-void ContactKeeper::after_step(State& state) {
-  if (contacts_) look(state, true);
-}
-
-void ContactKeeper::look(State& state, bool sum) {
-  const std::vector<contact::ShapePairReport> all = contacts_->reports();
-  points_ = contacts_->touching();
-  wrenches_ = contacts_->wrenches();
+void ContactKeeper::see(const State& state) {
+  if (!contacts_) return;
   std::map<std::pair<int, int>, std::size_t> place;
   for (std::size_t k = 0; k < map_->pairs.size(); ++k)
     place[std::minmax(map_->pairs[k].a, map_->pairs[k].b)] = k;
   ContactReport none;
   none.gap = std::numeric_limits<double>::quiet_NaN();
-  reports_.assign(map_->pairs.size(), none);
-  double* totals = totals_.data();
-  touching_ = 0;
-  for (const contact::ShapePairReport& r : all) {
-    if (r.points > 0) ++touching_;
+  ContactsSeen& seen = seen_;
+  seen.points = contacts_->touching();
+  seen.wrenches = contacts_->wrenches();
+  seen.reports.assign(map_->pairs.size(), none);
+  seen.touching = 0;
+  seen.least_gap = kNoGap;
+  seen.impact_loss = seen.friction_loss = seen.unresolved = 0.0;
+  for (const contact::ShapePairReport& r : contacts_->reports()) {
+    if (r.points > 0) ++seen.touching;
     const int a = map_->body[static_cast<std::size_t>(r.a)];
     const int b = map_->body[static_cast<std::size_t>(r.b)];
-    if (!contacts_->law(r.a, r.b).sensor) totals[kLeastGap] = std::fmin(totals[kLeastGap], r.gap);
-    if (sum) {
-      totals[0] += r.impact_loss;
-      totals[1] += r.dissipated - r.impact_loss;
-      totals[kUnresolvedTime] += r.unresolved;
-    }
+    if (!contacts_->law(r.a, r.b).sensor) seen.least_gap = std::fmin(seen.least_gap, r.gap);
+    seen.impact_loss += r.impact_loss;
+    seen.friction_loss += r.dissipated - r.impact_loss;
+    seen.unresolved += r.unresolved;
     const auto found = place.find(std::minmax(a, b));
     if (found == place.end()) continue;
     const double sign = a == map_->pairs[found->second].a ? 1.0 : -1.0;
-    ContactReport& report = reports_[found->second];
+    ContactReport& report = seen.reports[found->second];
     report.gap = std::fmin(report.gap, r.gap);
     report.normal_force += r.normal_force;
     report.force += sign * r.force;
@@ -82,36 +82,61 @@ void ContactKeeper::look(State& state, bool sum) {
     report.point += r.normal_force * r.point;
     report.points += r.points;
     report.status = std::max(report.status, static_cast<int>(r.status));
-    if (!sum) continue;
-    totals[kHead + kPerPair * found->second] += r.normal_force * state.dt_last;
-    totals[kHead + kPerPair * found->second + 1] += r.dissipated;
+    report.impulse += r.normal_force * state.dt_last;
+    report.energy_lost += r.dissipated;
   }
-  for (std::size_t k = 0; k < reports_.size(); ++k) {
-    ContactReport& report = reports_[k];
+  for (std::size_t k = 0; k < seen.reports.size(); ++k) {
+    ContactReport& report = seen.reports[k];
     if (report.normal_force > 0.0) report.point /= report.normal_force;
+    if (!map_->pairs[k].sensor.empty()) report.status = report.gap < 0.0 ? 1 : 0;
+  }
+  if (contacts_->impulses())
+    seen.search = {static_cast<double>(contacts_->last_search().sweeps),
+                   contacts_->last_search().converged ? 0.0 : 1.0};
+  summed_ = false;
+}
+
+void ContactKeeper::after_step(State& state) {
+  if (!contacts_) return;
+  double* totals = totals_.data();
+  totals[0] += seen_.impact_loss;
+  totals[1] += seen_.friction_loss;
+  totals[kUnresolvedTime] += seen_.unresolved;
+  totals[kLeastGap] = std::fmin(totals[kLeastGap], seen_.least_gap);
+  for (std::size_t k = 0; k < seen_.reports.size(); ++k) {
+    totals[kHead + kPerPair * k] += seen_.reports[k].impulse;
+    totals[kHead + kPerPair * k + 1] += seen_.reports[k].energy_lost;
+  }
+  if (contacts_->impulses()) {
+    totals[totals_.size() - 2] += seen_.search.sweeps;
+    totals[totals_.size() - 1] += seen_.search.unconverged;
+  }
+  summed_ = true;
+  note_sensors(state);
+  contacts_->keep_totals(state, totals_);
+}
+
+void ContactKeeper::note_sensors(State& state) {
+  for (std::size_t k = 0; k < seen_.reports.size(); ++k) {
     const std::string& sensor = map_->pairs[k].sensor;
     if (sensor.empty()) continue;
-    report.status = report.gap < 0.0 ? 1 : 0;
-    double& overlaps = totals[kHead + kPerPair * k + 2];
-    if ((overlaps != 0.0) == (report.status != 0)) continue;
-    overlaps = report.status;
-    events_.push_back({state.t, sensor, report.status != 0});
+    double& overlaps = totals_[kHead + kPerPair * k + 2];
+    const int status = seen_.reports[k].status;
+    if ((overlaps != 0.0) == (status != 0)) continue;
+    overlaps = status;
+    events_.push_back({state.t, sensor, status != 0});
   }
-  if (contacts_->impulses() && sum) {
-    totals[totals_.size() - 2] += contacts_->last_search().sweeps;
-    totals[totals_.size() - 1] += contacts_->last_search().converged ? 0.0 : 1.0;
-  }
-  contacts_->keep_totals(state, totals_);
 }
 
 ContactReport ContactKeeper::report(int pair) const {
   const auto k = static_cast<std::size_t>(pair);
   ContactReport report;
   report.gap = std::numeric_limits<double>::quiet_NaN();
-  if (k < reports_.size()) report = reports_[k];
+  if (k < seen_.reports.size()) report = seen_.reports[k];
+  if (summed_) report.impulse = report.energy_lost = 0.0;
   if (totals_.size() < kHead + kPerPair * (k + 1)) return report;
-  report.impulse = totals_[kHead + kPerPair * k];
-  report.energy_lost = totals_[kHead + kPerPair * k + 1];
+  report.impulse += totals_[kHead + kPerPair * k];
+  report.energy_lost += totals_[kHead + kPerPair * k + 1];
   return report;
 }
 

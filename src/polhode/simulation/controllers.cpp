@@ -46,19 +46,26 @@ ControllerOutputs own_outputs(Model& model) {
   return outputs;
 }
 
-Controllers::Controllers(const Model& model, const SystemMap& map, const System& system,
+Controllers::Controllers(const Simulation& simulation, const SystemMap& map,
                          ControllerOutputs outputs, int order) {
-  int memory = system.memory() + EventMemory::kSize * static_cast<int>(map.events.size());
+  const Model& model = simulation.model();
+  int memory =
+      simulation.system().memory() + EventMemory::kSize * static_cast<int>(map.events.size());
   for (std::size_t k = 0; k < model.controllers.size(); ++k) {
     const ControllerSpec& spec = model.controllers[k];
     const std::string where = format("controllers.{}", spec.name);
     if (!spec.sample && order > 2)
       throw InputError(where, format("is continuous, which goes with order 2 only, not {}", order),
                        "Give it a sample time, or order: 2");
-    Item item{&spec,        ChannelReader(model, map, system, spec.channel, where + ".channel"),
+    if (!spec.sample && is_mean_of_step(spec.channel))
+      throw InputError(
+          where,
+          format("is continuous, but '{}' of a contact is a mean over the step", spec.channel.name),
+          "Give it a sample time");
+    Item item{&spec,        ChannelReader(simulation, map, spec.channel, where),
               std::nullopt, state_space(spec),
               outputs[k],   memory};
-    if (spec.derivative != 0.0) item.rate = item.channel.rate(where + ".derivative");
+    if (spec.derivative != 0.0) item.rate = item.channel.rate(simulation, where + ".derivative");
     item.output->least = spec.least;
     item.output->most = spec.most;
     items_.push_back(std::move(item));
@@ -113,16 +120,23 @@ Controllers::Acted Controllers::act(const Simulation& simulation, State& state) 
                                        : count == 0.0 || state.t > memory[ControllerMemory::kTime];
     if (!due) continue;
     acted.any = true;
-    acted.jumps = act(item, simulation, state) || acted.jumps;
+    const double y = item.channel.value(simulation);
+    if (!std::isfinite(y)) {
+      acted.blind = format(
+          "controllers.{}: '{}' is not known at t = {:.6g} s, as what it reads is too far apart. "
+          "Let it read something that is there all the time",
+          item.spec->name, item.spec->channel.name, state.t);
+      continue;
+    }
+    acted.jumps = act(item, y, simulation, state) || acted.jumps;
   }
   return acted;
 }
 
 /// @eq{controller} @eq{controller-steps}
-bool Controllers::act(const Item& item, const Simulation& simulation, State& state) {
+bool Controllers::act(const Item& item, double y, const Simulation& simulation, State& state) {
   const ControllerSpec& spec = *item.spec;
   const StateSpace& filter = item.filter;
-  const double y = item.channel.value(simulation);
   const double y_rate = item.rate ? item.rate->value(simulation) : 0.0;
   const auto target = [&](TimeSide side) {  // a step ends at a break but for rounding
     return spec.setpoint ? spec.setpoint->rates(beside(state.t, side), side) : TimeRates{};

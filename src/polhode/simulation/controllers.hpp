@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <polhode/simulation/channel_reader.hpp>
@@ -27,15 +28,16 @@ class Controllers {
  public:
   /// @param order  Of the method.
   /// @throws InputError if a channel does not exist, or a controller is continuous at order 4 or
-  /// above.
-  Controllers(const Model& model, const SystemMap& map, const System& system,
-              ControllerOutputs outputs, int order);
+  /// above or on a mean over the step.
+  Controllers(const Simulation& simulation, const SystemMap& map, ControllerOutputs outputs,
+              int order);
 
   /// The first time after the state's at which a step must end [s].
   [[nodiscard]] double next_time(const State& state, double until) const;
   struct Acted {
-    bool any = false;    ///< The time of a controller has come.
-    bool jumps = false;  ///< What it sets jumps: forces before tell nothing of those to come.
+    bool any = false;     ///< The time of a controller has come.
+    bool jumps = false;   ///< What it sets jumps: forces before tell nothing of those to come.
+    std::string blind{};  ///< A controller whose channel is not known, in words.
   };
   /// Lets those act whose time has come.
   Acted act(const Simulation& simulation, State& state) const;
@@ -60,8 +62,8 @@ class Controllers {
     int memory = 0;  ///< Where its numbers are in State::history.
   };
   [[nodiscard]] static StateSpace state_space(const ControllerSpec& spec);
-  /// @returns whether its output jumps.
-  static bool act(const Item& item, const Simulation& simulation, State& state);
+  /// @param y  What it reads. @returns whether its output jumps.
+  static bool act(const Item& item, double y, const Simulation& simulation, State& state);
   static void set_output(const Item& item, const double* memory);
 
   std::vector<Item> items_;

@@ -18,18 +18,34 @@ namespace {
 /// Two times closer than this part of a step are the same.
 constexpr double kSameEventTime = 1e-9;
 
+/// A body as a whole meets surfaces as well, whose contact is not switched.
+void refuse_surfaces(const Simulation& simulation, const EventSpec& event, const std::string& name,
+                     int body, int other) {
+  if (other != kEverySide) return;
+  for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
+    if (surface.side == body)
+      throw InputError(format("events.{}", event.name),
+                       format("'{}' meets '{}', a contact that is not switched", name,
+                              simulation.model().side_name(surface.own)),
+                       "Name the pairs of bodies that are meant, or exclude the two in contacts");
+}
+
 }  // namespace
 
-EventWatch::EventWatch(const Model& model, const SystemMap& map, const System& system)
-    : system_(&system), events_(&map.events) {
+EventWatch::EventWatch(const Simulation& simulation, const SystemMap& map)
+    : system_(&simulation.system()), events_(&map.events) {
+  const Model& model = simulation.model();
   for (const EventSpec& event : *events_) {
     Watched w;
     const auto add = [&](const std::vector<std::string>& names, std::vector<int>& interactions,
                          std::vector<int>& contacts) {
       for (const std::string& name : names) {
-        if (const auto pair = switched_contact(model, name)) {
-          const ContactPairSpec& of = model.contacts.pairs[at(*pair)];
-          if (map.contacts) contacts.push_back(map.contacts->switch_of(of.a, of.b));
+        if (const auto sides = switched_contact(model, name)) {
+          const auto [a, b] = *sides;
+          refuse_surfaces(simulation, event, name, a, b);
+          if (map.contacts)
+            contacts.push_back(
+                map.contacts->switch_of(a, b == kEverySide ? contact::kEveryOwner : b));
           continue;
         }
         const SwitchTarget target = switch_target(model, name);
@@ -39,8 +55,8 @@ EventWatch::EventWatch(const Model& model, const SystemMap& map, const System& s
     add(event.on, w.on, w.contacts_on);
     add(event.off, w.off, w.contacts_off);
     if (event.when)
-      w.channel = ChannelReader(model, map, system, event.when->channel,
-                                format("events.{}.when.channel", event.name));
+      w.channel =
+          ChannelReader(simulation, map, event.when->channel, format("events.{}.when", event.name));
     if (!event.after.empty()) {
       std::vector<std::string> names;
       for (const EventSpec& other : *events_) {

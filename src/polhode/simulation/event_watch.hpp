@@ -15,7 +15,7 @@ class Simulation;
 class EventWatch {
  public:
   /// @throws InputError if a channel or an event is named that does not exist.
-  EventWatch(const Model& model, const SystemMap& map, const System& system);
+  EventWatch(const Simulation& simulation, const SystemMap& map);
 
   [[nodiscard]] const std::vector<EventSpec>& events() const { return *events_; }
   /// Interactions that an event switches on, off.

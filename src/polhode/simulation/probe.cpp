@@ -4,125 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <polhode/compile/build_system.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/loads/registry.hpp>
 #include <polhode/simulation/body_columns.hpp>
+#include <polhode/simulation/probe_columns.hpp>
 
 namespace polhode {
 
 namespace {
 
-std::vector<std::string> vector_header(const std::string& prefix, const std::string& unit) {
-  std::vector<std::string> cells;
-  for (const char* axis : {"x", "y", "z"}) cells.push_back(format("{}{} [{}]", prefix, axis, unit));
-  return cells;
-}
-
-void extend(std::vector<std::string>& list, const std::vector<std::string>& more) {
-  list.insert(list.end(), more.begin(), more.end());
-}
-
 void extend(std::vector<double>& list, const Vec3& x) {
   list.insert(list.end(), x.begin(), x.end());
-}
-
-std::vector<std::string> body_header(const ProbeSpec& spec) {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, body_columns(spec));
-  return header;
-}
-
-/// The joint behind a JointSpec of the model.
-const Joint* joint_item(const Simulation& simulation, int joint) {
-  const System& system = simulation.system();
-  const JointSpec& spec = simulation.model().joints[static_cast<std::size_t>(joint)];
-  const auto& interactions = system.interactions();
-  for (std::size_t i = 0; i < interactions.size(); ++i)
-    if (system.group(interactions[i].group).kind() == Joint::kKind &&
-        system.name(interactions[i]) == spec.name)
-      return &joint_at(system, static_cast<int>(i));
-  return nullptr;
-}
-
-/// Columns of friction and stops.
-void extend_by_resistance(std::vector<std::string>& header, const Joint& joint,
-                          const std::vector<std::string>& coordinates) {
-  const Resistance* resistance = joint.resistance();
-  if (!resistance) return;
-  const auto unit = [](const std::string& name) { return name[0] == 'r' ? "N m" : "N"; };
-  if (resistance->data().friction) {
-    for (const std::string& name : coordinates)
-      header.push_back(format("friction {} [{}]", name, unit(name)));
-    header.emplace_back("slips [-]");
-  }
-  if (resistance->data().slide)
-    header.emplace_back(coordinates.front() == "distance" ? "stop distance [N]" : "stop z [N]");
-  if (resistance->data().turn) header.emplace_back("stop rz [N m]");
-}
-
-std::vector<std::string> joint_header(const Simulation& simulation, int joint) {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("m", "N m"));
-  const Joint* item = joint_item(simulation, joint);
-  if (!item) return header;
-  const std::vector<std::string> names = item->coordinate_names();
-  for (const char* quantity : {"", "rate "})
-    for (const std::string& name : names)
-      header.push_back(format("{}{} [{}{}]", quantity, name, name[0] == 'r' ? "rad" : "m",
-                              *quantity == '\0' ? "" : "/s"));
-  extend_by_resistance(header, *item, names);
-  if (item->frame_moves()) header.insert(header.end(), {"power [W]", "work [J]"});
-  return header;
-}
-
-std::vector<std::string> load_header(const Simulation& simulation, int load) {
-  std::vector<std::string> header{"t [s]"};
-  const LoadSpec& spec = simulation.model().loads[static_cast<std::size_t>(load)];
-  for (const LoadChannel& channel : load_kind(spec.type).channels) {
-    if (channel.size == 3)
-      extend(header, vector_header(channel.name.substr(0, 1), channel.unit));
-    else
-      header.push_back(format("{} [{}]", channel.name, channel.unit));
-  }
-  return header;
-}
-
-std::vector<std::string> solid_header(bool interface, bool stress) {
-  std::vector<std::string> header{"t [s]"};
-  if (interface) {
-    extend(header, vector_header("f", "N"));
-    extend(header, vector_header("m", "N m"));
-    return header;
-  }
-  extend(header, vector_header("", "m"));
-  extend(header, vector_header("u", "m"));
-  extend(header, vector_header("v", "m/s"));
-  if (!stress) return header;
-  for (const char* component : {"xx", "yy", "zz", "xy", "yz", "xz"})
-    header.push_back(format("s{} [Pa]", component));
-  header.emplace_back("von_mises [Pa]");
-  return header;
-}
-
-std::vector<std::string> beam_header() {
-  std::vector<std::string> header{"t [s]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("m", "N m"));
-  extend(header, vector_header("strain ", "-"));
-  extend(header, vector_header("curvature ", "1/m"));
-  return header;
-}
-
-std::vector<std::string> contact_header() {
-  std::vector<std::string> header{"t [s]", "gap [m]", "normal [N]"};
-  extend(header, vector_header("f", "N"));
-  extend(header, vector_header("ft", "N"));
-  extend(header, vector_header("p", "m"));
-  extend(header, std::vector<std::string>{"points [-]", "status [-]", "impulse [N s]", "lost [J]"});
-  return header;
 }
 
 void add_stress(std::vector<double>& row, const Mat3& stress) {
@@ -130,10 +22,9 @@ void add_stress(std::vector<double>& row, const Mat3& stress) {
                          stress(0, 2), von_mises(stress)});
 }
 
-ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spec) {
-  const std::string where = format("output.probes.{}", spec.name);
+ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spec,
+                              const std::string& where) {
   ProbeTarget target{.spec = spec, .index = simulation.model().solid_index(spec.target)};
-  target.header = solid_header(!spec.reaction_of.empty(), spec.stress);
   const Mesh& mesh = simulation.solids()[static_cast<std::size_t>(target.index)].plan.mesh;
   if (!spec.reaction_of.empty()) {
     const std::vector<std::string> names = simulation.interfaces(target.index);
@@ -155,46 +46,34 @@ ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spe
 }
 
 /// An element of a beam or a piece of a cable.
-ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec) {
+ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec, const std::string& where) {
   const bool beam = spec.kind == "beam";
   const int index = beam ? model.beam_index(spec.target) : model.cable_index(spec.target);
   const auto k = static_cast<std::size_t>(index);
   const std::size_t count = beam ? model.beams[k].mesh.size() : model.cables[k].pieces.size();
   if (spec.element < 0 || static_cast<std::size_t>(spec.element) >= count)
     throw InputError(
-        format("output.probes.{}.element", spec.name),
+        where + ".element",
         format("{} {} does not exist", beam ? "element" : "piece", spec.element),
         format("'{}' has {} {}; the first is 0", spec.target, count, beam ? "elements" : "pieces"));
-  if (beam) return {.spec = spec, .index = index, .header = beam_header()};
-  ProbeTarget target{
-      .spec = spec, .index = index, .header = {"t [s]", "tension [N]", "length [m]"}};
-  if (model.cables[k].slides) extend(target.header, {"rate [m/s]", "energy [J]"});
-  if (model.cables[k].muscle)
-    extend(target.header, {"fibre_length [m]", "activation [-]", "passive [N]"});
-  return target;
+  return {.spec = spec, .index = index};
 }
 
-}  // namespace
-
-ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
+ProbeTarget find_target(const Simulation& simulation, const ProbeSpec& spec,
+                        const std::string& where) {
   const Model& model = simulation.model();
-  const std::string where = format("output.probes.{}", spec.name);
-  if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec);
-  if (spec.kind == "solid") return find_solid_target(simulation, spec);
+  if (spec.kind == "beam" || spec.kind == "cable") return find_line_target(model, spec, where);
+  if (spec.kind == "solid") return find_solid_target(simulation, spec, where);
   if (spec.kind == "controller")
-    return {.spec = spec,
-            .index = model.controller_index(spec.target),
-            .header = {"t [s]", "setpoint [SI]", "channel [SI]", "output [SI]"}};
+    return {.spec = spec, .index = model.controller_index(spec.target)};
   if (spec.kind == "contact")
-    return {.spec = spec,
-            .index = simulation.contact_pair(spec.pair[0], spec.pair[1]),
-            .header = contact_header()};
+    return {.spec = spec, .index = simulation.contact_pair(spec.pair[0], spec.pair[1])};
   if (spec.kind == "load") {
     const int load = model.load_index(spec.target);
     if (model.loads[static_cast<std::size_t>(load)].solid >= 0)
       throw InputError(where, format("records '{}', a load on a solid", spec.target),
                        "Record an interface or a point of the solid, or a load on bodies");
-    return {.spec = spec, .index = load, .header = load_header(simulation, load)};
+    return {.spec = spec, .index = load};
   }
   const bool body = spec.kind == "body";
   if (!body && spec.kind != "joint")
@@ -204,9 +83,18 @@ ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec) {
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
     throw InputError(where, "records the ground, which stands still", "Name a body");
-  return {.spec = spec,
-          .index = index,
-          .header = body ? body_header(spec) : joint_header(simulation, index)};
+  return {.spec = spec, .index = index};
+}
+
+}  // namespace
+
+ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec,
+                         const std::string& where) {
+  ProbeTarget target =
+      find_target(simulation, spec, where.empty() ? format("output.probes.{}", spec.name) : where);
+  target.header = probe_columns(simulation.model(), spec);
+  target.header.insert(target.header.begin(), "t [s]");
+  return target;
 }
 
 ProbeClock::ProbeClock(const ProbeSpec& spec, const OutputSpec& output, std::optional<double> last)

@@ -20,8 +20,10 @@ struct ProbeTarget {
   std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
 };
 
+/// @param where  Path of what asks, for messages; "": the probe of that name.
 /// @throws InputError if the model has no such thing.
-[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec);
+[[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec,
+                                       const std::string& where = "");
 /// Times at which a probe has rows: the first end of a step at or after each multiple of its
 /// interval, or every step.
 class ProbeClock {

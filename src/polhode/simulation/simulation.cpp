@@ -12,12 +12,17 @@ namespace {
 
 /// Two times closer than this part of the distance between outputs are the same.
 constexpr double kSameTime = 1e-9;
+constexpr const char* kSeeAtStart = "Let the controller read something that is there at the start";
 
 }  // namespace
 
 Simulation::Simulation(Model model) : impl_(std::make_unique<Impl>(std::move(model))) {
+  impl_->watch(*this);
   impl_->start_consistently();
-  if (impl_->controllers) impl_->let_act(*this);
+  if (!impl_->controllers) return;
+  StepReport report;
+  impl_->let_act(*this, report);
+  if (!report.message.empty()) throw InputError("controllers", report.message, kSeeAtStart);
 }
 
 Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(std::move(model))) {
@@ -26,6 +31,7 @@ Simulation::Simulation(Model model, State state) : impl_(std::make_unique<Impl>(
       state.lambda.size() != impl_->system.initial_state().lambda.size())
     throw InputError("restart", "the state belongs to another model",
                      "Restart with the model it was saved from");
+  impl_->watch(*this);
   impl_->state = std::move(state);
   impl_->contacts.resume(impl_->state);
   if (impl_->controllers) impl_->controllers->resume(impl_->state);

@@ -217,9 +217,6 @@ class Simulation {
  private:
   /// A step with the events that it meets.
   StepReport advance(double t_limit);
-  /// Goes back, if an event comes in the step just taken, to where it does.
-  /// @param margin  EventWatch::margin() at its start.
-  void find_event(const State& before, double margin, double limit, StepReport& report);
   /// Lets all events come that are due. @returns false if one cannot; the report says why.
   bool let_events_come(StepReport& report);
   [[nodiscard]] Vec3 node_velocity(int node) const;

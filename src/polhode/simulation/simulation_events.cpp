@@ -31,7 +31,7 @@ StepReport Simulation::advance(double t_limit) {
   if (!s.events) {
     report =
         s.advance(std::min(t_limit, s.controllers->next_time(s.state, std::min(t_limit, s.end()))));
-    if (report.accepted) s.let_act(*this);
+    if (report.accepted) s.let_act(*this, report);
     return report;
   }
   if (s.state.ledger.steps == 0 && !let_events_come(report)) return report;
@@ -40,58 +40,65 @@ StepReport Simulation::advance(double t_limit) {
   if (s.controllers)
     limit = std::min(limit, s.controllers->next_time(s.state, std::min(limit, s.end())));
   const bool watches = events.watches(s.state);
-  const State before = s.state;
+  const Impl::Reached before = s.reached();
   const double margin = watches ? events.margin(*this) : 0.0;
   report = s.take(limit);
   if (!report.accepted) return report;
-  if (watches) find_event(before, margin, limit, report);
+  if (watches) s.find_event(*this, before, margin, limit, report);
   s.settle_step();
   events.rearm(*this, s.state);
   if (!let_events_come(report)) {
     s.go_to(before);
   } else if (s.controllers) {
-    s.let_act(*this);
+    s.let_act(*this, report);
   }
   return report;
 }
 
-void Simulation::find_event(const State& before, double margin, double limit, StepReport& report) {
-  Impl& s = *impl_;
-  const auto take = [&](double t) {
-    s.go_to(before);
-    StepReport r = s.take(t);
-    return std::pair(r, r.accepted ? s.events->margin(*this) : 0.0);
+void Simulation::Impl::find_event(const Simulation& simulation, const Reached& before,
+                                  double margin, double limit, StepReport& report) {
+  const auto take_to = [&](double t) {
+    go_to(before);
+    StepReport r = take(t);
+    return std::pair(r, r.accepted ? events->margin(simulation) : 0.0);
   };
-  double beyond = s.events->margin(*this);
+  double beyond = events->margin(simulation);
   if (beyond < 0.0) {
-    const double H = s.state.t - before.t, longer = s.state.t + kReach * H;
-    if (beyond + kMoreThanSecant * kReach * (beyond - margin) < 0.0 || longer > limit) return;
-    const State ordinary = s.state;
-    const auto [r, at_end] = take(longer);
+    // What is infinitely far from its level, a gap that is not known, is not near it.
+    const double H = state.t - before.state.t, longer = state.t + kReach * H;
+    if (std::isinf(beyond) || std::isinf(margin) ||
+        beyond + kMoreThanSecant * kReach * (beyond - margin) < 0.0 || longer > limit)
+      return;
+    const Reached ordinary = reached();
+    const auto [r, at_end] = take_to(longer);
     if (!r.accepted || at_end < 0.0) {
-      s.go_to(ordinary);
+      go_to(ordinary);
       return;
     }
     report = r;
     beyond = at_end;
   }
   // Regula falsi with the Illinois rule; the state stays on the side where the condition holds.
-  State reached = s.state;
-  double low = 0.0, high = s.state.t - before.t, at_low = margin, at_high = beyond;
-  const double close = kFound * (beyond - margin), H = high;
+  Reached found = reached();
+  const double t_0 = before.state.t;
+  double low = 0.0, high = state.t - t_0, at_low = margin, at_high = beyond;
+  const bool far = std::isinf(margin) || std::isinf(beyond);
+  const double close = far ? 0.0 : kFound * (beyond - margin), H = high;
   const double same =
-      std::max(kFound * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(s.state.t));
+      std::max(kFound * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state.t));
   int side = 0;
   for (int k = 0; k < kMostLooks && beyond > close && high - low > same; ++k) {
-    const double secant = (low * at_high - high * at_low) / (at_high - at_low);
+    const double secant = std::isinf(at_low) || std::isinf(at_high)
+                              ? 0.5 * (low + high)
+                              : (low * at_high - high * at_low) / (at_high - at_low);
     const double x = std::clamp(secant + 0.25 * same, low + 0.25 * same, high - 0.25 * same);
-    const auto [r, m] = take(before.t + x);
+    const auto [r, m] = take_to(t_0 + x);
     if (!r.accepted) break;
-    const double length = s.state.t - before.t;
+    const double length = state.t - t_0;
     if (m >= 0.0) {
       high = length;
       at_high = beyond = m;
-      reached = s.state;
+      found = reached();
       report = r;
       if (side > 0) at_low *= 0.5;
       side = 1;
@@ -102,7 +109,7 @@ void Simulation::find_event(const State& before, double margin, double limit, St
       side = -1;
     }
   }
-  s.go_to(reached);
+  go_to(found);
 }
 
 bool Simulation::let_events_come(StepReport& report) {

@@ -109,10 +109,13 @@ struct Simulation::Impl {
     engine_name = statics ? "mumps" : method.engine->name();
     stepper = std::make_unique<Stepper>(system, std::move(method.engine), method.ga, method.control,
                                         *method.kernels);
-    if (!map.events.empty()) events = std::make_unique<EventWatch>(model, map, system);
+  }
+
+  /// Finds what events and controllers read among the reports of the simulation.
+  void watch(const Simulation& simulation) {
+    if (!map.events.empty()) events = std::make_unique<EventWatch>(simulation, map);
     if (!model.controllers.empty())
-      controllers =
-          std::make_unique<Controllers>(model, map, system, outputs, method.control.order);
+      controllers = std::make_unique<Controllers>(simulation, map, outputs, method.control.order);
   }
 
   void choose_statics() {
@@ -137,24 +140,45 @@ struct Simulation::Impl {
 
   /// A step in time, to which settle_step() belongs once it stays.
   StepReport take(double t_limit) {
+    forget_reports();
+    StepReport report = stepper->advance(state, t_limit);
+    if (report.accepted) contacts.see(state);
+    return report;
+  }
+  /// What was found of the state that the simulation leaves.
+  void forget_reports() {
     instant_step = -1;
-    return stepper->advance(state, t_limit);
+    for (SolidWatch& watch : solid_watches) watch.step = -1;
   }
   void settle_step() {
     contacts.after_step(state);
     watch_surfaces();
   }
+  /// A state, and what is reported of the step that ended there.
+  struct Reached {
+    State state;
+    ContactsSeen contacts;
+  };
+  [[nodiscard]] Reached reached() const { return {state, contacts.seen()}; }
   /// Continues from another state than the last step ended at.
-  void go_to(const State& other) {
-    state = other;
+  void go_to(const Reached& other) {
+    state = other.state;
+    contacts.go_to(other.contacts);
     stepper->leave();
-    instant_step = -1;
+    forget_reports();
   }
-  /// Lets controllers set what acts from now on.
-  void let_act(const Simulation& simulation) {
+  /// Goes back, if an event comes in the step just taken, to where it does.
+  /// @param before  Where the step began. @param margin  EventWatch::margin() there.
+  void find_event(const Simulation& simulation, const Reached& before, double margin, double limit,
+                  StepReport& report);
+  /// Lets controllers set what acts from now on; the report says so if one cannot.
+  void let_act(const Simulation& simulation, StepReport& report) {
     const Controllers::Acted acted = controllers->act(simulation, state);
     if (acted.any) instant_step = -1;
     if (acted.jumps) stepper->forces_jump(state);
+    if (acted.blind.empty()) return;
+    report.accepted = false;
+    report.message = acted.blind;
   }
   /// What acts has changed, though positions and time have not.
   void forget_instant() {

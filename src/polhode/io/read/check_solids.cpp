@@ -38,8 +38,8 @@ void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputEr
 }
 
 /// Whether a probe's point lies in the solid.
-void check_probe(const ProbeSpec& probe, const SolidPlan& plan, std::vector<InputError>& faults) {
-  const std::string where = format("output.probes.{}", probe.name);
+void check_probe(const ProbeSpec& probe, const std::string& where, const SolidPlan& plan,
+                 std::vector<InputError>& faults) {
   if (probe.node && *probe.node >= static_cast<int>(plan.mesh.nodes.size())) {
     faults.emplace_back(where + ".node", format("node {} does not exist", *probe.node),
                         format("The solid has {} nodes; the first is 0", plan.mesh.nodes.size()));
@@ -107,8 +107,9 @@ void check_solids(ReadContext& context, const SourceNode& root) {
     if (faults.size() > before) continue;
     for (const LoadSpec& load : model.loads)
       if (load.solid == static_cast<int>(s)) check_load(load, plan, faults);
-    for (const ProbeSpec& probe : model.output.probes)
-      if (probe.kind == "solid" && probe.target == solid.name) check_probe(probe, plan, faults);
+    for (const Reported& asked : reported(model))
+      if (asked.of->kind == "solid" && asked.of->target == solid.name)
+        check_probe(*asked.of, asked.where, plan, faults);
   }
   for (const InputError& e : faults)
     context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),

@@ -229,11 +229,17 @@ void read_solid_mesh(ReadContext& context, const SourceNode& node, const std::st
                      MeshSpec& mesh);
 void read_solids(ReadContext& context, const SourceNode& node);
 void read_loads(ReadContext& context, const SourceNode& node);
-/// A number that a body, a joint or a load reports, by the keys of these names and 'channel'.
-std::optional<ChannelSpec> read_channel(ReadContext& context, Section& section);
-/// Dimension of its number; none for names that do not exist, which are told later.
-Dimension channel_dimension(const ReadContext& context, const ChannelSpec& channel);
-/// Controllers read channels of joints and loads: read after these.
+/// The thing that one of the keys `kinds` names, and which of its numbers are meant.
+/// @param what  Of that thing, for messages: "to record". @returns false after a fault.
+bool read_recorded(ReadContext& context, Section& section, const std::vector<std::string>& kinds,
+                   const char* what, ProbeSpec& probe);
+/// A number that something reports, by the keys of a probe and 'channel'.
+struct ReadChannel {
+  ChannelSpec spec;
+  Dimension dimension;  ///< Of its number.
+};
+std::optional<ReadChannel> read_channel(ReadContext& context, Section& section);
+/// Controllers read channels of all there is: read after that, contacts too.
 void read_controllers(ReadContext& context, const SourceNode& node);
 /// A number that a controller sets, {controller: name}; null after a fault.
 TimeFunctionPtr read_controlled_value(ReadContext& context, const SourceNode& node,

@@ -4,6 +4,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/simulation/probe_columns.hpp>
 
 namespace polhode {
 
@@ -28,10 +29,11 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
   Section section(context, node, controller.place, "controllers." + controller.name,
                   controller_fields());
   if (!node.is_map()) return;
-  if (const auto channel = read_channel(context, section)) controller.channel = *channel;
-  if (const SourceNode* setpoint = section.find("setpoint")) {
+  const auto channel = read_channel(context, section);
+  if (channel) controller.channel = channel->spec;
+  if (const SourceNode* setpoint = channel ? section.find("setpoint") : nullptr) {
     Field field = controller_fields().at("setpoint");
-    field.dimension = channel_dimension(context, controller.channel);
+    field.dimension = channel->dimension;
     controller.setpoint = read_time_number(context, *setpoint, section.path("setpoint"), field);
     const int outer = controller.setpoint ? controller.setpoint->controller() : -1;
     if (outer >= static_cast<int>(context.model.controllers.size()))
@@ -39,6 +41,12 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
                     "List that controller first.");
   }
   controller.sample = section.number("sample");
+  if (channel && !controller.sample && is_mean_of_step(channel->spec))
+    section.fault("sample",
+                  format("is missing: {} of a contact is a mean over the step, which a continuous "
+                         "controller cannot follow",
+                         quote(channel->spec.name)),
+                  "Give a sample time.");
   controller.proportional = section.number("proportional").value_or(0.0);
   controller.integral = section.number("integral").value_or(0.0);
   controller.derivative = section.number("derivative").value_or(0.0);

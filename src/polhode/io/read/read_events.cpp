@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -18,7 +19,7 @@ std::optional<ConditionSpec> read_condition(ReadContext& context, const SourceNo
   ConditionSpec condition;
   auto channel = read_channel(context, section);
   if (section.refuse_both("above", "below", "Give one of them.") || !channel) return std::nullopt;
-  condition.channel = std::move(*channel);
+  condition.channel = std::move(channel->spec);
   condition.above = !section.has("below");
   const std::string key = condition.above ? "above" : "below";
   const SourceNode* level = section.find(key);
@@ -27,11 +28,20 @@ std::optional<ConditionSpec> read_condition(ReadContext& context, const SourceNo
     return std::nullopt;
   }
   Field field = condition_fields().at(key);
-  field.dimension = channel_dimension(context, condition.channel);
+  field.dimension = channel->dimension;
   const auto value = read_number(context, *level, section.path(key), field);
   if (!value) return std::nullopt;
   condition.level = *value;
   return condition;
+}
+
+/// A body as a whole meets surfaces as well, whose contact is not switched: the first of them.
+std::optional<std::string> surface_met(const Model& model, const std::array<int, 2>& sides) {
+  if (sides[1] != kEverySide) return std::nullopt;
+  std::vector<InputError> told_elsewhere;
+  for (const SurfacePair& pair : plan_surface_contacts(model, &told_elsewhere))
+    if (pair.side == sides[0]) return model.side_name(pair.own);
+  return std::nullopt;
 }
 
 void read_targets(ReadContext& context, Section& section, const char* key,
@@ -40,7 +50,15 @@ void read_targets(ReadContext& context, Section& section, const char* key,
   if (!list) return;
   for (const std::string& name : *list) {
     try {
-      if (!switched_contact(context.model, name)) (void)switch_target(context.model, name);
+      const auto sides = switched_contact(context.model, name);
+      if (!sides) (void)switch_target(context.model, name);
+      if (const auto surface = sides ? surface_met(context.model, *sides) : std::nullopt) {
+        section.fault(
+            key,
+            format("{} meets {}, a contact that is not switched", quote(name), quote(*surface)),
+            "Name the pairs of bodies that are meant, or exclude the two in contacts.");
+        return;
+      }
     } catch (const InputError& e) {
       section.fault(key, e.what_is_wrong(), e.mend() + ".");
       return;

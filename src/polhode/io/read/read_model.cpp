@@ -107,9 +107,9 @@ void read_root(ReadContext& context, const SourceNode& root) {
   read_things(context, root, "");
   if (!root.is_map()) return;
   Model& model = context.model;
+  if (const SourceNode* node = root.find("contacts")) read_contacts(context, *node);
   if (const SourceNode* node = named_things(context, root, "controllers"))
     read_controllers(context, *node);
-  if (const SourceNode* node = root.find("contacts")) read_contacts(context, *node);
   if (const SourceNode* node = named_things(context, root, "events")) read_events(context, *node);
   if (const SourceNode* node = root.find("analysis"))
     read_analysis(context, *node, context.tree.place_of(*node));

@@ -108,16 +108,23 @@ class Fingerprint {
       add(static_cast<int>(j.enforcement->law), j.enforcement->stiffness,
           j.enforcement->turning_stiffness);
   }
-  void one(const ConditionSpec& c) {
-    add(c.channel.kind, c.channel.target, c.channel.name, c.channel.point, c.level, c.above);
+  void one(const ChannelSpec& c) {
+    const ProbeSpec& of = c.of;
+    add(of.kind, of.target, c.name, of.point);
+    // What is not there leaves the fingerprints of older models alone.
+    if (of.kind != "body" && of.kind != "joint" && of.kind != "load")
+      add(of.pair, of.node, of.element, of.reaction_of, of.stress);
+    if (of.axes != "world") add(of.axes);
+    if (!of.rotation.empty() || of.seen_from != kGround || !of.helical.empty())
+      add(of.rotation, of.helical, of.seen_from);
   }
+  void one(const ConditionSpec& c) { add(c.channel, c.level, c.above); }
   void one(const EventSpec& e) {
     add(e.name, e.at, e.when, e.after, e.on, e.off, e.repeat, e.stop);
   }
   void one(const ControllerSpec& c) {
-    add(c.name, c.channel.kind, c.channel.target, c.channel.name, c.channel.point, c.setpoint,
-        c.sample, c.proportional, c.integral, c.derivative, c.filter, c.numerator, c.denominator,
-        c.least, c.most);
+    add(c.name, c.channel, c.setpoint, c.sample, c.proportional, c.integral, c.derivative, c.filter,
+        c.numerator, c.denominator, c.least, c.most);
   }
   void one(const Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,

@@ -148,7 +148,7 @@ const FieldTable& height_field_fields();
 const FieldTable& time_table_fields();
 const FieldTable& law_table_fields();
 const FieldTable& event_fields();
-/// Keys of a number that a body, joint or load reports: see read_channel().
+/// Keys of a number that something reports, those of a probe and its name: see read_channel().
 std::vector<Field> channel_fields();
 const FieldTable& controller_fields();
 const FieldTable& controlled_value_fields();

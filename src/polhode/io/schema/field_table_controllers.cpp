@@ -11,9 +11,8 @@ const FieldTable& controller_fields() {
     FieldTable t{
         "controller",
         "Sets a number by the error setpoint - channel, for loads and cables that name it. Give "
-        "one "
-        "of body, joint and load, and gains or a transfer function. Gains and limits are in SI and "
-        "radians, whatever 'units' says.",
+        "one of body, joint, load, solid, beam, cable and contact, and gains or a transfer "
+        "function. Gains and limits are in SI and radians, whatever 'units' says.",
         channel_fields()};
     t.fields.insert(
         t.fields.end(),

@@ -29,7 +29,8 @@ const FieldTable& event_fields() {
            .standard = "it may come from the start"},
           {.name = "off",
            .kind = kNames,
-           .meaning = "Joints, loads, and pairs and sensors of contacts that cease to act."},
+           .meaning = "Joints, loads, pairs and sensors of contacts, and bodies whose contacts all "
+                      "cease to act."},
           {.name = "on", .kind = kNames, .meaning = "Likewise what begins to act."},
           {.name = "repeat",
            .kind = kBoolean,
@@ -41,29 +42,27 @@ const FieldTable& event_fields() {
 }
 
 std::vector<Field> channel_fields() {
-  return {
-      {.name = "body", .kind = kBody, .meaning = "The body that reports."},
-      {.name = "joint", .kind = kJoint, .meaning = "The joint that reports."},
-      {.name = "load", .kind = kLoad, .meaning = "The load that reports."},
-      {.name = "point",
-       .kind = kVector,
-       .dimension = kLength,
-       .meaning = "Point of the body, body coordinates.",
-       .standard = "the centre of mass"},
-      {.name = "channel",
-       .kind = kText,
-       .meaning = "The number, named as the column of a probe: z, vz, 'rate rz', fx; also "
-                  "speed of a body, force and moment (magnitudes) of a joint.",
-       .required = true},
-  };
+  std::vector<Field> list;
+  for (Field field : probe_fields().fields) {
+    if (field.name == "every" || field.name == "controller") continue;
+    if (field.meaning.starts_with("Record ")) field.meaning.replace(0, 6, "Read");
+    list.push_back(std::move(field));
+  }
+  list.push_back({.name = "channel",
+                  .kind = kText,
+                  .meaning = "The number, named as the column of such a probe: z, vz, 'rate rz', "
+                             "fx, tension, gap; also the magnitudes speed, force and moment.",
+                  .required = true});
+  return list;
 }
 
 const FieldTable& condition_fields() {
   static const FieldTable table = [] {
-    FieldTable t{"condition",
-                 "A reported number beyond a value. Give one of body, joint and load, and one of "
-                 "above and below.",
-                 channel_fields()};
+    FieldTable t{
+        "condition",
+        "A reported number beyond a value. Give one of body, joint, load, solid, beam, cable "
+        "and contact, and one of above and below.",
+        channel_fields()};
     t.fields.insert(
         t.fields.end(),
         {
