@@ -354,6 +354,7 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     const PointHistory& h = p.data.history;
     const int a = shapes_[p.a].body, b = shapes_[p.b].body;
     if (!h.closed || h.in_impact() || p.sensor || p.data.pair.weight < 0.0) continue;
+    if (is_slack(p, h.gap)) continue;
     if (p.restitution == 1.0 || (p.damped && h.approach < 0.0)) continue;
     const bool theirs = std::binary_search(bodies.begin(), bodies.end(), a) ||
                         std::binary_search(bodies.begin(), bodies.end(), b);
