@@ -79,9 +79,11 @@ def lifted_after_landing():
     """A ball of a spring's law lands, e = 0, and is lifted with its own weight: what the impact left below the surface
     gives it nothing on its way up."""
     r, mass, lifted, end = 0.05, 0.1, 0.05, 0.1
-    bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": mass, "position": [0, 0, r + 0.0137], "velocity": [0, 0, -1]}}
-    built = model("Lifted after landing", bodies, contacts={"default": {"law": "linear", "restitution": "e"}}, probes={"ball": {"body": "ball"}},
-                  loads={"lift": {"type": "force", "body": "ball", "force": [0, 0, f"t < {lifted} ? 0 : {2 * mass * G!r}"]}})
+    bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": mass, "position": [0, 0, r + 0.0137],
+                                "velocity": [0, 0, -1]}}
+    lift = {"type": "force", "body": "ball", "force": [0, 0, f"t < {lifted} ? 0 : {2 * mass * G!r}"]}
+    built = model("Lifted after landing", bodies, contacts={"default": {"law": "linear", "restitution": "e"}},
+                  probes={"ball": {"body": "ball"}}, loads={"lift": lift})
     built["variables"] = {"e": 0}
     speed = G * (end - lifted)
     # It starts from within the tolerance, 5e-5 m, and the spring that carried it gives back m g times half of that.
