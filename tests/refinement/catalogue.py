@@ -6,6 +6,7 @@ import eccentric_impacts
 import examples_in_motion
 import examples_with_contact
 import flat
+import incline
 import motions
 import published_statics
 import rest
@@ -16,7 +17,7 @@ import stresses
 import surfaces
 import validation_models
 
-MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, examples_with_contact, flat, motions, published_statics, rest, scenes, several_contacts, stops,
+MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, examples_with_contact, flat, incline, motions, published_statics, rest, scenes, several_contacts, stops,
            stresses, surfaces, validation_models)
 ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]

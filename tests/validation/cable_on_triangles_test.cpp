@@ -47,6 +47,27 @@ double impulses(const Simulation& s) {
   return sum;
 }
 
+/// A rope two metres above a field of heights is not told to overlap with it, whatever the last
+/// digits of its radius.
+TEST(CableOnTriangles, FarAboveAFieldOverlapsNothing) {
+  for (const double radius : {5.8e-3, 5.85e-3, 5.9e-3, 6e-3, 7e-3, 8e-3}) {
+    const Model model = read_model_text(format(R"(
+format: 1
+bodies:
+  field: {{fixed: true, shape: {{height_field: {{spacing: 0.15, heights: [[0, 0, 0], [0, 0, 0], [0, 0, 0]]}}}}}}
+  ball: {{shape: {{sphere: 0.1}}, mass: 1, position: [0, 0, 2]}}
+cables:
+  rope: {{through: [[ground, [0.02, 0, 2.3]], [ball]], stiffness: 10 kN, mass_per_length: 1,
+         elements: 3, contact: {{radius: {:g}}}}}
+contacts: {{}}
+analysis: {{duration: 1 ms, step: 1 ms}}
+)",
+                                               radius),
+                                        "above.yaml");
+    EXPECT_NO_THROW(Simulation{model}) << radius;
+  }
+}
+
 double node_z(const Simulation& s, int node) {
   return s.body(s.model().body_index("rope." + std::to_string(node))).r.z();
 }

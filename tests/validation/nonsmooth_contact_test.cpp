@@ -50,6 +50,30 @@ TEST(NonsmoothContact, BoxOnAnInclineOfThirtyDegrees) {
   }
 }
 
+/// A rod that meets the floor with its end, e = 1, slipping at first the way in which friction will
+/// hold it: an impulse that ends the slip would give it a seventh of its energy.
+/// @tests{nonsmooth-energy}
+TEST(NonsmoothContact, FrictionGivesNoEnergyToARod) {
+  for (const double slip : {0.5, 1.0})
+    for (const double angle : {0.3, 0.5, 0.8}) {
+      Scene s(Vec3::Zero());
+      BodyMotion start = at({0.0, 0.0, 0.015 + 0.5 * std::cos(angle)});
+      start.q = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+      start.v = {slip, 0.0, -1.0};
+      const int rod = s.add("rod", contact::capsule("rod", 0.02, 1.02), 1.0,
+                            {1.0 / 12.0, 1.0 / 12.0, 1e-4}, start);
+      s.add_floor();
+      s.law(0.5, 1.0);
+      s.contacts->set_impulses(kFine);
+      s.begin(2e-3);
+      const double before = s.energy();
+      ASSERT_TRUE(s.run(0.03));
+      EXPECT_GT(s.motion(rod).v.z(), start.v.z() + 0.2) << "it has met the floor";
+      EXPECT_LE(s.energy(), before * (1.0 + 1e-12)) << angle << ' ' << slip;
+      EXPECT_LT(s.drift(), 1e-12 * before) << angle << ' ' << slip;
+    }
+}
+
 /// A ball rolls down 20° by ½ (5/7) g sin α t².
 TEST(NonsmoothContact, BallRollsDown) {
   Scene s(inclined(std::numbers::pi / 9.0));

@@ -45,5 +45,29 @@ TEST(StaticFriction, IsThatOfThePatch) {
     }
 }
 
+/// A block laid on 30 degrees, tan = 0.577, at rest and with gap 0: static friction of 0.6 holds it
+/// although sliding friction of 0.5 would not, while it settles in its band and after.
+/// @tests{contact-patch}
+TEST(StaticFriction, HoldsWhatIsLaidOnAnIncline) {
+  for (const char* shape : {"box: [0.4, 0.4, 0.2]", "cylinder: [0.4, 0.2]"})
+    for (const char* step : {"10 ms", "5 ms", "1 ms", "0.1 ms"}) {
+      Simulation run(read_model_text(format(R"(
+format: 1
+gravity: [0, 0, -9.81]
+variables: {{tilt: 30 deg, a: sin(tilt), b: cos(tilt)}}
+bodies:
+  incline: {{fixed: true, shape: {{plane: [a, 0, b]}}}}
+  block: {{shape: {{{}}}, mass: 2, position: [0.1*a, 0, 0.1*b], orientation: {{axis: y, angle: tilt}}}}
+contacts: {{default: {{friction: 0.5, static_friction: 0.6}}}}
+analysis: {{type: dynamics, duration: 0.3 s, step: {}}}
+)",
+                                            shape, step),
+                                     "m.yaml"));
+      const Vec3 start = run.body("block").r;
+      EXPECT_EQ(run.run().end, RunEnd::finished);
+      EXPECT_LT((run.body("block").r - start).norm(), 1e-5) << shape << ' ' << step;
+    }
+}
+
 }  // namespace
 }  // namespace polhode::static_friction_tests

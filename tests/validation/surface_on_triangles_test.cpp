@@ -63,6 +63,24 @@ TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   }
 }
 
+/// By a spring's law points are within the surface: what is told to be stored at the end of each
+/// step is what the step stored.
+TEST(SurfaceOnTriangles, TellsWhatSpringsStoreWithin) {
+  Simulation simulation(
+      meeting("{tube: [0.16, 0.08, 0.1]}", "law: linear, restitution: 1", "0.1 s"));
+  const auto total = [&] {
+    const Balance b = simulation.balance();
+    return b.kinetic + b.potential + b.dissipated - b.put_in;
+  };
+  const double before = total();
+  double most = 0.0;
+  const RunSummary summary =
+      simulation.run({}, [&](Simulation&) { most = std::max(most, std::abs(total() - before)); });
+  ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
+  EXPECT_GT(simulation.contact(0).impulse, 0.1);
+  EXPECT_LT(most, 1e-10 * before);
+}
+
 TEST(SurfaceOnTriangles, GoesOnFromACheckpointInTheSameBits) {
   const Scratch folder;
   write_obj(folder / "ring.obj", torus(0.07, 0.03));

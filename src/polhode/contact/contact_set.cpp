@@ -372,6 +372,14 @@ double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) c
   return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
 }
 
+/// A spring that an impact left with a reach below its surface, and that gaps between the two do
+/// not press: it keeps that reach until the surfaces part, since to start from the surface again
+/// would store what nobody put in. @eq{turn-law}
+bool ContactSet::is_slack(const Point& p, double gap) {
+  const NormalLaw& law = p.data.normal;
+  return law.potential != NormalPotential::barrier && gap >= law.reach() && gap < 0.0;
+}
+
 Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {
   Work work;
   StepContext values = context;
@@ -395,7 +403,14 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       if (touched_before) p.report = {};
       p.report.gap_n = p.gap_n;
       p.report.gap_n1 = gap_1;
-      h = {.stiffness = h.stiffness, .bristle_stiffness = h.bristle_stiffness};
+      if (h.closed && is_slack(p, gap_1)) {
+        set_phase(p, ContactPhase::rest);
+        h = h.without_bristles();
+        h.gap = gap_1;
+        h.force = 0.0;
+      } else {
+        h = {.stiffness = h.stiffness, .bristle_stiffness = h.bristle_stiffness};
+      }
       continue;
     }
     unused.wrench_a.setZero();
@@ -425,7 +440,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     h.rolling = r.after.rolling;
     h.torsion = r.after.torsion;
     h.slips = r.after.slips;
-    h.closed = gap_1 < reach;
+    h.closed = gap_1 < reach || is_slack(p, gap_1);
     h.gap = r.gap_n1;
     h.force = r.normal_force;
   }

@@ -196,6 +196,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   static void damp_slide(Slide& before, PointForce& force);
   [[nodiscard]] double gravity_along(const Point& p, const Vec3& n) const;
   [[nodiscard]] double exit_speed(const Point& p, const Vec3& n, double speed) const;
+  [[nodiscard]] static bool is_slack(const Point& p, double gap);
   [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
   [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;

@@ -13,8 +13,17 @@ namespace {
 /// A patch whose friction is this close to its bound, as part of it, lets go.
 constexpr double kNearlyAll = 1e-3;
 
-/// Loads of points that change over a step by more than this part of the patch's: bodies settle.
+/// Loads of points that change by more than this part of the patch's in the time in which bodies
+/// settle in the band, or in a longer step: they settle.
 constexpr double kSettles = 1e-2;
+
+/// Part of its bound that a patch holds on the mean of two steps when it lets go: where steps are
+/// long, normal forces go up and down from one to the next.
+constexpr double kMostlyAll = 0.99;
+
+/// Speeds over that of a fall into the depth of rest: bodies that swing there have less than the
+/// first, those that stand while their load swings less than the second.
+constexpr double kSwings = 0.6, kStands = 3e-3;
 
 /// Bound and load of the points between two bodies.
 struct Patch {
@@ -23,6 +32,7 @@ struct Patch {
   double load = 0.0;     ///< Σ λ [N].
   double change = 0.0;   ///< Σ |Δλ| over the step [N].
   double fastest = 0.0;  ///< Mean slip of a point over the step [m/s].
+  double depth = 0.0;    ///< In which it rests [m].
   bool slips = false, all_slip = true;
 };
 
@@ -37,6 +47,19 @@ bool belongs(const PointData& d) {
   const FrictionLaw& f = d.friction;
   const bool round = f.mu_across <= 0.0 || f.mu_across == f.mu;
   return f.mu > 0.0 && f.mu_static > f.mu && round && d.pair.weight > 0.0;
+}
+
+/// How deep a weight rests in the band [m].
+double rest_depth(const NormalLaw& law, double stiffness, double weight) {
+  switch (law.potential) {
+    case NormalPotential::barrier:
+      return std::sqrt(weight * law.tolerance / stiffness);
+    case NormalPotential::linear:
+      return weight / stiffness;
+    case NormalPotential::hertz:
+      break;
+  }
+  return std::pow(weight / stiffness, 2.0 / 3.0);
 }
 
 double held_by(const PointData& d) { return d.friction.stiffness * d.history.bristle.norm(); }
@@ -78,9 +101,10 @@ void ContactSet::share_friction() {
 
 /// A patch that stuck lets go as a whole; one that slid sticks again once no point of it slides.
 /// One that is just being pressed on, whose points give way in turn as their load grows, does not
-/// let go before it moves faster than gravity could have made it.
+/// let go before it moves faster than what is pressed into its band from rest. @eq{contact-patch}
 void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
   std::vector<Patch> before(pairs_.size()), after(pairs_.size());
+  const double gravity = system_->gravity().norm();
   bool any = false;
   for (const Point& p : points_) {
     if (!belongs(p.data) || p.sensor || !p.touched || !(p.report.normal_force > 0.0)) continue;
@@ -95,20 +119,27 @@ void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
     patch.change += std::abs(load - p.data.share.load);
     patch.slips = patch.slips || p.data.history.slips;
     patch.all_slip = patch.all_slip && p.data.history.slips;
+    patch.depth =
+        std::max(patch.depth, rest_depth(p.data.normal, p.rest_stiffness, p.mass * gravity));
     before[p.pair].slips = before[p.pair].slips || p.data.share.slides;
+    before[p.pair].limit += p.data.friction.mu_static * p.data.share.load;
+    before[p.pair].held += p.data.share.held;
   }
   if (!any) return;
-  const double slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
   for (Point& p : points_) {
     if (!belongs(p.data) || p.sensor) continue;
-    const Patch& patch = after[p.pair];
+    const Patch &patch = after[p.pair], &last = before[p.pair];
     const bool free = patch.limit == 0.0;
+    // Bodies fall into their depth in the time √(h/g), and swing there for some of these.
+    const double step = gravity * std::abs(dt), falls = std::sqrt(gravity * patch.depth);
+    const bool slow = patch.fastest < std::max(kSlowReboundSteps * step, kSwings * falls);
     const bool settles =
-        !before[p.pair].slips && patch.fastest < slow && patch.change > kSettles * patch.load;
-    const bool slips =
-        !free && !settles &&
-        (before[p.pair].slips ? patch.slips
-                              : patch.all_slip || patch.held >= (1.0 - kNearlyAll) * patch.limit);
+        !last.slips && slow && std::max(step, falls) * patch.change > kSettles * patch.load * step;
+    const bool stands = step < falls && patch.fastest < kStands * falls;
+    const bool all = patch.all_slip || patch.held >= (1.0 - kNearlyAll) * patch.limit;
+    const bool mostly = patch.held + last.held >= kMostlyAll * (patch.limit + last.limit);
+    const bool goes = all && !stands && (mostly || !slow);
+    const bool slips = !free && !settles && (last.slips ? patch.slips : goes);
     p.data.history.slips = slips;
     if (p.touched) p.report.after.slips = slips;
   }

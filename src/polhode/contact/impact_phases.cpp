@@ -236,6 +236,10 @@ PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   if (!(f.mu > 0.0)) return r;
   impact.mu = f.mu;
   impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
+  // What lasting contact rubs in all, it may hold while it sticks.
+  const bool sticks = !p.data.history.in_impact() && !p.data.history.slips;
+  if (sticks && f.mu_static > f.mu && impact.mu_across == f.mu)
+    impact.mu = impact.mu_across = f.mu_static;
   const Vec3 slip = v - speed * n;
   Vec3 along = Lambda_a * f.direction;
   along -= n.dot(along) * n;
@@ -354,6 +358,7 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     const PointHistory& h = p.data.history;
     const int a = shapes_[p.a].body, b = shapes_[p.b].body;
     if (!h.closed || h.in_impact() || p.sensor || p.data.pair.weight < 0.0) continue;
+    if (is_slack(p, h.gap)) continue;
     if (p.restitution == 1.0 || (p.damped && h.approach < 0.0)) continue;
     const bool theirs = std::binary_search(bodies.begin(), bodies.end(), a) ||
                         std::binary_search(bodies.begin(), bodies.end(), b);

@@ -23,6 +23,8 @@ constexpr double kPressedIn = 0.1;
 /// Change of speeds in the last sweep over few points, over what gravity adds in a step, with which
 /// no step may end.
 constexpr double kFarOff = 1.0;
+/// Solutions in a step that would gain energy, with more points held back in each.
+constexpr int kMostHeldBack = 3;
 /// Without gravity, the speed that tolerances are a part of: this part of the fastest.
 constexpr double kPartOfSpeed = 1e-2;
 
@@ -162,7 +164,9 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
     const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
     p.least = at.rate + least_exit_speed(at.gap, at.rate, at.restitution, dt, slow);
-    p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
+    const bool held_back = k < static_cast<int>(held_back_.size()) && held_back_[k];
+    p.wanted = Vec3::Zero();
+    if (!held_back) p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
     p.friction = at.friction;
     p.push = std::max(0.0, p.normal.dot(at.impulse));
     p.rub = at.impulse - p.normal.dot(at.impulse) * p.normal;
@@ -176,7 +180,8 @@ void NonsmoothEngine::set_up(double dt, bool first) {
       sweeps_.turn(p, moment);
     }
     if (at.rolling == 0.0 && at.torsion == 0.0) continue;
-    sweeps_.turns.push_back({k, at.rolling, at.torsion, w_a - w_b, at.turning});
+    const Vec3 turns = held_back ? Vec3(Vec3::Zero()) : Vec3(w_a - w_b);
+    sweeps_.turns.push_back({k, at.rolling, at.torsion, turns, at.turning});
     if (first) sweeps_.turn(p, at.turning);
   }
 }
@@ -211,6 +216,7 @@ void NonsmoothEngine::sweep() {
 bool NonsmoothEngine::search(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
   points_.clear();
+  held_back_.clear();
   search_ = {};
   search_.converged = true;
   if (!move(state, trial)) return false;
@@ -247,6 +253,15 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     if (impulsive_->covers(steps_)) break;
     contacts_->cover(steps_, trial.context, nowhere_);
   }
+  add_up(trial.context.dt);
+  for (int round = 0; round < kMostHeldBack && hold_back(); ++round) {
+    places_.clear();
+    for (const ImpulsePoint& p : points_) places_.push_back(p.place);
+    set_up(trial.context.dt, false);
+    sweep();
+    if (!move(state, trial)) return done;
+    add_up(trial.context.dt);
+  }
   if (const int k = pressed_in(); k >= 0) {
     const auto name = [&](int body) {
       return body == kGround ? std::string("the ground")
@@ -264,9 +279,28 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     done.rotation = std::max(done.rotation, s.theta.norm());
     move_body(state, trial, system_->slot(b), s.u, s.theta);
   }
-  add_up(trial.context.dt);
   done.solved = true;
   return done;
+}
+
+/// Friction gives energy where a point slips at first along the force that will hold it. In a step
+/// that would gain by that such points get no slip on the mean of the step, so that they take some.
+/// @eq{nonsmooth-energy}
+bool NonsmoothEngine::hold_back() {
+  double taken = 0.0, pressed = 0.0;
+  for (int k = 0; k < point_count(); ++k) {
+    taken += losses_[k].normal + losses_[k].friction;
+    pressed += points_[k].impulse.norm();
+  }
+  if (taken >= -options_.tolerance * reference_ * pressed) return false;
+  held_back_.resize(points_.size(), 0);
+  bool any = false;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    if (held_back_[k] || !(losses_[k].friction < 0.0)) continue;
+    held_back_[k] = 1;
+    any = true;
+  }
+  return any;
 }
 
 /// The point that ends the step deepest, if that is a part of its bodies' size and deeper than it

@@ -47,6 +47,8 @@ class NonsmoothEngine final : public NewtonEngine {
     return point_count() <= kMostDensePoints && sweeps_.turns.empty();
   }
   void add_up(double dt);
+  /// @returns whether any point is new among those that are held back.
+  [[nodiscard]] bool hold_back();
   [[nodiscard]] int pressed_in() const;
 
   const System* system_;
@@ -60,7 +62,8 @@ class NonsmoothEngine final : public NewtonEngine {
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<ImpulsePoint> points_;
   std::vector<ImpulseLoss> losses_;
-  std::vector<Vec3> places_;  ///< By point: where impulses acted when bodies were moved last.
+  std::vector<char> held_back_;  ///< By point: its slip ends on the mean of the step.
+  std::vector<Vec3> places_;     ///< By point: where impulses acted when bodies were moved last.
   std::vector<Vec6> loads_now_, impulses_, nowhere_;  ///< By body.
   std::vector<Mat3> inertia_;                         ///< World, at t_n.
   std::vector<char> round_;  ///< By body: turns equally easily about any axis.

@@ -82,27 +82,28 @@ SegmentsRegion nearest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, 
   return r;
 }
 
-/// Root of Σ (aᵢ yᵢ/(aᵢ² + t))² = 1, a decreasing convex function of t > −min a²: Newton from
-/// below goes up to it monotonically, with bisection as a guard.
+/// Root of Σ (aᵢ yᵢ/(aᵢ² + t))² = 1, t > −min a²: Newton's method for the root of that sum, whose
+/// inverse is nearly a straight line in t, with bisection as a guard.
 double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
   const double a_min = half.minCoeff(), a_max = half.maxCoeff();
   const auto sum = [&](double t, double& slope) {
-    double f = -1.0;
+    double squares = 0.0;
     slope = 0.0;
     for (int i = 0; i < 3; ++i) {
       const double d = half[i] * half[i] + t, x = half[i] * y[i] / d;
-      f += x * x;
+      squares += x * x;
       slope -= 2.0 * x * x / d;
     }
-    return f;
+    return squares;
   };
   double low = -a_min * a_min * (1.0 - 1e-9), high = a_max * y.norm() + 1e-300;
   double t = 0.0;
   for (int k = 0; k < 100; ++k) {
     double slope = 0.0;
-    const double f = sum(t, slope);
-    (f > 0.0 ? low : high) = t;
-    double next = slope < 0.0 ? t - f / slope : 0.5 * (low + high);
+    const double squares = sum(t, slope);
+    (squares > 1.0 ? low : high) = t;
+    double next = 0.5 * (low + high);
+    if (slope < 0.0) next = t - 2.0 * squares * (std::sqrt(squares) - 1.0) / slope;
     // Before the guard: at the root rounding puts the next one beside the bracket.
     if (std::abs(next - t) <= kRootDigits * (a_min * a_min + std::abs(t))) return next;
     if (!(next > low && next < high)) next = 0.5 * (low + high);

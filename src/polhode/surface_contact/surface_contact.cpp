@@ -55,7 +55,8 @@ RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuestion& question
 
 double SurfaceContact::distance(const Vec3& y, double at_most, bool sided) const {
   if (is_far(y, at_most)) return at_most;
-  return surface_.distance(y, at_most + radius(), sided) - radius();
+  const double limit = at_most + radius(), found = surface_.distance(y, limit, sided);
+  return found < limit ? found - radius() : at_most;  // to the last digit, where nothing is near
 }
 
 Vec3 SurfaceContact::foot(const double* x, int point) const {

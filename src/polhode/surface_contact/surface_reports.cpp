@@ -116,13 +116,14 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
                           const double* /*scratch*/) const {
   Work w;
   const bool instant = step.x_n == step.x_n1;
+  const bool gets_in = law_.normal.potential != contact::NormalPotential::barrier;
   for (int i = 0; i < size(); ++i) {
     const double* memory = history + kMemory * static_cast<std::size_t>(i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
       const Vec3 kept(memory[0], memory[1], memory[2]);
       const contact::NormalLaw law = law_of(memory).normal;
-      const double now = gap(local(step.x_n1, i), {law, law.reach(), false}).value;
+      const double now = gap(local(step.x_n1, i), {law, law.reach(), gets_in}).value;
       w.stored += area * (law.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
       continue;
     }
