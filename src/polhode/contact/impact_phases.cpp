@@ -172,15 +172,15 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
 }
 
 /// The part of the stored energy that an impact gives back, with a stiffness that falls by it. A
-/// spring keeps what brings it back to its tolerance. @eq{turn-law}
+/// spring keeps what brings it back to its tolerance, of what it has. @eq{turn-law}
 void ContactSet::keep_part(Point& p, double part) const {
   const PointHistory& h = p.data.history;
-  const double energy = part * p.data.normal.energy(h.gap);
+  const double whole = p.data.normal.energy(h.gap);
   const double k = std::max(part * h.stiffness, p.rest_stiffness);
-  store_again(p, k, energy);
+  store_again(p, k, part * whole);
   const double deepest = -p.data.normal.tolerance;
   if (p.data.normal.potential != NormalPotential::barrier && h.reach < deepest)
-    set_band(p, k, deepest, h.floor);
+    set_band(p, k, std::min(deepest, p.data.normal.reach_for(h.gap, whole)), h.floor);
 }
 
 /// Gravity along the normal against the motion apart [m/s²].
