@@ -185,9 +185,9 @@ TEST(Penalty, IsOfItsOrderForEveryJoint) {
       Simulation s = made(text_of(flight),
                           {format("h={:.17g}", 1.0 / steps), format("analysis.order={}", order)});
       finished(s);
-      Vec6 end;
-      end << s.body(0).r, s.body(0).omega();
-      return end;
+      Vec6 motion;
+      motion << s.body(0).r, s.body(0).omega();
+      return motion;
     };
     const Vec6 exact = end(800, 8);
     for (const int order : {2, 4, 6}) {
