@@ -28,8 +28,10 @@ constexpr int kMostPairChanges = 4;
 /// Round-off of a merit, as part of ℓ² m.
 constexpr double kNoForce = 1e-28;
 
-/// Whether surfaces of solids keep off something by barriers.
+/// Whether surfaces of solids keep off something by barriers. Cables alone, whose few nodes bounce
+/// on what they touch, converge as well without a search.
 bool meshes_meet(const Nodes& nodes) {
+  if (nodes.unknowns() == 0) return false;
   for (int g = 0; g < nodes.group_count(); ++g)
     if (nodes.group(g).barrier_points()) return true;
   return false;

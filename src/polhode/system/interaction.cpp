@@ -11,7 +11,10 @@ void InteractionGroup::finish() {
   for (int i = 0; i < size_; ++i) traits_.push_back(describe(i).traits);
 }
 
-void PairTerms::set_zero() { std::memset(static_cast<void*>(this), 0, sizeof *this); }
+void PairTerms::set_zero() {
+  std::memset(static_cast<void*>(this), 0, sizeof *this);
+  weight.setOnes();
+}
 
 void PairTerms::set_sums_zero() {
   set_values_zero();
