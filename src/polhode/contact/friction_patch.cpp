@@ -24,6 +24,9 @@ constexpr double kMostlyAll = 0.99;
 /// Speeds over that of a fall into the depth of rest: bodies that swing there have less than the
 /// first, those that stand while their load swings less than the second.
 constexpr double kSwings = 0.6, kStands = 3e-3;
+/// Part of its load by which that of a patch swings at least, in the time in which bodies settle:
+/// less is still, and a patch that is still lets go at its bound.
+constexpr double kStill = 1e-4;
 
 /// Bound and load of the points between two bodies.
 struct Patch {
@@ -133,9 +136,10 @@ void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
     // Bodies fall into their depth in the time √(h/g), and swing there for some of these.
     const double step = gravity * std::abs(dt), falls = std::sqrt(gravity * patch.depth);
     const bool slow = patch.fastest < std::max(kSlowReboundSteps * step, kSwings * falls);
-    const bool settles =
-        !last.slips && slow && std::max(step, falls) * patch.change > kSettles * patch.load * step;
-    const bool stands = step < falls && patch.fastest < kStands * falls;
+    const double swing = std::max(step, falls) * patch.change;
+    const bool settles = !last.slips && slow && swing > kSettles * patch.load * step;
+    const bool stands =
+        step < falls && patch.fastest < kStands * falls && swing > kStill * patch.load * step;
     const bool all = patch.all_slip || patch.held >= (1.0 - kNearlyAll) * patch.limit;
     const bool mostly = patch.held + last.held >= kMostlyAll * (patch.limit + last.limit);
     const bool goes = all && !stands && (mostly || !slow);
