@@ -108,9 +108,10 @@ def test_events_and_controllers_read_cables_and_contacts() -> None:
     m.add_event("far", when={"contact": [crate, floor], "channel": "gap", "below": 0.5}, stop=True)
     again = polhode.from_text(m.to_yaml())
     assert again == m and again.events["tight"].off == ["crate"]
-    # Tension 22.025 - 2.025 cos(w t) with w^2 = 0.8 * 2000 / 2.
+    # The rope's k is 2 kN / 0.99 m: its tension is 22.025 - (22.025 - T) cos(w t) with T = 0.01 k and w^2 = 0.8 k / 2.
+    k = 2000 / 0.99
     tight = next(e for e in polhode.run(m).ledger.events if e["event"] == "tight")
-    assert abs(tight["time"] - np.arccos(-0.975 / 2.025) / 800**0.5) < 2e-4
+    assert abs(tight["time"] - np.arccos(-0.975 / (22.025 - 0.01 * k)) / (0.4 * k) ** 0.5) < 2e-4
     m.events["tight"].when.channel = "tensoin"
     with pytest.raises(polhode.ModelError, match="no channel of the cable 'rope'. Did you mean 'tension'"):
         m.check()
