@@ -24,8 +24,8 @@ constexpr double kMostlyAll = 0.99;
 /// Speeds over that of a fall into the depth of rest: bodies that swing there have less than the
 /// first, those that stand while their load swings less than the second.
 constexpr double kSwings = 0.6, kStands = 3e-3;
-/// Part of its load by which that of a patch swings at least, in the time in which bodies settle:
-/// less is still, and a patch that is still lets go at its bound.
+/// Least relative change of a patch's load, in the time in which bodies settle, that counts as an
+/// oscillation. A patch with a steadier load slips at its bound.
 constexpr double kStill = 1e-4;
 
 /// Bound and load of the points between two bodies.
@@ -35,7 +35,7 @@ struct Patch {
   double load = 0.0;     ///< Σ λ [N].
   double change = 0.0;   ///< Σ |Δλ| over the step [N].
   double fastest = 0.0;  ///< Mean slip of a point over the step [m/s].
-  double depth = 0.0;    ///< In which it rests [m].
+  double depth = 0.0;    ///< Of equilibrium, see rest_depth() [m].
   bool slips = false, all_slip = true;
 };
 
@@ -52,7 +52,7 @@ bool belongs(const PointData& d) {
   return f.mu > 0.0 && f.mu_static > f.mu && round && d.pair.weight > 0.0;
 }
 
-/// How deep a weight rests in the band [m].
+/// Depth at which the law carries a weight [N] in equilibrium [m].
 double rest_depth(const NormalLaw& law, double stiffness, double weight) {
   switch (law.potential) {
     case NormalPotential::barrier:

@@ -236,7 +236,7 @@ PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   if (!(f.mu > 0.0)) return r;
   impact.mu = f.mu;
   impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
-  // What lasting contact rubs in all, it may hold while it sticks.
+  // Lasting contact that sticks is bounded by static friction.
   const bool sticks = !p.data.history.in_impact() && !p.data.history.slips;
   if (sticks && f.mu_static > f.mu && impact.mu_across == f.mu)
     impact.mu = impact.mu_across = f.mu_static;

@@ -22,7 +22,7 @@ double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a
     near += std::max(0.0, value(at_a.point(a.bound_centre) - at_b.point(b.bound_centre)).norm() -
                               a.bound_radius - b.bound_radius);
   std::vector<OrderedPair> found;
-  // What is nearer than `near` has been found.
+  // All pairs of features within the search radius `near` are in the list.
   for (int k = 0; k < kMostDoublings && !(least <= near); ++k, near *= 2.0) {
     found.clear();
     near_feature_pairs(a, b, at_a, at_b, near, found);

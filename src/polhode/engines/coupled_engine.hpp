@@ -76,7 +76,7 @@ class CoupledEngine final : public NewtonEngine {
   NodeSystem nodes_;
   NewtonSystem newton_;
   std::optional<TouchingBodies> touching_;  ///< If bodies may touch.
-  bool searches_ = false;                   ///< Increments are shortened until the merit falls.
+  bool searches_ = false;                   ///< Line search on the merit, see MeritSearch.
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Vec6> shares_;
   std::vector<double> du_;

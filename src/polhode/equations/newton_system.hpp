@@ -101,7 +101,7 @@ class NewtonSystem {
   [[nodiscard]] const Vec6& body_residual_scale(int body) const { return body_scale_[body]; }
   /// g + compliance·λ of a row [m or -].
   [[nodiscard]] double row_residual(int row) const { return row_residual_[row]; }
-  /// The row has a compliance: its multiplier is a spring's force.
+  /// Whether a row has a compliance, so that its multiplier is a spring's force.
   [[nodiscard]] bool is_spring(int row) const { return is_spring_[row]; }
   [[nodiscard]] const System& system() const { return *system_; }
 

@@ -67,7 +67,7 @@ class Joint : public InteractionItem {
   /// @param stiffest  Largest stiffness of all augmented joints [N/m or N m/rad].
   /// @throws InputError if it has no rows, or a stiffness that they ask for is not positive.
   void set_enforcement(const JointEnforcement& enforcement, double stiffest);
-  /// Its rows are springs, which give way.
+  /// Whether springs replace its rows.
   [[nodiscard]] bool penalised() const { return held_by_ && !held_by_->compliance.isZero(0.0); }
 
   // The contract of an interaction.

@@ -50,7 +50,7 @@ struct InteractionItem {
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
   /// An item with rows has a work() of its own: friction, stops.
   [[nodiscard]] bool works() const { return false; }
-  /// Its rows are springs while they act.
+  /// Whether its rows have a compliance while they act.
   [[nodiscard]] bool compliant() const { return false; }
   /// Has a configuration that no step may reach: clearance() and impacts() are asked.
   [[nodiscard]] bool has_barrier() const { return false; }
