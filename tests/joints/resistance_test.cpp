@@ -148,7 +148,7 @@ void expect_tangents_of_stops(const std::string& type) {
           const bool turns = names.back() == "rz";
           if (turns) m.history[0] = c.value[names.size() - 1];
           std::size_t at = turns ? 5 : 4;  // after the angle and the bristle
-          for (std::size_t k = 0; k < names.size(); ++k, at += kStopMemory) {
+          for (std::size_t k = 0; k < names.size(); ++k, at += kNumbersOf<StopMemory>) {
             m.history[at + 3] = 2.0;                            // stiffness
             m.history[at + 4] = 2.0, m.history[at + 5] = -2.0;  // band
             m.history[at + 6] = 1.0;                            // closed at the lower end

@@ -3,14 +3,52 @@
 #include <algorithm>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/system/history_record.hpp>
 
 namespace polhode::contact {
 
 namespace {
 
-/// Numbers of a point in State::contacts, after those of the references.
-constexpr std::size_t kPointNumbers = 26, kImpulseNumbers = 11;
-constexpr std::size_t kReferenceNumbers = 13;
+/// Pose of a shape at the last search of candidates.
+struct ReferenceRecord {
+  double r[3], Lambda[9], margin;
+};
+
+/// Which two features of which two shapes meet at a point.
+struct PairRecord {
+  double a, b, kind, i, j;
+};
+
+/// A point with forces.
+struct PointRecord {
+  PairRecord pair;
+  double bristle[3], normal[3], rolling[3];
+  double torsion, approach, restitution, stiffness, reach, floor, force, bristle_stiffness;
+  double closed, phase, slips, gap;
+};
+
+/// A point with impulses.
+struct ImpulseRecord {
+  PairRecord pair;
+  double impulse[3], turning[3];
+};
+
+/// The record behind others.
+template <HistoryRecord R>
+void append(std::vector<double>& out, const R& record) {
+  out.resize(out.size() + kNumbersOf<R>);
+  write_record(record, out.data() + out.size() - kNumbersOf<R>);
+}
+
+PairRecord record_of(int a, int b, const FeaturePair& f) {
+  return {static_cast<double>(a), static_cast<double>(b), static_cast<double>(f.kind),
+          static_cast<double>(f.i), static_cast<double>(f.j)};
+}
+
+FeaturePair pair_of(const PairRecord& r) {
+  return {static_cast<GapKind>(static_cast<int>(r.kind)), static_cast<int>(r.i),
+          static_cast<int>(r.j)};
+}
 
 }  // namespace
 
@@ -20,32 +58,42 @@ void ContactSet::save(State& state) {
   out.insert(out.end(), totals_.begin(), totals_.end());
   out.push_back(longest_step_);
   for (const Switch& s : switches_) out.push_back(s.off ? 1.0 : 0.0);
-  const auto put = [&](const auto& x) { out.insert(out.end(), x.data(), x.data() + x.size()); };
   for (const Reference& r : references_) {
-    put(r.r);
-    put(r.Lambda);
-    out.push_back(r.margin);
+    ReferenceRecord record;
+    set(record.r, r.r);
+    std::copy_n(r.Lambda.data(), 9, record.Lambda);
+    record.margin = r.margin;
+    append(out, record);
   }
   for (const Point& p : points_) {
     const PointHistory& h = p.data.history;
     if (!h.remembers()) continue;
-    const FeaturePair& f = p.data.pair;
-    for (const double x :
-         {static_cast<double>(p.a), static_cast<double>(p.b), static_cast<double>(f.kind),
-          static_cast<double>(f.i), static_cast<double>(f.j)})
-      out.push_back(x);
     if (impulses_) {
-      put(h.impulse);
-      put(h.turning);
+      ImpulseRecord record;
+      record.pair = record_of(p.a, p.b, p.data.pair);
+      set(record.impulse, h.impulse);
+      set(record.turning, h.turning);
+      append(out, record);
       continue;
     }
-    put(h.bristle);
-    put(h.normal);
-    put(h.rolling);
-    for (const double x : {h.torsion, h.approach, h.restitution, h.stiffness, h.reach, h.floor,
-                           h.force, h.bristle_stiffness, h.closed ? 1.0 : 0.0,
-                           static_cast<double>(h.phase), h.slips ? 1.0 : 0.0, h.gap})
-      out.push_back(x);
+    PointRecord record;
+    record.pair = record_of(p.a, p.b, p.data.pair);
+    set(record.bristle, h.bristle);
+    set(record.normal, h.normal);
+    set(record.rolling, h.rolling);
+    record.torsion = h.torsion;
+    record.approach = h.approach;
+    record.restitution = h.restitution;
+    record.stiffness = h.stiffness;
+    record.reach = h.reach;
+    record.floor = h.floor;
+    record.force = h.force;
+    record.bristle_stiffness = h.bristle_stiffness;
+    record.closed = h.closed ? 1.0 : 0.0;
+    record.phase = static_cast<double>(h.phase);
+    record.slips = h.slips ? 1.0 : 0.0;
+    record.gap = h.gap;
+    append(out, record);
   }
   saved_ = out;
   loaded_ = true;
@@ -66,45 +114,48 @@ void ContactSet::load(const State& state) {
   if (in.size() < head) return;
   longest_step_ = in[first - 1];
   for (std::size_t k = 0; k < switches_.size(); ++k) switches_[k].off = in[first + k] != 0.0;
-  const std::size_t references = head + kReferenceNumbers * references_.size();
+  const std::size_t references = head + kNumbersOf<ReferenceRecord> * references_.size();
   if (in.size() < references) return;
   for (std::size_t k = 0; k < references_.size(); ++k) {
-    const double* x = in.data() + head + kReferenceNumbers * k;
-    references_[k].r = Eigen::Map<const Vec3>(x);
-    references_[k].Lambda = Eigen::Map<const Mat3>(x + 3);
-    references_[k].margin = x[12];
+    const auto record =
+        read_record<ReferenceRecord>(in.data() + head + kNumbersOf<ReferenceRecord> * k);
+    references_[k].r = Vec3(record.r);
+    references_[k].Lambda = Mat3(record.Lambda);
+    references_[k].margin = record.margin;
   }
   // Bare points that carry the histories: find_candidates() hands these on.
-  const std::size_t count = impulses_ ? kImpulseNumbers : kPointNumbers;
+  const std::size_t count = impulses_ ? kNumbersOf<ImpulseRecord> : kNumbersOf<PointRecord>;
   for (std::size_t at = references; at + count <= in.size(); at += count) {
-    const double* x = in.data() + at;
+    const double* here = in.data() + at;
+    const auto pair = read_record<PairRecord>(here);
     Point p;
-    p.a = static_cast<int>(x[0]);
-    p.b = static_cast<int>(x[1]);
-    p.data.pair = {static_cast<GapKind>(static_cast<int>(x[2])), static_cast<int>(x[3]),
-                   static_cast<int>(x[4])};
+    p.a = static_cast<int>(pair.a);
+    p.b = static_cast<int>(pair.b);
+    p.data.pair = pair_of(pair);
     PointHistory& h = p.data.history;
     if (impulses_) {
-      h.impulse = Eigen::Map<const Vec3>(x + 5);
-      h.turning = Eigen::Map<const Vec3>(x + 8);
+      const auto record = read_record<ImpulseRecord>(here);
+      h.impulse = Vec3(record.impulse);
+      h.turning = Vec3(record.turning);
       points_.push_back(p);
       continue;
     }
-    h.bristle = Eigen::Map<const Vec3>(x + 5);
-    h.normal = Eigen::Map<const Vec3>(x + 8);
-    h.rolling = Eigen::Map<const Vec3>(x + 11);
-    h.torsion = x[14];
-    h.approach = x[15];
-    h.restitution = x[16];
-    h.stiffness = x[17];
-    h.reach = x[18];
-    h.floor = x[19];
-    h.force = x[20];
-    h.bristle_stiffness = x[21];
-    h.closed = x[22] != 0.0;
-    h.phase = static_cast<ContactPhase>(static_cast<int>(x[23]));
-    h.slips = x[24] != 0.0;
-    h.gap = x[25];
+    const auto record = read_record<PointRecord>(here);
+    h.bristle = Vec3(record.bristle);
+    h.normal = Vec3(record.normal);
+    h.rolling = Vec3(record.rolling);
+    h.torsion = record.torsion;
+    h.approach = record.approach;
+    h.restitution = record.restitution;
+    h.stiffness = record.stiffness;
+    h.reach = record.reach;
+    h.floor = record.floor;
+    h.force = record.force;
+    h.bristle_stiffness = record.bristle_stiffness;
+    h.closed = record.closed != 0.0;
+    h.phase = static_cast<ContactPhase>(static_cast<int>(record.phase));
+    h.slips = record.slips != 0.0;
+    h.gap = record.gap;
     points_.push_back(p);
   }
 }

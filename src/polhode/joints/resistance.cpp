@@ -104,10 +104,10 @@ std::optional<Resistance::Kind> Resistance::kind_of(const std::string& type) {
 
 template <class What>
 void Resistance::for_limits(What&& what) const {
-  int memory = 4;
+  int memory = static_cast<int>(kNumbersOf<BristleMemory>);
   if (data_.slide) {
     what(*data_.slide, true, memory);
-    memory += kStopMemory;
+    memory += static_cast<int>(kNumbersOf<StopMemory>);
   }
   if (data_.turn) what(*data_.turn, false, memory);
 }
@@ -258,11 +258,12 @@ Resistance::Slip Resistance::slip(const View& v, int pin) const {
 Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
   const JointFriction& f = *data_.friction;
   Bristle b;
-  const Vec3 kept(v.memory[0], v.memory[1], v.memory[2]);
+  const auto memory = read_record<BristleMemory>(v.memory);
+  const Vec3 kept(memory.bristle);
   b.at_n = kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n * kept) : kept;
   if (v.step.context.dt == 0.0) {  // an instant: as the last step left it
     b.acting = b.at_n1 = b.at_n;
-    b.slips = v.memory[3] != 0.0;
+    b.slips = memory.slips != 0.0;
     return b;
   }
   for (int i = 0; i < m.count; ++i) b.moved[i] = m.of[i].lever * (m.of[i].at_n1 - m.of[i].at_n);
@@ -402,10 +403,11 @@ void Resistance::commit(const View& v, double* memory) const {
   const Motion m = motion(v, false);
   if (data_.friction) {
     const Bristle b = bristle(v, m);
-    const Vec3 kept =
-        kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n.transpose() * b.at_n1) : b.at_n1;
-    for (int i = 0; i < 3; ++i) memory[i] = kept[i];
-    memory[3] = b.slips ? 1.0 : 0.0;
+    BristleMemory after;
+    set(after.bristle,
+        kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n.transpose() * b.at_n1) : b.at_n1);
+    after.slips = b.slips ? 1.0 : 0.0;
+    write_record(after, memory);
   }
   for_limits([&](const JointLimits& limits, bool slides, int at) {
     const Stop stop = stop_of(v, limits, slides, m.of[slides ? m.slide : m.turn], at);
@@ -437,12 +439,13 @@ ResistanceReport Resistance::report(const View& v) const {
               : kind_ == Kind::cylindrical || kind_ == Kind::universal ? 2
                                                                        : 3;
     const Motion m = motion(v, false);
-    Vec3 kept(v.memory[0], v.memory[1], v.memory[2]);
+    const auto memory = read_record<BristleMemory>(v.memory);
+    Vec3 kept(memory.bristle);
     if (kind_ == Kind::spherical)  // from the body's to the joint's axes
       kept = v.q_n1.R_a.transpose() * (v.step.a.Lambda_n1 * kept);
     for (int i = 0; i < r.count; ++i)
       r.friction[static_cast<std::size_t>(i)] = -f.stiffness * m.of[i].lever * kept[i];
-    r.slips = v.memory[3] != 0.0;
+    r.slips = memory.slips != 0.0;
   }
   const Motion m = motion(v, false);
   for_limits([&](const JointLimits& limits, bool slides, int memory) {

@@ -57,6 +57,12 @@ struct ResistanceReport {
   double slide = 0.0, turn = 0.0;  ///< Of the stops, along +z or apart, on b [N], [N m].
 };
 
+/// History of the friction of a joint.
+struct BristleMemory {
+  double bristle[3];  ///< [m]
+  double slips;       ///< 1: yes.
+};
+
 /// Friction and stops over the free coordinates of a revolute, prismatic, cylindrical, spherical or
 /// universal joint, and the stops of a link with slack: evaluated beside the joint's parts, with
 /// the same multipliers. The cross of a universal joint turns on two pins, x of a and y of b, each
@@ -79,9 +85,11 @@ class Resistance {
 
   [[nodiscard]] const JointResistance& data() const { return data_; }
   [[nodiscard]] bool has_limits() const { return data_.slide || data_.turn; }
-  /// Of `memory` below: the bristle, whether it slips, and those of each coordinate with stops.
+  /// Numbers of `memory` below: a BristleMemory and a StopMemory for each coordinate with stops.
   [[nodiscard]] int memory_size() const {
-    return 4 + kStopMemory * ((data_.slide ? 1 : 0) + (data_.turn ? 1 : 0));
+    return static_cast<int>(kNumbersOf<BristleMemory> +
+                            kNumbersOf<StopMemory> *
+                                ((data_.slide ? 1U : 0U) + (data_.turn ? 1U : 0U)));
   }
 
   /// What all functions want to know of the joint in a step.

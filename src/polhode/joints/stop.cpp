@@ -20,16 +20,15 @@ constexpr double kImpactStiffness = 1.14e4;
 /// Least part of the tolerance between a gap and the floor of its barrier.
 constexpr double kMinBand = 0.1;
 
-/// Places of the numbers in the memory of a stop.
-enum Memory { kAcceleration, kPhase, kRestitution, kStiffness, kReach, kFloor, kSide };
-
 }  // namespace
 
-Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep& step)
-    : limits_(limits), step_(step), acceleration_(memory[kAcceleration]), law_(limits.law) {
-  closed_ = memory[kSide] != 0.0;
+Stop::Stop(const JointLimits& limits, const double* history, const CoordinateStep& step)
+    : limits_(limits), step_(step), law_(limits.law) {
+  const auto memory = read_record<StopMemory>(history);
+  acceleration_ = memory.acceleration;
+  closed_ = memory.side != 0.0;
   const double x = step.dt == 0.0 ? step.at_n1 : step.at_n;
-  sign_ = closed_ ? memory[kSide] : x - limits.lower <= limits.upper - x ? 1.0 : -1.0;
+  sign_ = closed_ ? memory.side : x - limits.lower <= limits.upper - x ? 1.0 : -1.0;
   const double end = sign_ > 0.0 ? limits.lower : limits.upper;
   gap_n_ = sign_ * (x - end);
   gap_n1_ = sign_ * (step.at_n1 - end);
@@ -45,11 +44,11 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
         limits.restitution < 1.0 && -limits.restitution * w < slow ? 0.0 : limits.restitution;
   };
   if (closed_) {
-    phase_ = static_cast<ContactPhase>(static_cast<int>(memory[kPhase]));
-    restitution_ = memory[kRestitution];
-    law_.stiffness = memory[kStiffness];
-    law_.upper = memory[kReach];
-    law_.lower = memory[kFloor];
+    phase_ = static_cast<ContactPhase>(static_cast<int>(memory.phase));
+    restitution_ = memory.restitution;
+    law_.stiffness = memory.stiffness;
+    law_.upper = memory.upper;
+    law_.lower = memory.lower;
     const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
     if (limits.inertia > 0.0) {
       // Pressed into its band from rest, the coordinate gets as fast as its depth under load tells.
@@ -157,21 +156,23 @@ contact::NormalLaw Stop::law_after() const {
   return law;
 }
 
-void Stop::remember(double force, double* memory) const {
+void Stop::remember(double force, double* history) const {
+  auto memory = read_record<StopMemory>(history);
   const bool closed = gap_n1_ < law_.reach();
   const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
   const double change = step_.dt > 0.0 ? (step_.rate_n1 - step_.rate_n) / step_.dt : 0.0;
   if (!touched())
-    memory[kAcceleration] = change;
+    memory.acceleration = change;
   else if (lasts && limits_.inertia > 0.0 && !pressed())  // an impact elsewhere is no acceleration
-    memory[kAcceleration] = change - sign_ * force / limits_.inertia;
+    memory.acceleration = change - sign_ * force / limits_.inertia;
   const contact::NormalLaw law = law_after();
-  memory[kPhase] = static_cast<double>(phase_after());
-  memory[kRestitution] = restitution_;
-  memory[kStiffness] = law.stiffness;
-  memory[kReach] = law.reach();
-  memory[kFloor] = law.floor();
-  memory[kSide] = closed ? sign_ : 0.0;
+  memory.phase = static_cast<double>(phase_after());
+  memory.restitution = restitution_;
+  memory.stiffness = law.stiffness;
+  memory.upper = law.reach();
+  memory.lower = law.floor();
+  memory.side = closed ? sign_ : 0.0;
+  write_record(memory, history);
 }
 
 }  // namespace polhode

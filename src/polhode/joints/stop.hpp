@@ -3,13 +3,19 @@
 
 #include <polhode/contact_laws/contact_phase.hpp>
 #include <polhode/contact_laws/normal_law.hpp>
+#include <polhode/system/history_record.hpp>
 
 namespace polhode {
 
 struct JointLimits;
 
-/// Numbers that the stops of a coordinate remember.
-inline constexpr int kStopMemory = 7;
+/// History of the stops of a coordinate.
+struct StopMemory {
+  double acceleration;  ///< Of the coordinate apart from the stop [m/s²] or [rad/s²].
+  double phase, restitution;
+  double stiffness, upper, lower;  ///< Of the law that acts.
+  double side;                     ///< +1: the lower end is touched, −1: the upper one, 0: none.
+};
 
 /// A free coordinate over a step, as its stops see it.
 struct CoordinateStep {
@@ -23,8 +29,8 @@ struct CoordinateStep {
 /// @eq{joint-stop-exit} @eq{turn-law}
 class Stop {
  public:
-  /// @param memory  kStopMemory numbers of t_n.
-  Stop(const JointLimits& limits, const double* memory, const CoordinateStep& step);
+  /// @param history  A StopMemory of t_n.
+  Stop(const JointLimits& limits, const double* history, const CoordinateStep& step);
 
   [[nodiscard]] double sign() const { return sign_; }  ///< +1: the lower end.
   [[nodiscard]] const contact::NormalLaw& law() const { return law_; }
@@ -42,8 +48,8 @@ class Stop {
   [[nodiscard]] double exit_rate() const;
   /// The law from the end of the step on.
   [[nodiscard]] contact::NormalLaw law_after() const;
-  /// What goes into the memory at t_{n+1}. @param force  Of the stop over the step, apart.
-  void remember(double force, double* memory) const;
+  /// Its StopMemory at t_{n+1}. @param force  Of the stop over the step, apart.
+  void remember(double force, double* history) const;
 
  private:
   [[nodiscard]] bool turns() const;

@@ -68,10 +68,7 @@ int EdgeContact::slot_of_second(int f) const {
   return f + (self_ ? 0 : static_cast<int>(sides_.first.edges.size()));
 }
 
-std::size_t EdgeContact::history_size() const {
-  return nodes_.key_size() + kMemory * static_cast<std::size_t>(slots()) + SurfaceTotals::kCount +
-         1;
-}
+std::size_t EdgeContact::history_size() const { return totals() + kNumbersOf<Totals>; }
 
 /// With what the history keeps of it. Where all of it closes within a step, an impact begins.
 EdgeContact::Touch EdgeContact::touch(const NodeStep& step, const double* history, int e,
@@ -84,9 +81,9 @@ EdgeContact::Touch EdgeContact::touch(const NodeStep& step, const double* histor
     moves.u[k] = instant ? Vec3(Vec3::Zero()) : p.at(step.u);
   }
   int slot = -1;
-  if (memory(history, e)[0] == f + 1.0)
+  if (memory_of(history, e).partner == f + 1.0)
     slot = e;
-  else if (memory(history, slot_of_second(f))[0] == e + 1.0)
+  else if (memory_of(history, slot_of_second(f)).partner == e + 1.0)
     slot = slot_of_second(f);
   PointPhase phase = phase_of(history, slot);
   const auto pair = [&] {
@@ -137,8 +134,9 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
     Vec3 kept = Vec3::Zero();
     double kept_along = 0.0;
     if (t.slot_n >= 0) {
-      kept = Vec3(memory(history, t.slot_n) + 1);
-      kept_along = memory(history, t.slot_n)[kAlong];
+      const EdgeMemory memory = memory_of(history, t.slot_n);
+      kept = Vec3(memory.bristle);
+      kept_along = memory.bristle_along;
     }
     t.slide = t.pair.slide(kept, tangent);
     t.along = t.pair.slide_along(kept_along, tangent);
@@ -186,9 +184,9 @@ Work EdgeContact::work(const NodeStep& step, const double* history,
     if (!instant) w.dissipated += sides_.area * (t.by_friction + taken_by_pressure(step, t));
   }
   for (int s = 0; instant && s < slots(); ++s) {
-    const double* kept = memory(history, s);
+    const EdgeMemory kept = memory_of(history, s);
     w.stored += sides_.area * 0.5 * law_.bristle *
-                (Vec3(kept + 1).squaredNorm() + kept[kAlong] * kept[kAlong]);
+                (Vec3(kept.bristle).squaredNorm() + kept.bristle_along * kept.bristle_along);
   }
   return w;
 }
@@ -200,13 +198,12 @@ double EdgeContact::taken_by_pressure(const NodeStep& step, const Touch& t) cons
 }
 
 void EdgeContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
-  double* const numbers = memory(history, slots());
-  SurfaceTotals sums{};
-  std::copy_n(numbers, 3, &sums.impulse);
+  double* const numbers = history + totals();
+  SurfaceTotals sums = SurfaceTotals::sums_of(numbers);
   sums.gap = least_gap(step.x_n1, history);
   Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
   const std::vector<Touch> list = touches(step, history, false);
-  std::fill(memory(history, 0), numbers, 0.0);
+  std::fill(history + place_of(0), numbers, 0.0);
   for (const Touch& t : list) {
     const EdgePair::Force f = t.pair.force() + t.slide.force + t.along.force;
     const Vec3 friction_force = sides_.area * (t.slide.friction + t.along.on_first);
@@ -224,46 +221,41 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
       moment += normal * t.pair.point();
     }
     if (t.slot_n1 < 0) continue;
-    double* const kept = memory(history, t.slot_n1);
-    kept[0] = (t.slot_n1 == t.e ? t.f : t.e) + 1.0;
-    kept[4] = slips ? 1.0 : 0.0;
+    EdgeMemory kept{};
+    kept.partner = (t.slot_n1 == t.e ? t.f : t.e) + 1.0;
+    kept.slips = slips ? 1.0 : 0.0;
     const bool closed = t.pair.within(true);
     const double reach = law_.normal.reach();
-    t.phase
-        .at_end(law_,
-                closed ? law_.normal.floor() : std::max(t.pair.gap_n1(), reach - t.phase.lowered))
-        .keep(kept + kPhase);
-    for (int k = 0; k < 3; ++k) {
-      kept[1 + k] = closed ? t.slide.bristle_n1[k] : 0.0;
-      kept[5 + k] = on_first[k];
-      kept[8 + k] = friction_force[k];
-    }
-    kept[11] = normal;
-    kept[kAlong] = closed ? t.along.bristle_n1 : 0.0;
+    kept.phase = t.phase.at_end(
+        law_, closed ? law_.normal.floor() : std::max(t.pair.gap_n1(), reach - t.phase.lowered));
+    set(kept.bristle, closed ? t.slide.bristle_n1 : Vec3(Vec3::Zero()));
+    set(kept.force, on_first);
+    set(kept.friction, friction_force);
+    kept.normal_force = normal;
+    kept.bristle_along = closed ? t.along.bristle_n1 : 0.0;
+    write_record(kept, history + place_of(t.slot_n1));
   }
   if (sums.normal_force > 0.0) moment /= sums.normal_force;
-  for (int k = 0; k < 3; ++k) {
-    sums.force[k] = force[k];
-    sums.friction[k] = friction[k];
-    sums.point[k] = moment[k];
-  }
-  std::copy_n(&sums.impulse, SurfaceTotals::kCount, numbers);
-  double& lowered = numbers[SurfaceTotals::kCount];
-  if (lowered > 0.0 && !(least_of_terms(step.x_n1, history) < law_.normal.reach())) lowered = 0.0;
+  set(sums.force, force);
+  set(sums.friction, friction);
+  set(sums.point, moment);
+  write_record(sums, numbers);
+  if (lowered(history) > 0.0 && !(least_of_terms(step.x_n1, history) < law_.normal.reach()))
+    write_record(Totals{sums, 0.0}, numbers);
   nodes_.renew(step, history);
 }
 
 SurfaceReport EdgeContact::report(const double* history) const {
-  return SurfaceTotals::report(memory(history, slots()));
+  return SurfaceTotals::report(history + totals());
 }
 
 std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& instant,
                                                            const double* history) const {
   std::vector<SurfacePointReport> list;
   for (int slot = 0; slot < slots(); ++slot) {
-    const double* kept = memory(history, slot);
-    if (!(kept[11] > 0.0)) continue;
-    const int partner = static_cast<int>(kept[0]) - 1,
+    const EdgeMemory kept = memory_of(history, slot);
+    if (!(kept.normal_force > 0.0)) continue;
+    const int partner = static_cast<int>(kept.partner) - 1,
               firsts = static_cast<int>(sides_.first.edges.size());
     const int e = slot < firsts ? slot : partner, f = slot < firsts ? partner : slot - firsts;
     FourMoves at;
@@ -275,10 +267,10 @@ std::vector<SurfacePointReport> EdgeContact::point_reports(const NodeStep& insta
     const EdgePair pair(at, data(e, f), law, 1.0, true);
     list.push_back({.point = pair.point(),
                     .normal = pair.normal(),
-                    .force = Vec3(kept + 5),
-                    .friction = Vec3(kept + 8),
+                    .force = Vec3(kept.force),
+                    .friction = Vec3(kept.friction),
                     .gap = pair.gap_n1() + centre_ - sides_.radius,
-                    .pressure = kept[11] / sides_.area});
+                    .pressure = kept.normal_force / sides_.area});
   }
   return list;
 }

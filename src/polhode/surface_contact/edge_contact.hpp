@@ -9,7 +9,7 @@
 #include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/surface_contact/edge_lines.hpp>
 #include <polhode/surface_contact/edge_pair.hpp>
-#include <polhode/surface_contact/point_band.hpp>
+#include <polhode/surface_contact/point_memory.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
@@ -87,10 +87,11 @@ class EdgeContact final : public ElementGroup,
                double* history) const override;
 
  private:
-  /// Of an edge: its partner's number and one, or 0; the bristle in the world, whether it slips,
-  /// of the last step the force on the first edge, its tangential part and the normal force; and
-  /// the bristle lengthwise; then its PointPhase.
-  static constexpr std::size_t kAlong = 12, kPhase = 13, kMemory = kPhase + PointPhase::kNumbers;
+  /// Behind the edges.
+  struct Totals {
+    SurfaceTotals sums;
+    double lowered;  ///< The band of all of it ends lower by that: some of it started within [m].
+  };
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<std::pair<int, int>> pairs;
@@ -105,11 +106,13 @@ class EdgeContact final : public ElementGroup,
   /// Ends 0 and 1 of edge e of the first lines, 2 and 3 of f of the second.
   [[nodiscard]] const MeshPoint& end(int e, int f, int k) const;
   [[nodiscard]] EdgePairData data(int e, int f) const;
-  /// Of a slot in the history; behind the last one the totals.
-  template <class Number>
-  [[nodiscard]] Number* memory(Number* history, int slot) const {
-    return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(slot);
+  [[nodiscard]] std::size_t place_of(int slot) const {
+    return nodes_.key_size() + EdgeMemory::kCount * static_cast<std::size_t>(slot);
   }
+  [[nodiscard]] EdgeMemory memory_of(const double* history, int slot) const {
+    return read_record<EdgeMemory>(history + place_of(slot));
+  }
+  [[nodiscard]] std::size_t totals() const { return place_of(slots()); }
   [[nodiscard]] int slots() const;
   [[nodiscard]] int slot_of_second(int f) const;
   [[nodiscard]] std::vector<Touch> touches(const NodeStep& step, const double* history,
@@ -117,14 +120,12 @@ class EdgeContact final : public ElementGroup,
   [[nodiscard]] Touch touch(const NodeStep& step, const double* history, int e, int f) const;
   [[nodiscard]] double taken_by_pressure(const NodeStep& step, const Touch& touch) const;
   void four_ends(int e, int f, const double* x, Vec3 (&at)[4]) const;
-  /// The band of all of it ends lower by that, kept behind the totals, as some of it started
-  /// within [m].
   [[nodiscard]] double lowered(const double* history) const {
-    return memory(history, slots())[SurfaceTotals::kCount];
+    return read_record<Totals>(history + totals()).lowered;
   }
   /// Of a pair by its slot: its own band may end lower still.
   [[nodiscard]] PointPhase phase_of(const double* history, int slot) const {
-    PointPhase phase = slot < 0 ? PointPhase{} : PointPhase::of(memory(history, slot) + kPhase);
+    PointPhase phase = slot < 0 ? PointPhase{} : memory_of(history, slot).phase;
     phase.lowered = std::max(phase.lowered, lowered(history));
     return phase;
   }

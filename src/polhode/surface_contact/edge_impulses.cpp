@@ -56,18 +56,17 @@ void EdgeContact::impacts(const NodeStep& step, const double* history,
 
 double EdgeContact::turn(const SurfaceImpact& impact, double held, double* history) const {
   if (impact.point < 0) return 0.0;  // it has opened
-  double* const kept = memory(history, impact.point) + kPhase;
-  PointPhase phase = PointPhase::of(kept);
+  EdgeMemory memory = memory_of(history, impact.point);
   const double energy =
-      sides_.area * phase.turn(law_, impact.terms, held / sides_.area, with_band_lowered);
-  phase.keep(kept);
-  memory(history, slots())[offsetof(SurfaceTotals, normal_loss) / sizeof(double)] += energy;
+      sides_.area * memory.phase.turn(law_, impact.terms, held / sides_.area, with_band_lowered);
+  write_record(memory, history + place_of(impact.point));
+  SurfaceTotals::add_normal_loss(energy, history + totals());
   return energy;
 }
 
 void EdgeContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                           double* history) const {
-  SurfaceTotals::add_impulse(impact.normal, settled, dt, memory(history, slots()));
+  SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
 }  // namespace polhode

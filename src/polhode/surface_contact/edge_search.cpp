@@ -125,9 +125,10 @@ void EdgeContact::begin_at(const NodeStep& instant, double* history) const {
 /// Where nodes were looked at last. @eq{surface-start}
 void EdgeContact::write_start(double* history) const {
   const std::vector<double> x = nodes_.positions(history);
-  double* const numbers = memory(history, slots());
-  numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] = least_gap(x.data(), history);
-  numbers[SurfaceTotals::kCount] = lowered_for(law_, least_of_terms(x.data(), history));
+  auto t = read_record<Totals>(history + totals());
+  t.sums.gap = least_gap(x.data(), history);
+  t.lowered = lowered_for(law_, least_of_terms(x.data(), history));
+  write_record(t, history + totals());
 }
 
 double EdgeContact::least_of_terms(const double* x, const double* history) const {

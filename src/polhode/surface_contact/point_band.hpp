@@ -32,8 +32,6 @@ using LoweredLaw = SurfaceLaw (*)(const SurfaceLaw& law, double by);
 
 /// What a point, or a pair of edges, remembers of closing and opening, as numbers of its history.
 struct PointPhase {
-  static constexpr std::size_t kNumbers = 3;
-
   double lowered = 0.0;      ///< It begins to press lower by that [m].
   double phase = 0.0;        ///< 0: it is open; else 1 and the number of its ContactPhase.
   double restitution = 0.0;  ///< e of its impact.
@@ -46,16 +44,6 @@ struct PointPhase {
     return is(contact::ContactPhase::compression) || is(contact::ContactPhase::restitution);
   }
   void set(contact::ContactPhase p) { phase = 1.0 + static_cast<double>(p); }
-  /// Of kNumbers of a history.
-  [[nodiscard]] static PointPhase of(const double* numbers) {
-    return {numbers[0], numbers[1], numbers[2]};
-  }
-  void keep(double* numbers) const {
-    numbers[0] = lowered;
-    numbers[1] = phase;
-    numbers[2] = restitution;
-  }
-
   /// In a step from a gap at which the point has a speed: what closes begins an impact.
   [[nodiscard]] PointPhase in_step(const SurfaceLaw& law, double gap, double speed,
                                    LoweredLaw own = beginning_later) const;

@@ -70,11 +70,11 @@ MeshGap SolidContact::gap(const Field& field, std::span<const int> triangles, in
 
 SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, const Field& x_n1,
                                        std::span<const int> triangles, int point,
-                                       const double* memory) const {
+                                       const PointMemory& memory) const {
   Action a;
   SurfaceLaw in_step = law_of(memory);
   const contact::NormalLaw law = in_step.normal;
-  a.phase = PointPhase::of(memory + kPhase);
+  a.phase = memory.phase;
   const Nearest to = nearest(x_n1, triangles, point);
   const Nearest from = step.x_n == step.x_n1 ? to : nearest(x_n, triangles, point);
   const double reach = law.reach();
@@ -123,7 +123,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
     if (triangles.empty()) continue;
-    const Action a = act(step, x_n, x_n1, triangles, p, memory(history, p));
+    const Action a = act(step, x_n, x_n1, triangles, p, memory_of(history, p));
     if (!a.acts) continue;
     const double area = points_[static_cast<std::size_t>(p)].area;
     with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& at) {
@@ -138,7 +138,7 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
       }
       if (!a.has_friction(law_) || step.context.dt == 0.0) return;
       const Slide slide = this->slide(step, x_n1, u, triangles, p, a.normal_force.value,
-                                      memory(history, p), tangent);
+                                      memory_of(history, p), tangent);
       for (int k = 0; k < 4; ++k)
         add_force(corner(p, slide.triangle, k), area * slide.force.segment<3>(3 * k));
       if (!tangent) return;

@@ -8,7 +8,7 @@
 #include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/mesh_gap.hpp>
-#include <polhode/surface_contact/point_band.hpp>
+#include <polhode/surface_contact/point_memory.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
 #include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
@@ -86,9 +86,6 @@ class SolidContact final : public ElementGroup,
                double* history) const override;
 
  private:
-  /// Of a point: bristle in the world, whether it slips, and of the last step the force per area,
-  /// its tangential part and the pressure; then its PointPhase.
-  static constexpr std::size_t kPhase = 11, kMemory = kPhase + PointPhase::kNumbers;
   struct Field;
   struct Slide;
 
@@ -120,9 +117,14 @@ class SolidContact final : public ElementGroup,
     double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
   };
 
-  [[nodiscard]] const double* memory(const double* history, int point) const {
-    return history + nodes_.key_size() + kMemory * static_cast<std::size_t>(point);
+  [[nodiscard]] std::size_t place_of(int point) const {
+    return nodes_.key_size() + PointMemory::kCount * static_cast<std::size_t>(point);
   }
+  [[nodiscard]] PointMemory memory_of(const double* history, int point) const {
+    return read_record<PointMemory>(history + place_of(point));
+  }
+  /// Where the totals begin, behind the points.
+  [[nodiscard]] std::size_t totals() const { return place_of(static_cast<int>(points_.size())); }
   [[nodiscard]] const Search& search(const double* history) const;
   void find(Search& s) const;
   [[nodiscard]] bool may_meet(int point, int triangle) const;
@@ -130,8 +132,8 @@ class SolidContact final : public ElementGroup,
   void four_points(const Field& field, int point, int triangle, Vec3 (&x)[4]) const;
   [[nodiscard]] Nearest nearest(const Field& field, std::span<const int> triangles,
                                 int point) const;
-  [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
-    return with_band_lowered(law_, memory[kPhase]);
+  [[nodiscard]] SurfaceLaw law_of(const PointMemory& memory) const {
+    return with_band_lowered(law_, memory.phase.lowered);
   }
   [[nodiscard]] MeshGap gap(const Field& field, std::span<const int> triangles, int point,
                             const Nearest& nearest, const contact::NormalLaw& law) const;
@@ -151,16 +153,17 @@ class SolidContact final : public ElementGroup,
   }
   [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
   [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
-                           std::span<const int> triangles, int point, const double* memory) const;
+                           std::span<const int> triangles, int point,
+                           const PointMemory& memory) const;
   /// Of the gap at t_n.
   [[nodiscard]] double rate_n(const NodeStep& step, const Field& x_n, const Nearest& nearest,
                               int point) const;
   void add_rates(const Field& x, const MeshGap& gap, int point, SurfaceImpact& impact) const;
   [[nodiscard]] Slide slide(const NodeStep& step, const Field& x_n1, const Field& u,
                             std::span<const int> triangles, int point, double pressure,
-                            const double* memory, bool tangent) const;
+                            const PointMemory& memory, bool tangent) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a, const Slide& slide,
-                                  const double* memory) const;
+                                  const PointMemory& memory) const;
   void write_start(double* history) const;
   [[nodiscard]] Vec3 normal(const Field& field, const MeshGap& gap, int point) const;
   [[nodiscard]] Vec3 foot(const Field& field, const MeshGap& gap, int point) const;

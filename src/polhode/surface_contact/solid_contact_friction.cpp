@@ -56,7 +56,7 @@ PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const
 
 SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1, const Field& u,
                                         std::span<const int> triangles, int point, double pressure,
-                                        const double* memory, bool tangent) const {
+                                        const PointMemory& memory, bool tangent) const {
   // The triangle at t_n: where another one came next in the middle of the step, the plane of
   // friction would jump, and with it a force that increments follow.
   Slide slide;
@@ -72,7 +72,7 @@ SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1,
     slide.triangle = t;
     moves = m;
   }
-  const Vec3 kept(memory[0], memory[1], memory[2]);
+  const Vec3 kept(memory.bristle);
   if (of_cable()) {
     static_cast<FourSlide&>(slide) =
         round_friction(moves, step.alpha_f, law_, pressure, kept, tangent);

@@ -11,8 +11,8 @@
 namespace polhode {
 
 SolidContact::Energies SolidContact::energies(const NodeStep& step, const Action& a,
-                                              const Slide& slide, const double* memory) const {
-  const Vec3 kept(memory[0], memory[1], memory[2]);
+                                              const Slide& slide, const PointMemory& memory) const {
+  const Vec3 kept(memory.bristle);
   const SurfaceLaw in_step = a.phase.law(law_, with_band_lowered);
   const contact::NormalLaw& law = in_step.normal;
   const bool stays = a.gap_n1 < law.reach();
@@ -40,14 +40,13 @@ Work SolidContact::work(const NodeStep& step, const double* history,
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
     if (triangles.empty()) continue;
-    const double* kept = memory(history, p);
+    const PointMemory kept = memory_of(history, p);
     const double area = points_[static_cast<std::size_t>(p)].area;
     if (instant) {
       const contact::NormalLaw law = law_of(kept).normal;
       const double gap =
           this->gap(x_n1, triangles, p, nearest(x_n1, triangles, p), law).distance - centre_;
-      w.stored += area * (law.energy(gap) +
-                          0.5 * law_.bristle * Vec3(kept[0], kept[1], kept[2]).squaredNorm());
+      w.stored += area * (law.energy(gap) + 0.5 * law_.bristle * Vec3(kept.bristle).squaredNorm());
       continue;
     }
     const Action a = act(step, x_n, x_n1, triangles, p, kept);
@@ -63,15 +62,14 @@ Work SolidContact::work(const NodeStep& step, const double* history,
 }
 
 void SolidContact::commit(const NodeStep& step, double* history, const double* /*scratch*/) const {
-  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
-  SurfaceTotals t{};
-  std::copy_n(numbers, 3, &t.impulse);
+  double* const numbers = history + totals();
+  SurfaceTotals t = SurfaceTotals::sums_of(numbers);
   t.gap = std::numeric_limits<double>::infinity();
   const Search& s = search(history);
   const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1), u(surface_, step.u);
   Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
-    double* kept = history + (memory(history, p) - history);
+    PointMemory kept = memory_of(history, p);
     const MeshPoint& point = points_[static_cast<std::size_t>(p)];
     const std::span<const int> triangles = found(s, p);
     Action a;
@@ -105,25 +103,21 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       moment += point.area * pressure * foot(x_n1, a.at_n1, p);
     }
     const bool stays = a.acts && a.gap_n1 < law_of(kept).normal.reach();
-    for (int k = 0; k < 3; ++k) {
-      kept[k] = stays ? slide.bristle_n1[k] : 0.0;
-      kept[4 + k] = h[k];
-      kept[7 + k] = slide.friction[k];
-    }
-    kept[3] = stays && slide.slips ? 1.0 : 0.0;
-    kept[10] = pressure;
+    set(kept.bristle, stays ? slide.bristle_n1 : Vec3(Vec3::Zero()));
+    kept.slips = stays && slide.slips ? 1.0 : 0.0;
+    set(kept.force, h);
+    set(kept.friction, slide.friction);
+    kept.pressure = pressure;
     const double gap = triangles.empty() ? std::numeric_limits<double>::infinity() : a.gap_n1;
-    const PointPhase phase = a.acts ? a.phase : PointPhase::of(kept + kPhase);
-    phase.at_end(law_, gap).keep(kept + kPhase);
+    kept.phase = (a.acts ? a.phase : kept.phase).at_end(law_, gap);
+    write_record(kept, history + place_of(p));
   }
   if (!std::isfinite(t.gap)) t.gap = std::numeric_limits<double>::quiet_NaN();
   if (t.normal_force > 0.0) moment /= t.normal_force;
-  for (int k = 0; k < 3; ++k) {
-    t.force[k] = force[k];
-    t.friction[k] = friction[k];
-    t.point[k] = moment[k];
-  }
-  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
+  set(t.force, force);
+  set(t.friction, friction);
+  set(t.point, moment);
+  write_record(t, numbers);
   nodes_.renew(step, history);
 }
 
@@ -147,7 +141,6 @@ Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const
 
 /// Where nodes were looked at last; NaN where nothing is near. @eq{surface-start}
 void SolidContact::write_start(double* history) const {
-  double* const numbers = history + nodes_.key_size() + kMemory * points_.size();
   const std::vector<double> x = nodes_.positions(history);
   const Search& s = search(history);
   const Field start(surface_, x.data());
@@ -155,15 +148,16 @@ void SolidContact::write_start(double* history) const {
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const double d = nearest(start, found(s, p), p).four.distance;
     least = std::min(least, d - cable_.radius);
-    const std::ptrdiff_t own = memory(history, p) - history;
-    PointPhase{lowered_for(law_, d - centre_)}.keep(history + own + kPhase);
+    PointMemory memory = memory_of(history, p);
+    memory.phase = {lowered_for(law_, d - centre_)};
+    write_record(memory, history + place_of(p));
   }
-  numbers[offsetof(SurfaceTotals, gap) / sizeof(double)] =
-      std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN();
+  SurfaceTotals::set_gap(std::isfinite(least) ? least : std::numeric_limits<double>::quiet_NaN(),
+                         history + totals());
 }
 
 SurfaceReport SolidContact::report(const double* history) const {
-  return SurfaceTotals::report(history + nodes_.key_size() + kMemory * points_.size());
+  return SurfaceTotals::report(history + totals());
 }
 
 std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& instant,
@@ -172,8 +166,8 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
   const Search& s = search(history);
   const Field x(surface_, instant.x_n1);
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
-    const double* kept = memory(history, p);
-    if (!(kept[10] > 0.0)) continue;
+    const PointMemory kept = memory_of(history, p);
+    if (!(kept.pressure > 0.0)) continue;
     const MeshPoint& point = points_[static_cast<std::size_t>(p)];
     const std::span<const int> triangles = found(s, p);
     const Nearest n = nearest(x, triangles, p);
@@ -181,10 +175,10 @@ std::vector<SurfacePointReport> SolidContact::point_reports(const NodeStep& inst
     const MeshGap gap = this->gap(x, triangles, p, n, law_of(kept).normal);
     list.push_back({.point = foot(x, gap, p),
                     .normal = normal(x, gap, p),
-                    .force = point.area * Vec3(kept[4], kept[5], kept[6]),
-                    .friction = point.area * Vec3(kept[7], kept[8], kept[9]),
+                    .force = point.area * Vec3(kept.force),
+                    .friction = point.area * Vec3(kept.friction),
                     .gap = gap.distance - cable_.radius,
-                    .pressure = kept[10]});
+                    .pressure = kept.pressure});
   }
   return list;
 }

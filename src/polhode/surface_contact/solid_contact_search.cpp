@@ -31,9 +31,7 @@ double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-std::size_t SolidContact::history_size() const {
-  return nodes_.key_size() + kMemory * points_.size() + SurfaceTotals::kCount;
-}
+std::size_t SolidContact::history_size() const { return totals() + SurfaceTotals::kCount; }
 
 std::span<const int> SolidContact::found(const Search& s, int point) const {
   const auto p = static_cast<std::size_t>(point);

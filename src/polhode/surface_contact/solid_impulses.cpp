@@ -65,9 +65,8 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
   const Field x_n(surface_, step.x_n), x_n1(surface_, step.x_n1);
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const std::span<const int> triangles = found(s, p);
-    const double* kept = memory(history, p);
-    if (triangles.empty() || PointPhase::of(kept + kPhase).is(contact::ContactPhase::rest))
-      continue;
+    const PointMemory kept = memory_of(history, p);
+    if (triangles.empty() || kept.phase.is(contact::ContactPhase::rest)) continue;
     const Action a = act(step, x_n, x_n1, triangles, p, kept);
     if (!a.acts || !a.phase.in_impact() || !(a.normal_force.value > 0.0) ||
         !(a.at_n1.resultant > 0.0))
@@ -94,21 +93,18 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
 }
 
 double SolidContact::turn(const SurfaceImpact& impact, double held, double* history) const {
-  double* const numbers = history + nodes_.key_size();
-  double* const kept = numbers + kMemory * static_cast<std::size_t>(impact.point);
-  PointPhase phase = PointPhase::of(kept + kPhase);
+  PointMemory memory = memory_of(history, impact.point);
   const double area = points_[static_cast<std::size_t>(impact.point)].area;
-  const double energy = area * phase.turn(law_, impact.terms, held / area, with_band_lowered);
-  phase.keep(kept + kPhase);
-  numbers[kMemory * points_.size() + offsetof(SurfaceTotals, normal_loss) / sizeof(double)] +=
-      energy;
+  const double energy =
+      area * memory.phase.turn(law_, impact.terms, held / area, with_band_lowered);
+  write_record(memory, history + place_of(impact.point));
+  SurfaceTotals::add_normal_loss(energy, history + totals());
   return energy;
 }
 
 void SolidContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                            double* history) const {
-  SurfaceTotals::add_impulse(impact.normal, settled, dt,
-                             history + nodes_.key_size() + kMemory * points_.size());
+  SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
 }  // namespace polhode

@@ -167,7 +167,7 @@ struct SurfaceContact::Terms {
   T lambda{}, pressure{};
 
   Terms(const SurfaceLaw& law, const NodeStep& step, const LocalMotion& place,
-        const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1, const double* memory,
+        const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1, const PointMemory& memory,
         bool& slips) {
     const StepContext& context = step.context;
     const double alpha = step.alpha_f;
@@ -192,7 +192,7 @@ struct SurfaceContact::Terms {
     pressure = lambda * length;
     if (law.mu == 0.0 || context.dt == 0.0) return;
     const V3<T> n = (T(1.0) / length) * mean;
-    const V3<double> kept{memory[0], memory[1], memory[2]};
+    const V3<double> kept = contact::v3(Vec3(memory.bristle));
     contact::Cone<T> cone;
     cone.radius = (law.mu / law.bristle) * pressure;
     const V3<T> start = cone.nearest(kept - dot(n, kept) * n);
@@ -205,10 +205,10 @@ struct SurfaceContact::Terms {
 };
 
 /// @eq{surface-action} @eq{contact-bristle}
-SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point, const double* memory,
-                                           bool tangent) const {
+SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point,
+                                           const PointMemory& memory, bool tangent) const {
   Action a;
-  a.phase = phase_of(memory);
+  a.phase = memory.phase;
   SurfaceLaw law = law_of(memory);
   const double reach = law.normal.reach();
   const LocalMotion place = this->place(step, point);
@@ -231,9 +231,9 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point, cons
   if (step.context.dt == 0.0) {  // an instant
     a.lambda = law.normal.force(g_n1.value);
     a.pressure = a.lambda * g_n1.normal.norm();
-    if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory[0], memory[1], memory[2]);
+    if (law_.mu > 0.0) a.friction = -law_.bristle * Vec3(memory.bristle);
     a.h = a.lambda * g_n1.normal + a.friction;
-    a.slips = memory[3] != 0.0;
+    a.slips = memory.slips != 0.0;
     return a;
   }
   if (!tangent) {
@@ -309,7 +309,7 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
   std::array<double, kWidth * kWidth> K;
   for (int i = 0; i < size(); ++i) {
     const SurfacePoints::Point& point = points_.points[static_cast<std::size_t>(i)];
-    const Action a = act(step, i, history + kMemory * static_cast<std::size_t>(i), tangent);
+    const Action a = act(step, i, memory_of(history, i), tangent);
     if (!a.acts) continue;
     Central c;
     if (frame_ == 0) {

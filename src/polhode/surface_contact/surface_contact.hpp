@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <polhode/surface_contact/line_stretch.hpp>
-#include <polhode/surface_contact/point_band.hpp>
+#include <polhode/surface_contact/point_memory.hpp>
 #include <polhode/surface_contact/rigid_surface.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
@@ -63,9 +63,7 @@ class SurfaceContact final : public ElementGroup,
   const BarrierConstraint* barrier_constraint() const override { return this; }
   const SurfaceImpacts* surface_impacts() const override { return this; }
   bool external() const override { return frame_ == 0; }
-  std::size_t history_size() const override {
-    return kMemory * points_.points.size() + SurfaceTotals::kCount;
-  }
+  std::size_t history_size() const override { return totals() + SurfaceTotals::kCount; }
   void initialize(double* history) const override;
   void clearances(const NodeStep& step, const double* history,
                   std::vector<double>& list) const override;
@@ -94,10 +92,6 @@ class SurfaceContact final : public ElementGroup,
                double* history) const override;
 
  private:
-  /// Of a point: bristle in the surface's axes, whether it slips, of the last step h, its
-  /// tangential part and the pressure; then its PointPhase.
-  static constexpr std::size_t kMemory = 14, kPhase = 11;
-
   /// The point in the surface's coordinates over the step.
   struct LocalMotion {
     Vec3 at_n, at_n1;
@@ -145,23 +139,27 @@ class SurfaceContact final : public ElementGroup,
   [[nodiscard]] bool sided(const NodeStep& step) const {
     return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }
-  [[nodiscard]] static PointPhase phase_of(const double* memory) {
-    return PointPhase::of(memory + kPhase);
+  [[nodiscard]] static std::size_t place_of(int point) {
+    return PointMemory::kCount * static_cast<std::size_t>(point);
   }
-  static void keep(const PointPhase& phase, double* memory) { phase.keep(memory + kPhase); }
+  [[nodiscard]] static PointMemory memory_of(const double* history, int point) {
+    return read_record<PointMemory>(history + place_of(point));
+  }
+  /// Where the totals begin, behind the points.
+  [[nodiscard]] std::size_t totals() const { return place_of(size()); }
   /// At an instant.
-  [[nodiscard]] SurfaceLaw law_of(const double* memory) const {
-    return beginning_later(law_, memory[kPhase]);
+  [[nodiscard]] SurfaceLaw law_of(const PointMemory& memory) const {
+    return beginning_later(law_, memory.phase.lowered);
   }
   /// Velocity in the surface's coordinates.
   [[nodiscard]] Vec3 local_rate(const double* x, const double* v, int point) const;
   void write_start(const std::vector<double>& gaps, double* history) const;
-  [[nodiscard]] Action act(const NodeStep& step, int point, const double* memory,
+  [[nodiscard]] Action act(const NodeStep& step, int point, const PointMemory& memory,
                            bool tangent) const;
   [[nodiscard]] bool goes_through(const Vec3& from, const Vec3& to) const;
   [[nodiscard]] double free_of_stretch(const NodeStep& from, const NodeStep& to) const;
   [[nodiscard]] Energies energies(const NodeStep& step, const Action& a,
-                                  const double* memory) const;
+                                  const PointMemory& memory) const;
 
   std::string name_;
   RigidSurface surface_;

@@ -13,8 +13,7 @@ void SurfaceContact::impacts(const NodeStep& step, const double* history,
   if (!step.context.conserving || !(step.context.dt > 0.0)) return;
   const Mat3 R = axes(step.x_n1);
   for (int i = 0; i < size(); ++i) {
-    const double* memory = history + kMemory * static_cast<std::size_t>(i);
-    const Action a = act(step, i, memory, false);
+    const Action a = act(step, i, memory_of(history, i), false);
     if (!a.acts || !a.phase.in_impact() || !(a.pressure > 0.0)) continue;
     const double length = a.normal.norm();
     if (!(length > 0.0)) continue;
@@ -43,19 +42,17 @@ void SurfaceContact::impacts(const NodeStep& step, const double* history,
 }
 
 double SurfaceContact::turn(const SurfaceImpact& impact, double held, double* history) const {
-  double* memory = history + kMemory * static_cast<std::size_t>(impact.point);
-  PointPhase phase = phase_of(memory);
+  PointMemory memory = memory_of(history, impact.point);
   const double area = points_.points[static_cast<std::size_t>(impact.point)].area;
-  const double energy = area * phase.turn(law_, impact.terms, held / area);
-  keep(phase, memory);
-  history[kMemory * points_.points.size() +
-          offsetof(SurfaceTotals, normal_loss) / sizeof(double)] += energy;
+  const double energy = area * memory.phase.turn(law_, impact.terms, held / area);
+  write_record(memory, history + place_of(impact.point));
+  SurfaceTotals::add_normal_loss(energy, history + totals());
   return energy;
 }
 
 void SurfaceContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                              double* history) const {
-  SurfaceTotals::add_impulse(impact.normal, settled, dt, history + kMemory * points_.points.size());
+  SurfaceTotals::add_impulse(impact.normal, settled, dt, history + totals());
 }
 
 }  // namespace polhode

@@ -98,8 +98,8 @@ std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) c
 }
 
 SurfaceContact::Energies SurfaceContact::energies(const NodeStep& step, const Action& a,
-                                                  const double* memory) const {
-  const Vec3 kept(memory[0], memory[1], memory[2]);
+                                                  const PointMemory& memory) const {
+  const Vec3 kept(memory.bristle);
   const SurfaceLaw in_step = a.phase.law(law_);
   const contact::NormalLaw& law = in_step.normal;
   const bool stays = a.gap_n1 < law.reach();
@@ -120,10 +120,10 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
   const bool instant = step.x_n == step.x_n1;
   const bool gets_in = law_.normal.potential != contact::NormalPotential::barrier;
   for (int i = 0; i < size(); ++i) {
-    const double* memory = history + kMemory * static_cast<std::size_t>(i);
+    const PointMemory memory = memory_of(history, i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     if (instant) {
-      const Vec3 kept(memory[0], memory[1], memory[2]);
+      const Vec3 kept(memory.bristle);
       const contact::NormalLaw law = law_of(memory).normal;
       const double now = gap(local(step.x_n1, i), {law, law.reach(), gets_in}).value;
       w.stored += area * (law.energy(now) + 0.5 * law_.bristle * kept.squaredNorm());
@@ -155,22 +155,23 @@ void SurfaceContact::write_start(const std::vector<double>& gaps, double* histor
   double least = kInfinite;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     least = std::min(least, gaps[i]);
-    keep({lowered_for(law_, gaps[i])}, history + kMemory * i);
+    PointMemory memory = memory_of(history, static_cast<int>(i));
+    memory.phase = {lowered_for(law_, gaps[i])};
+    write_record(memory, history + place_of(static_cast<int>(i)));
   }
-  history[kMemory * points_.points.size() + offsetof(SurfaceTotals, gap) / sizeof(double)] = least;
+  SurfaceTotals::set_gap(least, history + totals());
 }
 
 void SurfaceContact::commit(const NodeStep& step, double* history,
                             const double* /*scratch*/) const {
-  double* const numbers = history + kMemory * points_.points.size();
-  SurfaceTotals t{};
-  std::copy_n(numbers, 3, &t.impulse);
+  double* const numbers = history + totals();
+  SurfaceTotals t = SurfaceTotals::sums_of(numbers);
   t.gap = std::numeric_limits<double>::infinity();
   const bool instant = step.x_n == step.x_n1;  // in statics nothing moves
   const Mat3 R = (1.0 - step.alpha_f) * axes(step.x_n) + step.alpha_f * axes(step.x_n1);
   Vec3 force = Vec3::Zero(), friction = Vec3::Zero(), moment = Vec3::Zero();
   for (int i = 0; i < size(); ++i) {
-    double* memory = history + kMemory * static_cast<std::size_t>(i);
+    PointMemory memory = memory_of(history, i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     const Action a = act(step, i, memory, false);
     t.gap = std::min(t.gap, a.acts ? a.gap_n1 : distance(local(step.x_n1, i), t.gap));
@@ -189,28 +190,24 @@ void SurfaceContact::commit(const NodeStep& step, double* history,
       friction += area * a.friction;
       moment += area * a.pressure * foot(step.x_n1, i);
     }
-    const PointPhase then = a.phase.at_end(law_, a.gap_n1);
     const bool stays = a.gap_n1 < law_of(memory).normal.reach();
-    for (int k = 0; k < 3; ++k) {
-      memory[k] = stays ? a.bristle[k] : 0.0;
-      memory[4 + k] = a.h[k];
-      memory[7 + k] = a.friction[k];
-    }
-    memory[3] = stays && a.slips ? 1.0 : 0.0;
-    memory[10] = a.pressure;
-    keep(then, memory);
+    set(memory.bristle, stays ? a.bristle : Vec3(Vec3::Zero()));
+    memory.slips = stays && a.slips ? 1.0 : 0.0;
+    set(memory.force, a.h);
+    set(memory.friction, a.friction);
+    memory.pressure = a.pressure;
+    memory.phase = a.phase.at_end(law_, a.gap_n1);
+    write_record(memory, history + place_of(i));
   }
   if (t.normal_force > 0.0) moment /= t.normal_force;
-  for (int k = 0; k < 3; ++k) {
-    t.force[k] = (R * force)[k];
-    t.friction[k] = (R * friction)[k];
-    t.point[k] = moment[k];
-  }
-  std::copy_n(&t.impulse, SurfaceTotals::kCount, numbers);
+  set(t.force, R * force);
+  set(t.friction, R * friction);
+  set(t.point, moment);
+  write_record(t, numbers);
 }
 
 SurfaceReport SurfaceContact::report(const double* history) const {
-  return SurfaceTotals::report(history + kMemory * points_.points.size());
+  return SurfaceTotals::report(history + totals());
 }
 
 std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& instant,
@@ -218,17 +215,17 @@ std::vector<SurfacePointReport> SurfaceContact::point_reports(const NodeStep& in
   std::vector<SurfacePointReport> list;
   const Mat3 R = axes(instant.x_n1);
   for (int i = 0; i < size(); ++i) {
-    const double* memory = history + kMemory * static_cast<std::size_t>(i);
-    if (!(memory[10] > 0.0)) continue;
+    const PointMemory memory = memory_of(history, i);
+    if (!(memory.pressure > 0.0)) continue;
     const double area = points_.points[static_cast<std::size_t>(i)].area;
     const contact::NormalLaw law = law_of(memory).normal;
     const RigidSurface::Gap here = gap(local(instant.x_n1, i), {law});
     list.push_back({.point = foot(instant.x_n1, i),
                     .normal = R * here.normal.normalized(),
-                    .force = area * (R * Vec3(memory[4], memory[5], memory[6])),
-                    .friction = area * (R * Vec3(memory[7], memory[8], memory[9])),
+                    .force = area * (R * Vec3(memory.force)),
+                    .friction = area * (R * Vec3(memory.friction)),
                     .gap = here.value,
-                    .pressure = memory[10]});
+                    .pressure = memory.pressure});
   }
   return list;
 }

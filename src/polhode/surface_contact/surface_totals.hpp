@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-
 #include <polhode/surface_contact/surface_law.hpp>
 #include <polhode/system/body_contacts.hpp>
+#include <polhode/system/history_record.hpp>
 
 namespace polhode {
 
-/// What the contact of a surface keeps behind the numbers of its points: sums since the start, then
-/// what the last step did. All that its report tells.
+/// History of the contact of a surface as a whole, behind that of its points: sums since the start,
+/// then what the last step did. All that its report tells.
 struct SurfaceTotals {
   double impulse, friction_loss, normal_loss;  // since the start
   double gap, normal_force, area, pressure, sticking, slipping;
@@ -18,10 +16,17 @@ struct SurfaceTotals {
 
   static constexpr std::size_t kCount = 18;
 
-  /// @param numbers  kCount of them, in the order above.
-  [[nodiscard]] static SurfaceReport report(const double* numbers) {
-    SurfaceTotals t;
-    std::copy_n(numbers, kCount, &t.impulse);
+  /// Of a new step: the sums since the start alone.
+  [[nodiscard]] static SurfaceTotals sums_of(const double* history) {
+    const auto before = read_record<SurfaceTotals>(history);
+    SurfaceTotals t{};
+    t.impulse = before.impulse;
+    t.friction_loss = before.friction_loss;
+    t.normal_loss = before.normal_loss;
+    return t;
+  }
+  [[nodiscard]] static SurfaceReport report(const double* history) {
+    const auto t = read_record<SurfaceTotals>(history);
     SurfaceReport r;
     r.least_gap = t.gap;
     r.normal_force = t.normal_force;
@@ -39,9 +44,8 @@ struct SurfaceTotals {
   }
   /// An impulse at the end of the last step counts as a force over it.
   static void add_impulse(const Vec3& normal, const ResolvedImpact& settled, double dt,
-                          double* numbers) {
-    SurfaceTotals t;
-    std::copy_n(numbers, kCount, &t.impulse);
+                          double* history) {
+    auto t = read_record<SurfaceTotals>(history);
     t.impulse += settled.normal;
     t.normal_loss += settled.normal_loss;
     t.friction_loss += settled.friction_loss;
@@ -50,9 +54,21 @@ struct SurfaceTotals {
       t.friction[k] += settled.friction[k] / dt;
       t.force[k] += (settled.normal * normal[k] + settled.friction[k]) / dt;
     }
-    std::copy_n(&t.impulse, kCount, numbers);
+    write_record(t, history);
+  }
+  /// Energy that an impact took.
+  static void add_normal_loss(double energy, double* history) {
+    auto t = read_record<SurfaceTotals>(history);
+    t.normal_loss += energy;
+    write_record(t, history);
+  }
+  /// Of the start.
+  static void set_gap(double gap, double* history) {
+    auto t = read_record<SurfaceTotals>(history);
+    t.gap = gap;
+    write_record(t, history);
   }
 };
-static_assert(sizeof(SurfaceTotals) == SurfaceTotals::kCount * sizeof(double));
+static_assert(kNumbersOf<SurfaceTotals> == SurfaceTotals::kCount);
 
 }  // namespace polhode
