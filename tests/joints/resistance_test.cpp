@@ -147,11 +147,13 @@ void expect_tangents_of_stops(const std::string& type) {
           });
           const bool turns = names.back() == "rz";
           if (turns) m.history[0] = c.value[names.size() - 1];
-          std::size_t at = turns ? 5 : 4;  // after the angle and the bristle
+          std::size_t at = (turns ? 1 : 0) + kNumbersOf<BristleMemory>;
           for (std::size_t k = 0; k < names.size(); ++k, at += kNumbersOf<StopMemory>) {
-            m.history[at + 3] = 2.0;                            // stiffness
-            m.history[at + 4] = 2.0, m.history[at + 5] = -2.0;  // band
-            m.history[at + 6] = 1.0;                            // closed at the lower end
+            auto memory = read_record<StopMemory>(&m.history[at]);
+            memory.stiffness = 2.0;
+            memory.upper = 2.0, memory.lower = -2.0;
+            memory.side = 1.0;  // closed at the lower end
+            write_record(memory, &m.history[at]);
           }
           expect_tangents(joint, m);
         }
