@@ -17,6 +17,10 @@ constexpr double kRestShare = 0.5;
 constexpr double kSlowSteps = 2.0;
 /// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
+/// An approach that would take less than this part of the tolerance in a step is no impact.
+constexpr double kStillOfTolerance = 1e-6;
+/// In the place of a restitution: the step ended under an impulse from elsewhere.
+constexpr double kWasPressed = -1.0;
 /// Least part of the tolerance between a gap and the floor of its barrier.
 constexpr double kLeastBand = 0.1;
 
@@ -35,6 +39,8 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
   gap_n1_ = sign_ * (step.at_n1 - end);
   const double tolerance = limits.law.tolerance, w = sign_ * step.rate_n;
   double slow = kSlowSteps * std::abs(acceleration_ * step.dt);
+  if (step.dt > 0.0) slow = std::max(slow, kStillOfTolerance * tolerance / step.dt);
+  was_pressed_ = memory[kRestitution] == kWasPressed;
   const auto impact_stiffness = [&] {
     return std::max(limits.law.stiffness,
                     kImpactStiffness * limits.inertia * w * w / (tolerance * tolerance));
@@ -46,7 +52,7 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
   };
   if (closed_) {
     phase_ = static_cast<ContactPhase>(static_cast<int>(memory[kPhase]));
-    restitution_ = memory[kRestitution];
+    restitution_ = std::max(0.0, memory[kRestitution]);
     law_.stiffness = memory[kStiffness];
     law_.upper = memory[kReach];
     law_.lower = memory[kFloor];
@@ -143,12 +149,18 @@ contact::NormalLaw Stop::law_after() const {
   contact::NormalLaw law = law_;
   if (!(gap_n1_ < law.reach()) || limits_.restitution == 1.0) return law;
   const double energy = law.energy(gap_n1_), k = limits_.law.stiffness;
+  const auto leave_room = [&] {
+    law.lower = std::min(law.floor(), gap_n1_ - kLeastBand * law.tolerance);
+  };
   if (phase_ == ContactPhase::compression && turns()) {
     const double e = restitution_;
     law.stiffness = std::max(e * e * law.stiffness, k);
+    leave_room();
     law.upper = law.reach_for(gap_n1_, e * e * energy);
   } else if (pressed()) {
-    law.upper = law.reach_for(gap_n1_, std::min(energy, law.energy(gap_n_)));
+    const double kept = std::min(energy, law.energy(gap_n_));
+    leave_room();
+    law.upper = law.reach_for(gap_n1_, kept);
   } else if (phase_ == ContactPhase::restitution && phase_after() == ContactPhase::rest) {
     law.stiffness = k;
     law.upper = law.reach_for(gap_n1_, energy);
@@ -163,11 +175,12 @@ void Stop::remember(double force, double* memory) const {
   const double change = step_.dt > 0.0 ? (step_.rate_n1 - step_.rate_n) / step_.dt : 0.0;
   if (!touched())
     memory[kAcceleration] = change;
-  else if (lasts && limits_.inertia > 0.0 && !pressed())  // an impact elsewhere is no acceleration
+  else if (lasts && limits_.inertia > 0.0 && (was_pressed_ || !pressed()))
+    // An impact elsewhere is no acceleration; what presses in two steps in turn is.
     memory[kAcceleration] = change - sign_ * force / limits_.inertia;
   const contact::NormalLaw law = law_after();
   memory[kPhase] = static_cast<double>(phase_after());
-  memory[kRestitution] = restitution_;
+  memory[kRestitution] = pressed() ? kWasPressed : restitution_;
   memory[kStiffness] = law.stiffness;
   memory[kReach] = law.reach();
   memory[kFloor] = law.floor();

@@ -58,6 +58,7 @@ class Stop {
   bool closed_ = false;  ///< At t_n.
   contact::ContactPhase phase_ = contact::ContactPhase::rest;
   double restitution_ = 0.0;  ///< Of the impact.
+  bool was_pressed_ = false;  ///< In the step before by an impulse from elsewhere.
   contact::NormalLaw law_;
 };
 
