@@ -4,6 +4,7 @@
 
     tools/soak.py                    scenes 1 to 1000
     tools/soak.py --scenes 17,40-60  these
+    tools/soak.py --limit 60         a minute of wall time each at most
     tools/soak.py --write 17 DIR     writes scene 17 as DIR/model.json, to run it by hand
 
 A scene is made from its number alone: shapes, grounds, joints with stops, cables, solids, law, restitution,
@@ -36,7 +37,7 @@ BALANCE = {"barrier": 1e-9, "hertz": 1e-9, "linear": 1e-9, "nonsmooth": 1e-2}
 # enough to stop one body there, not several at once; what the non-smooth law leaves is cut at a tenth.
 DEEPEST = {"barrier": 1e-3, "hertz": 0.05, "linear": 0.05, "nonsmooth": 0.1}
 ROUNDED = 2e-3  # Edges are rounded by 1e-3 of a half size, so that sharp corners reach farther.
-WALL_LIMIT = 5  # [s], after which a scene is stopped.
+WALL_LIMIT = 5.0  # [s], after which a scene is stopped if nothing else is asked for.
 NOT_CONVERGED, TOO_SLOW = 4, 75  # Exit codes.
 STEPS = {10e-3: 30, 5e-3: 40, 2e-3: 50, 1e-3: 60, 0.5e-3: 80, 0.1e-3: 120}  # [s], and how many of them.
 
@@ -407,14 +408,14 @@ def faults_of(scene, figures, t):
     return found, numbers
 
 
-def run(seed):
+def run(seed, limit=WALL_LIMIT):
     """The scene; its faults; how it ended, if not at its end; its numbers; how long it took."""
     scene = Scene(seed)
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         path = scene.write(folder)
-        words = ["-o", str(folder / "out"), "--json", "--quiet", "--wall-limit", str(WALL_LIMIT)]
+        words = ["-o", str(folder / "out"), "--json", "--quiet", "--wall-limit", str(limit)]
         done = subprocess.run([program(), "run", str(path), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True)
         try:
@@ -450,6 +451,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="1-1000", help="numbers of scenes, such as 17,40-60")
     parser.add_argument("--write", nargs=2, metavar=("SCENE", "DIR"), help="writes a scene into a folder")
+    parser.add_argument("--limit", type=float, default=WALL_LIMIT, metavar="SECONDS", help="wall time of a scene")
     parser.add_argument("--verbose", action="store_true", help="shows every scene")
     options = parser.parse_args()
     if options.write:
@@ -461,7 +463,7 @@ def main():
     ended = {"stopped": 0, "slow": 0}
     seeds = scenes_of(options.scenes)
     for seed in seeds:
-        scene, faults, end, numbers, seconds = run(seed)
+        scene, faults, end, numbers, seconds = run(seed, options.limit)
         bad += bool(faults)
         if end:
             ended[end.partition(":")[0]] += 1
@@ -477,7 +479,7 @@ def main():
                 print(f"    {end}")
             sys.stdout.flush()
     print(f"\n{len(seeds) - bad} of {len(seeds)} scenes without a fault, {time.perf_counter() - begin:.0f} s; "
-          f"{ended['stopped']} did not converge and said so, {ended['slow']} were stopped after {WALL_LIMIT} s.\n"
+          f"{ended['stopped']} did not converge and said so, {ended['slow']} were stopped after {options.limit:g} s.\n"
           "Largest numbers and their scenes; energies are parts of the scene's, lengths of a body's least half size:")
     for what, about in (("rise", "rise of the mechanical energy, by the ledger"),
                         ("own rise", "by masses and velocities, above the start"),

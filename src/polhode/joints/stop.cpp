@@ -17,6 +17,8 @@ constexpr double kRestShare = 0.5;
 constexpr double kSlowSteps = 2.0;
 /// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
+/// An approach that would take less than this part of the tolerance in a step is no impact.
+constexpr double kStillOfTolerance = 1e-6;
 /// Least part of the tolerance between a gap and the floor of its barrier.
 constexpr double kMinBand = 0.1;
 
@@ -34,6 +36,8 @@ Stop::Stop(const JointLimits& limits, const double* history, const CoordinateSte
   gap_n1_ = sign_ * (step.at_n1 - end);
   const double tolerance = limits.law.tolerance, w = sign_ * step.rate_n;
   double slow = kSlowSteps * std::abs(acceleration_ * step.dt);
+  if (step.dt > 0.0) slow = std::max(slow, kStillOfTolerance * tolerance / step.dt);
+  was_pressed_ = memory.pressed != 0.0;
   const auto impact_stiffness = [&] {
     return std::max(limits.law.stiffness,
                     kImpactStiffness * limits.inertia * w * w / (tolerance * tolerance));
@@ -142,12 +146,18 @@ contact::NormalLaw Stop::law_after() const {
   contact::NormalLaw law = law_;
   if (!(gap_n1_ < law.reach()) || limits_.restitution == 1.0) return law;
   const double energy = law.energy(gap_n1_), k = limits_.law.stiffness;
+  const auto leave_room = [&] {
+    law.lower = std::min(law.floor(), gap_n1_ - kMinBand * law.tolerance);
+  };
   if (phase_ == ContactPhase::compression && turns()) {
     const double e = restitution_;
     law.stiffness = std::max(e * e * law.stiffness, k);
+    leave_room();
     law.upper = law.reach_for(gap_n1_, e * e * energy);
   } else if (pressed()) {
-    law.upper = law.reach_for(gap_n1_, std::min(energy, law.energy(gap_n_)));
+    const double kept = std::min(energy, law.energy(gap_n_));
+    leave_room();
+    law.upper = law.reach_for(gap_n1_, kept);
   } else if (phase_ == ContactPhase::restitution && phase_after() == ContactPhase::rest) {
     law.stiffness = k;
     law.upper = law.reach_for(gap_n1_, energy);
@@ -163,15 +173,17 @@ void Stop::remember(double force, double* history) const {
   const double change = step_.dt > 0.0 ? (step_.rate_n1 - step_.rate_n) / step_.dt : 0.0;
   if (!touched())
     memory.acceleration = change;
-  else if (lasts && limits_.inertia > 0.0 && !pressed())  // an impact elsewhere is no acceleration
+  else if (lasts && limits_.inertia > 0.0 && (was_pressed_ || !pressed()))
+    // An impact elsewhere is no acceleration; what presses in two steps in turn is.
     memory.acceleration = change - sign_ * force / limits_.inertia;
   const contact::NormalLaw law = law_after();
   memory.phase = static_cast<double>(phase_after());
-  memory.restitution = restitution_;
+  memory.restitution = pressed() ? 0.0 : restitution_;
   memory.stiffness = law.stiffness;
   memory.upper = law.reach();
   memory.lower = law.floor();
   memory.side = closed ? sign_ : 0.0;
+  memory.pressed = pressed() ? 1.0 : 0.0;
   write_record(memory, history);
 }
 

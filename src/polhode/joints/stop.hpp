@@ -15,6 +15,7 @@ struct StopMemory {
   double phase, restitution;
   double stiffness, upper, lower;  ///< Of the law that acts.
   double side;                     ///< +1: the lower end is touched, −1: the upper one, 0: none.
+  double pressed;                  ///< 1: the step ended under an impulse from elsewhere.
 };
 
 /// A free coordinate over a step, as its stops see it.
@@ -64,6 +65,7 @@ class Stop {
   bool closed_ = false;  ///< At t_n.
   contact::ContactPhase phase_ = contact::ContactPhase::rest;
   double restitution_ = 0.0;  ///< Of the impact.
+  bool was_pressed_ = false;  ///< In the step before by an impulse from elsewhere.
   contact::NormalLaw law_;
 };
 
