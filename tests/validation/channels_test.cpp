@@ -399,7 +399,7 @@ TEST(Channels, SayWhatIsWrong) {
   tells(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
   tells(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
   tells(event("cable: rope, node: 3, channel: tension"),
-        "events.e.when.node: does not go with 'cable'. It belongs to a solid.");
+        "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
   tells(event("cable: rope, joint: guide, channel: tension"), "names more than one thing");
   tells(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
   tells(weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),

@@ -373,7 +373,8 @@ TEST(Events, TellWhatIsWrong) {
   tells(with("{off: [pivot]}"), "events.e: never comes. Give at (a time) or when (a condition).");
   tells(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
   tells(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
-  tells(with("{at: 1 s, off: [pivot], repeat: true}"), "events.e.repeat: does not go with 'at'");
+  tells(with("{at: 1 s, off: [pivot], repeat: true}"),
+        "events.e.repeat: cannot be combined with 'at'");
   tells(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
         "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
   tells(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"), "unknown joint 'pivo'");

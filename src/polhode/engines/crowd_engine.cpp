@@ -81,7 +81,7 @@ CrowdEngine::CrowdEngine(const System& system, double residual)
       coupled_(bodies_of(system, couples)) {
   if (!suits(system))
     throw InputError(
-        "solver", "'crowd' needs bodies that contacts and joints without friction couple",
+        "solver", "'crowd' needs bodies coupled by contacts and frictionless joints only",
         "Choose another solver for models with solids, beams, cables, penalised joints, "
         "friction in joints or stops");
   contacts_->prepare(system);

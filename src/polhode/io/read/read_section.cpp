@@ -103,7 +103,7 @@ void Section::fault(std::string what, std::string mend) {
 bool Section::refuse_both(const std::string& one, const std::string& other,
                           const std::string& mend) {
   if (!has(one) || !has(other)) return false;
-  fault(other, format("stands beside '{}'", one), mend);
+  fault(other, format("cannot be combined with '{}'", one), mend);
   return true;
 }
 

@@ -165,7 +165,7 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     const SourceNode* value = section.find(name);
     if (!value) continue;
     if (sizes) {
-      section.fault(name, format("stands beside '{}'", shape.type),
+      section.fault(name, format("cannot be combined with '{}'", shape.type),
                     "Give one kind to a shape; several shapes form a list.");
       return std::nullopt;
     }

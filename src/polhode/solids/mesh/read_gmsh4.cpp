@@ -11,7 +11,7 @@ namespace {
 int read_dimension(GmshFile& file) {
   const auto dimension = file.read<std::int32_t>("the dimension of an entity");
   if (dimension < 0 || dimension > 3)
-    file.in.refuse(format("an entity of dimension {} cannot be", dimension), kExportMeshAgain,
+    file.in.refuse(format("an entity cannot have the dimension {}", dimension), kExportMeshAgain,
                    file.binary);
   return dimension;
 }
