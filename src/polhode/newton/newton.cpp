@@ -15,6 +15,10 @@ namespace {
 /// An increment below this leaves a quadratic remainder below round-off: no polish is needed,
 /// unless friction depends on multipliers, whose increments are not looked at.
 constexpr double kNoPolishBelow = 1e-10;
+/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it moved
+/// was the softness of redundant rows, given back by the proximal centre: how contraction goes on
+/// cannot be told from it, and the leak of the multipliers is measured.
+constexpr double kPolishedBelow = 1e-9;
 /// What may be left of the increments to come: the motion of the step is that close to the solution
 /// of its equations, which is what momenta and energy of the bodies hang on [-].
 constexpr double kLeft = 1e-13;
@@ -169,7 +173,10 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const bool leaves = guard.near() && e > kLeaves * last;
     if (!leaves) stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
-    if (polished && !kept && e * contraction * contraction > left && stalled < kStalled) continue;
+    const bool measured = e < kPolishedBelow && !system.stiff();  // by check() below
+    if (polished && !kept && !measured && e * contraction * contraction > left &&
+        stalled < kStalled)
+      continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
       return fail("contracts too slowly"), report;
     if (done.rotation > options.max_rotation) {
