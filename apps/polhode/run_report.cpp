@@ -143,7 +143,7 @@ std::string summary_table(const RunSummary& s) {
   }
   for (const RunSummary::Event& e : s.events) {
     if (e.count == 0) {
-      rows.push_back({"event " + e.name, "did not come"});
+      rows.push_back({"event " + e.name, "did not occur"});
       continue;
     }
     std::string more = e.count > 1 ? format("the last of {}", e.count) : "";

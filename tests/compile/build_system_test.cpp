@@ -144,8 +144,8 @@ TEST(BuildSystem, RefusesToTurnAPointMass) {
     return message(model);
   };
   const std::string why =
-      " would turn 'bob', which is a point mass. Attach it at the point mass itself, or give the "
-      "body an inertia.";
+      " exerts a moment on 'bob', which is a point mass. Attach it at the point mass itself, or "
+      "give the body an inertia.";
   EXPECT_EQ(refused(joint("pin", "revolute", 1, 0)), "joints.pin:" + why);
   EXPECT_EQ(refused(joint("table", "point_in_plane", 0, 1)), "joints.table:" + why);
   EXPECT_EQ(refused(joint("table", "point_in_plane", 1, 0)), "");

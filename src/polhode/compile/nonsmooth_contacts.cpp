@@ -21,7 +21,7 @@ void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
            format("{} in a model with the non-smooth contact law, which supports bodies with "
                   "contact and loads only",
                   what),
-           "take this out");
+           "remove this");
   };
   if (!model.solids.empty()) holds("solids", model.solids.front().name, "is a deformable solid");
   if (!model.cables.empty()) holds("cables", model.cables.front().name, "is a cable");

@@ -169,8 +169,8 @@ class SurfacePlanner {
                                          {material_of(model_.contacts, b), side});
     check_law(stated,
               own == side
-                  ? format("'{}' meets itself", model_.side_name(own))
-                  : format("'{}' and '{}' meet", model_.side_name(own), model_.side_name(side)),
+                  ? format("'{}' touches itself", model_.side_name(own))
+                  : format("'{}' and '{}' touch", model_.side_name(own), model_.side_name(side)),
               they, passing);
     list_.push_back({own, side, 0, stated.law});
     return stated;

@@ -15,9 +15,9 @@ namespace {
 /// An increment below this leaves a quadratic remainder below round-off: no polish is needed,
 /// unless friction depends on multipliers, whose increments are not looked at.
 constexpr double kNoPolishBelow = 1e-10;
-/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it moved
-/// was the softness of redundant rows, given back by the proximal centre: how contraction goes on
-/// cannot be told from it, and the leak of the multipliers is measured.
+/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it
+/// moved was the softness of redundant rows, given back by the proximal centre: how contraction
+/// goes on cannot be told from it, and the leak of the multipliers is measured.
 constexpr double kPolishedBelow = 1e-9;
 /// What may be left of the increments to come: the motion of the step is that close to the solution
 /// of its equations, which is what momenta and energy of the bodies hang on [-].

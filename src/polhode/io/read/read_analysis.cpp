@@ -30,7 +30,7 @@ void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
 void check_type(Section& section, const std::string& type) {
   const auto refuse = [&](const char* key, const std::string& goes_with) {
     if (section.has(key))
-      section.fault(key, "cannot be combined with type " + type, "It goes with " + goes_with + ".");
+      section.fault(key, "cannot be combined with type " + type, "It requires " + goes_with + ".");
   };
   if (type != "dynamics")
     for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "momentum_rate",

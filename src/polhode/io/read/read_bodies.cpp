@@ -63,14 +63,14 @@ class BodyReader {
       section_.fault("inertia", "a point mass has no inertia",
                      "Leave out 'inertia' or 'point_mass'.");
     if (section_.has("inertia") && section_.misses("mass"))
-      section_.fault("inertia", "stands without 'mass'", "Give both, or shape and density.");
+      section_.fault("inertia", "requires 'mass'", "Give both, or shape and density.");
     const bool has_density = section_.has("density") ||
                              std::any_of(body_.shapes.begin(), body_.shapes.end(),
                                          [](const ShapeSpec& s) { return s.density.has_value(); });
     if (section_.has("mass") && has_density && weighable)
       section_.fault("mass", "cannot be combined with a density", "Leave one of them out.");
     if (section_.has("density") && !section_.has("shape"))
-      section_.fault("density", "stands without 'shape'", "Give a shape, or mass and inertia.");
+      section_.fault("density", "requires 'shape'", "Give a shape, or mass and inertia.");
     if (context_.diagnostics.size() != before || !shapes_are_sound) return;
     if (mass) body_.mass = *mass;
     if (from_shapes && (mass || has_density)) {

@@ -77,9 +77,9 @@ void read_law(Section& section, ContactLawSpec& law) {
   assign(law.friction_across, section.number("friction_across"));
   assign(law.direction, section.direction("direction"));
   if (section.has("direction") && law.friction_across == 0.0)
-    section.fault("direction", "stands without 'friction_across'", "Give both, or neither.");
+    section.fault("direction", "requires 'friction_across'", "Give both, or neither.");
   if (section.has("friction_across") && law.friction == 0.0)
-    section.fault("friction_across", "stands without 'friction'", "Give friction along direction.");
+    section.fault("friction_across", "requires 'friction'", "Give friction along direction.");
   assign(law.rolling, section.number("rolling_friction"));
   assign(law.torsion, section.number("torsional_friction"));
   assign(law.friction_stiffness, section.number("friction_stiffness"));

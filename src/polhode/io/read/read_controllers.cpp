@@ -65,7 +65,7 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
   if (section.has("numerator") || section.has("denominator")) {
     read_transfer_function(section, controller);
   } else if (!gains && !section.has_unknown_key()) {
-    section.fault("sets nothing",
+    section.fault("has no gains",
                   "Give proportional, integral or derivative, or numerator and denominator.");
   }
 }

@@ -75,7 +75,7 @@ void read_event(ReadContext& context, const SourceNode& node, EventSpec& event) 
   const SourceNode* when = section.find("when");
   if (when) event.when = read_condition(context, *when, section.path("when"));
   if (!section.has("at") && !when && !section.has_unknown_key())
-    section.fault("never comes", "Give at (a time) or when (a condition).");
+    section.fault("never occurs", "Give at (a time) or when (a condition).");
   if (const auto after = section.text("after")) event.after = *after;
   read_targets(context, section, "off", event.off);
   read_targets(context, section, "on", event.on);

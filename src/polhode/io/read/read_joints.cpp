@@ -238,7 +238,7 @@ class JointReader {
     if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
       section.fault("'radius' is missing", "mu needs the radius of the pin or ball: give it.");
     else if (f.mu == 0.0 && f.constant == 0.0 && section.misses("mu"))
-      section.fault("nothing rubs here",
+      section.fault("gives no friction",
                     format("Give mu, or {}, or leave friction out.", by_arm ? "moment" : "force"));
     joint_.friction = f;
   }

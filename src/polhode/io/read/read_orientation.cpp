@@ -100,7 +100,7 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
     forms += section.has(form) ? 1 : 0;
   if (forms == 0 && section.has_unknown_key()) return std::nullopt;  // Told already.
   if (forms != 1) {
-    section.fault(forms == 0 ? "gives no turn" : "gives more than one rotation", kForms);
+    section.fault(forms == 0 ? "gives no rotation" : "gives more than one rotation", kForms);
     return std::nullopt;
   }
   if (section.has("axis") != section.has("angle")) {

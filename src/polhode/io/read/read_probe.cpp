@@ -144,7 +144,7 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
   }
   if (targets != 1) {
     if (targets > 0 || !section.has_unknown_key())
-      section.fault(targets == 0 ? format("names nothing {}", what)
+      section.fault(targets == 0 ? format("names no object {}", what)
                                  : format("names more than one object {}", what),
                     format("Give one of: {}.", name_list(kinds)));
     return false;

@@ -360,7 +360,7 @@ const FieldTable& shape_fields() {
     t.fields.push_back({.name = "density",
                         .kind = kNumber,
                         .dimension = kDensity,
-                        .meaning = "Of this shape.",
+                        .meaning = "Density of this shape.",
                         .standard = "the body's",
                         .range = kPositive});
     t.fields.push_back({.name = "contact",

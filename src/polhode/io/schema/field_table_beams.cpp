@@ -160,7 +160,7 @@ const FieldTable& beam_fields() {
            .kind = kSection,
            .meaning =
                "The beam touches bodies, other beams and itself as a round bar; needs 'contacts'.",
-           .standard = "it touches nothing",
+           .standard = "no contact",
            .table = "beam contact"},
           {.name = "residual_bending_flexibility",
            .kind = kBoolean,
@@ -269,7 +269,7 @@ const FieldTable& cable_fields() {
            .kind = kSection,
            .meaning = "The cable touches bodies, beams and other cables as a round rope; needs "
                       "'contacts'.",
-           .standard = "it touches nothing",
+           .standard = "no contact",
            .table = "cable contact"},
       }};
   return table;

@@ -331,7 +331,7 @@ const std::vector<KindTable>& load_tables() {
               {.name = "pressure",
                .kind = kTimeNumber,
                .dimension = kPressure,
-               .meaning = "Positive pushes inward.",
+               .meaning = "Positive is compression.",
                .required = true},
               {.name = "follower",
                .kind = kBoolean,

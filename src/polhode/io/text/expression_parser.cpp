@@ -415,7 +415,7 @@ class ExpressionParser {
     const auto want_number = [&](const char* wanted) {
       if (is_known(a) && !a.type.dimension.matches({}))
         stop(a.offset, at_ - a.offset, format("{}() is given {}", f.name, a.type.dimension.name()),
-             format("It wants {}.", wanted));
+             format("It needs {}.", wanted));
     };
     switch (f.rule) {
       case FunctionRule::kAngleToNumber:

@@ -31,7 +31,7 @@ Announced read_counts(GmshFile& file, const char* things, std::size_t text_bytes
   Announced counts{};
   counts.blocks = file.count<std::uint64_t>("blocks", 8, 20);
   counts.things = file.count<std::uint64_t>(things, text_bytes, binary_bytes);
-  (void)file.read<std::uint64_t>("the least number");
+  (void)file.read<std::uint64_t>("the smallest number");
   (void)file.read<std::uint64_t>("the largest number");
   return counts;
 }
