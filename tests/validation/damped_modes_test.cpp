@@ -165,7 +165,7 @@ analysis: {type: modes, count: 8}
   }
   EXPECT_THAT(motions, ::testing::IsSupersetOf(
                            {"body 'brick' moves along x", "body 'brick' moves along y",
-                            "body 'brick' moves along z", "body 'brick' turns about z"}));
+                            "body 'brick' moves along z", "body 'brick' rotates about z"}));
   EXPECT_THAT(r.warnings.at(0), HasSubstr("8 modes were requested, but the model has 6 only"));
 }
 
