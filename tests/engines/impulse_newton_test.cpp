@@ -9,11 +9,11 @@ namespace {
 constexpr double kFall = 9.81e-3;  ///< What gravity adds in a step [m/s].
 
 /// Balls one on the other, on the ground, that have fallen for a step and slide along x.
-ImpulseSweeps column(const std::vector<double>& masses, double along) {
-  ImpulseSweeps s;
+ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
+  ProjectedGaussSeidel s;
   const double R = 0.05;
   for (const double m : masses) {
-    ImpulseSweeps::Body b;
+    ProjectedGaussSeidel::Body b;
     b.inverse_mass = 1.0 / m;
     b.inverse_inertia = Mat3::Identity() / (0.4 * m * R * R);
     b.v = Vec3(along, 0.0, -kFall);
@@ -21,7 +21,7 @@ ImpulseSweeps column(const std::vector<double>& masses, double along) {
   }
   s.bodies.emplace_back();
   for (std::size_t k = 0; k < masses.size(); ++k) {
-    ImpulseSweeps::Point p;
+    ProjectedGaussSeidel::Point p;
     p.a = static_cast<int>(k);
     p.b = static_cast<int>(k == 0 ? masses.size() : k - 1);
     p.normal = Vec3::UnitZ();
@@ -36,12 +36,12 @@ ImpulseSweeps column(const std::vector<double>& masses, double along) {
 
 /// A ton on a gram: sweeps contract by 1e-6, Newton's method ends at the weights.
 TEST(ImpulseNewton, CarriesATonOnAGram) {
-  ImpulseSweeps s = column({1e-3, 1e3}, 0.0);
+  ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
-  EXPECT_LT(s.points[1].push, 1e-3);  // of 9.81 N s
+  EXPECT_LT(s.points[1].normal_impulse, 1e-3);  // of 9.81 N s
   ASSERT_TRUE(solve_impulses(s, 1e-6 * kFall));
-  EXPECT_NEAR(s.points[1].push, 1e3 * kFall, 3e-3);
-  EXPECT_NEAR(s.points[0].push - s.points[1].push, 1e-3 * kFall, 1e-8);
+  EXPECT_NEAR(s.points[1].normal_impulse, 1e3 * kFall, 3e-3);
+  EXPECT_NEAR(s.points[0].normal_impulse - s.points[1].normal_impulse, 1e-3 * kFall, 1e-8);
   for (int b = 0; b < 2; ++b) EXPECT_NEAR(s.bodies[b].v.z(), 0.0, 3e-4 * kFall);
 }
 
@@ -49,13 +49,15 @@ TEST(ImpulseNewton, CarriesATonOnAGram) {
 /// @tests{nonsmooth-projection}
 TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
   for (const double along : {0.0, 1e-3, 0.05}) {
-    ImpulseSweeps swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
+    ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
     for (int k = 0; k < 20000; ++k) swept.sweep(k % 2 == 1);
     for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
     ASSERT_TRUE(solve_impulses(found, 1e-7 * kFall)) << along;
     for (std::size_t k = 0; k < found.points.size(); ++k) {
-      EXPECT_NEAR(found.points[k].push, swept.points[k].push, 1e-7) << along << ' ' << k;
-      EXPECT_LT((found.points[k].rub - swept.points[k].rub).norm(), 1e-6) << along << ' ' << k;
+      EXPECT_NEAR(found.points[k].normal_impulse, swept.points[k].normal_impulse, 1e-7)
+          << along << ' ' << k;
+      EXPECT_LT((found.points[k].friction_impulse - swept.points[k].friction_impulse).norm(), 1e-6)
+          << along << ' ' << k;
     }
     for (int b = 0; b < 4; ++b)
       EXPECT_LT((found.bodies[b].v - swept.bodies[b].v).norm(), 1e-6) << along << ' ' << b;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
 
 namespace polhode {
@@ -30,7 +30,7 @@ struct FibreSpec {
 /// A material of deformable solids as described.
 struct MaterialSpec {
   std::string name, type;  ///< type: a kind of the registry of materials.
-  Place place;
+  SourceLocation place;
   std::map<std::string, double> parameters;  ///< By the registry's names, SI. Absent = default.
   double density = 0.0;                      ///< In the undeformed shape [kg/m^3].
   ViscositySpec viscosity;

@@ -68,7 +68,7 @@ class MaterialReader {
     try {
       static_cast<void>(make_material(section_.path(), material_description(material_)));
     } catch (const InputError& e) {
-      section_.fault(e.what_is_wrong(), sentence(e.mend()));
+      section_.fault(e.what_is_wrong(), sentence(e.hint()));
     }
   }
 

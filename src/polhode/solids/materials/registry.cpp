@@ -42,7 +42,7 @@ void told_at(std::string_view where, const Do& act) {
     act();
   } catch (const InputError& e) {
     if (e.where() != "moduli") throw;
-    throw InputError(where, e.what_is_wrong(), e.mend());
+    throw InputError(where, e.what_is_wrong(), e.hint());
   }
 }
 
@@ -88,9 +88,9 @@ struct MaterialMaker {
     const std::string place = format("{}.viscosity", where);
     const double tau = description.relaxation_time;
     const LinearModuli own = description.viscous;
-    const auto check = [&](const char* name, double value, bool good, const char* mend) {
+    const auto check = [&](const char* name, double value, bool good, const char* hint) {
       if (!std::isfinite(value) || !good)
-        throw InputError(place, format("'{}' is {:g}", name, value), mend);
+        throw InputError(place, format("'{}' is {:g}", name, value), hint);
     };
     check("relaxation_time", tau, tau >= 0.0, "Give a time that is not negative");
     check("shear", own.shear, own.shear >= 0.0, "Give a viscosity that is not negative");
@@ -133,8 +133,8 @@ namespace {
 /// n scalars in every lane.
 template <int n>
 struct alignas(64) Lanes {
-  static constexpr int kMost = 8;
-  double value[n * kMost];
+  static constexpr int kMax = 8;
+  double value[n * kMax];
 
   Lanes() = default;
   Lanes(const Eigen::Matrix<double, n, 1>& v, int width) {
