@@ -251,7 +251,7 @@ std::string certificate_table(const Certificate& c) {
                     r.lost_from ? "-" : values_text(r.extrapolated, r.extrapolated.rows() - 1),
                     r.lost_from ? format("does not converge from {:.4g} s on", *r.lost_from)
                     : q.unresolved_at()
-                        ? format("bar as large as itself at {:.4g} s", *q.unresolved_at())
+                        ? format("error bar as large as the value at {:.4g} s", *q.unresolved_at())
                         : ""});
   }
   std::string orders;

@@ -90,7 +90,7 @@ WebAnswer answer_to(int connection, const std::string& head, int port, bool take
   WebRequest request{head.substr(begin, head.find_first_of(" ?\r", begin) - begin), sent};
   if (sent) {
     std::optional<std::string> body = read_body(connection, head);
-    if (!body) return {400, "text/plain", "What was sent did not come to its end.\n"};
+    if (!body) return {400, "text/plain", "The request is incomplete.\n"};
     request.body = std::move(*body);
   }
   return answer(request);

@@ -25,7 +25,7 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
 }
 
 int usage(const std::string& program, const std::string& what) {
-  say(format("{}: {} Run '{} --help' to see what it takes.", program, what, program));
+  say(format("{}: {} Run '{} --help' for its options.", program, what, program));
   return kUsage;
 }
 

@@ -49,10 +49,10 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
 /// Rows about the stress in solids: how well their meshes show it.
 void add_stress_rows(std::vector<std::vector<std::string>>& rows, const RunSummary& s) {
   for (const RunSummary::SolidStress& solid : s.solids)
-    rows.push_back({format("stress error, {}", solid.solid),
-                    format("{:.2g} %", 100.0 * solid.error),
-                    format("of the energy norm, by the jumps between elements; at most {:.2g} %",
-                           100.0 * solid.error_max)});
+    rows.push_back(
+        {format("stress error, {}", solid.solid), format("{:.2g} %", 100.0 * solid.error),
+         format("of the energy norm, estimated from jumps between elements; largest {:.2g} %",
+                100.0 * solid.error_max)});
 }
 
 std::string statics_table(const RunSummary& s) {
@@ -73,20 +73,22 @@ std::string statics_table(const RunSummary& s) {
   rows.push_back({"time", seconds(s.wall_time_s)});
   rows.push_back({"solver", s.solver});
   std::string text = table(rows);
-  for (const std::string& motion : r.free_motions)
-    text += format("  Nothing resists that {}.\n", motion);
+  for (const std::string& motion : r.free_motions) text += format("  Free motion: {}.\n", motion);
   for (const std::string& cable : r.slack)
-    text += format("  {}: it carries nothing. Shorten its free_length if it should.\n", cable);
-  if (r.relaxations > 0) text += "  Newton's method did not find what is slack; relaxation did.\n";
+    text +=
+        format("  {}: it has no tension. Shorten its free_length if it should be taut.\n", cable);
+  if (r.relaxations > 0)
+    text +=
+        "  Slack cables: an equilibrium was found by relaxation, as Newton's method did not "
+        "converge.\n";
   for (const LimitPoint& p : r.limit_points)
-    text += p.jump
-                ? format(
-                      "  Limit point at load factor {:.6g}, where {}: equilibria beyond it lie on "
-                      "another branch, {:.2g} times the size of the model away. Follow what "
-                      "happens in between with type: dynamics.\n",
-                      p.load_factor, p.motion.empty() ? "it ends" : p.motion, p.distance)
-                : format("  Limit point or branch at load factor {:.6g}: {} there.\n",
-                         p.load_factor, p.motion.empty() ? "stability changes" : p.motion);
+    text += p.jump ? format(
+                         "  Limit point at load factor {:.6g}, where {}: equilibria beyond it lie "
+                         "on another branch, {:.2g} times the size of the model away. Compute the "
+                         "motion between them with type: dynamics.\n",
+                         p.load_factor, p.motion.empty() ? "it ends" : p.motion, p.distance)
+                   : format("  Limit point or branch at load factor {:.6g}: {} there.\n",
+                            p.load_factor, p.motion.empty() ? "stability changes" : p.motion);
   return text;
 }
 
@@ -114,9 +116,11 @@ std::string summary_table(const RunSummary& s) {
   };
   if (s.errors) {
     const RunSummary::Errors& e = *s.errors;
-    rows.push_back({"error of a step", small(e.largest),
-                    format("at most, {}to t = {:.6g} s; estimated, of the size or radians",
-                           e.whose.empty() ? "" : e.whose + " ", e.time)});
+    rows.push_back(
+        {"error of a step", small(e.largest),
+         format(
+             "largest, {}in the step to t = {:.6g} s; estimate, relative to the size or in radians",
+             e.whose.empty() ? "" : e.whose + " ", e.time)});
     rows.push_back(
         {"  of all steps", small(e.sum),
          e.steps == s.steps ? "their sum" : format("sum of the {} with an estimate", e.steps)});
@@ -132,14 +136,14 @@ std::string summary_table(const RunSummary& s) {
     rows.push_back({"  lost in impacts", format("{:.6g} J", c.lost_in_impacts)});
     rows.push_back({"  lost by friction", format("{:.6g} J", c.lost_by_friction)});
     rows.push_back({"  numerical", format("{:.1e} J", c.numerical),
-                    "what is left of the energy balance at the end"});
+                    "remainder of the energy balance at the end"});
     if (c.sweeps)
       rows.push_back({"  sweeps", format("{:.1f} a step", c.sweeps->first),
                       format("{} of the steps ended above sweep_tolerance", c.sweeps->second)});
   }
   for (const RunSummary::Event& e : s.events) {
     if (e.count == 0) {
-      rows.push_back({"event " + e.name, "did not come"});
+      rows.push_back({"event " + e.name, "did not occur"});
       continue;
     }
     std::string more = e.count > 1 ? format("the last of {}", e.count) : "";

@@ -102,7 +102,7 @@ SceneData scene_of(const ViewRequest& request) {
   try {
     model = model_of_results(results, fs::absolute(path).parent_path().string());
   } catch (const std::exception& error) {
-    say(format("The model that {} keeps cannot be read; bodies are shown as cubes. {}", path,
+    say(format("The model stored in {} cannot be read, so bodies are shown as cubes. {}", path,
                error.what()));
   }
   return make_scene(results, model ? &*model : nullptr, options);

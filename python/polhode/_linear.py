@@ -103,7 +103,7 @@ class _Chart:
         M, _, _, G = (np.asarray(a) for a in _native.matrices(self.engine))
         if len(M) != 6 * len(self.moving):
             raise ValueError("a model with solids cannot be linearised here; use polhode.matrices")
-        kept = np.flatnonzero(np.diag(M) > 0)  # a point mass does not turn
+        kept = np.flatnonzero(np.diag(M) > 0)  # a point mass has no rotation
         free = np.eye(len(kept))
         if len(G):
             _, sizes, rows = np.linalg.svd(G[:, kept])

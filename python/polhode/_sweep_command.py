@@ -46,7 +46,7 @@ def _parameter(text: str, method: str) -> "tuple[str, Any]":
                          + ("MEAN+-DEVIATION" if method == "normal" else "FROM..TO"))
         return name, [_number(v, text) for v in values.split(",")]
     if (kind == "normal") != (method == "normal"):
-        raise _Usage(f"--vary {text}: MEAN+-DEVIATION goes with --method normal, FROM..TO with the others")
+        raise _Usage(f"--vary {text}: MEAN+-DEVIATION requires --method normal, FROM..TO with the others")
     ends = values.split(between)
     if len(ends) != 2:
         raise _Usage(f"--vary {text}: write two numbers with '{between}' between them")

@@ -148,8 +148,8 @@ void Engine::set_motions(const std::map<int, BodyMotion>& motions) {
   const StartReport report =
       start(system, state, method.ga, m.analysis.step.value_or(0.0), options);
   if (!report.assembled)
-    throw InputError(where, "cannot be there: its joints cannot be assembled",
-                     "Set it nearer to where it is");
+    throw InputError(where, "cannot be set: the joints cannot be assembled there",
+                     "Give a position closer to the present one");
   Stepper stepper(system, std::move(method.engine), method.ga, method.control, *method.kernels);
   stepper.begin(state);
   simulation_ = std::make_unique<Simulation>(m, std::move(state));

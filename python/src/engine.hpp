@@ -16,8 +16,7 @@ namespace polhode::python {
 struct NestedUse : std::runtime_error {
   NestedUse()
       : std::runtime_error(
-            "A force cannot ask its simulation while forces are computed. Keep what it is to read after each step, in a "
-            "loop over the steps or in run(observe=...); only time can be asked for.") {}
+            "A force cannot use its simulation during its evaluation. Store the values after each step, in a loop over the steps or in run(observe=...); only time can be asked for.") {}
 };
 
 /// A simulation with its names, as Python steps, runs, reads and sets it.

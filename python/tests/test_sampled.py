@@ -109,7 +109,7 @@ def test_a_force_that_asks_its_own_simulation_is_told_what_to_do(ask: "Callable[
     state = sim.state
     known.append(sim)
     for act in (sim.step, lambda: sim.joints["rail"].force):
-        with pytest.raises(RuntimeError, match="A force cannot ask its simulation while forces are computed"):
+        with pytest.raises(RuntimeError, match="A force cannot use its simulation during its evaluation"):
             act()
         assert sim.state == state
     known.clear()

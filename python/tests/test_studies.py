@@ -172,7 +172,7 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path: pathlib.Pa
     (["--vary", "k=a,b"], "'a' is no number"),
     (["--vary", "k=1..2", "--method", "lhs"], "the method lhs takes -n"),
     (["--vary", "k=1,2", "--method", "lhs", "-n", "2"], "the method lhs takes FROM..TO"),
-    (["--vary", "k=1..2", "--method", "normal", "-n", "2"], "MEAN+-DEVIATION goes with --method normal"),
+    (["--vary", "k=1..2", "--method", "normal", "-n", "2"], "MEAN+-DEVIATION requires --method normal"),
     (["--vary", "kk=1,2"], "there is no variable 'kk'"),
 ])
 def test_the_command_tells_what_is_wrong(words: "list[str]", message: str, tmp_path: pathlib.Path,

@@ -108,7 +108,7 @@ TEST_F(CommandLine, SaysShortlyThatAWallLimitIsNotNegative) {
     const auto result = run({command, "model.yaml", "--wall-limit", "-1"});
     EXPECT_EQ(result.code, 2);
     EXPECT_EQ(result.err, format("polhode {0}: --wall-limit: must not be below 0, but is -1. Run "
-                                 "'polhode {0} --help' to see what it takes.\n",
+                                 "'polhode {0} --help' for its options.\n",
                                  command));
   }
 }

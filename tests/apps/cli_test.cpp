@@ -21,11 +21,10 @@ using testing::StartsWith;
 TEST_F(CommandLine, HelpsWithAMistypedCommand) {
   const auto result = run({"rum", "model.yaml"});
   EXPECT_EQ(result.code, 2);
-  EXPECT_EQ(
-      result.err,
-      "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, modes, "
-      "view, plot, convert, check, info, schema, examples, doctor. Run 'polhode --help' to see "
-      "what it takes.\n");
+  EXPECT_EQ(result.err,
+            "polhode: there is no command 'rum'. Did you mean 'run'? Commands: run, certify, "
+            "modes, view, plot, convert, check, info, schema, examples, doctor. Run 'polhode "
+            "--help' for its options.\n");
 }
 
 TEST_F(CommandLine, HelpsWithAMistypedOption) {

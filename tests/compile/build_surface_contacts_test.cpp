@@ -157,7 +157,7 @@ TEST(BuildSurfaceContacts, InStaticsKnowsNoFrictionAndNoBodies) {
   const std::string hold = "prescribed: {hold: {nodes: zmin, x: 0, y: 0, z: 0}}";
   EXPECT_EQ(complaint("contacts: {" + kAlone + "}", hold, statics), "");
   EXPECT_THAT(complaint("contacts: {" + kAlone + ", default: {friction: 0.2}}", hold, statics),
-              HasSubstr("meet with friction, which statics does not know"));
+              HasSubstr("touch with friction, which statics does not support"));
   EXPECT_THAT(complaint("contacts: {}", hold, statics), HasSubstr("bodies may touch bodies"));
 }
 

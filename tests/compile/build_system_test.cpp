@@ -144,8 +144,8 @@ TEST(BuildSystem, RefusesToTurnAPointMass) {
     return message(model);
   };
   const std::string why =
-      " would turn 'bob', which is a point mass. Attach it at the point mass itself so that it "
-      "turns nothing, or give the body an inertia.";
+      " exerts a moment on 'bob', which is a point mass. Attach it at the point mass itself, or "
+      "give the body an inertia.";
   EXPECT_EQ(refused(joint("pin", "revolute", 1, 0)), "joints.pin:" + why);
   EXPECT_EQ(refused(joint("table", "point_in_plane", 0, 1)), "joints.table:" + why);
   EXPECT_EQ(refused(joint("table", "point_in_plane", 1, 0)), "");
@@ -166,14 +166,13 @@ TEST(BuildSystem, RefusesWhatConnectsNothingThatMoves) {
   model.bodies = {body("wall"), body("floor")};
   model.bodies[0].fixed = model.bodies[1].fixed = true;
   model.joints = {joint("weld", "fixed", 0, 1)};
-  EXPECT_EQ(
-      message(model),
-      "joints.weld: connects nothing that moves. Name at least one body that is not fixed, or "
-      "leave it out.");
+  EXPECT_EQ(message(model),
+            "joints.weld: connects no moving body. Name at least one body that is not fixed, or "
+            "leave it out.");
   model.joints.clear();
   model.loads = {load("push", "force", kGround, 1)};
   EXPECT_EQ(message(model),
-            "loads.push: connects nothing that moves. Name at least one body that is not fixed, or "
+            "loads.push: connects no moving body. Name at least one body that is not fixed, or "
             "leave it out.");
 }
 
@@ -204,10 +203,9 @@ TEST(BuildSystem, SaysWhichJointHasWrongFreedoms) {
   EXPECT_EQ(message(model),
             "joints.odd.free: 'spin' is no freedom of a joint. Use some of: x, y, z, rx, ry, rz.");
   model.joints = {joint("rod", "distance", kGround, 0)};
-  EXPECT_EQ(
-      message(model),
-      "joints.rod: the two points coincide, so they have no distance to keep. Give two points "
-      "apart, or use a spherical joint.");
+  EXPECT_EQ(message(model),
+            "joints.rod: the two points coincide, so their distance is zero. Give two distinct "
+            "points, or use a spherical joint.");
 }
 
 }  // namespace polhode::test::build_system_tests

@@ -67,10 +67,9 @@ TEST(GeneralizedAlpha, RefusesASpectralRadiusOutsideOfZeroToOne) {
   try {
     (void)GeneralizedAlpha::from_spectral_radius(1.2);
   } catch (const InputError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "analysis.rho_inf: must lie in [0, 1], but is 1.2. 1 keeps all energy, 0 damps the "
-        "highest frequencies in one step.");
+    EXPECT_STREQ(e.what(),
+                 "analysis.rho_inf: must lie in [0, 1], but is 1.2. 1 conserves energy, 0 damps "
+                 "the highest frequencies in one step.");
   }
 }
 

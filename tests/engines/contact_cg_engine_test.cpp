@@ -77,7 +77,7 @@ TEST(ContactCgEngine, NeverGainsEnergyAndBalancesMomentum) {
 }
 
 /// Two balls far apart from the others meet so fast that in one step they would change places: they
-/// start where their impact will stop them. @tests{contact-impact-guess}
+/// start where their impact will stop them. @tests{contact-impact-predictor}
 TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
   for (const double speed : {0.1, 1.0, 10.0, 200.0}) {
     Scene s(Vec3::Zero());

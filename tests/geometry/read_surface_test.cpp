@@ -100,8 +100,8 @@ TEST(ReadStl, RefusesATextCutShort) {
 TEST(ReadStl, RefusesABinaryFileCutShort) {
   const std::string bytes = binary_stl(box());
   EXPECT_EQ(refusal("a.stl", bytes.substr(0, bytes.size() - 60)),
-            "a.stl: the file is cut short: it announces 12 triangles, but ends after 10 (624 of "
-            "684 bytes). Export the file again from the program that made it.");
+            "a.stl: the file is cut short: it declares 12 triangles, but ends after 10 (624 of 684 "
+            "bytes). Export the file again from the program that made it.");
 }
 
 TEST(ReadStl, NamesTheLineOfABadNumber) {
@@ -173,9 +173,9 @@ TEST(ReadObj, SaysWhatIsWrongAndWhere) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::string hint = ". Export the file again from the program that made it.";
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 4\n"),
-            "a.obj:4: point 4 is used, but 3 points stand above" + hint);
+            "a.obj:4: point 4 is used, but 3 points are defined above" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 -4\n"),
-            "a.obj:4: point -4 is used, but 3 points stand above" + hint);
+            "a.obj:4: point -4 is used, but 3 points are defined above" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 0\n"),
             "a.obj:4: '0' is not the number of a point" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2\n"),

@@ -79,7 +79,7 @@ TEST(CheckClosed, CountsOpenEdgesAndSaysWhereTheFirstIs) {
   EXPECT_EQ(refusal(open),
             "part.stl: the surface is not closed: 3 of its edges belong to one triangle only and 0 "
             "to more than two, the first from (1, 0, 0) to (0, 1, 0). A density needs a closed "
-            "surface: mend it in the program that made it, or give mass and inertia.");
+            "surface: repair it in the program that made it, or give mass and inertia.");
 }
 
 TEST(CheckClosed, CountsEdgesOfMoreThanTwoTriangles) {
@@ -93,9 +93,9 @@ TEST(CheckClosed, NoticesATriangleThatIsTurnedRound) {
   TriangleSurface surface = tetrahedron();
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   EXPECT_EQ(refusal(surface),
-            "part.stl: the triangles do not agree which side is outside: at 3 edges neighbours "
-            "face opposite sides, the first from (1, 0, 0) to (0, 1, 0). A density needs a closed "
-            "surface: mend it in the program that made it, or give mass and inertia.");
+            "part.stl: the triangles are not oriented consistently: at 3 edges neighbours have "
+            "opposite orientations, the first from (1, 0, 0) to (0, 1, 0). A density needs a "
+            "closed surface: repair it in the program that made it, or give mass and inertia.");
 }
 
 TEST(CheckClosed, RefusesASheetFoldedOntoItself) {

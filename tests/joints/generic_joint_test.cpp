@@ -53,8 +53,8 @@ TEST(GenericJoint, RefusesWhatIsNoChoice) {
             "free: 'rw' is no freedom of a joint. Use some of: x, y, z, rx, ry, rz.");
   EXPECT_EQ(message({"x", "x"}), "free: 'x' is given twice. Give each freedom once.");
   EXPECT_EQ(message({"x", "y", "z", "rx", "ry", "rz"}),
-            "free: all six freedoms are free, so the joint holds nothing. Leave the joint out, or "
-            "lock a freedom.");
+            "free: all six freedoms are free, so the joint has no constraint. Leave the joint out, "
+            "or lock a freedom.");
 }
 
 }  // namespace polhode::test::generic_joint_tests

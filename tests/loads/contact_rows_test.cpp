@@ -281,7 +281,7 @@ TEST(Rolling, RefusesAnEdgeRounderThanTheWheel) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "loads.tyre.edge_radius: is 0.3 m, larger than the radius of 0.2 m. Give a "
-                 "smaller one; a sphere has both alike.");
+                 "smaller one; for a sphere both are equal.");
   }
 }
 

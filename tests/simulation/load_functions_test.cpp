@@ -219,7 +219,7 @@ loads: {turn: {type: rotary_motor, joint: hinge, angle: 0}, brake: {type: drag, 
   model.loads[0].of_motion = {};
   model.loads[1].of_motion = spring(1.0, 0.0);
   EXPECT_EQ(message(model),
-            "loads.brake: a 'drag' takes no function of the motion. Use a force, moment, "
+            "loads.brake: a 'drag' cannot be a function of the motion. Use a force, moment, "
             "axial_force, rotary_motor or linear_motor.");
 }
 

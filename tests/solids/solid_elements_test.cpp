@@ -63,7 +63,7 @@ TEST(SolidElements, RefuseWhatMakesNoSolid) {
   EXPECT_THAT(make(d), refused("density is 0"));
   d = cube();
   d.connectivity.pop_back();
-  EXPECT_THAT(make(d), refused("7 numbers of nodes"));
+  EXPECT_THAT(make(d), refused("7 node numbers"));
   d = cube();
   d.connectivity[3] = 8;
   EXPECT_THAT(make(d), refused("names node 8"));

@@ -128,10 +128,10 @@ TEST(CableFriction, GoesOnAfterARestartBitForBit) {
 
 TEST(CableFriction, TellsWhatIsWrong) {
   tells(weights(3.0, "friction: 0.2, tension: 3"),
-        "cables.rope.friction: does not go with tension.");
+        "cables.rope.friction: cannot be combined with tension.");
   tells(weights(3.0, "friction: 0.2, wraps: [1]"),
         "cables.rope.wraps: has 1 numbers for 2 points between the ends.");
-  tells(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: goes with 'friction' only.");
+  tells(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: requires 'friction'.");
 }
 
 }  // namespace polhode::test::cable_friction_tests

@@ -399,18 +399,18 @@ TEST(Channels, SayWhatIsWrong) {
   tells(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
   tells(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
   tells(event("cable: rope, node: 3, channel: tension"),
-        "events.e.when.node: does not go with 'cable'. It belongs to a solid.");
-  tells(event("cable: rope, joint: guide, channel: tension"), "names more than one thing");
+        "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
+  tells(event("cable: rope, joint: guide, channel: tension"), "names more than one object");
   tells(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
   tells(weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),
         "events.e.when.above: expects a force (N)");
   tells(weight("loads: {lift: {type: linear_motor, joint: guide, force: {controller: c}}}\n"
                "controllers: {c: {cable: rope, channel: tension, derivative: 1}}"),
-        "controllers.c.derivative: asks for the rate of 'tension', which is not reported.");
+        "controllers.c.derivative: needs the rate of 'tension', which is not available.");
   tells(pressed("{controller: c}",
                 "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1}}"),
         "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
-        "continuous controller cannot follow. Give a sample time.");
+        "continuous controller cannot use. Give a sample time.");
   // The same models in code.
   Model model = read_model_text(
       pressed("{controller: c}",

@@ -295,8 +295,9 @@ TEST(CurveOnCurve, SaysWhatIsWrongWithItsCurves) {
          "loads.it: 'other_curve_x' is missing. Give both coordinates of the curve.");
   expect(disc + ", other_points: [[0, 0, 0], [1, 0, 0]]",
          "loads.it.other_points: expects a list of at least three points");
-  expect(disc + ", other_points: [[0, 0, 0], [1, 0, 0], [2, 0, 0]], other_x_axis: z",
-         "loads.it.other_x_axis: is parallel to the axis. Give a direction across the axis.");
+  expect(
+      disc + ", other_points: [[0, 0, 0], [1, 0, 0], [2, 0, 0]], other_x_axis: z",
+      "loads.it.other_x_axis: is parallel to the axis. Give a direction transverse to the axis.");
 }
 
 }  // namespace polhode::curve_on_curve_tests

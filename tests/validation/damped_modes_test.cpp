@@ -49,7 +49,7 @@ TEST(DampedModes, OfAnOscillatorHaveItsDampingRatio) {
       EXPECT_NEAR(r.modes[0].damping, zeta, 1e-9);
     }
     EXPECT_NEAR(r.modes[0].eigenvalue.imag(), 20.0 * std::sqrt(1.0 - zeta * zeta), 1e-6);
-    EXPECT_THAT(r.warnings.at(0), HasSubstr("2 modes were asked for, but the model has 1 only"));
+    EXPECT_THAT(r.warnings.at(0), HasSubstr("2 modes were requested, but the model has 1 only"));
   }
   const ModesReport r = modes_of(kOscillator, {"variables.zeta=2"});
   ASSERT_EQ(r.modes.size(), 2u);
@@ -165,8 +165,8 @@ analysis: {type: modes, count: 8}
   }
   EXPECT_THAT(motions, ::testing::IsSupersetOf(
                            {"body 'brick' moves along x", "body 'brick' moves along y",
-                            "body 'brick' moves along z", "body 'brick' turns about z"}));
-  EXPECT_THAT(r.warnings.at(0), HasSubstr("8 modes were asked for, but the model has 6 only"));
+                            "body 'brick' moves along z", "body 'brick' rotates about z"}));
+  EXPECT_THAT(r.warnings.at(0), HasSubstr("8 modes were requested, but the model has 6 only"));
 }
 
 /// A chain that hangs: ω_k = j_0k/2 √(g/L), j_0k the zeros of J_0 (D. Bernoulli); in two planes.

@@ -450,12 +450,12 @@ analysis: {type: dynamics, duration: 1 s, step: 1 ms}
 )";
   };
   tells(hinge("type: penalty, stiffness: 1e6"),
-        "'turning_stiffness' is missing. The joint holds rotations: say how stiffly.");
+        "'turning_stiffness' is missing. The joint constrains rotations: give their stiffness.");
   tells(hinge("type: penalti, stiffness: 1e6, turning_stiffness: 1"), "penalty");
   tells(hinge("type: penalty, stiffness: -1, turning_stiffness: 1"), "stiffness");
   std::string ball = hinge("type: penalty, stiffness: 1e6, turning_stiffness: 1");
   ball.replace(ball.find("revolute"), 8, "spherical");
-  tells(ball, "the joint holds no rotations. Leave it out.");
+  tells(ball, "the joint constrains no rotations. Leave it out.");
   std::string apart = hinge("type: augmented, stiffness: 1e9, turning_stiffness: 1");
   tells(apart, "augmented joints have stiffnesses from 1 to 1e+09");
 }

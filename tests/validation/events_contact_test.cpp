@@ -232,19 +232,18 @@ analysis: {type: dynamics, duration: 0.2 s, step: 1 ms}
 )";
   };
   tells(with("on_pad"),
-        "events.e.off: 'on_pad' is the contact of a solid, which is not switched. Name a pair of "
-        "bodies in contacts.pairs.");
+        "events.e.off: 'on_pad' is the contact of a solid, which cannot be switched. Name a pair "
+        "of bodies in contacts.pairs.");
   tells(with("on_rope"),
-        "events.e.off: 'on_rope' is the contact of a cable, which is not switched. Name a pair of "
-        "bodies in contacts.pairs.");
+        "events.e.off: 'on_rope' is the contact of a cable, which cannot be switched. Name a pair "
+        "of bodies in contacts.pairs.");
   tells(with("of_steel"),
-        "events.e.off: 'of_steel' is a pair of materials, which is not switched. Name a pair of "
+        "events.e.off: 'of_steel' is a pair of materials, which cannot be switched. Name a pair of "
         "bodies in contacts.pairs.");
-  tells(
-      with("ball"),
-      "events.e.off: 'ball' meets 'pad', a contact that is not switched. Name the pairs of bodies "
-      "that are meant, or exclude the two in contacts.");
-  tells(with("drum"), "events.e.off: 'drum' meets 'pad', a contact that is not switched.");
+  tells(with("ball"),
+        "events.e.off: 'ball' touches 'pad', a contact that cannot be switched. Name pairs of "
+        "bodies instead, or exclude the two in contacts.");
+  tells(with("drum"), "events.e.off: 'drum' touches 'pad', a contact that cannot be switched.");
   tells(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
   EXPECT_EQ(fault_of(with("far")), "");
 }

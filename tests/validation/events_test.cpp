@@ -370,10 +370,11 @@ TEST(Events, TellWhatIsWrong) {
   };
   tells(with("{at: 1 s, off: [pivott]}"),
         "events.e.off: unknown joint or load 'pivott'. Did you mean 'pivot'?");
-  tells(with("{off: [pivot]}"), "events.e: never comes. Give at (a time) or when (a condition).");
+  tells(with("{off: [pivot]}"), "events.e: never occurs. Give at (a time) or when (a condition).");
   tells(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
   tells(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
-  tells(with("{at: 1 s, off: [pivot], repeat: true}"), "events.e.repeat: does not go with 'at'");
+  tells(with("{at: 1 s, off: [pivot], repeat: true}"),
+        "events.e.repeat: cannot be combined with 'at'");
   tells(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
         "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
   tells(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"), "unknown joint 'pivo'");
@@ -381,7 +382,7 @@ TEST(Events, TellWhatIsWrong) {
         "events.e.when.above");
   tells(with("{when: {joint: pivot, channel: rz}, off: [pivot]}"),
         "events.e.when: has no level. Give above or below.");
-  tells(with("{when: {channel: ry, above: 1}, off: [pivot]}"), "names nothing that reports");
+  tells(with("{when: {channel: ry, above: 1}, off: [pivot]}"), "names no object that reports");
   EXPECT_NE(fault_of(R"(
 format: 1
 bodies: {a: {mass: 1, inertia: [1, 1, 1]}}

@@ -243,8 +243,9 @@ std::string fault(const std::string& text, const Overrides& overrides = {}) {
 }
 
 TEST(Motor, RefusesWhatItCannotFollow) {
-  EXPECT_NE(fault(arm("angle: 1, speed: 2")).find("is given beside 'angle'"), std::string::npos);
-  EXPECT_NE(fault(arm("coordinate: ry")).find("has nothing to follow"), std::string::npos);
+  EXPECT_NE(fault(arm("angle: 1, speed: 2")).find("cannot be combined with 'angle'"),
+            std::string::npos);
+  EXPECT_NE(fault(arm("coordinate: ry")).find("has no function of time"), std::string::npos);
   EXPECT_NE(fault(arm("coordinate: rx, angle: 0")).find("'rx' is not free"), std::string::npos);
   EXPECT_NE(fault(kCart, {"loads.motor.joint=elbow"}).find("has not one free displacement"),
             std::string::npos);

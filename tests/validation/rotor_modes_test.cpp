@@ -84,7 +84,7 @@ TEST(RotorModes, OfAnOverhungDiscSplitAsTheGyroscopicMomentSays) {
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(found[i], known[i], 1e-4 * known[i]) << spin << ' ' << i;
     EXPECT_EQ(r.modes[0].kind, ModeKind::free);
-    EXPECT_NE(r.modes[0].motion.find("turns about x"), std::string::npos) << r.modes[0].motion;
+    EXPECT_NE(r.modes[0].motion.find("rotates about x"), std::string::npos) << r.modes[0].motion;
   }
 }
 

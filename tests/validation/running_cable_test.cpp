@@ -231,13 +231,12 @@ TEST(RunningCable, TellsWhatIsWrong) {
     tells(weights(rope), wanted);
   };
   has("slides: true",
-      "cables.rope: 'stiffness' is missing. Give EA; or, of a cable that slides, a "
-      "tension.");
-  has("tension: 3, slides: false", "cables.rope.slides: does not go with 'tension'");
+      "cables.rope: 'stiffness' is missing. Give EA or, for a sliding cable, a tension.");
+  has("tension: 3, slides: false", "cables.rope.slides: cannot be combined with 'tension'");
   has("stiffness: 1e3, slides: true, mass_per_length: 1",
-      "cables.rope.slides: does not go with mass_per_length");
+      "cables.rope.slides: cannot be combined with mass_per_length");
   has("stiffness: 1e3, slides: true, strain: green",
-      "cables.rope.strain: does not go with 'slides'");
+      "cables.rope.strain: cannot be combined with 'slides'");
   has("muscle: {max_force: 3, optimal_length: 1}", "cables.rope.muscle");
 }
 

@@ -82,7 +82,7 @@ Action add_certify(CLI::App& command) {
   add_within_option(command, options->request);
   add_wall_limit(command, options->request.wall_limit, "with exit code 75");
   command.add_flag("--json", options->json, "Print the certificate as one JSON object");
-  command.add_flag("--quiet", options->request.quiet, "Say nothing but errors and warnings");
+  command.add_flag("--quiet", options->request.quiet, "Print errors and warnings only");
   return [options] {
     if (!options->isa.empty()) options->model.overrides.push_back("analysis.isa=" + options->isa);
     return certify_file(*options);

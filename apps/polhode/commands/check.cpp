@@ -44,14 +44,13 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                start.position_residual, start.moved_body, start.largest_move));
   if (start.velocity_change > 1e-6)
     list.push_back(
-        format("The velocities do not fit the joints: |G v| is {:.2g}; they were changed "
-               "by up to {:.2g}.",
+        format("The initial velocities violate the joints: |G v| is {:.2g}; they were corrected by "
+               "up to {:.2g}.",
                start.velocity_residual, start.velocity_change));
   if (rank.redundant > 0) {
     list.push_back(
-        format("{} of {} constraint rows are redundant; they involve {}. The motion is "
-               "unique, but how the reactions share these rows is not: the smallest "
-               "ones are reported.",
+        format("{} of {} constraint rows are redundant; they involve {}. The motion is unique, but "
+               "the reactions are not: those of smallest norm are reported.",
                rank.redundant, rank.rows, name_list(rank.names, 12)));
   }
   if (rank.mobility == 0 && simulation.system().body_count() > 0 && simulation.solids().empty())
@@ -61,8 +60,8 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
                                 name_list(drives(simulation), 12)));
   if (simulation.has_contacts() && simulation.model().analysis.rho_inf < 1.0)
     list.push_back(
-        format("rho_inf is {:g}: numerical damping takes energy from every contact; "
-               "restitution and rebound are not those asked for.",
+        format("rho_inf is {:g}: numerical damping takes energy from every contact, so restitution "
+               "and rebound are too small. Set rho_inf: 1.",
                simulation.model().analysis.rho_inf));
   for (const SolidMap& solid : simulation.solids())
     list.insert(list.end(), solid.plan.warnings.begin(), solid.plan.warnings.end());
@@ -196,7 +195,8 @@ TangentReport tangents_of(Simulation& simulation, double at) {
                                         analysis.rho_inf, momentum_rate(analysis.momentum_rate));
   if (analysis.type != "dynamics")
     report.left_out.push_back(
-        format("what {} adds to the tangent: that of a step in time was compared", analysis.type));
+        format("terms of the tangent that only {} has; the tangent of a dynamic step was compared",
+               analysis.type));
   return report;
 }
 
@@ -297,7 +297,7 @@ int check(const Options& options) {
     add_surface_rows(simulation, rows);
     if (simulation.has_contacts())
       rows.push_back({"contact", counted(simulation.contact_map().body.size(), "shape", "shapes"),
-                      format("none overlap at the start; results are kept of {}",
+                      format("no overlaps at the start; results of {} are recorded",
                              counted(simulation.contact_map().pairs.size(), "pair", "pairs"))});
     if (options.tangents) {  // last: the model may be run for it
       const TangentReport tangents = tangents_of(simulation, options.at);

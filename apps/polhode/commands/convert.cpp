@@ -40,7 +40,7 @@ void write_grids(const Options& options) {
   try {
     model = model_of_results(results, std::filesystem::absolute(path).parent_path().string());
   } catch (const std::exception& error) {
-    say(format("The model that {} keeps cannot be read; bodies are left out. {}", path,
+    say(format("The model stored in {} cannot be read, so bodies are left out. {}", path,
                error.what()));
   }
   write_vtkhdf(results, model ? &*model : nullptr, options.film.output);
@@ -99,21 +99,21 @@ Action add_convert(CLI::App& command) {
   command.add_option("--size", options->size, "Pixels; left out: 640x400")
       ->type_name("WIDTHxHEIGHT")
       ->group(film);
-  command.add_option("--rate", options->film.rate, "Pictures a second; left out: 20")
+  command.add_option("--rate", options->film.rate, "Frames per second; left out: 20")
       ->check(CLI::Range(0.1, 240.0))
       ->group(film);
   command
       .add_option("--speed", options->film.speed,
-                  "Seconds of the recording in one of the film; left out: 1")
+                  "Seconds of motion per second of film; left out: 1")
       ->check(CLI::PositiveNumber)
       ->group(film);
-  command.add_option("--from", options->film.from, "Where it begins [s]")->group(film);
-  command.add_option("--to", options->film.to, "Where it ends [s]")->group(film);
-  command.add_option("--turn", options->film.turn, "Degrees that the camera goes round")
+  command.add_option("--from", options->film.from, "Start time [s]")->group(film);
+  command.add_option("--to", options->film.to, "End time [s]")->group(film);
+  command.add_option("--turn", options->film.turn, "Angle by which the camera rotates [deg]")
       ->group(film);
   command
       .add_option("--link", options->film.link,
-                  "Where the camera begins: what 'Link' of the page puts into the address")
+                  "Initial camera, as 'Link' of the page writes it into the address")
       ->type_name("#eye=...")
       ->group(film);
   return [options] { return convert(*options); };

@@ -136,7 +136,7 @@ Action add_modes(CLI::App& command) {
                   "The equilibrium found from the start, or the start itself")
       ->check(CLI::IsMember({"equilibrium", "start"}));
   command.add_flag("--json", options->json, "Print frequencies as one JSON object");
-  command.add_flag("--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] { return modes(*options); };
 }
 

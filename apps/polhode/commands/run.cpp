@@ -177,16 +177,15 @@ Action add_run(CLI::App& command) {
   command.add_option("--restart", options->restart, "Continue from a checkpoint of this model")
       ->type_name("FILE");
   add_wall_limit(command, options->wall_limit, "with a checkpoint and exit code 75");
-  CLI::Option* certify = command.add_flag(
-      "--certify", options->certify,
-      "Then run with finer steps and tell how far the results are right, see 'certify'");
+  CLI::Option* certify =
+      command.add_flag("--certify", options->certify,
+                       "Also run with finer steps and report error bars, see 'certify'");
   add_within_option(command, options->certificate);
   command.get_option("--within")->needs(certify);
   certify->excludes(command.get_option("--restart"));
-  command.add_flag("--view", options->view,
-                   "Then write view.html into the folder of the results, and open it");
-  command.add_flag("--json", options->json, "Print the figures of the run as one JSON object");
-  command.add_flag("--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("--view", options->view, "Write view.html into the results folder, and open it");
+  command.add_flag("--json", options->json, "Print the summary of the run as one JSON object");
+  command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] {
     if (!options->isa.empty()) options->model.overrides.push_back("analysis.isa=" + options->isa);
     return run(*options);

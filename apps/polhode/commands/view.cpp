@@ -24,7 +24,7 @@ Action add_view(CLI::App& command) {
   command
       .add_option("FILE", options->inputs,
                   "Results (results.h5 or their folder), or a model before it runs; a second one "
-                  "is shown as a ghost over the first")
+                  "is drawn transparent over the first")
       ->required();
   CLI::Option* html = command
                           .add_option("--html", options->html,
@@ -46,11 +46,11 @@ Action add_view(CLI::App& command) {
       ->excludes(zip);
   command.add_flag("--no-open", options->stay, "Do not open a browser");
   add_set_option(command, options->request.input);
-  command.add_flag("--quiet", options->quiet, "Say nothing but errors");
+  command.add_flag("--quiet", options->quiet, "Print errors only");
   return [options] {
     for (const std::string& input : options->inputs)
       if (is_results(input) && !options->request.input.overrides.empty()) {
-        say("polhode view: --set changes models, and this names results. Leave it out.");
+        say("polhode view: --set changes a model, but results are given. Leave it out.");
         return static_cast<int>(kUsage);
       }
     if (!options->zip.empty()) {
@@ -58,7 +58,7 @@ Action add_view(CLI::App& command) {
       return static_cast<int>(kOk);
     }
     if (options->inputs.size() > 2) {
-      say("polhode view: compares two recordings, and here are more. Name two, or use --zip.");
+      say("polhode view: more than two recordings are given. Name two, or use --zip.");
       return static_cast<int>(kUsage);
     }
     options->request.input.file = options->inputs[0];

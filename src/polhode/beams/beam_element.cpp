@@ -147,7 +147,7 @@ void set_reference(BeamElementSpec& spec, const BodyStep& body_1, const BodyStep
   const Ends ends(spec.end_1, spec.end_2, {body_1, body_2, context, nullptr, nullptr});
   const Vec15 iota = beam_invariants(ends.n1);
   if (!(ends.n1.offset.norm() > 0.0))
-    throw InputError(where, "has an element without length", "Give it points that are apart");
+    throw InputError(where, "has an element of zero length", "Give it distinct points");
   if (const double angle = beam_angle(iota); angle > kLargestBeamAngle)
     throw InputError(
         where,
@@ -170,13 +170,13 @@ BeamElement::BeamElement(const BeamElementSpec& spec)
   name = spec.name;
   bodies = spec.bodies;
   const std::string where = format("beam '{}'", name);
-  if (!(L_ > 0.0)) throw InputError(where, "has no length", "Give it two points apart");
+  if (!(L_ > 0.0)) throw InputError(where, "has no length", "Give it two distinct points");
   const Eigen::LLT<Mat6> factor(spec.stiffness);
   if (factor.info() != Eigen::Success)
     throw InputError(where, "has a section stiffness that is not positive definite",
                      "Give it positive stiffnesses, and couplings that are not too large");
   if (coupled_mass_ != 0.0 && (!end_1_.Z.isZero(0.0) || !end_2_.Z.isZero(0.0)))
-    throw InputError(where, "couples masses away from the centres of mass",
+    throw InputError(where, "has a consistent mass, but its ends are not at the centres of mass",
                      "Put its ends at the centres of mass, or lump its mass");
 }
 

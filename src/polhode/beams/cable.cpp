@@ -49,12 +49,12 @@ Cable::Cable(const CableSpec& spec) : spec_(spec) {
     throw InputError(where, format("has the stiffness {:g}", spec.stiffness),
                      "Give EA above zero, in N");
   if (!(spec.free_length > 0.0))
-    throw InputError(where, "has no length", "Give a free length above zero, or points apart");
+    throw InputError(where, "has no length", "Give a free length above zero, or distinct points");
   if (!(spec.damping >= 0.0))
     throw InputError(where, format("has the damping {:g}", spec.damping),
                      "Give a damping that is not negative");
   if (spec.coupled_mass != 0.0 && (!spec.Z_a.isZero(0.0) || !spec.Z_b.isZero(0.0)))
-    throw InputError(where, "couples masses away from the centres of mass",
+    throw InputError(where, "has a consistent mass, but its ends are not at the centres of mass",
                      "Put its ends at the centres of mass, or lump its mass");
   k_ = spec.stiffness / spec.free_length;
   s_0_ = measure(spec.free_length);

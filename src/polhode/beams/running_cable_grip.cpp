@@ -12,10 +12,11 @@ void RunningCable::add_friction() {
   const std::string where = format("cables.{}.friction", spec_.name);
   const std::size_t pieces = spec_.nodes.size() - 1;
   if (pieces < 2)
-    throw InputError(where, "has no point between the ends to act on",
+    throw InputError(where, "has no point between its ends",
                      "Give three points or more, or leave it out");
   if (spec_.tension || spec_.muscle)
-    throw InputError(where, format("does not go with {}", spec_.muscle ? "muscle" : "tension"),
+    throw InputError(where,
+                     format("cannot be combined with {}", spec_.muscle ? "muscle" : "tension"),
                      "Pull at an end of the cable, with a force or motor of the body there");
   if (!(spec_.stiffness > 0.0)) throw InputError(where, "needs the cable's stiffness", "Give EA");
   if (spec_.wrapped.empty()) spec_.wrapped.assign(pieces - 1, 0.0);
@@ -27,7 +28,7 @@ void RunningCable::add_friction() {
   std::vector<double> stiffness;
   for (const double length : spec_.pieces) {
     if (!(length > 0.0))
-      throw InputError(where, "needs points that are apart", "Leave one of two equal points out");
+      throw InputError(where, "has two equal points in sequence", "Leave one of them out");
     stiffness.push_back(spec_.stiffness * spec_.free_length / length);
   }
   friction_.emplace(std::move(stiffness));

@@ -78,7 +78,7 @@ SectionShape i_section(const ISectionSizes& sizes, double nu) {
   check_positive("the thickness of the flanges", flange);
   check_poisson(nu);
   if (!(2.0 * flange < height) || !(web < width))
-    throw InputError("section", "the walls of the I leave no room between them",
+    throw InputError("section", "the flanges or the web of the I section are too thick",
                      "Give flanges thinner than half the height, and a web thinner than the width");
   SectionShape s;
   const double clear = height - 2.0 * flange;

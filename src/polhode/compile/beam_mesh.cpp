@@ -60,8 +60,8 @@ class BeamMesher {
   [[nodiscard]] Vec3 up_for(const Vec3& t) const {
     if (!beam_.up) return std::abs(t.z()) < 0.99 ? Vec3::UnitZ() : Vec3::UnitX();
     if (beam_.up->normalized().cross(t).norm() < 1e-6)
-      throw InputError(where_ + ".up", "points along the beam, so it says nothing of the section",
-                       "Give a direction across the beam");
+      throw InputError(where_ + ".up", "is parallel to the beam",
+                       "Give a direction transverse to the beam");
     return beam_.up->normalized();
   }
 
@@ -75,7 +75,7 @@ class BeamMesher {
     for (std::size_t i = 0; i < lengths.size(); ++i)
       if (!(lengths[i] > kApart * whole))
         throw InputError(where_ + ".points", format("points {} and {} coincide", i + 1, i + 2),
-                         "Give points that are apart");
+                         "Give distinct points");
     if (beam_.elements < static_cast<int>(lengths.size()))
       throw InputError(
           where_ + ".elements",
@@ -166,7 +166,7 @@ int add_beam(Model& model, BeamSpec beam) {
                      "Give its material a density, or the section its mass and inertia per length");
   if (!(beam.consistent_mass >= 0.0 && beam.consistent_mass <= 1.0))
     throw InputError(where + ".consistent_mass", format("is {:g}", beam.consistent_mass),
-                     "Give a part between 0 (lumped) and 1 (consistent)");
+                     "Give a value from 0 (lumped) to 1 (consistent)");
   BeamMesher mesher(beam);
   beam.mesh = mesher.elements;
   beam.first_node = static_cast<int>(model.bodies.size());
@@ -212,26 +212,27 @@ int add_cable(Model& model, CableLineSpec cable) {
     return body.velocity + body.angular_velocity.cross(body.orientation * a.Z);
   };
   if (cable.slides && (cable.mass_per_length > 0.0 || cable.contact))
-    throw InputError(where + ".slides",
-                     format("does not go with {}", cable.contact ? "contact" : "mass_per_length"),
-                     "What slides has neither mass nor contact: leave one of them out");
+    throw InputError(
+        where + ".slides",
+        format("cannot be combined with {}", cable.contact ? "contact" : "mass_per_length"),
+        "A sliding cable has neither mass nor contact: leave one of them out");
   std::vector<double> lengths;
   for (std::size_t i = 1; i < cable.through.size(); ++i) {
     lengths.push_back((position(cable.through[i]) - position(cable.through[i - 1])).norm());
     const AttachmentSpec &a = cable.through[i - 1], &b = cable.through[i];
     if (!(lengths.back() > 0.0) && !cable.free_length)
       throw InputError(where + ".through", format("points {} and {} coincide", i, i + 1),
-                       "Give points that are apart, or a free_length");
+                       "Give distinct points, or a free_length");
     if (cable.mass_per_length == 0.0 && a.body == b.body && !cable.slides)
       throw InputError(where + ".through",
                        format("points {} and {} are on the same body", i, i + 1),
-                       "Leave one out: nothing can change their distance");
+                       "Leave one out: their distance is constant");
   }
   const double whole = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   const double stretch = cable.free_length ? *cable.free_length / whole : 1.0;
   if (cable.free_length && !(*cable.free_length > 0.0 && std::isfinite(stretch)))
     throw InputError(where + ".free_length", "is not above zero, or all points coincide",
-                     "Give a free length above zero and points that are apart");
+                     "Give a free length above zero and distinct points");
 
   if (cable.mass_per_length == 0.0) {
     for (std::size_t i = 0; i < lengths.size(); ++i)

@@ -232,7 +232,8 @@ void check_sides(const Model& model, std::vector<InputError>& faults) {
       any = any || !body.fixed;
       check_material(model, side, faults, told);
       if (body.point_mass && !body.fixed) {
-        faults.emplace_back(shape_path(body, s), "a point mass cannot touch: contact would turn it",
+        faults.emplace_back(shape_path(body, s),
+                            "a point mass cannot touch: contact exerts moments",
                             "Give the body an inertia, or contact: {touches: false}");
       }
     }
@@ -268,8 +269,8 @@ void check_contact_shapes(const Model& model, std::vector<InputError>& faults) {
       } catch (const InputError& e) {
         const bool of_file = e.where() != path;
         faults.emplace_back(path, (of_file ? e.where() + ": " : "") + e.what_is_wrong(),
-                            of_file ? "Contact needs a closed surface: mend it in the program that "
-                                      "made it, or set contact: {touches: false}"
+                            of_file ? "Contact needs a closed surface: repair it in the program "
+                                      "that made it, or set contact: {touches: false}"
                                     : e.hint());
       }
     }

@@ -108,13 +108,13 @@ class Builder {
 
   void check_movable(const std::string& where, int a, int b) const {
     if (system_body(a) == kGround && system_body(b) == kGround)
-      throw InputError(where, "connects nothing that moves",
+      throw InputError(where, "connects no moving body",
                        "Name at least one body that is not fixed, or leave it out");
   }
   void refuse_turning(const std::string& where, int body) const {
-    throw InputError(where, format("would turn '{}', which is a point mass", spec(body)->name),
-                     "Attach it at the point mass itself so that it turns nothing, or give the "
-                     "body an inertia");
+    throw InputError(where,
+                     format("exerts a moment on '{}', which is a point mass", spec(body)->name),
+                     "Attach it at the point mass itself, or give the body an inertia");
   }
 
   [[nodiscard]] JointRecipe recipe(const std::string& where, const JointSpec& joint) const {
@@ -128,8 +128,8 @@ class Builder {
       const double distance =
           (start_position(joint.b, joint.Z_b) - start_position(joint.a, joint.Z_a)).norm();
       if (!(distance > 0.0))
-        throw InputError(where, "the two points coincide, so they have no distance to keep",
-                         "Give two points apart, or use a spherical joint");
+        throw InputError(where, "the two points coincide, so their distance is zero",
+                         "Give two distinct points, or use a spherical joint");
       parameters.values["distance"] = distance;
     }
     try {
@@ -186,19 +186,20 @@ class Builder {
           where + ".joint",
           format("'{}' is {}, which has no angle about one axis", joint.name, joint.type),
           "Use a joint with one free rotation, such as revolute or cylindrical");
-    throw InputError(where + ".joint",
-                     format("'{}' is {}, which has not one free {}", joint.name, joint.type, what),
-                     turns ? "Use a joint with one free rotation, such as revolute or cylindrical, "
-                             "or give the coordinate"
-                           : "Use a joint with one free translation, such as prismatic or "
-                             "cylindrical, or give the coordinate");
+    throw InputError(
+        where + ".joint",
+        format("'{}' is {}, which does not have exactly one free {}", joint.name, joint.type, what),
+        turns ? "Use a joint with one free rotation, such as revolute or cylindrical, "
+                "or give the coordinate"
+              : "Use a joint with one free translation, such as prismatic or "
+                "cylindrical, or give the coordinate");
   }
 
   void add_load(const LoadSpec& load) {
     const std::string where = format("loads.{}", load.name);
     if (load.solid >= 0) {
       if (load.of_motion.index() != 0)
-        throw InputError(where, "a load on a solid takes no function of the motion",
+        throw InputError(where, "a load on a solid cannot be a function of the motion",
                          "Act on a body that the solid is bonded to");
       add_solid_load(system_, load, map_.solids.at(static_cast<std::size_t>(load.solid)));
       return;
@@ -217,7 +218,7 @@ class Builder {
       if (item.frame_moves())
         throw InputError(where + ".joint",
                          format("the frame of '{}' has a prescribed motion", joint.name),
-                         "Let a body of its own carry the motion, and act in a joint to that");
+                         "Give the motion to a separate body, and act in a joint to that body");
       if (kind.turns)
         angle = item.free_angle(load.coordinate);
       else
@@ -227,15 +228,15 @@ class Builder {
       else if (!angle && !displacement)
         refuse_coordinate(where, load, joint, item, kind.turns);
       if (load.drive == "speed" && model_.analysis.type != "dynamics")
-        throw InputError(where + ".speed", "is a rate, but in statics and modes nothing moves",
+        throw InputError(where + ".speed", "is a rate, which statics and modes do not have",
                          kind.turns ? "Give the angle" : "Give the displacement");
     } else if (kind.place == LoadPlace::joints) {
       gear = gear_of(where, {load.joint, load.joint_2}, {load.coordinate, load.coordinate_2});
       const bool has_radius = load.parameters.contains("radius");
       if (gear->mixed != has_radius || load.parameters.contains("ratio") == has_radius)
         throw InputError(where,
-                         gear->mixed ? "turns an angle into a displacement, which takes a radius"
-                                     : "takes a ratio between coordinates of one kind",
+                         gear->mixed ? "relates an angle to a displacement, which requires a radius"
+                                     : "relates coordinates of one kind, which requires a ratio",
                          gear->mixed ? "Give radius alone" : "Give ratio alone");
     }
     check_movable(where, kind.place == LoadPlace::body ? b : a, b);
@@ -277,7 +278,7 @@ class Builder {
                            LoadDescription& d) {
     const std::string key = kind.function_key();
     if (key.empty())
-      throw InputError(where, format("a '{}' takes no function of the motion", kind.name),
+      throw InputError(where, format("a '{}' cannot be a function of the motion", kind.name),
                        "Use a force, moment, axial_force, rotary_motor or linear_motor");
     const bool of_point = kind.place == LoadPlace::body;
     const auto* point = std::get_if<PointFunction>(&load.of_motion);
@@ -355,7 +356,7 @@ class Builder {
       moves = moves || system_body(at.body) != kGround;
     }
     if (!moves)
-      throw InputError(where, "connects nothing that moves",
+      throw InputError(where, "connects no moving body",
                        "Name at least one body that is not fixed, or leave it out");
     r.free_length = cable.length();
     r.stiffness = cable.stiffness / r.free_length;
@@ -408,11 +409,11 @@ class Builder {
       memory += ControllerMemory::size(controller);
     system_.set_memory(memory);
     if (!model_.controllers.empty() && model_.analysis.type != "dynamics")
-      throw InputError("controllers", "act in time, but in statics and modes there is none",
+      throw InputError("controllers", "act in time, which statics and modes do not have",
                        "Leave them out, or use type: dynamics");
     if (map_.events.empty()) return;
     if (model_.analysis.type != "dynamics")
-      throw InputError("events", "come in time, but in statics and modes there is none",
+      throw InputError("events", "occur in time, which statics and modes do not have",
                        "Leave what they switch off out of the model, or use type: dynamics");
     const auto each = [&](const EventSpec& event, const std::vector<std::string>& names,
                           Switching how) {

@@ -69,7 +69,7 @@ JointLimits limits_of(const JointLimitsSpec& spec, const AnalysisSpec& analysis,
 JointResistance joint_resistance(const Model& model, const JointSpec& joint) {
   JointResistance r;
   if (joint.type == "slack_link" && !joint.limits)
-    throw InputError(format("joints.{}", joint.name), "a slack_link without limits holds nothing",
+    throw InputError(format("joints.{}", joint.name), "a slack_link without limits has no effect",
                      "Give limits: {lower, upper}, distances of its points");
   if (!joint.friction && !joint.limits && !joint.angle_limits) return r;
   const Scales s = scales_of(model, joint);

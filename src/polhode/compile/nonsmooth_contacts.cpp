@@ -18,10 +18,10 @@ void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
   };
   const auto holds = [&](const char* section, const std::string& name, const char* what) {
     refuse(format("{}.{}", section, name),
-           format("{} in a model with the non-smooth law of contact, whose impulses move bodies "
-                  "that nothing but contact and loads holds",
+           format("{} in a model with the non-smooth contact law, which supports bodies with "
+                  "contact and loads only",
                   what),
-           "take this out");
+           "remove this");
   };
   if (!model.solids.empty()) holds("solids", model.solids.front().name, "is a deformable solid");
   if (!model.cables.empty()) holds("cables", model.cables.front().name, "is a cable");
@@ -33,18 +33,18 @@ void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
   const AnalysisSpec& a = model.analysis;
   if (a.type != "dynamics") return;  // no body may touch another there
   if (!a.step)
-    refuse("analysis.step", "is automatic, but impulses have no error that could choose steps",
+    refuse("analysis.step", "is automatic, but the non-smooth law has no error estimate",
            "give a step");
   if (a.rho_inf != 1.0)
     refuse("analysis.rho_inf",
-           format("is {:g}, but impulses and positions follow the midpoint rule", a.rho_inf),
+           format("is {:g}, but the non-smooth law uses the midpoint rule", a.rho_inf),
            "use rho_inf: 1");
   if (a.momentum_rate != "momentum")
-    refuse("analysis.momentum_rate", format("is {}, but impulses change momenta", a.momentum_rate),
+    refuse("analysis.momentum_rate",
+           format("is {}, but the non-smooth law uses the momentum form", a.momentum_rate),
            "use momentum_rate: momentum");
   if (a.solver != "automatic")
-    refuse("analysis.solver",
-           format("is {}, but the non-smooth law of contact has a solver of its own", a.solver),
+    refuse("analysis.solver", format("is {}, but the non-smooth law has its own solver", a.solver),
            "use solver: automatic");
 }
 

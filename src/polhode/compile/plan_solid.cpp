@@ -139,8 +139,8 @@ class SolidPlanner {
     const auto& kinds = plan_.elements;
     if (std::find(kinds.begin(), kinds.end(), "hex8_q1p0") != kinds.end() && one_layer())
       plan_.warnings.push_back(
-          format("{}: hex8_q1p0 bends wrongly where it is one element thick. Use two or three "
-                 "through the thickness.",
+          format("{}: hex8_q1p0 is inaccurate in bending with one element through the thickness. "
+                 "Use two or three.",
                  where_));
   }
 
@@ -158,7 +158,7 @@ class SolidPlanner {
       if (bond.body != kGround) {
         const BodySpec& body = model_.bodies[static_cast<std::size_t>(bond.body)];
         if (body.point_mass && !body.fixed)
-          fault(key, format("'{}' is a point mass, which nothing can turn", body.name),
+          fault(key, format("'{}' is a point mass, which has no rotation", body.name),
                 "Give it an inertia, or join the solid to another body");
       }
       std::vector<int> taken;
@@ -173,7 +173,7 @@ class SolidPlanner {
         fault(key,
               format("{} bonded to '{}' already", nodes_text(taken),
                      model_.body_name(solid_.bonded[first].body)),
-              "A node follows one body: choose selections that do not meet");
+              "A node can be bonded to one body: choose selections without common nodes");
       }
       plan_.bonded.push_back(nodes);
     }
@@ -205,7 +205,7 @@ class SolidPlanner {
       }
       if (!bonded.empty())
         fault(key, format("{} bonded to a body already", nodes_text(bonded)),
-              "A bonded node follows its body: choose selections that do not meet");
+              "A bonded node cannot be prescribed: choose selections without common nodes");
       if (!twice.empty())
         fault(
             key,

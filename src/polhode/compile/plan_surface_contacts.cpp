@@ -92,15 +92,15 @@ class SurfacePlanner {
     check_tolerance(where, own, spec, shape, stated.law);
     if (const std::string key = strange_key(stated.law); !key.empty())
       fault(where,
-            format("'{}' and '{}' meet by a law with {}, which {} do not know", name, spec.name,
+            format("'{}' and '{}' touch by a law with {}, which {} do not support", name, spec.name,
                    key, is_cable_side(own) ? "cables" : "surfaces of solids"),
-            "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
-            "friction, or zero");
+            "Give the pair its own law in contacts.pairs, without this key, with zero, or with the "
+            "value of friction");
     if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
-      fault(
-          where,
-          format("'{}' and '{}' meet with friction, which statics does not know", name, spec.name),
-          "Set friction: 0, or let the model come to rest in dynamics");
+      fault(where,
+            format("'{}' and '{}' touch with friction, which statics does not support", name,
+                   spec.name),
+            "Set friction: 0, or let the model come to rest in dynamics");
     list_.push_back({own, body, shape, stated.law});
   }
 
@@ -118,8 +118,8 @@ class SurfacePlanner {
               : widest_tolerance(shape);
     if (law.gap_tolerance > most)
       fault(where,
-            format("'{}' meets the {} of '{}' with a gap_tolerance of {:.3g} m, above a quarter of "
-                   "the median edge of its triangles{}, {:.3g} m",
+            format("'{}' touches the {} of '{}' with a gap_tolerance of {:.3g} m, above a quarter "
+                   "of the median edge of its triangles{}, {:.3g} m",
                    model_.side_name(own), shape.type, body.name, law.gap_tolerance,
                    cable ? " and an eighth of the cable's radius" : "", most),
             "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
@@ -152,7 +152,7 @@ class SurfacePlanner {
     const double most = widest_tolerance(cable.contact ? cable.contact->radius : 0.0);
     if (stated && stated->law.gap_tolerance > most)
       fault(place_of(*stated),
-            format("'{}' meets '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
+            format("'{}' touches '{}' with a gap_tolerance of {:.3g} m, above an eighth of the "
                    "cable's radius, {:.3g} m",
                    cable.name, solid.name, stated->law.gap_tolerance, most),
             "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
@@ -169,8 +169,8 @@ class SurfacePlanner {
                                          {material_of(model_.contacts, b), side});
     check_law(stated,
               own == side
-                  ? format("'{}' meets itself", model_.side_name(own))
-                  : format("'{}' and '{}' meet", model_.side_name(own), model_.side_name(side)),
+                  ? format("'{}' touches itself", model_.side_name(own))
+                  : format("'{}' and '{}' touch", model_.side_name(own), model_.side_name(side)),
               they, passing);
     list_.push_back({own, side, 0, stated.law});
     return stated;
@@ -185,15 +185,15 @@ class SurfacePlanner {
                  const char* passing) {
     const std::string where = place_of(stated);
     if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
-      fault(where, format("{} with friction, which statics does not know", who),
+      fault(where, format("{} with friction, which statics does not support", who),
             "Set friction: 0, or let the model come to rest in dynamics");
     if (const std::string key = strange_key(stated.law); !key.empty())
-      fault(where, format("{} by a law with {}, which {} do not know", who, key, they),
-            "Give the pair a law of its own in contacts.pairs, without it or with one that is as "
-            "friction, or zero");
+      fault(where, format("{} by a law with {}, which {} do not support", who, key, they),
+            "Give the pair its own law in contacts.pairs, without this key, with zero, or with the "
+            "value of friction");
     if (stated.law.potential == "linear")
-      fault(where, format("{} by the linear law, which lets {} pass", who, passing),
-            "Give the pair a law of its own in contacts.pairs, with law: barrier");
+      fault(where, format("{} by the linear law, which does not stop {}", who, passing),
+            "Give the pair its own law in contacts.pairs, with law: barrier");
   }
 
   /// A solid or a cable with itself, named without that it touches itself.

@@ -26,7 +26,7 @@ std::vector<double> first_half(int order) {
         .15884190655515560089621075, -.39590389413323757733623154, .18453964097831570709183254,
         .25837438768632204729397911, .29501172360931029887096624,  -.60550853383003451169892108};
   throw InputError("analysis.order", format("must be 2, 4, 6 or 8, but is {}", order),
-                   "2 is the plain step, the others compose it");
+                   "2 is the basic step, the others are compositions of it");
 }
 
 }  // namespace

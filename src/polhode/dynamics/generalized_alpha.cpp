@@ -8,7 +8,7 @@ namespace polhode {
 GeneralizedAlpha GeneralizedAlpha::from_spectral_radius(double rho_inf) {
   if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
     throw InputError("analysis.rho_inf", format("must lie in [0, 1], but is {}", rho_inf),
-                     "1 keeps all energy, 0 damps the highest frequencies in one step");
+                     "1 conserves energy, 0 damps the highest frequencies in one step");
   const double rho = rho_inf;
   // β = ¼(1 + α_m − α_f)² and γ = ½ + α_m − α_f with α_m − α_f = (1 − ρ)/(1 + ρ).
   return {.rho_inf = rho,

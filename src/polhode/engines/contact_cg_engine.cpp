@@ -82,7 +82,7 @@ ContactCgEngine::ContactCgEngine(const System& system, double residual)
   if (!suits(system))
     throw InputError(
         "solver",
-        "the contact CG solver needs bodies that contacts and joints without friction couple",
+        "the contact CG solver needs bodies coupled by contacts and frictionless joints only",
         "Choose another solver for models with solids, beams, cables, penalised joints, "
         "friction in joints or stops");
   contacts_->prepare(system);

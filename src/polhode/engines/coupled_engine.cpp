@@ -92,7 +92,7 @@ bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor,
     elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
   }
   if (elements.least_volume > 0.0) return true;
-  done.reason = format("{} is turned inside out (det F = {:.2g})",
+  done.reason = format("{} is inverted (det F = {:.2g})",
                        system_->nodes().element_name(nodes_.worst_group(), elements.worst_element),
                        elements.least_volume);
   return false;

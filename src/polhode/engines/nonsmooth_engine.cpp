@@ -43,8 +43,7 @@ NonsmoothEngine::NonsmoothEngine(const System& system)
       bodies_(system.body_count()),
       loads_(system) {
   if (!has_impulses(system) || system.rows() > 0 || !system.nodes().empty())
-    throw InputError("contacts",
-                     "the non-smooth law moves bodies that nothing but contact and loads holds",
+    throw InputError("contacts", "the non-smooth law supports bodies with contact and loads only",
                      "Use another law in models with joints or solids");
   options_ = *impulsive_->impulses();
   contacts_->prepare(system);
@@ -269,10 +268,9 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
       return body == kGround ? std::string("the ground")
                              : format("body '{}'", system_->bodies()[body].name);
     };
-    done.reason = format(
-        "{2} and {1} would overlap, as impulses were not found in {0} sweeps: raise "
-        "contacts.sweeps",
-        search_.sweeps, name(points_[k].a), name(points_[k].b));
+    done.reason =
+        format("{2} and {1} would overlap, as {0} sweeps did not converge: raise contacts.sweeps",
+               search_.sweeps, name(points_[k].a), name(points_[k].b));
     return done;
   }
   for (int b = 0; b < bodies_; ++b) {

@@ -146,7 +146,7 @@ std::string describe_motion(const System& system, const SaddleMatrix& matrix, co
       if (d.norm() <= 1.001 * most) continue;
       most = d.norm();
       text = format("body '{}' {} {}", system.bodies()[b].name,
-                    turns ? "turns about" : "moves along", axis_text(d.normalized()));
+                    turns ? "rotates about" : "moves along", axis_text(d.normalized()));
     }
   }
   const Nodes& nodes = system.nodes();

@@ -26,7 +26,7 @@ Mat3 point_inertia(double mass, const Vec3& d) {
 
 constexpr const char* kSignNote =
     "The entries are those of the tensor: xy is −∫ x y dm, minus the product of inertia of some "
-    "books";
+    "textbooks";
 
 }  // namespace
 

@@ -105,11 +105,12 @@ TriangleSurface parse_binary_stl(const std::string& name, std::string_view bytes
   const std::size_t count = little_endian(bytes, kHeader);
   const std::size_t present = (bytes.size() - kPreamble) / kTriangle;
   if (present < count)
-    throw InputError(name,
-                     format("the file is cut short: it announces {} triangles, but ends after {} "
-                            "({} of {} bytes)",
-                            count, present, bytes.size(), kPreamble + kTriangle * count),
-                     kExportAgain);
+    throw InputError(
+        name,
+        format(
+            "the file is cut short: it declares {} triangles, but ends after {} ({} of {} bytes)",
+            count, present, bytes.size(), kPreamble + kTriangle * count),
+        kExportAgain);
   TriangleSurface surface;
   surface.points.reserve(3 * count);
   surface.triangles.reserve(count);
@@ -147,7 +148,7 @@ TriangleSurface parse_text_stl(const std::string& name, std::string_view text) {
       corners = 0;
     } else if (keyword == "vertex") {
       if (corners < 0 || corners > 2)
-        words.refuse(corners < 0 ? "'vertex' stands outside of a facet"
+        words.refuse(corners < 0 ? "'vertex' is outside of a facet"
                                  : "a facet has more than three corners");
       surface.points.push_back(words.point());
       ++corners;
@@ -201,7 +202,7 @@ int obj_corner(const Words& words, std::string_view corner, std::size_t points) 
   const long long count = static_cast<long long>(points);
   const long long from_zero = index > 0 ? index - 1 : count + index;
   if (from_zero < 0 || from_zero >= count)
-    words.refuse(format("point {} is used, but {} points stand above", index, count));
+    words.refuse(format("point {} is used, but {} points are defined above", index, count));
   return static_cast<int>(from_zero);
 }
 

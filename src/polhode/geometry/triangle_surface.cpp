@@ -80,7 +80,7 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
     throw InputError(where, "the surface has no triangles", "Export it again as a triangle mesh");
   const EdgeReport report = edge_report(surface);
   const char* hint =
-      "A density needs a closed surface: mend it in the program that made it, or give mass and "
+      "A density needs a closed surface: repair it in the program that made it, or give mass and "
       "inertia";
   if (report.open + report.crowded > 0)
     throw InputError(where,
@@ -90,8 +90,8 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
                      hint);
   if (report.opposed > 0)
     throw InputError(where,
-                     format("the triangles do not agree which side is outside: at {} edges "
-                            "neighbours face opposite sides, the first {}",
+                     format("the triangles are not oriented consistently: at {} edges neighbours "
+                            "have opposite orientations, the first {}",
                             report.opposed, report.first),
                      hint);
   double area = 0.0;

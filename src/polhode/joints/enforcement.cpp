@@ -42,8 +42,8 @@ Vec6 row_compliances(const JointParts& parts, const JointEnforcement& enforcemen
     constexpr double turn = by_rotation<Part>();
     const double k = turn > 0.0 ? enforcement.turning_stiffness : enforcement.stiffness;
     if (!(k > 0.0))
-      throw InputError(turn > 0.0 ? "turning_stiffness" : "stiffness",
-                       "is not there, or not positive", "Give a positive number");
+      throw InputError(turn > 0.0 ? "turning_stiffness" : "stiffness", "is missing or not positive",
+                       "Give a positive number");
     compliance.segment(row, Part::kRows).setConstant((turn > 0.0 ? turn * turn : 1.0) / k);
   });
   return compliance;
@@ -51,7 +51,7 @@ Vec6 row_compliances(const JointParts& parts, const JointEnforcement& enforcemen
 
 void Joint::set_enforcement(const JointEnforcement& e, double stiffest) {
   if (rows_ == 0)
-    throw InputError("type", format("a {} holds nothing but its limits", type_),
+    throw InputError("type", format("a {} has no constraint but its limits", type_),
                      "Leave the enforcement out");
   const Vec6 compliance = row_compliances(parts_, e);
   if (e.law == JointEnforcement::Law::penalty) {

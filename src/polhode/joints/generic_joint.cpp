@@ -27,7 +27,7 @@ std::array<bool, 6> locked_freedoms(const std::vector<std::string>& free) {
     lock = false;
   }
   if (std::none_of(locked.begin(), locked.end(), [](bool lock) { return lock; }))
-    throw InputError("free", "all six freedoms are free, so the joint holds nothing",
+    throw InputError("free", "all six freedoms are free, so the joint has no constraint",
                      "Leave the joint out, or lock a freedom");
   return locked;
 }

@@ -33,7 +33,7 @@ Vec6 times(const double* rows, const double* lambda, int count) {
 [[noreturn]] void refuse_both(const std::string& joint) {
   throw InputError(format("joints.{}.motion", joint),
                    "a joint whose frame moves has neither friction nor limits",
-                   "Let a body without friction and limits carry the motion, and join it to that");
+                   "Give the motion to a separate body, and join to that body");
 }
 
 constexpr const char* kAxisName[3] = {"x", "y", "z"};

@@ -106,10 +106,10 @@ void Mumps::analyse(int n, const std::vector<int>& rows, const std::vector<int>&
   s.m.job = kAnalyse;
   call_alone(s.call, &s.m);
   if (s.m.infog[0] == kStructural)
-    throw SolveError("The equations of nodes are singular whatever their values are",
-                     "Look for nodes that nothing holds: polhode check names them");
+    throw SolveError("The equations of nodes are structurally singular",
+                     "Look for unconstrained nodes: polhode check names them");
   if (s.m.infog[0] < 0)
-    throw SolveError(format("The equations of nodes could not be planned (MUMPS {}, {})",
+    throw SolveError(format("The equations of nodes could not be analysed (MUMPS {}, {})",
                             s.m.infog[0], s.m.infog[1]),
                      kTooLarge);
 }

@@ -35,8 +35,8 @@ class CurveOnCurve : public InteractionItem {
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
-    return "two curves came to the end of one of them, fit each other where they touch, so that "
-           "the place would jump, or do not lie in parallel planes";
+    return "the contact point of two curves reached an end or is not unique, or the curves are not "
+           "in parallel planes";
   }
 
  private:

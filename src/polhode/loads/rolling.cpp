@@ -134,7 +134,7 @@ void add_rolling(System& system, const LoadDescription& load) {
   if (edge > radius)
     throw InputError(format("loads.{}.edge_radius", load.name),
                      format("is {:g} m, larger than the radius of {:g} m", edge, radius),
-                     "Give a smaller one; a sphere has both alike");
+                     "Give a smaller one; for a sphere both are equal");
   system.group<Rolling>().add(load);
 }
 

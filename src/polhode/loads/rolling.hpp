@@ -29,7 +29,7 @@ class Rolling : public InteractionItem {
   /// edge is the lowest.
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] bool always_queried() const { return circle_ > 0.0; }
-  [[nodiscard]] const char* refusal() const { return "a rolling wheel fell flat on its side"; }
+  [[nodiscard]] const char* refusal() const { return "a rolling wheel lies flat on its side"; }
 
  private:
   struct Place;

@@ -50,7 +50,7 @@ SwitchTarget switch_target(const Model& model, const std::string& name) {
   if (count > 1)
     throw InputError(name, format("'{}' is a joint and a load", name), "Rename one of them");
   if (!found.joint && model.loads[static_cast<std::size_t>(found.index)].solid >= 0)
-    throw InputError(name, format("'{}' is a load on a solid, which is not switched", name),
+    throw InputError(name, format("'{}' is a load on a solid, which cannot be switched", name),
                      "Let its function of time be zero instead");
   return found;
 }

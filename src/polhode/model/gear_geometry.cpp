@@ -57,7 +57,7 @@ class GearPlanner {
     if (joints_[i].joint->frame_moves())
       throw InputError(where_ + ".joints",
                        format("the frame of '{}' has a prescribed motion", joints_[i].joint->name),
-                       "Let a body of its own carry the motion, and act in a joint to that");
+                       "Give the motion to a separate body, and act in a joint to that body");
     const auto angle = joints_[i].joint->free_angle(joints_[i].coordinate);
     const auto displacement = joints_[i].joint->free_displacement(joints_[i].coordinate);
     if (angle.has_value() == displacement.has_value()) {
@@ -100,16 +100,17 @@ class GearPlanner {
       if (body != kGround && (body == q.a || body == q.b)) carrier = body;
     if (moving.size() > 3 || carrier == kGround)
       throw InputError(where_ + ".joints",
-                       "act between more than two moving bodies that no body carries together",
+                       "act between more than two moving bodies without a common carrier",
                        "Name joints of one carrier, or joints on the ground");
     const Wheel one = wheel(0, carrier), two = wheel(1, carrier);
     if (one.body == kGround || two.body == kGround)
-      throw InputError(where_ + ".joints", "hold the carrier to the ground and a wheel to it",
+      throw InputError(where_ + ".joints",
+                       "connect the carrier to the ground and a wheel to the carrier",
                        "Name joints of one carrier, or joints on the ground");
     out.bodies = {one.body, two.body};
     if (coordinate_[0].kind == Kind::displacement && coordinate_[1].kind == Kind::displacement)
-      throw InputError(where_ + ".joints", "slide both on a carrier that moves",
-                       "A gear on a moving carrier takes two wheels, or a rack and a pinion");
+      throw InputError(where_ + ".joints", "are both displacements on a moving carrier",
+                       "A gear on a moving carrier needs two wheels, or a rack and a pinion");
     if (out.mixed)
       rack_and_pinion(one, two);
     else
@@ -126,10 +127,9 @@ class GearPlanner {
   void wheels(const Wheel& one, const Wheel& two) {
     for (const GearJoint& j : joints_)
       if (j.joint->type() != "revolute" && j.joint->type() != "cylindrical")
-        throw InputError(
-            where_ + ".joints",
-            format("'{}' is {}, on a carrier that moves", j.joint->name, j.joint->type()),
-            "Use revolute or cylindrical joints there");
+        throw InputError(where_ + ".joints",
+                         format("'{}' is {}, on a moving carrier", j.joint->name, j.joint->type()),
+                         "Use revolute or cylindrical joints there");
     const GearPose &at_1 = poses_[static_cast<std::size_t>(one.body)],
                    &at_2 = poses_[static_cast<std::size_t>(two.body)];
     const Vec3 n_1 = at_1.Lambda * one.R.col(2), n_2 = at_2.Lambda * two.R.col(2);
@@ -137,7 +137,7 @@ class GearPlanner {
     const bool parallel = n_1.cross(n_2).norm() < kParallel;
     if (parallel && (u - u.dot(n_1) * n_1).norm() <= kParallel * (1.0 + u.norm()))
       throw InputError(where_ + ".joints",
-                       "have one axis, on a carrier that moves: their wheels do not meet",
+                       "have one axis on a moving carrier: their wheels do not mesh",
                        "Put an intermediate wheel on the carrier, as real gears do");
     const std::array<const Wheel*, 2> wheel{&one, &two};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -158,14 +158,14 @@ class GearPlanner {
   void rack_and_pinion(const Wheel& rack, const Wheel& pinion) {
     if (joints_[0].joint->type() != "prismatic")
       throw InputError(where_ + ".joints",
-                       format("'{}' is {}, on a carrier that moves", joints_[0].joint->name,
+                       format("'{}' is {}, on a moving carrier", joints_[0].joint->name,
                               joints_[0].joint->type()),
                        "Let a prismatic joint hold the rack");
     for (const GearJoint& j : joints_)
       if (j.assembled_start)
         throw InputError(
             where_ + ".joints",
-            format("'{}' is assembled at the start, on a carrier that moves", j.joint->name),
+            format("'{}' is assembled at the start, on a moving carrier", j.joint->name),
             "Give the joint by at and axis");
     // Along z of the prismatic joint, whose sides are aligned.
     const Vec3 t = rack.R.col(2);

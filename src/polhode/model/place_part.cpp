@@ -221,7 +221,7 @@ class Placer {
     }
     if (sign(load.joint, load.coordinate) > 0.0) return;
     if (!load.laws.empty() || (load.words.count("acts") > 0 && load.words.at("acts") != "both"))
-      refuse_mirror(where, "a law of a coordinate whose sense changes",
+      refuse_mirror(where, "a law of a coordinate whose sign changes",
                     "Use a stiffness and a damping, or a joint with one freedom");
     load.value = scaled(load.value, -1.0);
     load.part_axes.sense *= -1.0;

@@ -47,7 +47,7 @@ std::optional<std::array<int, 2>> switched_contact(const Model& model, const std
                      "Rename one of them");
   const std::string no_bodies = not_of_bodies(*found);
   if (!no_bodies.empty())
-    throw InputError(name, format("'{}' {}, which is not switched", name, no_bodies),
+    throw InputError(name, format("'{}' {}, which cannot be switched", name, no_bodies),
                      "Name a pair of bodies in contacts.pairs");
   return std::array{found->a, found->b};
 }

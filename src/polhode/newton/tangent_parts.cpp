@@ -202,7 +202,7 @@ void compare_group(const System& system, const State& state, Trial& trial, int g
   if (!group.has_tangent() || forces.blocks().row.empty()) {
     report.left_out.push_back(
         format("{}, which {}", name,
-               group.has_tangent() ? "meets nothing in this step" : "has no tangent"));
+               group.has_tangent() ? "has no contact in this step" : "has no tangent"));
     return;
   }
   std::vector<double> tangent(9 * forces.blocks().row.size(), 0.0);
@@ -343,7 +343,7 @@ void check_contacts(const System& system, const State& state, Trial& trial, Tang
   TangentPart part{"contact", 0, static_cast<int>(acting.size()), {}};
   if (acting.empty()) {
     report.left_out.push_back(
-        format("contacts between bodies: none of the {} pairs that are near acts in this step",
+        format("contacts between bodies: none of the {} near pairs exerts a force in this step",
                pairs.size()));
     return;
   }

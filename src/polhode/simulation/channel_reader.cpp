@@ -54,7 +54,7 @@ ChannelReader ChannelReader::rate(const Simulation& simulation, const std::strin
     rate.of_positions_ = false;
     return rate;
   }
-  throw InputError(where, format("asks for the rate of '{}', which is not reported", column_.name),
+  throw InputError(where, format("needs the rate of '{}', which is not available", column_.name),
                    "Name a coordinate of a joint, or position or velocity of a body or solid");
 }
 

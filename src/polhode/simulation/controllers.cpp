@@ -55,7 +55,7 @@ Controllers::Controllers(const Simulation& simulation, const SystemMap& map,
     const ControllerSpec& spec = model.controllers[k];
     const std::string where = format("controllers.{}", spec.name);
     if (!spec.sample && order > 2)
-      throw InputError(where, format("is continuous, which goes with order 2 only, not {}", order),
+      throw InputError(where, format("is continuous, which requires order 2, not {}", order),
                        "Give it a sample time, or order: 2");
     if (!spec.sample && is_mean_of_step(spec.channel))
       throw InputError(
@@ -123,8 +123,8 @@ Controllers::Acted Controllers::act(const Simulation& simulation, State& state) 
     const double y = item.channel.value(simulation);
     if (!std::isfinite(y)) {
       acted.blind = format(
-          "controllers.{}: '{}' is not known at t = {:.6g} s, as what it reads is too far apart. "
-          "Let it read something that is there all the time",
+          "controllers.{}: '{}' is not available at t = {:.6g} s, as the bodies are too far apart. "
+          "Use a channel that is always available",
           item.spec->name, item.spec->channel.name, state.t);
       continue;
     }

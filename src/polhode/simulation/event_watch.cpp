@@ -25,9 +25,9 @@ void refuse_surfaces(const Simulation& simulation, const EventSpec& event, const
   for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
     if (surface.side == body)
       throw InputError(format("events.{}", event.name),
-                       format("'{}' meets '{}', a contact that is not switched", name,
+                       format("'{}' touches '{}', a contact that cannot be switched", name,
                               simulation.model().side_name(surface.own)),
-                       "Name the pairs of bodies that are meant, or exclude the two in contacts");
+                       "Name pairs of bodies instead, or exclude the two in contacts");
 }
 
 }  // namespace

@@ -51,9 +51,7 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
   if (system.contacts() && a.order.value_or(2) != 2)
     throw InputError("analysis.order",
-                     format("is {}, but the model has contacts, which orders above 2 cannot step "
-                            "back and forth through",
-                            *a.order),
+                     format("is {}, but orders above 2 cannot be combined with contacts", *a.order),
                      "Use order: 2 for this model");
   if (!a.order) {
     if (!a.tolerance || a.step || system.contacts()) return 2;
@@ -71,12 +69,12 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   };
   if (order != 4 && order != 6 && order != 8) refuse("only 2, 4, 6 and 8 exist", "Use one of them");
   if (a.rho_inf != 1.0)
-    refuse(format("rho_inf is {:g}: stages that run backwards in time would feed in what the "
-                  "others damp",
+    refuse(format("rho_inf is {:g}: stages backward in time would add the energy that the others "
+                  "dissipate",
                   a.rho_inf),
            "Set rho_inf: 1, or order: 2");
   if (system.dissipates())
-    refuse("the model has dampers: stages that run backwards in time would feed energy in",
+    refuse("the model has dampers: stages backward in time would add energy",
            "Use order: 2 for this model");
   if (a.momentum_rate != "momentum")
     refuse("only the momentum form of the rate is symmetric in time",
@@ -115,16 +113,17 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   const bool tree_fits = rate == MomentumRate::momentum && policy != JacobianPolicy::every_step &&
                          policy != JacobianPolicy::never;
   if (a.solver == "tree" && !tree_fits)
-    throw InputError("analysis.solver",
-                     "'tree' has the momentum form of the rate and factors in every iteration only",
-                     "Use solver: block_lu with this momentum_rate or jacobian");
+    throw InputError(
+        "analysis.solver",
+        "'tree' supports the momentum form of the rate and a new jacobian in every iteration only",
+        "Use solver: block_lu with this momentum_rate or jacobian");
   if (NonsmoothEngine::has_impulses(system)) {
     narration += "Solver: impulses by projected Gauss-Seidel, as contacts are non-smooth.\n";
     return std::make_unique<NonsmoothEngine>(system);
   }
   if (system.contacts()) {
     if (a.solver == "tree")
-      throw InputError("analysis.solver", "'tree' has no contacts",
+      throw InputError("analysis.solver", "'tree' does not support contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
     if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
         ContactCgEngine::suits(system) && ContactCgEngine::free_bodies(system) >= kManyBodies) {
@@ -136,10 +135,10 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   }
   if (!system.nodes().empty()) {
     if (a.solver == "tree")
-      throw InputError(
-          "analysis.solver",
-          has_surfaces(system) ? "'tree' has no contacts" : "'tree' has no deformable solids",
-          "Use solver: automatic, block_lu, klu or sparse_lu");
+      throw InputError("analysis.solver",
+                       has_surfaces(system) ? "'tree' does not support contacts"
+                                            : "'tree' does not support deformable solids",
+                       "Use solver: automatic, block_lu, klu or sparse_lu");
     const NodeFactor factor =
         policy == JacobianPolicy::every_iteration || has_surfaces(system) || system.contacts()
             ? NodeFactor::every_iteration
@@ -153,7 +152,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   if (a.solver != "automatic" && a.solver != "tree")
     return std::make_unique<SparseEngine>(system, a.solver, rate);
   if (!tree_fits) {
-    narration += "Solver: block LU, as the tree does not have this momentum_rate or jacobian.\n";
+    narration += "Solver: block LU, as 'tree' does not support this momentum_rate or jacobian.\n";
     return std::make_unique<SparseEngine>(system, "block_lu", rate);
   }
   auto tree = std::make_unique<TreeEngine>(system, a.isa);
@@ -161,7 +160,7 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
   if (a.solver == "tree" || (!elastic && tree->plan().most_open <= kFewOpenLoops)) return tree;
   auto sparse = std::make_unique<SparseEngine>(system, "block_lu", rate);
   if (tree->flops() < kTreeAdvantage * sparse->solver().factor_flops()) return tree;
-  narration += elastic ? "Solver: block LU, as beams or cables hold bodies together.\n"
+  narration += elastic ? "Solver: block LU, as beams or cables connect bodies.\n"
                        : format("Solver: block LU, as up to {} loops are open at one body.\n",
                                 tree->plan().most_open);
   return sparse;
@@ -199,9 +198,8 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
   }
   if ((system.contacts() || has_surfaces(system)) && a.rho_inf < 1.0)
     m.narration += format(
-        "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, up to nine "
-        "tenths of that of an impact shorter than the step; restitution and rebound heights are "
-        "then not those asked for. Use rho_inf: 1 unless that is meant.\n",
+        "Warning: rho_inf is {:g}. Numerical damping takes energy from every contact, so "
+        "restitution and rebound heights are too small. Use rho_inf: 1 unless this is intended.\n",
         a.rho_inf);
   if (has_surfaces(system)) {
     if (a.newton_tolerance <= 0.0)

@@ -23,7 +23,8 @@ std::vector<Vec3> steady_spin(const Model& model) {
   for (const SolidSpec& solid : model.solids)
     if ((solid.velocity && !solid.velocity->isZero(0.0)) ||
         (solid.angular_velocity && !solid.angular_velocity->isZero(0.0)))
-      throw InputError(format("solids.{}", solid.name), "has a velocity, but modes are about rest",
+      throw InputError(format("solids.{}", solid.name),
+                       "has a velocity, but modes need a state of rest",
                        "Leave it out; bodies and beams may turn about their axes");
   const bool any = std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodySpec& b) {
     return !b.velocity.isZero(0.0) || !b.angular_velocity.isZero(0.0);
@@ -36,11 +37,10 @@ std::vector<Vec3> steady_spin(const Model& model) {
   for (int b = 0; b < system.body_count(); ++b) {
     const BodyMotion m = system.motion(state, b);
     if (m.v.norm() > kStays * system.length_scale() * m.W.norm())
-      throw InputError(
-          format("bodies.{}", system.bodies()[b].name),
-          format("moves with {:.3g} m/s, but modes are about a state that stays", m.v.norm()),
-          "Leave velocity out; a body may turn about an axis through its centre of "
-          "mass");
+      throw InputError(format("bodies.{}", system.bodies()[b].name),
+                       format("moves with {:.3g} m/s, but modes need a steady state", m.v.norm()),
+                       "Leave velocity out; a body may turn about an axis through its centre of "
+                       "mass");
     spin.push_back(system.bodies()[b].point_mass ? Vec3(Vec3::Zero()) : m.W);
     turns = turns || !spin.back().isZero(0.0);
   }

@@ -82,7 +82,7 @@ ProbeTarget find_target(const Simulation& simulation, const ProbeSpec& spec,
         "Name a body, a joint, a load, a solid, a beam, a cable, a contact or a controller");
   const int index = body ? model.body_index(spec.target) : model.joint_index(spec.target);
   if (body && index == kGround)
-    throw InputError(where, "records the ground, which stands still", "Name a body");
+    throw InputError(where, "records the ground, which does not move", "Name a body");
   return {.spec = spec, .index = index};
 }
 

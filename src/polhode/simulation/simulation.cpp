@@ -12,7 +12,7 @@ namespace {
 
 /// Two times closer than this part of the distance between outputs are the same.
 constexpr double kSameTime = 1e-9;
-constexpr const char* kSeeAtStart = "Let the controller read something that is there at the start";
+constexpr const char* kSeeAtStart = "Use a channel that is available at the start";
 
 }  // namespace
 
@@ -160,9 +160,8 @@ RunSummary Simulation::summary() const {
         .sweeps = {}};
     if (const double short_ones = s.contacts.unresolved(); short_ones > 0.0)
       r.warnings.push_back(
-          format("contacts: {:.0f} impacts took fewer than twenty steps, for which their stiffness "
-                 "or damper asks: speeds after them are right, forces and times of contact are "
-                 "not. Take shorter steps",
+          format("contacts: {:.0f} impacts took fewer than twenty steps: speeds after them are "
+                 "right, forces and contact times are not. Take shorter steps",
                  short_ones));
     if (s.model.contacts.nonsmooth()) {
       const ImpulseFigures search = s.contacts.impulse_figures();

@@ -122,12 +122,13 @@ struct Simulation::Impl {
     for (const BodySpec& body : model.bodies)
       if (!body.velocity.isZero(0.0) || !body.angular_velocity.isZero(0.0))
         throw InputError(format("bodies.{}", body.name),
-                         "has a velocity, but in statics and modes nothing moves",
+                         "has a velocity, which statics and modes do not support",
                          "Leave velocity and angular_velocity out, or use type: dynamics");
     if (map.contacts)
-      throw InputError(
-          "contacts", "bodies may touch bodies, which in statics and modes they cannot do",
-          "Exclude these pairs: surfaces of solids and cables touch alone, or use type: dynamics");
+      throw InputError("contacts",
+                       "bodies may touch bodies, which statics and modes do not support",
+                       "Exclude these pairs (only surfaces of solids and cables may touch), or use "
+                       "type: dynamics");
     StaticOptions options;
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
@@ -188,22 +189,21 @@ struct Simulation::Impl {
   [[nodiscard]] std::string cannot_touch(const EventSpec& event,
                                          const std::vector<std::string>& overlaps) const {
     return format(
-        "event '{}' at t = {:.6g} s: shapes whose contact would begin overlap: {}. Let it come "
-        "when "
-        "they are apart or just touch",
+        "event '{}' at t = {:.6g} s: shapes whose contact would begin overlap: {}. Choose an "
+        "instant at which they are apart or just touch",
         event.name, state.t, name_list(overlaps, 12));
   }
   [[nodiscard]] std::string cannot_switch(const EventSpec& event, const SwitchReport& done) const {
     if (done.worst < 0)
       return format(
-          "event '{}' at t = {:.6g} s: its impulses cannot be solved for. Look for joints "
-          "that contradict one another there",
+          "event '{}' at t = {:.6g} s: its impulses cannot be computed. Look for contradicting "
+          "joints",
           event.name, state.t);
     const InteractionRef& ref = system.interactions()[static_cast<std::size_t>(done.worst)];
     return format(
-        "event '{}' at t = {:.6g} s: {} '{}' cannot be switched on, its two sides are {:.3g} m (or "
-        "rad) from fitting. Let it come when they fit, or use a fixed joint, which holds its sides "
-        "as they stand",
+        "event '{}' at t = {:.6g} s: {} '{}' cannot be switched on, as it is {:.3g} m (or rad) "
+        "from being assembled. Choose an instant at which it is assembled, or use a fixed joint, "
+        "which keeps the relative position",
         event.name, state.t, system.group(ref.group).kind(), system.name(ref), done.gap);
   }
 
@@ -282,10 +282,10 @@ struct Simulation::Impl {
       const double jump =
           jump_at(at.t, before.value, after.value, std::abs(before.rate) + std::abs(after.rate));
       if (jump == 0.0) continue;
-      throw InputError(
-          where,
-          format("jumps by {:.6g} {} at t = {:.6g} s, which no force can do", jump, unit, at.t),
-          "Give a ramp, such as a table with interpolation: linear");
+      throw InputError(where,
+                       format("jumps by {:.6g} {} at t = {:.6g} s, which no finite force can do",
+                              jump, unit, at.t),
+                       "Give a ramp, such as a table with interpolation: linear");
     }
   }
 
@@ -306,12 +306,12 @@ struct Simulation::Impl {
     const double given = model.analysis.assembly_tolerance;
     const double allowed = given > 0.0 ? given : to_assemble ? kMoveToAssemble : kMoveAsGiven;
     if (r.largest_move > allowed)
-      throw InputError("the start",
-                       format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
-                              "radians), more than analysis.assembly_tolerance = {:.2g}",
-                              r.moved_body, r.largest_move, allowed),
-                       "Give the body's position closer to where its joints want it, or raise "
-                       "assembly_tolerance");
+      throw InputError(
+          "the start",
+          format("assembling moves body '{}' by {:.2g} (of the mechanism's size, or "
+                 "radians), more than analysis.assembly_tolerance = {:.2g}",
+                 r.moved_body, r.largest_move, allowed),
+          "Give the body a position closer to the assembled one, or raise assembly_tolerance");
   }
 
   /// Elements that are compressed more than their kind stands: the worst of each group is kept.
@@ -359,9 +359,8 @@ struct Simulation::Impl {
       const double error = watch.part(watch.largest_error);
       if (error > kUncertainStress)
         list.push_back(format(
-            "solids.{}: the stress is uncertain by {:.0f} % (mean over the solid at {} = {:.4g}): "
-            "so "
-            "much do neighbouring elements differ, and peaks may be further off. Use quadratic "
+            "solids.{}: the estimated stress error is {:.0f} % (mean over the solid at {} = "
+            "{:.4g}, from jumps between elements); peaks may be less accurate. Use quadratic "
             "elements, or a finer mesh.",
             model.solids[i].name, 100.0 * error, statics ? "load factor" : "t", watch.t_largest));
     }
@@ -387,14 +386,14 @@ struct Simulation::Impl {
     const std::string whose = whose_error();
     if (e.largest > kUnresolved)
       list.push_back(
-          format("the steps are too long for the motion: {} errs by about {:.2g} of the "
-                 "mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter steps, "
-                 "or give a tolerance",
+          format("the steps are too long for the motion: the estimated error of {} is {:.2g} of "
+                 "the mechanism's size, or radians, in the step to t = {:.6g} s. Take shorter "
+                 "steps, or give a tolerance",
                  whose.empty() ? "a body" : whose, e.largest, e.time));
     if (velocity_residual > kFarOff * velocity_scale)
       list.push_back(
-          format("velocities are far from those that the joints allow, by {:.2g} of the largest "
-                 "speeds, at t = {:.6g} s. Take shorter steps, or rho_inf below 1",
+          format("velocities violate the joints by {:.2g} of the largest speeds at t = {:.6g} s. "
+                 "Take shorter steps, or rho_inf below 1",
                  velocity_residual / velocity_scale, velocity_time));
     if (e.hard > 0)
       list.push_back(
@@ -441,20 +440,18 @@ struct Simulation::Impl {
       throw InputError(
           "contacts", "surfaces overlap or touch at the start: " + name_list(surfaces, 12),
           model.contacts.resolve_overlaps
-              ? "They could not be moved apart: correct positions or sizes. What is held does not "
-                "move, nor do cables, nor sharp edges that cross"
-              : "Correct positions or sizes, exclude pairs that are meant to overlap, or set "
-                "contacts.overlaps: resolve. Between two solids leave a gap of at least half the "
-                "gap_tolerance");
+              ? "They could not be moved apart: correct positions or sizes. Fixed bodies, cables "
+                "and crossing sharp edges are not moved"
+              : "Correct positions or sizes, exclude intended overlaps, or set contacts.overlaps: "
+                "resolve. Between two solids leave a gap of at least half the gap_tolerance");
     if (!map.contacts) return;
     const std::vector<std::string> list = overlaps_at(system, *map.contacts, state);
     if (list.empty()) return;
-    throw InputError(
-        "contacts", "shapes overlap at the start: " + name_list(list, 12),
-        model.contacts.resolve_overlaps
-            ? "They could not be moved apart: correct positions or sizes"
-            : "Correct positions or sizes, exclude pairs that are meant to overlap, or "
-              "set contacts.overlaps: resolve");
+    throw InputError("contacts", "shapes overlap at the start: " + name_list(list, 12),
+                     model.contacts.resolve_overlaps
+                         ? "They could not be moved apart: correct positions or sizes"
+                         : "Correct positions or sizes, exclude intended overlaps, or set "
+                           "contacts.overlaps: resolve");
   }
 
   const InstantSolution& at_instant() {

@@ -236,7 +236,7 @@ int Simulation::contact_pair(int side_a, int side_b) const {
     if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(side_a, side_b))
       return static_cast<int>(k);
   throw InputError("contacts",
-                   format("results of '{}' and '{}' are not kept", model().side_name(side_a),
+                   format("results of '{}' and '{}' are not recorded", model().side_name(side_a),
                           model().side_name(side_b)),
                    "Name the pair in contacts.pairs or a probe, or set contacts.record: true");
 }

@@ -215,9 +215,8 @@ class SolidGroup final : public SolidElements {
   std::string stretch_warning(const LeastStretch& least) const override {
     if (least.value >= kind_.least_stretch) return {};
     return format(
-        "{}: element {} is compressed to {:.2f} of its length; {} is not to be trusted below {:g}, "
-        "where it shows false wrinkles. Use hex8_q1p0 with an uncoupled material, or a quadratic "
-        "element.",
+        "{}: element {} is compressed to {:.2f} of its length; {} has spurious modes below {:g}. "
+        "Use hex8_q1p0 with an uncoupled material, or a quadratic element.",
         name_, least.element, least.value, kind_.name, kind_.least_stretch);
   }
 
@@ -286,7 +285,7 @@ void check(const SolidElementsDescription& d) {
   if (d.connectivity.empty() || d.connectivity.size() % n != 0)
     throw InputError(
         d.name,
-        format("{} numbers of nodes do not make elements of {} nodes", d.connectivity.size(), n),
+        format("{} node numbers do not form elements of {} nodes", d.connectivity.size(), n),
         "Give at least one element, with all its nodes");
   for (std::size_t i = 0; i < d.connectivity.size(); ++i)
     if (d.connectivity[i] < 0 || static_cast<std::size_t>(d.connectivity[i]) >= d.X.size())
@@ -303,7 +302,8 @@ void check(const SolidElementsDescription& d) {
                      "Give one direction, or one for each element");
   for (const Vec3& direction : d.fibres)
     if (!(direction.norm() > 0.0) || !direction.allFinite())
-      throw InputError(d.name, "a direction of fibres is no vector", "Give a vector of any length");
+      throw InputError(d.name, "a fibre direction is zero or not finite",
+                       "Give a vector of any length but zero");
 }
 
 }  // namespace

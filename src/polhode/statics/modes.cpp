@@ -191,9 +191,9 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
     const Vec3& W = options.spin[static_cast<std::size_t>(b)];
     const Vec3 moment = W.cross(system.bodies()[b].inertia * W);
     if (moment.norm() > kTurned * system.bodies()[b].inertia.norm() * W.squaredNorm())
-      report.warnings.push_back(
-          format("body '{}' does not turn about an axis of inertia: modes are those of the instant",
-                 system.bodies()[b].name));
+      report.warnings.push_back(format(
+          "body '{}' does not rotate about a principal axis: modes hold for this instant only",
+          system.bodies()[b].name));
     motion.q = (motion.q *
                 Quat(Eigen::AngleAxisd(W.norm() / fastest,
                                        W.isZero(0.0) ? Vec3(Vec3::UnitX()) : Vec3(W.normalized()))))
@@ -209,7 +209,7 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
     if (ref.rows == 0 || x.isZero(0.0)) continue;
     m.K().times(x, rates);
     if (rates.segment(m.n() + ref.first_row, ref.rows).norm() > kTurned * x.norm())
-      report.warnings.push_back(format("{} '{}' does not let its bodies turn as they are given",
+      report.warnings.push_back(format("{} '{}' does not allow the given angular velocities",
                                        system.group(ref.group).kind(), system.name(ref)));
   }
   ModalMatrices later(system, turned, options);
@@ -224,8 +224,8 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
   };
   if (later.s() != m.s() || apart(later.M(), m.M()) > kTurned || apart(later.K(), m.K()) > kTurned)
     report.warnings.push_back(
-        "the model is another one when its bodies have turned: modes are those of the instant; a "
-        "body that turns must be alike about its axis, in its mass and in what holds it");
+        "the model changes as its bodies rotate, so modes hold for this instant only. Mass and "
+        "constraints of a rotating body must be symmetric about its axis");
 }
 
 /// Largest parts of translations along x, y, z, and what moves.
@@ -276,7 +276,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   ModesReport report;
   if (6 * system.body_count() + system.nodes().unknowns() == 0) {
     report.freedoms = 0;
-    report.warnings.push_back("every freedom of the model is held: there are no modes");
+    report.warnings.push_back("every degree of freedom is constrained: there are no modes");
     return report;
   }
   ModalMatrices m(system, equilibrium, options);
@@ -293,9 +293,10 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   const bool asked = options.count != ModeOptions{}.count;  // else nobody wanted so many
   if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))
     report.warnings.push_back(
-        report.freedoms == 0 ? std::string("every freedom of the model is held: there are no modes")
-                             : format("{} modes were asked for, but the model has {} only",
-                                      options.count, modes.size()));
+        report.freedoms == 0
+            ? std::string("every degree of freedom is constrained: there are no modes")
+            : format("{} modes were requested, but the model has {} only", options.count,
+                     modes.size()));
   put_overdamped_last(modes, options.count);
   report.modes = std::move(modes);
   put_participation(system, m, report);

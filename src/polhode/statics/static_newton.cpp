@@ -287,7 +287,7 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     if (!(elements.least_volume > 0.0)) {
       step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
       if (step.iterations == 0 || ++halvings > kStaticHalvings)
-        return fail(format("an element turns inside out (det F = {:.2g})", elements.least_volume));
+        return fail(format("an element is inverted (det F = {:.2g})", elements.least_volume));
       const std::vector<double> inside =
           part_way(unknowns_before, element_unknowns(*system_, trial_), 0.5);
       work_ = before;

@@ -208,20 +208,20 @@ struct LoadStepper::Impl {
       s += format(" (unbalanced {:.2g} N of {:.2g} N)", step.residual, step.force);
     s += ".";
     if (!step.free_motions.empty()) {
-      s += " Nothing resists that ";
+      s += " Free motion: ";
       for (std::size_t i = 0; i < step.free_motions.size(); ++i)
         s += (i > 0 ? "; " : "") + step.free_motions[i];
-      s += ": hold it by a joint or a spring.";
+      s += ". Constrain it by a joint or a spring.";
     } else if (relaxed) {
       s += " Cables are slack: shorten their free_length, load them, or follow the motion with "
            "type: "
            "dynamics and damping.";
     } else if (equilibria > 0) {
       s += " It may be a limit point, where the model buckles";
-      if (!soft.empty()) s += format("; least stiffness is met where {}", soft);
+      if (!soft.empty()) s += format("; the stiffness is smallest where {}", soft);
       s += ": look at the last equilibrium, or follow the motion with type: dynamics.";
     } else {
-      s += " Try load_steps, or check that the model is held.";
+      s += " Try load_steps, or check that the model is constrained.";
     }
   }
 };

@@ -207,7 +207,7 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
     if (c.cols() == 0) continue;
     const Mat shifts = c.topRows(3) * null_space(c.bottomRows(3));
     const auto text = [&](bool turns, const Vec3& d) {
-      return format("{} {} {}", part.name, turns ? "turns about" : "moves along", axis_text(d));
+      return format("{} {} {}", part.name, turns ? "rotates about" : "moves along", axis_text(d));
     };
     Mat along = Mat::Zero(3, 0);
     for (const Vec3& d : directions_of(shifts, Mat3::Identity())) {

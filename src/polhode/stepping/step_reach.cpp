@@ -29,16 +29,16 @@ std::vector<std::string> StepReach::warnings(double tolerance, int order) const 
   if (beyond_ == 0 || (order == 2 && !adds_up)) {
     if (!adds_up) return {};
     return {
-        format("tolerance: {:.2g} is that of one step; the errors of {} steps add up to {:.1e} "
-               "by their own estimate. Ask for a smaller tolerance if that is too much",
+        format("tolerance: {:.2g} applies to one step; the estimated errors of {} steps add up to "
+               "{:.1e}. Give a smaller tolerance if that is too much",
                tolerance, steps_, sum_)};
   }
-  return {format(
-      "tolerance: {:.2g} was not reached: {} of {} steps, the first at t = {:.6g} s, err by up to "
-      "{:.1e}, and no shorter step does better; the errors of all steps add up to {:.1e} by their "
-      "own estimate. Ask for a larger tolerance, or look for stiffness and mass ratios that leave "
-      "noise",
-      tolerance, beyond_, steps_, first_, worst_, sum_)};
+  return {
+      format("tolerance: {:.2g} was not reached: {} of {} steps, the first at t = {:.6g} s, have "
+             "errors up to {:.1e}, and shorter steps do not reduce them; the estimated errors of "
+             "all steps add up to {:.1e}. Give a larger tolerance, or look for ratios of stiffness "
+             "and mass that cause round-off noise",
+             tolerance, beyond_, steps_, first_, worst_, sum_)};
 }
 
 }  // namespace polhode

@@ -426,10 +426,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       wanted = std::max(wanted, least_step());
     } else {
       report.message = format(
-          "{} Steps down to {:.2g} s were tried. Look at what happens there: a body may be "
-          "squeezed into a position its joints cannot leave, a load or spring may be far "
-          "too stiff, or masses may differ by many orders. 'polhode check --tangents' tells "
-          "whether the equations are sound.",
+          "{} Steps down to {:.2g} s were tried. Possible causes: a position that the joints "
+          "cannot leave, a load or spring that is far too stiff, or masses that differ by many "
+          "orders. 'polhode check --tangents' checks the equations.",
           report.newton.text(), least_step());
       return report;
     }

@@ -147,9 +147,9 @@ std::string certificate_svg(const Certificate& certificate) {
   text += svg_text(30, 54, runs + ". Time in seconds.");
   text += svg_text(30, 72,
                    certificate.quantities.size() > count
-                       ? format("The first {} of {} quantities. Red: nothing converges.", count,
+                       ? format("The first {} of {} quantities. Red: no convergence.", count,
                                 certificate.quantities.size())
-                       : "Red: nothing converges.");
+                       : "Red: no convergence.");
   for (std::size_t k = 0; k < count; ++k) {
     const CertifiedQuantity& q = certificate.quantities[k];
     const Row row{q, kTop + kRow * static_cast<double>(k), certificate.duration};

@@ -127,10 +127,10 @@ void add_probes(Model& model, std::vector<std::string>& notes) {
   }
   if (model.output.probes.empty())
     throw InputError("output.probes", "are missing, so that there is nothing to compare",
-                     "Name what matters, such as  tip: {solid: beam, point: [1, 0, 0]}");
+                     "Add them, such as  tip: {solid: beam, point: [1, 0, 0]}");
   notes.push_back(moving > kMaxOwnProbes
                       ? format("The model has no probes: the first {} of {} moving bodies are "
-                               "compared. Give it probes of what matters.",
+                               "compared. Give it probes.",
                                kMaxOwnProbes, moving)
                       : "The model has no probes: its moving bodies are compared.");
 }

@@ -71,7 +71,7 @@ bool Nodes::dissipates() const {
 void Nodes::finish(int body_count) {
   for (const NodeData& node : data_)
     if (node.body >= body_count)
-      throw InputError("a node", format("is bonded to body {}, which is not there", node.body),
+      throw InputError("a node", format("is bonded to body {}, which does not exist", node.body),
                        "Give a body of this system");
   no_displacement_.assign(3 * data_.size(), 0.0);
   check();
@@ -86,7 +86,7 @@ void Nodes::check() const {
     for (int e = 0; e < groups_[g]->size(); ++e)
       for (int node : groups_[g]->nodes(e))
         if (node < 0 || node >= count())
-          throw InputError(element_name(g, e), format("names node {}, which is not there", node),
+          throw InputError(element_name(g, e), format("names node {}, which does not exist", node),
                            format("Nodes are numbered from 0 to {}", count() - 1));
 }
 
@@ -97,7 +97,7 @@ void Nodes::number() {
       for (int c = 0; c < 3; ++c) unknown_[3 * i + c] = -1;
   for (const PrescribedComponent& p : prescribed_) {
     if (p.node < 0 || p.node >= count() || p.component < 0 || p.component > 2)
-      throw InputError("a prescribed motion", "names a node or component that is not there",
+      throw InputError("a prescribed motion", "names a node or component that does not exist",
                        "Give a node of a solid and a component x, y or z");
     int& u = unknown_[3 * p.node + p.component];
     if (u < 0)

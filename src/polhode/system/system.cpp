@@ -44,7 +44,7 @@ void System::finish() {
       if (a < kGround || a >= n || b < kGround || b >= n || (a == b))
         throw InputError(
             format("{} '{}'", groups_[g]->kind(), traits.name),
-            a == b ? "acts between a body and itself" : "names a body that is not there",
+            a == b ? "acts between a body and itself" : "names a body that does not exist",
             "Give two different bodies of this system, or one and the ground");
       const auto basis = groups_[g]->describe(i).motion_basis;
       const int index = static_cast<int>(refs_.size());

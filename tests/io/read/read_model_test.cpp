@@ -208,7 +208,7 @@ TEST(ReadModel, PointsToTheOverrideThatIsWrong) {
 
 TEST(ReadModel, TellsTheFaultsOfThePhysicsToo) {
   EXPECT_EQ(first_fault(kTwo + "analysis: {order: 6, rho_inf: 0.5, step: 1}\n"),
-            "analysis.order: order 6 stands beside rho_inf 0.5");
+            "analysis.order: order 6 cannot be combined with rho_inf 0.5");
   EXPECT_EQ(first_fault(kTwo + "analysis: {rho_inf: -0.1}\n"),
             "analysis.rho_inf: must lie in [0, 1], but is -0.1");
 }

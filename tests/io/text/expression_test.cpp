@@ -119,7 +119,7 @@ TEST(Expression, TellsWhereItIsWrong) {
   EXPECT_EQ(fault.length, 3U);
   EXPECT_EQ(fault.what, "unknown name 'foo'");
   EXPECT_EQ(fault_of("t"), "'t' (the time) has no meaning here");
-  EXPECT_EQ(fault_of("3kg"), "'3kg' lacks a blank before the unit");
+  EXPECT_EQ(fault_of("3kg"), "'3kg' lacks a space before the unit");
 }
 
 TEST(Expression, RefusesWhatIsTooDeepOrTooLong) {

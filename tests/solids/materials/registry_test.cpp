@@ -54,7 +54,7 @@ TEST(MaterialRegistry, NamesWhatIsMissingUnknownOrTooMuch) {
               refused("alone", "poisson_ratio"));
   EXPECT_THAT(make({.kind = "elastic",
                     .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.3}, {"lame", 1.0}}}),
-              refused("do not go together"));
+              refused("cannot be combined"));
   EXPECT_THAT(make({.kind = "elastic", .values = {{"young_modulus", 1.0}}}),
               refused("Did you mean 'youngs_modulus'?"));
   EXPECT_THAT(make({.kind = "neo_hokean", .values = {}}), refused("Did you mean 'neo_hookean'?"));

@@ -51,7 +51,7 @@ TEST(ReadAbaqus, GathersSets) {
   EXPECT_EQ(mesh.node_label(4), 200);
   EXPECT_EQ(mesh.element_label(1), 20);
   EXPECT_THAT(mesh.notes,
-              ElementsAre("left out, as it says nothing of the mesh: *DENSITY, *MATERIAL"));
+              ElementsAre("ignored, as it does not define the mesh: *DENSITY, *MATERIAL"));
   EXPECT_THAT(mesh_faults(mesh), testing::IsEmpty());
 }
 

@@ -30,7 +30,7 @@ void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
 void check_type(Section& section, const std::string& type) {
   const auto refuse = [&](const char* key, const std::string& goes_with) {
     if (section.has(key))
-      section.fault(key, "does not go with type " + type, "It goes with " + goes_with + ".");
+      section.fault(key, "cannot be combined with type " + type, "It requires " + goes_with + ".");
   };
   if (type != "dynamics")
     for (const char* key : {"duration", "step", "tolerance", "rho_inf", "order", "momentum_rate",
@@ -74,18 +74,19 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
 
   check_type(section, analysis.type);
   if (analysis.step && analysis.tolerance)
-    section.fault("tolerance", "stands beside a fixed step of " + shown(*analysis.step) + " s",
-                  "A tolerance chooses the steps by itself: leave 'step' out, write 'step: auto', "
-                  "or leave out 'tolerance'.");
+    section.fault("tolerance",
+                  "cannot be combined with a fixed step of " + shown(*analysis.step) + " s",
+                  "A tolerance chooses the steps: leave 'step' out, write 'step: auto', or leave "
+                  "out 'tolerance'.");
   if (analysis.order == 4 && !analysis.step)
     section.fault("order", "order 4 has no error estimate, so it cannot choose its steps",
                   "Give a step, or use order 2, 6 or 8.");
   if (analysis.order.value_or(2) > 2 && analysis.rho_inf < 1.0)
-    section.fault(
-        "order",
-        format("order {} stands beside rho_inf {}", *analysis.order, shown(analysis.rho_inf)),
-        "Orders above 2 go back in time within a step, where numerical damping would feed energy "
-        "in: use rho_inf 1 or order 2.");
+    section.fault("order",
+                  format("order {} cannot be combined with rho_inf {}", *analysis.order,
+                         shown(analysis.rho_inf)),
+                  "Orders above 2 contain stages backward in time, where numerical damping would "
+                  "add energy: use rho_inf 1 or order 2.");
   if (analysis.min_step && analysis.max_step && *analysis.min_step > *analysis.max_step)
     section.fault("min_step",
                   format("is above max_step: {} s > {} s", shown(*analysis.min_step),

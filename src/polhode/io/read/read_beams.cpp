@@ -108,7 +108,8 @@ class SectionReader {
     }
     if (const SourceNode* node = section_.find("matrix")) {
       if (any)
-        section_.fault("matrix", "stands beside EA, GA_y, ...", "Give the matrix or the six.");
+        section_.fault("matrix", "cannot be combined with EA, GA_y, ...",
+                       "Give the matrix or the six.");
       else
         read_matrix(*node, C);
     } else {
@@ -147,7 +148,7 @@ class SectionReader {
       }
     }
     if (!(C - C.transpose()).isZero(1e-9 * C.norm()))
-      context_.fault(node, path, "is not symmetric", "Give the matrix of an energy.");
+      context_.fault(node, path, "is not symmetric", "Give a symmetric matrix.");
     else if (Eigen::SelfAdjointEigenSolver<Mat6>(C).eigenvalues()[0] <= 0.0)
       context_.fault(node, path, "is not positive definite",
                      "Give positive stiffnesses, and couplings that are not too large.");

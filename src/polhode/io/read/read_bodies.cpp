@@ -48,7 +48,7 @@ class BodyReader {
     const bool field = std::any_of(body_.shapes.begin(), body_.shapes.end(),
                                    [](const auto& s) { return s.type == "height_field"; });
     section_.fault("shape",
-                   format("a {} belongs to a body that is fixed", field ? "height field" : "plane"),
+                   format("a {} is allowed on a fixed body only", field ? "height field" : "plane"),
                    "Add 'fixed: true'.");
   }
 
@@ -63,14 +63,14 @@ class BodyReader {
       section_.fault("inertia", "a point mass has no inertia",
                      "Leave out 'inertia' or 'point_mass'.");
     if (section_.has("inertia") && section_.misses("mass"))
-      section_.fault("inertia", "stands without 'mass'", "Give both, or shape and density.");
+      section_.fault("inertia", "requires 'mass'", "Give both, or shape and density.");
     const bool has_density = section_.has("density") ||
                              std::any_of(body_.shapes.begin(), body_.shapes.end(),
                                          [](const ShapeSpec& s) { return s.density.has_value(); });
     if (section_.has("mass") && has_density && weighable)
-      section_.fault("mass", "stands beside a density", "Leave one of them out.");
+      section_.fault("mass", "cannot be combined with a density", "Leave one of them out.");
     if (section_.has("density") && !section_.has("shape"))
-      section_.fault("density", "stands without 'shape'", "Give a shape, or mass and inertia.");
+      section_.fault("density", "requires 'shape'", "Give a shape, or mass and inertia.");
     if (context_.diagnostics.size() != before || !shapes_are_sound) return;
     if (mass) body_.mass = *mass;
     if (from_shapes && (mass || has_density)) {
@@ -137,7 +137,7 @@ class BodyReader {
     if (parts.empty()) return;
     MassProperties whole = composed(parts);
     if (section_.has("com"))
-      section_.fault("com", "stands beside shapes, which have a centre of mass",
+      section_.fault("com", "cannot be combined with shapes, which have a centre of mass",
                      "Leave it out, or give mass and inertia.");
     body_.com = whole.com;
     body_.mass = mass.value_or(whole.mass);
@@ -186,7 +186,7 @@ class BodyReader {
       if (body_.fixed)
         section_.fault(name, "a fixed body does not move", "Leave it or 'fixed' out.");
       else if (body_.point_mass && name != std::string("velocity"))
-        section_.fault(name, "a point mass does not turn", "Leave it or 'point_mass' out.");
+        section_.fault(name, "a point mass has no rotation", "Leave it or 'point_mass' out.");
     }
   }
 
@@ -218,7 +218,7 @@ class BodyReader {
     const SourceNode* node = section_.find("motion");
     if (!node) return;
     if (body_.fixed) section_.fault("motion", "the body is fixed", "Leave it or 'fixed' out.");
-    if (section_.refuse_both("motion", "hold", "Prescribe 0 for what is held.")) return;
+    if (section_.refuse_both("motion", "hold", "Prescribe 0 for a fixed freedom.")) return;
     Section section(context_, *node, context_.tree.place_of(*node), section_.path("motion"),
                     body_motion_fields());
     if (!node->is_map()) return;
@@ -228,7 +228,7 @@ class BodyReader {
     if (!motion) return;
     const bool turns = motion->rotation != FrameMotion::Rotation::none;
     if (turns && body_.point_mass)
-      section.fault("a point mass does not turn", "Leave the rotation or 'point_mass' out.");
+      section.fault("a point mass has no rotation", "Leave the rotation or 'point_mass' out.");
     JointSpec joint;
     joint.name = body_.name + ".motion";
     joint.type = "generic";

@@ -29,21 +29,23 @@ void read_cable_pull(ReadContext& context, Section& section, CableLineSpec& cabl
   const bool other = section.has("tension") || section.has("muscle");
   const auto stiffness = section.number("stiffness");
   if (section.misses("stiffness") && !other && !section.has_unknown_key())
-    section.fault("'stiffness' is missing", "Give EA; or, of a cable that slides, a tension.");
+    section.fault("'stiffness' is missing", "Give EA or, for a sliding cable, a tension.");
   cable.stiffness = stiffness.value_or(other ? 0.0 : 1.0);
   cable.slides = section.boolean("slides").value_or(other);
   cable.friction = section.number("friction").value_or(0.0);
   cable.wraps = section.number_list("wraps").value_or(std::vector<double>());
   for (const char* key : {"friction", "wraps"})
     if (section.has(key) && !cable.slides)
-      section.fault(key, "goes with 'slides' only", "Add slides: true, or leave it out.");
+      section.fault(key, "requires 'slides'", "Add slides: true, or leave it out.");
   if (section.has("wraps") && !section.has("friction"))
-    section.fault("wraps", "goes with 'friction' only", "Add friction, or leave it out.");
+    section.fault("wraps", "requires 'friction'", "Add friction, or leave it out.");
   if (other && !cable.slides)
-    section.fault("slides", format("does not go with '{}'", cable.muscle ? "muscle" : "tension"),
+    section.fault("slides",
+                  format("cannot be combined with '{}'", cable.muscle ? "muscle" : "tension"),
                   "A given tension is the same in all pieces: leave it out.");
   if (cable.slides && section.has("strain"))
-    section.fault("strain", "does not go with 'slides'", "Its strain is l/L - 1: leave it out.");
+    section.fault("strain", "cannot be combined with 'slides'",
+                  "A sliding cable has the strain l/L - 1: leave it out.");
 }
 
 }  // namespace polhode

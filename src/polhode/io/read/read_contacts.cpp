@@ -35,9 +35,9 @@ void read_law(Section& section, ContactLawSpec& law) {
   if (law.potential == "nonsmooth") {
     for (const char* key : kForceKeys)
       if (section.has(key))
-        section.fault(key, "does not go with the law nonsmooth",
-                      "Leave it out: impulses know restitution, friction, rolling_friction and "
-                      "torsional_friction.");
+        section.fault(key, "cannot be combined with the law nonsmooth",
+                      "Leave it out: this law has restitution, friction, rolling_friction and "
+                      "torsional_friction only.");
     assign(law.restitution, section.number("restitution"));
     assign(law.friction, section.number("friction"));
     assign(law.rolling, section.number("rolling_friction"));
@@ -51,7 +51,7 @@ void read_law(Section& section, ContactLawSpec& law) {
     if (hertz == (key == std::string("hertz_stiffness")))
       law.stiffness = *value;
     else
-      section.fault(key, format("does not go with the law {}", law.potential),
+      section.fault(key, format("cannot be combined with the law {}", law.potential),
                     hertz ? "Use hertz_stiffness." : "Use stiffness, or law: hertz.");
   }
   assign(law.reference_load, section.number("reference_load"));
@@ -61,10 +61,11 @@ void read_law(Section& section, ContactLawSpec& law) {
   assign(law.restitution, section.number("restitution"));
   assign(law.rebound, section.choice("rebound"));
   if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
-    section.fault("rebound", "damped stands beside the barrier law",
+    section.fault("rebound", "damped cannot be combined with the barrier law",
                   "Use law: linear or hertz with it, or leave it out.");
   else if (law.rebound == "damped" && law.restitution < kMinDamped)
-    section.fault("restitution", format("a damper cannot bring about {}", shown(law.restitution)),
+    section.fault("restitution",
+                  format("a damper cannot give the restitution {}", shown(law.restitution)),
                   format("Give at least {}, or leave out 'rebound'.", shown(kMinDamped)));
   assign(law.friction, section.number("friction"));
   assign(law.static_friction, section.number("static_friction"));
@@ -72,13 +73,13 @@ void read_law(Section& section, ContactLawSpec& law) {
     section.fault(
         "static_friction",
         format("{} is below friction, {}", shown(law.static_friction), shown(law.friction)),
-        "What sticks holds at least as much as what slides.");
+        "Static friction is at least as large as sliding friction.");
   assign(law.friction_across, section.number("friction_across"));
   assign(law.direction, section.direction("direction"));
   if (section.has("direction") && law.friction_across == 0.0)
-    section.fault("direction", "stands without 'friction_across'", "Give both, or neither.");
+    section.fault("direction", "requires 'friction_across'", "Give both, or neither.");
   if (section.has("friction_across") && law.friction == 0.0)
-    section.fault("friction_across", "stands without 'friction'", "Give friction along direction.");
+    section.fault("friction_across", "requires 'friction'", "Give friction along direction.");
   assign(law.rolling, section.number("rolling_friction"));
   assign(law.torsion, section.number("torsional_friction"));
   assign(law.friction_stiffness, section.number("friction_stiffness"));
@@ -132,7 +133,7 @@ class ContactsReader {
     assign(contacts_.sweep_tolerance, section_.number("sweep_tolerance"));
     for (const char* key : {"sweeps", "sweep_tolerance"})
       if (section_.has(key) && !contacts_.nonsmooth())
-        section_.fault(key, "stands without the law nonsmooth",
+        section_.fault(key, "requires the law nonsmooth",
                        "Set contacts.default.law: nonsmooth, or leave it out.");
   }
 
@@ -191,7 +192,7 @@ class ContactsReader {
       }
       if (pair[k] == kGround) {
         context_.fault(node.children[k], path, "the ground has no shapes",
-                       "Name the fixed body whose shape is meant.");
+                       "Name a fixed body with a shape.");
         return false;
       }
       const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(pair[k])];
@@ -234,11 +235,11 @@ class ContactsReader {
     }
     read_law(section, pair.law);
     if ((pair.law.potential == "nonsmooth") != contacts_.nonsmooth())
-      section.fault("law",
-                    format("{} beside {} in contacts.default", pair.law.potential,
-                           contacts_.standard.potential),
-                    "The law nonsmooth decides how steps are taken: state it in contacts.default "
-                    "for all pairs, or nowhere.");
+      section.fault(
+          "law",
+          format("{} cannot be combined with {} in contacts.default", pair.law.potential,
+                 contacts_.standard.potential),
+          "The law nonsmooth applies to all pairs: give it in contacts.default, or nowhere.");
     if (!ends) return;
     if (!pair.of_materials) check_law_of_sides(section, *ends);
     pair.a = (*ends)[0];
@@ -247,7 +248,7 @@ class ContactsReader {
       if (other.of_materials == pair.of_materials &&
           std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b))
         section.fault(pair.of_materials ? "materials" : "between",
-                      format("{} states this pair already", quote(other.name)),
+                      format("{} already defines this pair", quote(other.name)),
                       "Keep one of them.");
     contacts_.pairs.push_back(std::move(pair));
   }
@@ -256,22 +257,23 @@ class ContactsReader {
   void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
     if (!is_surface_side(sides[0]) && !is_surface_side(sides[1])) {
       if (section.has("reference_pressure"))
-        section.fault("reference_pressure", "stands in a pair of bodies",
-                      "It belongs to surfaces of solids and to cables: use reference_load.");
+        section.fault("reference_pressure", "is not a key for a pair of bodies",
+                      "It is for surfaces of solids and cables: use reference_load.");
       return;
     }
     const bool cable = is_cable_side(sides[0]) || is_cable_side(sides[1]);
     const std::string not_of =
-        format("does not go with {}", cable ? "a cable" : "the surface of a solid");
+        format("cannot be combined with {}", cable ? "a cable" : "the surface of a solid");
     for (const char* key : {"stiffness", "hertz_stiffness", "reference_load", "rebound",
                             "friction_stiffness", "friction_damping"})
       if (section.has(key))
         section.fault(key, not_of,
                       "Leave it out; reference_pressure makes the surface stiffer or softer.");
     if (section.has("law") && section.choice("law") == "hertz")
-      section.fault("law", "hertz " + not_of,
-                    cable ? "Use barrier or linear."
-                          : "Use barrier or linear: the solid itself gives way as Hertz says.");
+      section.fault(
+          "law", "hertz " + not_of,
+          cable ? "Use barrier or linear."
+                : "Use barrier or linear: the solid itself has the compliance of Hertz's law.");
   }
 
   std::optional<std::array<int, 2>> read_materials(Section& section) {
@@ -282,7 +284,7 @@ class ContactsReader {
                      format("expects two contact materials, but is {}",
                             node.is_list() ? format("a list of {}", node.children.size())
                                            : node.description()),
-                     "Write [rubber, steel]; a material against itself stands twice.");
+                     "Write [rubber, steel]; for a material against itself, write it twice.");
       return std::nullopt;
     }
     std::array<int, 2> ends{};
@@ -320,16 +322,16 @@ class ContactsReader {
     const auto ends = read_sides(section);
     if (!ends) return;
     if (is_surface_side((*ends)[0]) || is_surface_side((*ends)[1])) {
-      section.fault("between", "a sensor does not know surfaces of solids, nor cables",
-                    "Name two bodies; for a solid or cable a probe tells gap and force.");
+      section.fault("between", "a sensor cannot have solids or cables",
+                    "Name two bodies; for a solid or cable a probe reports gap and force.");
       return;
     }
     for (const ContactPairSpec& other : contacts_.pairs)
       if (!other.of_materials &&
           std::minmax(other.a, other.b) == std::minmax((*ends)[0], (*ends)[1]))
-        section.fault("between", format("{} states this pair already", quote(other.name)),
-                      "A sensor exerts no force: keep one of them. What touches is reported too, "
-                      "see output.probes.");
+        section.fault("between", format("{} already defines this pair", quote(other.name)),
+                      "A sensor exerts no force: keep one of them. Probes report contacts, see "
+                      "output.probes.");
     ContactPairSpec pair;
     pair.name = name;
     pair.place = section.place();

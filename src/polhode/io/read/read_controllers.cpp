@@ -15,7 +15,7 @@ void read_transfer_function(Section& section, ControllerSpec& controller) {
   controller.denominator = section.number_list("denominator").value_or(std::vector<double>());
   if (controller.numerator.empty() || controller.denominator.empty()) {
     if (!section.has("numerator") || !section.has("denominator"))
-      section.fault("has one half of a transfer function", "Give numerator and denominator.");
+      section.fault("is an incomplete transfer function", "Give numerator and denominator.");
     return;
   }
   if (controller.denominator.front() == 0.0)
@@ -37,14 +37,14 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
     controller.setpoint = read_time_number(context, *setpoint, section.path("setpoint"), field);
     const int outer = controller.setpoint ? controller.setpoint->controller() : -1;
     if (outer >= static_cast<int>(context.model.controllers.size()))
-      section.fault("setpoint", "follows a controller that acts after this one",
+      section.fault("setpoint", "uses a controller that is listed later",
                     "List that controller first.");
   }
   controller.sample = section.number("sample");
   if (channel && !controller.sample && is_mean_of_step(channel->spec))
     section.fault("sample",
                   format("is missing: {} of a contact is a mean over the step, which a continuous "
-                         "controller cannot follow",
+                         "controller cannot use",
                          quote(channel->spec.name)),
                   "Give a sample time.");
   controller.proportional = section.number("proportional").value_or(0.0);
@@ -61,11 +61,11 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
     section.refuse_both(gain, "numerator", "Give gains or a transfer function.");
   }
   if (section.has("filter") && !section.has("derivative"))
-    section.fault("filter", "has no rate to act on", "Add derivative, or leave it out.");
+    section.fault("filter", "requires a derivative gain", "Add derivative, or leave it out.");
   if (section.has("numerator") || section.has("denominator")) {
     read_transfer_function(section, controller);
   } else if (!gains && !section.has_unknown_key()) {
-    section.fault("sets nothing",
+    section.fault("has no gains",
                   "Give proportional, integral or derivative, or numerator and denominator.");
   }
 }
@@ -75,7 +75,7 @@ bool is_controlled(const TimeFunctionPtr& f) { return f && f->controller() >= 0;
 /// Positions and speeds that are prescribed may not jump, as what a controller sets does.
 void refuse_controlled_motion(ReadContext& context) {
   const auto refuse = [&](const SourceLocation& place, const std::string& path) {
-    context.diagnostics.add(place, path, "is prescribed, but what a controller sets may jump",
+    context.diagnostics.add(place, path, "is prescribed, but the output of a controller may jump",
                             "Let the controller set a force or moment.");
   };
   const auto any = [](const auto& functions) {
@@ -104,10 +104,10 @@ TimeFunctionPtr read_controlled_value(ReadContext& context, const SourceNode& no
   const std::vector<std::string>& names = context.controllers;
   const auto found = std::find(names.begin(), names.end(), *name);
   if (found == names.end()) {
-    section.fault("controller", "unknown controller " + quote(*name),
-                  did_you_mean(*name, names) +
-                      (names.empty() ? "There are no controllers here: a part has none of its own."
-                                     : "Controllers: " + name_list(names) + "."));
+    section.fault(
+        "controller", "unknown controller " + quote(*name),
+        did_you_mean(*name, names) + (names.empty() ? "A part has no controllers of its own."
+                                                    : "Controllers: " + name_list(names) + "."));
     return nullptr;
   }
   return std::make_shared<ControlledValue>(static_cast<int>(found - names.begin()));

@@ -53,10 +53,10 @@ void read_targets(ReadContext& context, Section& section, const char* key,
       const auto sides = switched_contact(context.model, name);
       if (!sides) (void)switch_target(context.model, name);
       if (const auto surface = sides ? surface_met(context.model, *sides) : std::nullopt) {
-        section.fault(
-            key,
-            format("{} meets {}, a contact that is not switched", quote(name), quote(*surface)),
-            "Name the pairs of bodies that are meant, or exclude the two in contacts.");
+        section.fault(key,
+                      format("{} touches {}, a contact that cannot be switched", quote(name),
+                             quote(*surface)),
+                      "Name pairs of bodies instead, or exclude the two in contacts.");
         return;
       }
     } catch (const InputError& e) {
@@ -75,14 +75,14 @@ void read_event(ReadContext& context, const SourceNode& node, EventSpec& event) 
   const SourceNode* when = section.find("when");
   if (when) event.when = read_condition(context, *when, section.path("when"));
   if (!section.has("at") && !when && !section.has_unknown_key())
-    section.fault("never comes", "Give at (a time) or when (a condition).");
+    section.fault("never occurs", "Give at (a time) or when (a condition).");
   if (const auto after = section.text("after")) event.after = *after;
   read_targets(context, section, "off", event.off);
   read_targets(context, section, "on", event.on);
   event.repeat = section.boolean("repeat").value_or(false);
   event.stop = section.boolean("stop").value_or(false);
   if (event.repeat && event.at)
-    section.fault("repeat", "does not go with 'at'", "A time comes once: give when.");
+    section.fault("repeat", "cannot be combined with 'at'", "A time occurs once: give 'when'.");
   if (!section.has("on") && !section.has("off") && !event.stop && !section.has_unknown_key())
     section.fault("does nothing", "Give off, on, or stop: true.");
   for (const std::string& name : event.on)
@@ -111,7 +111,7 @@ void read_events(ReadContext& context, const SourceNode& node) {
     if (std::find(names.begin(), names.end(), event.after) != names.end()) continue;
     context.diagnostics.add(
         event.place, "events." + event.name + ".after",
-        event.after == event.name ? "an event does not wait for itself"
+        event.after == event.name ? "an event cannot wait for itself"
                                   : "unknown event " + quote(event.after),
         did_you_mean(event.after, names) + (names.empty() ? "The model has no other event."
                                                           : "Events: " + name_list(names) + "."));

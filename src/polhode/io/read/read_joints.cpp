@@ -165,7 +165,8 @@ class JointReader {
 
   bool check_x(const Vec3& z, const Vec3& x) {
     if (x.cross(z).norm() > 1e-3) return true;
-    section_.fault("x_axis", "is parallel to the joint's z", "Give a direction across the axis.");
+    section_.fault("x_axis", "is parallel to the joint's z",
+                   "Give a direction transverse to the axis.");
     return false;
   }
 
@@ -235,9 +236,9 @@ class JointReader {
     const bool by_arm =
         joint_.type == "revolute" || joint_.type == "spherical" || joint_.type == "universal";
     if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
-      section.fault("'radius' is missing", "mu acts on the radius of the pin or ball: give it.");
+      section.fault("'radius' is missing", "mu needs the radius of the pin or ball: give it.");
     else if (f.mu == 0.0 && f.constant == 0.0 && section.misses("mu"))
-      section.fault("nothing rubs here",
+      section.fault("gives no friction",
                     format("Give mu, or {}, or leave friction out.", by_arm ? "moment" : "force"));
     joint_.friction = f;
   }
@@ -262,7 +263,8 @@ class JointReader {
       section.fault("upper", "is not above lower",
                     "Exchange them, or use a joint without this freedom.");
     else if (l.lower && l.upper && l.band && *l.upper - *l.lower <= *l.band)
-      section.fault("band", "is wider than the way between the stops", "Give a narrower band.");
+      section.fault("band", "is wider than the distance between the stops",
+                    "Give a narrower band.");
     return l;
   }
 
@@ -271,8 +273,8 @@ class JointReader {
     if (!node) return;
     for (const char* other : {"friction", "limits", "angle_limits"})
       if (takes(other) && section_.has(other))
-        section_.fault("motion", format("stands beside '{}'", other),
-                       "Let a body of its own carry the motion, and join it without.");
+        section_.fault("motion", format("cannot be combined with '{}'", other),
+                       "Give the motion to a separate body, and use a joint to that body.");
     Section section(context_, *node, context_.tree.place_of(*node), section_.path("motion"),
                     motion_fields());
     if (!node->is_map()) return;
@@ -316,9 +318,9 @@ class JointReader {
     const auto check = [&](const char* key, bool asked, const char* what) {
       if (asked && section.misses(key))
         section.fault(format("'{}' is missing", key),
-                      format("The joint holds {}: say how stiffly.", what));
+                      format("The joint constrains {}: give their stiffness.", what));
       if (!asked && section.has(key))
-        section.fault(key, format("the joint holds no {}", what), "Leave it out.");
+        section.fault(key, format("the joint constrains no {}", what), "Leave it out.");
     };
     check("stiffness", demand.displacements, "displacements");
     check("turning_stiffness", demand.rotations, "rotations");

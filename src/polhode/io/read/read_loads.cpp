@@ -64,7 +64,7 @@ class LoadReader {
     if (const auto body = section_.body("body")) {
       load_.b = *body;
       if (*body == kGround)
-        section_.fault("body", "a load on the ground moves nothing", "Name a body.");
+        section_.fault("body", "a load on the ground has no effect", "Name a body.");
     }
     if (kind.vector.empty()) return;
     if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
@@ -199,7 +199,7 @@ class LoadReader {
   /// Axes with this z and this x, made perpendicular to it.
   std::optional<Mat3> axes_about(const Vec3& z, const Vec3& x, const char* key) {
     if (x.cross(z).norm() < 1e-3) {
-      section_.fault(key, "is parallel to the axis", "Give a direction across the axis.");
+      section_.fault(key, "is parallel to the axis", "Give a direction transverse to the axis.");
       return std::nullopt;
     }
     Mat3 F;
@@ -268,7 +268,7 @@ class LoadReader {
       keys += (keys.empty() ? "" : ", ") + d.name;
       if (!section_.has(d.name)) continue;
       if (!load_.drive.empty()) {
-        section_.fault(d.name, format("is given beside '{}'", load_.drive),
+        section_.fault(d.name, format("cannot be combined with '{}'", load_.drive),
                        "Give one of them: a motor follows one function of time.");
         return;
       }
@@ -276,7 +276,7 @@ class LoadReader {
       load_.value = section_.time_number(d.name);
     }
     if (load_.drive.empty())
-      section_.fault("has nothing to follow", format("Give one of: {}.", keys));
+      section_.fault("has no function of time", format("Give one of: {}.", keys));
   }
 
   /// Laws, words, vectors and matrices.
@@ -351,10 +351,9 @@ class LoadReader {
       for (const double sign : {-1.0, 1.0}) {
         const double v = sign * std::pow(10.0, 0.1 * k), force = law(v);
         if (force * v >= -1e-12 * std::abs(v)) continue;
-        section_.fault(l.name,
-                       format("is {} at v = {}: a damper does not push along its rate",
-                              shown(force), shown(v)),
-                       "Give a force of the sign of v.");
+        section_.fault(
+            l.name, format("is {} at v = {}: a damper must not add energy", shown(force), shown(v)),
+            "Give a force of the sign of v.");
         return;
       }
   }
@@ -384,11 +383,11 @@ class LoadReader {
     }
     const double size = M.cwiseAbs().maxCoeff();
     if ((M - M.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) {
-      fault("is not symmetric", "A matrix that is not has no energy.");
+      fault("is not symmetric", "Only a symmetric matrix has a potential.");
       return;
     }
     if (M.ldlt().vectorD().minCoeff() < -1e-9 * size) {
-      fault("takes or gives energy from nothing: it is not positive", "Check its signs.");
+      fault("is not positive semidefinite, so it has no bounded energy", "Check its signs.");
       return;
     }
     load_.matrices[key] = 0.5 * (M + M.transpose());

@@ -174,19 +174,19 @@ void check_model(ReadContext& context, const SourceNode& root) {
       model.analysis.type == "statics" && (!model.solids.empty() || has_touching_cables(model));
   if (model.contacts.present && model.analysis.type != "dynamics" && !surfaces)
     context.fault(*root.find("contacts"), "contacts",
-                  format("stands beside an analysis of type {}", model.analysis.type),
-                  "Contact of bodies exists in dynamics only: let the model come to rest there.");
+                  format("cannot be combined with an analysis of type {}", model.analysis.type),
+                  "Contact of bodies needs type: dynamics: let the model come to rest there.");
   if (order > 2 && model.contacts.present)
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
-                  format("order {} stands beside contacts", order),
-                  "Orders above 2 go back in time within a step, where friction and impacts would "
-                  "feed energy in: use order 2.");
+                  format("order {} cannot be combined with contacts", order),
+                  "Orders above 2 contain stages backward in time, where friction and impacts "
+                  "would add energy: use order 2.");
   if (order <= 2) return;
   const auto refuse = [&](const std::string& what, const char* named) {
     context.fault(*root.find("analysis")->find("order"), "analysis.order",
-                  format("order {} stands beside {}", order, what),
-                  format("Orders above 2 go back in time within a step, where {} would feed "
-                         "energy in: use order 2.",
+                  format("order {} cannot be combined with {}", order, what),
+                  format("Orders above 2 contain stages backward in time, where {} would add "
+                         "energy: use order 2.",
                          named));
   };
   for (const SolidSpec& solid : model.solids) {

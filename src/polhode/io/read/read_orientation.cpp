@@ -24,7 +24,7 @@ std::optional<Quat> from_quaternion(ReadContext& context, const SourceNode& node
   const Quat quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
   if (std::abs(quaternion.norm() - 1.0) > kPrinted) {
     context.fault(node, path, "has length " + shown(quaternion.norm()) + " instead of 1",
-                  "Give [w, x, y, z] of length 1.");
+                  "Give Unit quaternion [w, x, y, z].");
     return std::nullopt;
   }
   return quaternion.normalized();
@@ -71,7 +71,7 @@ std::optional<Quat> from_matrix(ReadContext& context, const SourceNode& node,
   }
   if (R.determinant() < 0.0) {
     context.fault(node, path, "is a reflection: its determinant is -1",
-                  "Turn the sign of one row; rotations have determinant +1.");
+                  "Change the sign of one row; rotations have determinant +1.");
     return std::nullopt;
   }
   return Quat(R).normalized();
@@ -100,11 +100,11 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
     forms += section.has(form) ? 1 : 0;
   if (forms == 0 && section.has_unknown_key()) return std::nullopt;  // Told already.
   if (forms != 1) {
-    section.fault(forms == 0 ? "gives no turn" : "gives more than one turn", kForms);
+    section.fault(forms == 0 ? "gives no rotation" : "gives more than one rotation", kForms);
     return std::nullopt;
   }
   if (section.has("axis") != section.has("angle")) {
-    section.fault(section.has("axis") ? "'angle' is missing" : "'angle' stands without 'axis'",
+    section.fault(section.has("axis") ? "'angle' is missing" : "'angle' requires 'axis'",
                   "Write {axis: z, angle: 30 deg}.");
     return std::nullopt;
   }

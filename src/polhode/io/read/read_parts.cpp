@@ -31,7 +31,7 @@ class PartReader {
       if (const SourceTree* tree = open())
         read_from(*tree, tree->root(), file_, std::filesystem::path(file_).parent_path().string());
     } else {
-      section_.fault("'file' is missing", "Give file, or model for a part that stands here.");
+      section_.fault("'file' is missing", "Give file, or model for a part written here.");
     }
   }
 
@@ -56,7 +56,7 @@ class PartReader {
       context_.diagnostics.know(context_.owned_trees.back()->shared_source());
       return context_.owned_trees.back().get();
     } catch (const FileError& error) {
-      section_.fault("file", error.what(), "Paths count from the folder of this file.");
+      section_.fault("file", error.what(), "Paths are relative to the folder of this file.");
     } catch (const ModelErrors& errors) {
       context_.diagnostics.take(errors.diagnostics());
     }

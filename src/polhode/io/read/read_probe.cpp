@@ -63,12 +63,13 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
   const SolidSpec& spec = context.model.solids[static_cast<std::size_t>(*solid)];
   probe.target = spec.name;
   if (!section.has("point") && !section.has("node") && !section.has("interface"))
-    section.fault("names no point of the solid", "Give one of: point, node, interface.");
+    section.fault("gives no point of the solid", "Give one of: point, node, interface.");
   if (point) probe.point = *point;
   probe.node = node;
   probe.stress = section.boolean("stress").value_or(false);
   if (probe.stress && interface)
-    section.fault("stress", "does not go with 'interface'", "Give a point or a node of the solid.");
+    section.fault("stress", "cannot be combined with 'interface'",
+                  "Give a point or a node of the solid.");
   if (!interface) return;
   std::vector<std::string> names;
   for (const BondSpec& bond : spec.bonded) names.push_back(context.model.body_name(bond.body));
@@ -104,12 +105,12 @@ void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe
     }
     const bool ground = body == kGround;
     if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
-    section.fault("contact",
-                  ground ? std::string("the ground has no shapes")
-                         : format("the body {} has no shape",
-                                  quote(context.model.bodies[static_cast<std::size_t>(body)].name)),
-                  ground ? "Name the fixed body whose shape is meant."
-                         : "Give it a shape, or leave the probe out.");
+    section.fault(
+        "contact",
+        ground ? std::string("the ground has no shapes")
+               : format("the body {} has no shape",
+                        quote(context.model.bodies[static_cast<std::size_t>(body)].name)),
+        ground ? "Name a fixed body with a shape." : "Give it a shape, or leave the probe out.");
     return;
   }
   probe.pair = *pair;
@@ -143,25 +144,27 @@ bool read_recorded(ReadContext& context, Section& section, const std::vector<std
   }
   if (targets != 1) {
     if (targets > 0 || !section.has_unknown_key())
-      section.fault(targets == 0 ? format("names nothing {}", what)
-                                 : format("names more than one thing {}", what),
+      section.fault(targets == 0 ? format("names no object {}", what)
+                                 : format("names more than one object {}", what),
                     format("Give one of: {}.", name_list(kinds)));
     return false;
   }
   if (section.has("point") && probe.kind != "body" && probe.kind != "solid")
-    section.fault("point", format("does not go with '{}'", probe.kind),
+    section.fault("point", format("cannot be combined with '{}'", probe.kind),
                   "A point belongs to a body or a solid.");
   for (const char* key : {"node", "stress", "interface"})
     if (section.has(key) && probe.kind != "solid")
-      section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a solid.");
+      section.fault(key, format("cannot be combined with '{}'", probe.kind),
+                    "It belongs to a solid.");
   if (section.has("element") && probe.kind != "beam" && probe.kind != "cable")
-    section.fault("element", format("does not go with '{}'", probe.kind),
+    section.fault("element", format("cannot be combined with '{}'", probe.kind),
                   "It belongs to a beam or a cable.");
   for (const char* key : {"rotation", "angular", "helical", "seen_from"})
     if (section.has(key) && probe.kind != "body")
-      section.fault(key, format("does not go with '{}'", probe.kind), "It belongs to a body.");
+      section.fault(key, format("cannot be combined with '{}'", probe.kind),
+                    "It belongs to a body.");
   if (section.has("axes") && probe.kind != "joint")
-    section.fault("axes", format("does not go with '{}'", probe.kind),
+    section.fault("axes", format("cannot be combined with '{}'", probe.kind),
                   "Axes belong to a joint's reaction.");
   if (const auto axes = section.choice("axes")) probe.axes = *axes;
   if (probe.kind == "body") {

@@ -104,7 +104,7 @@ void Section::fault(std::string what, std::string hint) {
 bool Section::refuse_both(const std::string& one, const std::string& other,
                           const std::string& hint) {
   if (!has(one) || !has(other)) return false;
-  fault(other, format("stands beside '{}'", one), hint);
+  fault(other, format("cannot be combined with '{}'", one), hint);
   return true;
 }
 

@@ -68,7 +68,7 @@ std::optional<Selection> read_one(ReadContext& context, const SourceNode& node,
   for (const char* name : {"set", "plane", "box", "sphere", "nodes"}) {
     if (!section.has(name)) continue;
     if (!found.empty()) {
-      section.fault(name, format("stands beside '{}'", found),
+      section.fault(name, format("cannot be combined with '{}'", found),
                     "Give one of them; several selections form a list.");
       return std::nullopt;
     }
@@ -80,7 +80,7 @@ std::optional<Selection> read_one(ReadContext& context, const SourceNode& node,
     return std::nullopt;
   }
   if (section.has("tolerance") && (found == "set" || found == "nodes"))
-    section.fault("tolerance", format("does not go with '{}'", found), "Leave it out.");
+    section.fault("tolerance", format("cannot be combined with '{}'", found), "Leave it out.");
   selection.tolerance = section.number("tolerance").value_or(0.0);
   const SourceNode& value = *section.find(found);
   bool sound = true;

@@ -85,7 +85,7 @@ bool read_hull(ReadContext& context, const SourceNode& node, const std::string& 
   if (!node.is_map()) return false;
   if (section.refuse_both("points", "file", "Give one of them.")) return false;
   if (section.has("scale") && section.misses("file"))
-    section.fault("scale", "stands without 'file'", "Leave it out; points carry their own units.");
+    section.fault("scale", "requires 'file'", "Leave it out; points carry their own units.");
   shape.scale = section.number("scale").value_or(context.units.length);
   if (const SourceNode* file = section.find("file")) {
     const auto full = read_file_name(context, *file, section.path("file"));
@@ -165,7 +165,7 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     const SourceNode* value = section.find(name);
     if (!value) continue;
     if (sizes) {
-      section.fault(name, format("stands beside '{}'", shape.type),
+      section.fault(name, format("cannot be combined with '{}'", shape.type),
                     "Give one kind to a shape; several shapes form a list.");
       return std::nullopt;
     }

@@ -21,7 +21,8 @@ class SolidMeshReader {
     for (const auto& [key, source] : {std::pair("group", "file"), std::pair("scale", "file"),
                                       std::pair("elements", "inline"), std::pair("sets", "inline")})
       if (section_.has(key) && mesh_.type != source)
-        section_.fault(key, format("does not go with '{}'", key_of(mesh_.type)), "Leave it out.");
+        section_.fault(key, format("cannot be combined with '{}'", key_of(mesh_.type)),
+                       "Leave it out.");
     if (mesh_.type == "file") {
       read_file();
     } else if (mesh_.type == "inline") {
@@ -47,7 +48,7 @@ class SolidMeshReader {
       keys.push_back(key_of(type));
       if (!section_.has(key_of(type))) continue;
       if (!mesh_.type.empty()) {
-        section_.fault(key_of(type), format("stands beside '{}'", key_of(mesh_.type)),
+        section_.fault(key_of(type), format("cannot be combined with '{}'", key_of(mesh_.type)),
                        "Give one source of nodes to a mesh.");
         return false;
       }

@@ -117,7 +117,7 @@ class SolidReader {
         spec.displacement[c] = section.time_number(axis);
       }
       if (!any && !section.has_unknown_key())
-        section.fault("prescribes no component", "Give x, y or z; 0 holds it.");
+        section.fault("prescribes no component", "Give x, y or z; 0 fixes it.");
       if (!nodes) continue;
       spec.nodes = std::move(*nodes);
       solid_.prescribed.push_back(std::move(spec));

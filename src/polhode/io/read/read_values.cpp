@@ -76,7 +76,7 @@ std::optional<double> si_factor(ReadContext& context, const SourceNode& node,
                                 const Expression& expression) {
   const auto& unit = expression.written_unit();
   if (unit && unit->has_hertz && std::abs(field.dimension.angle) > 0.5) {
-    context.fault(node, path, "Hz is not clear for " + field.dimension.name(),
+    context.fault(node, path, "Hz is ambiguous for " + field.dimension.name(),
                   "Write rad/s, deg/s, rpm or rev/s.");
     return std::nullopt;
   }
@@ -340,7 +340,7 @@ std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
   const double largest = direction.cwiseAbs().maxCoeff();
   if (!(largest > 0.0)) {
     context.fault(node, path, "has length 0",
-                  "Give any direction that is not zero; its length does not count.");
+                  "Give any vector that is not zero; its length has no effect.");
     return std::nullopt;
   }
   return Vec3((direction / largest).normalized());

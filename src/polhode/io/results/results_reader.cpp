@@ -185,7 +185,7 @@ ResultsReader::ResultsReader(const std::string& path) : impl_(std::make_unique<I
   const char* rerun = "Run the model again, or copy the file again";
   if (!m.file.valid()) m.fail("is damaged: its index cannot be read", rerun);
   if (attribute("/", "format") != "polhode results")
-    m.fail(m.copy ? "is damaged: its head is lost" : "holds no results of Polhode",
+    m.fail(m.copy ? "is damaged: its header is missing" : "holds no results of Polhode",
            m.copy ? rerun : kHint);
   const Id version(H5Aopen(m.file.get(), "format_version", H5P_DEFAULT), H5Aclose);
   double number = 0.0;

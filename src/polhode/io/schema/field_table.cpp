@@ -46,16 +46,16 @@ const FieldTable& model_fields() {
           {.name = "title", .kind = kText, .meaning = "Shown in results and messages."},
           {.name = "units",
            .kind = kSection,
-           .meaning = "What bare numbers mean.",
+           .meaning = "Units of numbers without a unit.",
            .standard = "SI and radians",
            .table = "units"},
           {.name = "variables",
            .kind = kVariables,
-           .meaning = "Numbers by name for use in expressions; each may use the ones before it."},
+           .meaning = "Named numbers for use in expressions; each may use those before it."},
           {.name = "gravity",
            .kind = kVector,
            .dimension = kAcceleration,
-           .meaning = "Acceleration of free fall, world.",
+           .meaning = "Acceleration of gravity, world axes.",
            .standard = "[0, 0, 0]"},
           {.name = "bodies",
            .kind = kNamed,
@@ -109,8 +109,8 @@ const FieldTable& model_fields() {
 
 const FieldTable& units_fields() {
   static const FieldTable table{"units",
-                                "What numbers without a unit mean. Derived numbers follow: with mm "
-                                "and kg a bare stiffness is in kg/s^2.",
+                                "Units of numbers without a unit. Derived units follow from them: "
+                                "with mm and kg a bare stiffness is in kg/s^2.",
                                 {
                                     {.name = "length",
                                      .kind = kText,
@@ -140,7 +140,7 @@ const FieldTable& units_fields() {
 const FieldTable& body_fields() {
   static const FieldTable table{
       "body",
-      "A rigid body. It is weighed by mass and inertia, or by shapes with a density.",
+      "A rigid body. Its mass and inertia are given, or follow from shapes with a density.",
       {
           {.name = "mass",
            .kind = kNumber,
@@ -154,27 +154,27 @@ const FieldTable& body_fields() {
            .dimension = kInertia,
            .meaning = "Tensor about the centre of mass in body axes: three principal moments, or "
                       "{xx: , yy: , zz: , xy: , xz: , yz: }; xy is the tensor's entry, minus the "
-                      "product of inertia of some books.",
+                      "product of inertia of some textbooks.",
            .standard = "from shape and density"},
           {.name = "shape",
            .kind = kShapes,
-           .meaning =
-               "A shape, or a list of shapes each with its own place: mass properties and picture.",
+           .meaning = "A shape, or a list of shapes each with its own position, for mass "
+                      "properties, contact and pictures.",
            .table = "shape"},
           {.name = "density",
            .kind = kNumber,
            .dimension = kDensity,
-           .meaning = "Of every shape that has none of its own.",
+           .meaning = "Density of the shapes that have none of their own.",
            .range = kPositive},
           {.name = "position",
            .kind = kVector,
            .dimension = kLength,
-           .meaning = "Of the centre of mass (see position_of), world.",
+           .meaning = "Position of the centre of mass (see position_of), world.",
            .standard = "[0, 0, 0]"},
           {.name = "position_of",
            .kind = kChoice,
-           .meaning =
-               "What position places: the centre of mass, or the origin of the body's coordinates.",
+           .meaning = "Point that position refers to: the centre of mass, or the origin of the "
+                      "body's coordinates.",
            .standard = "com; origin for a mesh, a hull or several shapes",
            .choices = {"com", "origin"}},
           {.name = "com",
@@ -184,44 +184,44 @@ const FieldTable& body_fields() {
            .standard = "[0, 0, 0], or from the shapes"},
           {.name = "orientation",
            .kind = kSection,
-           .meaning = "Turn from the world's axes to the body's.",
+           .meaning = "Rotation from the world's axes to the body's.",
            .standard = "along the world's axes",
            .table = "orientation"},
           {.name = "velocity",
            .kind = kVector,
            .dimension = kVelocity,
-           .meaning = "Of the centre of mass at the start, world.",
+           .meaning = "Velocity of the centre of mass at the start, world.",
            .standard = "[0, 0, 0]"},
           {.name = "angular_velocity",
            .kind = kVector,
            .dimension = kAngularVelocity,
-           .meaning = "At the start, world axes.",
+           .meaning = "Angular velocity at the start, world axes.",
            .standard = "[0, 0, 0]"},
           {.name = "angular_velocity_body",
            .kind = kVector,
            .dimension = kAngularVelocity,
-           .meaning = "At the start, body axes; instead of angular_velocity."},
+           .meaning = "Angular velocity at the start, body axes; instead of angular_velocity."},
           {.name = "point_mass",
            .kind = kBoolean,
-           .meaning = "No rotation; mass only.",
+           .meaning = "A point mass, without rotation.",
            .standard = "false"},
           {.name = "fixed",
            .kind = kBoolean,
-           .meaning = "Never moves and costs nothing; needs no mass.",
+           .meaning = "The body never moves; it needs no mass.",
            .standard = "false"},
           {.name = "contact",
            .kind = kSection,
-           .meaning = "How its shapes take part in contact, beside 'contacts'.",
+           .meaning = "How its shapes take part in contact; needs 'contacts'.",
            .table = "contact side"},
           {.name = "hold",
            .kind = kChoices,
-           .meaning = "Freedoms held at their start values: a generic joint to ground at the "
+           .meaning = "Freedoms fixed at their start values: a generic joint to ground at the "
                       "centre of mass, world axes, named <body>.hold.",
            .choices = {"x", "y", "z", "rx", "ry", "rz"}},
           {.name = "motion",
            .kind = kSection,
            .meaning = "Prescribed motion: a generic joint to ground at the centre of mass, world "
-                      "axes, whose frame moves, named <body>.motion. What is not given stays free.",
+                      "axes, whose frame moves, named <body>.motion. Components left out are free.",
            .table = "body motion"},
       }};
   return table;
@@ -275,19 +275,19 @@ const FieldTable& orientation_fields() {
       "One of: axis with angle, quaternion, rotation_vector, euler, matrix. Each maps body axes to "
       "the world's.",
       {
-          {.name = "axis", .kind = kDirection, .meaning = "Axis of the turn; goes with angle."},
+          {.name = "axis", .kind = kDirection, .meaning = "Axis of rotation; requires angle."},
           {.name = "angle",
            .kind = kNumber,
            .dimension = kAngle,
-           .meaning = "Angle of the turn; goes with axis."},
-          {.name = "quaternion", .kind = kNumbers, .meaning = "[w, x, y, z] of length 1."},
+           .meaning = "Angle of rotation; requires axis."},
+          {.name = "quaternion", .kind = kNumbers, .meaning = "Unit quaternion [w, x, y, z]."},
           {.name = "rotation_vector",
            .kind = kVector,
            .dimension = kAngle,
            .meaning = "Axis times angle."},
           {.name = "euler",
            .kind = kSection,
-           .meaning = "Three turns one after the other.",
+           .meaning = "Three successive rotations.",
            .table = "euler"},
           {.name = "matrix",
            .kind = kMatrix,
@@ -299,8 +299,8 @@ const FieldTable& orientation_fields() {
 const FieldTable& euler_fields() {
   static const FieldTable table{
       "euler",
-      "Euler angles. Lower-case letters turn about the axes of the body one after the other, "
-      "upper-case letters about the world's.",
+      "Euler angles. Lower-case letters are rotations about the body's axes (intrinsic), "
+      "upper-case letters about the world's (extrinsic).",
       {
           {.name = "sequence",
            .kind = kText,
@@ -319,8 +319,8 @@ const FieldTable& shape_fields() {
   static const FieldTable table = [] {
     FieldTable t{"shape",
                  "One key names the kind and gives its sizes, in this order, as full lengths; the "
-                 "others place it. "
-                 "Cylinder, capsule, cone and tube lie along z; all are centred at their centroid.",
+                 "others give its position and orientation. Cylinder, capsule, cone and tube lie "
+                 "along z; all are centred at their centroid.",
                  {}};
     for (const ShapeKind& kind : shape_kinds()) {
       std::string sizes;
@@ -331,38 +331,36 @@ const FieldTable& shape_fields() {
                           .meaning = sentence(kind.meaning) + " Sizes: " + sizes + "].",
                           .range = kPositive});
     }
-    t.fields.push_back(
-        {.name = "mesh",
-         .kind = kSection,
-         .meaning =
-             "A closed triangle surface from a file, with its own coordinates: a path, or a map.",
-         .table = "mesh"});
+    t.fields.push_back({.name = "mesh",
+                        .kind = kSection,
+                        .meaning = "A closed triangle surface from a file: a path, or a map.",
+                        .table = "mesh"});
     t.fields.push_back({.name = "hull",
                         .kind = kSection,
                         .meaning = "The convex hull of points.",
                         .table = "hull"});
     t.fields.push_back({.name = "height_field",
                         .kind = kSection,
-                        .meaning = "Heights over a grid, for fixed bodies; it weighs nothing.",
+                        .meaning = "Heights over a grid, for fixed bodies; without mass.",
                         .table = "height field"});
     t.fields.push_back({.name = "plane",
                         .kind = kDirection,
                         .meaning = "A plane through the shape's position with this normal, for "
-                                   "fixed bodies; it weighs nothing."});
+                                   "fixed bodies; without mass."});
     t.fields.push_back({.name = "position",
                         .kind = kVector,
                         .dimension = kLength,
-                        .meaning = "Of the shape's centre in body coordinates.",
+                        .meaning = "Position of the shape's centre, body coordinates.",
                         .standard = "[0, 0, 0]"});
     t.fields.push_back({.name = "orientation",
                         .kind = kSection,
-                        .meaning = "Turn from the body's axes to the shape's.",
+                        .meaning = "Rotation from the body's axes to the shape's.",
                         .standard = "along the body's axes",
                         .table = "orientation"});
     t.fields.push_back({.name = "density",
                         .kind = kNumber,
                         .dimension = kDensity,
-                        .meaning = "Of this shape.",
+                        .meaning = "Density of this shape.",
                         .standard = "the body's",
                         .range = kPositive});
     t.fields.push_back({.name = "contact",
@@ -381,7 +379,7 @@ const FieldTable& mesh_fields() {
                                 {
                                     {.name = "file",
                                      .kind = kText,
-                                     .meaning = "Path, seen from the model file's folder.",
+                                     .meaning = "Path, relative to the model file's folder.",
                                      .required = true},
                                     {.name = "scale",
                                      .kind = kNumber,
@@ -396,8 +394,7 @@ const FieldTable& mesh_fields() {
 const FieldTable& time_table_fields() {
   static const FieldTable table{
       "table",
-      "A value over time, given by points. Before the first and after the last point the end value "
-      "holds.",
+      "A value over time, given by points. Outside of the table its end values hold.",
       {
           {.name = "table",
            .kind = kNumbers,
@@ -411,7 +408,7 @@ const FieldTable& time_table_fields() {
            .choices = {"linear", "cubic", "step"}},
           {.name = "periodic",
            .kind = kBoolean,
-           .meaning = "The table repeats; its last value equals the first.",
+           .meaning = "The table is periodic; its last value equals the first.",
            .standard = "false"},
       }};
   return table;
@@ -420,8 +417,8 @@ const FieldTable& time_table_fields() {
 const FieldTable& law_table_fields() {
   static const FieldTable table{
       "law",
-      "A force over a coordinate or a rate, given by points. Before the first and after the last "
-      "point the end value holds.",
+      "A force over a coordinate or a rate, given by points. Outside of the table its end values "
+      "hold.",
       {
           {.name = "table",
            .kind = kNumbers,

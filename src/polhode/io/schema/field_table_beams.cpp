@@ -55,12 +55,12 @@ KindTable shaped(const std::string& name, const std::string& meaning, std::vecto
   sizes.push_back({.name = "material",
                    .kind = kMaterial,
                    .meaning = "A material with youngs_modulus, poisson_ratio and density; its "
-                              "relaxation time is that of the beam.",
+                              "relaxation time is also that of the beam.",
                    .required = true});
-  sizes.push_back(factor("torsion_factor", "Multiplies the torsion constant of the shape."));
+  sizes.push_back(factor("torsion_factor", "Factor of the shape's torsion constant."));
   sizes.back().standard = "1";
-  sizes.push_back(factor("shear_factor_y", "Instead of Cowper's, along y."));
-  sizes.push_back(factor("shear_factor_z", "Instead of Cowper's, along z."));
+  sizes.push_back(factor("shear_factor_y", "Shear factor along y instead of Cowper's."));
+  sizes.push_back(factor("shear_factor_z", "Shear factor along z instead of Cowper's."));
   return section(name, meaning, sizes);
 }
 
@@ -69,43 +69,43 @@ KindTable shaped(const std::string& name, const std::string& meaning, std::vecto
 const std::vector<KindTable>& section_tables() {
   static const std::vector<KindTable> tables = {
       shaped("rectangle", "A full rectangle.",
-             {size("height", "Along the section's y."), size("width", "Along its z.")}),
+             {size("height", "Size along the section's y."), size("width", "Along its z.")}),
       shaped("circle", "A full circle.", {size("diameter", "Diameter.")}),
       shaped("tube", "A round tube.",
              {size("outer", "Outer diameter."), size("inner", "Inner diameter.")}),
       shaped("i", "A doubly symmetric I: its web along y, its flanges along z.",
-             {size("height", "Over all, along y."), size("width", "Of the flanges, along z."),
-              size("web", "Thickness of the web."), size("flange", "Thickness of a flange.")}),
-      section(
-          "general", "A section given by its stiffnesses: six numbers, or a matrix that couples.",
-          {stiffness("EA", kForce, "Axial force per extension."),
-           stiffness("GA_y", kForce, "Shear force along y per shear, shear factor included."),
-           stiffness("GA_z", kForce, "Shear force along z per shear, shear factor included."),
-           stiffness("GJ", kBendingStiffness, "Torque per twist."),
-           stiffness("EI_y", kBendingStiffness, "Bending moment about y per curvature."),
-           stiffness("EI_z", kBendingStiffness, "Bending moment about z per curvature."),
-           {.name = "matrix",
-            .kind = kMatrix6,
-            .meaning =
-                "Instead of the six, in SI: (N, V_y, V_z, M_x, M_y, M_z) by strain, symmetric and "
-                "positive definite."},
-           {.name = "mass_per_length",
-            .kind = kNumber,
-            .dimension = kMassPerLength,
-            .meaning = "Mass per length.",
-            .required = true,
-            .range = kPositive},
-           {.name = "inertia_per_length",
-            .kind = kVector,
-            .dimension = kInertiaPerLength,
-            .meaning = "Rotary inertia per length about x, y, z.",
-            .required = true},
-           {.name = "relaxation_time",
-            .kind = kNumber,
-            .dimension = kTime,
-            .meaning = "Viscous section forces are this times stiffness times rate of strain.",
-            .standard = "0",
-            .range = kNotNegative}}),
+             {size("height", "Overall height, along y."),
+              size("width", "Width of the flanges, along z."), size("web", "Thickness of the web."),
+              size("flange", "Thickness of a flange.")}),
+      section("general", "A section given by its stiffnesses: six numbers, or a coupled matrix.",
+              {stiffness("EA", kForce, "Axial force per extension."),
+               stiffness("GA_y", kForce, "Shear force along y per shear, shear factor included."),
+               stiffness("GA_z", kForce, "Shear force along z per shear, shear factor included."),
+               stiffness("GJ", kBendingStiffness, "Torque per twist."),
+               stiffness("EI_y", kBendingStiffness, "Bending moment about y per curvature."),
+               stiffness("EI_z", kBendingStiffness, "Bending moment about z per curvature."),
+               {.name = "matrix",
+                .kind = kMatrix6,
+                .meaning = "Stiffness matrix instead of the six, in SI: (N, V_y, V_z, M_x, M_y, "
+                           "M_z) by strain, symmetric and positive definite."},
+               {.name = "mass_per_length",
+                .kind = kNumber,
+                .dimension = kMassPerLength,
+                .meaning = "Mass per length.",
+                .required = true,
+                .range = kPositive},
+               {.name = "inertia_per_length",
+                .kind = kVector,
+                .dimension = kInertiaPerLength,
+                .meaning = "Rotary inertia per length about x, y, z.",
+                .required = true},
+               {.name = "relaxation_time",
+                .kind = kNumber,
+                .dimension = kTime,
+                .meaning = "Relaxation time: viscous section forces are this times stiffness times "
+                           "rate of strain.",
+                .standard = "0",
+                .range = kNotNegative}}),
   };
   return tables;
 }
@@ -119,51 +119,53 @@ const FieldTable& beam_fields() {
           {.name = "points",
            .kind = kPoints,
            .dimension = kLength,
-           .meaning = "[start, ..., end], world at the start of the run, free of stress. Corners "
-                      "are rigid."},
+           .meaning =
+               "[start, ..., end], world at the start of the run, unstressed. Corners are rigid."},
           {.name = "arc",
            .kind = kPoints,
            .dimension = kLength,
            .meaning = "Instead of points: [start, a point between, end] of an arc of a circle."},
           {.name = "elements",
            .kind = kInteger,
-           .meaning = "Elements of the whole beam, shared out to its pieces by length.",
+           .meaning =
+               "Number of elements of the whole beam, distributed over its segments by length.",
            .required = true,
            .range = {1.0, 1e6}},
           {.name = "section", .kind = kText, .meaning = "Name of a section.", .required = true},
           {.name = "up",
            .kind = kDirection,
-           .meaning = "Where the section's y points: made perpendicular to the beam.",
+           .meaning = "Direction of the section's y; made perpendicular to the beam.",
            .standard = "z, or x where the beam runs along z"},
           {.name = "bonded",
            .kind = kBeamBonds,
-           .meaning = "Bodies that hold its ends: {plate: start, ground: end}. Gives joints of "
+           .meaning = "Bodies its ends are fixed to: {plate: start, ground: end}. Gives joints of "
                       "these names, mast.start and mast.end, with their reactions."},
           {.name = "velocity",
            .kind = kVector,
            .dimension = kVelocity,
-           .meaning = "Of the first point at the start, world.",
-           .standard = "as the body moves that holds it, else [0, 0, 0]"},
+           .meaning = "Velocity of the first point at the start, world.",
+           .standard = "that of the body it is fixed to, else [0, 0, 0]"},
           {.name = "angular_velocity",
            .kind = kVector,
            .dimension = kAngularVelocity,
-           .meaning = "Of the whole beam, about its first point, world.",
-           .standard = "as the body turns that holds it, else [0, 0, 0]"},
+           .meaning = "Angular velocity of the whole beam, about its first point, world.",
+           .standard = "that of the body it is fixed to, else [0, 0, 0]"},
           {.name = "consistent_mass",
            .kind = kNumber,
-           .meaning = "Part of the translational mass that is consistent, not lumped at nodes.",
+           .meaning =
+               "Part of the translational mass that is consistent; the rest is lumped at nodes.",
            .standard = "0.5; 0 with contact",
            .range = {0.0, 1.0}},
           {.name = "contact",
            .kind = kSection,
-           .meaning = "The beam touches bodies, other beams and itself as a round bar, beside "
-                      "'contacts'.",
-           .standard = "it touches nothing",
+           .meaning =
+               "The beam touches bodies, other beams and itself as a round bar; needs 'contacts'.",
+           .standard = "no contact",
            .table = "beam contact"},
           {.name = "residual_bending_flexibility",
            .kind = kBoolean,
-           .meaning = "Adds the bending that an element's constant strains miss to its shear "
-                      "flexibility.",
+           .meaning = "Add the bending flexibility missing in an element of constant strains to "
+                      "its shear flexibility.",
            .standard = "true"},
       }};
   return table;
@@ -172,13 +174,13 @@ const FieldTable& beam_fields() {
 const FieldTable& beam_contact_fields() {
   static const FieldTable table = [] {
     FieldTable t{"beam contact",
-                 "How a beam takes part in contact: every node carries the halves of its elements "
-                 "as round bars.",
+                 "How a beam takes part in contact: every node carries half of each adjacent "
+                 "element as a round bar.",
                  {{.name = "radius",
                    .kind = kNumber,
                    .dimension = kLength,
-                   .meaning = "Of the bar, about the centre line.",
-                   .standard = "half the section's height or width, whichever is less",
+                   .meaning = "Radius of the bar.",
+                   .standard = "half the smaller of the section's height and width",
                    .range = kPositive}}};
     const std::vector<Field>& side = contact_side_fields().fields;
     t.fields.insert(t.fields.end(), side.begin(), side.end());
@@ -190,8 +192,8 @@ const FieldTable& beam_contact_fields() {
 const FieldTable& cable_fields() {
   static const FieldTable table{
       "cable",
-      "A cable, rope, rod or truss member: straight elastic pieces from point to point, each with "
-      "its own elongation.",
+      "A cable, rope, rod or truss member: straight elastic segments from point to point, each "
+      "with its own elongation.",
       {
           {.name = "through",
            .kind = kAttachments,
@@ -202,19 +204,19 @@ const FieldTable& cable_fields() {
           {.name = "stiffness",
            .kind = kNumber,
            .dimension = kForce,
-           .meaning = "EA: force per strain. One that slides may have a tension or a muscle "
-                      "instead.",
+           .meaning =
+               "EA: force per strain. A sliding cable may have a tension or a muscle instead.",
            .range = kPositive},
           {.name = "free_length",
            .kind = kNumber,
            .dimension = kLength,
-           .meaning = "Of the whole cable, without force.",
+           .meaning = "Unstressed length of the whole cable.",
            .standard = "that at the start",
            .range = kPositive},
           {.name = "damping",
            .kind = kNumber,
            .dimension = kDamping,
-           .meaning = "Of the whole cable, force per rate of elongation, while taut.",
+           .meaning = "Damping of the whole cable: force per rate of elongation, while taut.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "tension_only",
@@ -223,28 +225,28 @@ const FieldTable& cable_fields() {
            .standard = "true"},
           {.name = "slides",
            .kind = kBoolean,
-           .meaning = "Runs over its points between the ends: one tension in all pieces, from "
-                      "the whole length, unless it has friction.",
+           .meaning = "The cable slides over its points between the ends: one tension in all "
+                      "segments, from the whole length, unless it has friction.",
            .standard = "false; true with tension or muscle"},
           {.name = "friction",
            .kind = kNumber,
-           .meaning = "Coefficient of friction on these points, of a cable that slides.",
+           .meaning = "Coefficient of friction of a sliding cable on these points.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "wraps",
            .kind = kNumberList,
-           .meaning = "Whole turns about each of these points beside the cable's turn there, with "
-                      "friction.",
+           .meaning = "Number of whole turns about each of these points, in addition to the "
+                      "cable's deflection there; with friction.",
            .standard = "0 each",
            .range = kNotNegative},
           {.name = "tension",
            .kind = kTimeNumber,
            .dimension = kForce,
-           .meaning = "Given tension of a cable that slides, beside that of its stiffness.",
+           .meaning = "Given tension of a sliding cable, in addition to that of its stiffness.",
            .standard = "0"},
           {.name = "muscle",
            .kind = kSection,
-           .meaning = "The cable is a muscle, whose path is through its points.",
+           .meaning = "The cable is a muscle with its path through the points.",
            .table = "muscle"},
           {.name = "strain",
            .kind = kChoice,
@@ -254,20 +256,20 @@ const FieldTable& cable_fields() {
           {.name = "mass_per_length",
            .kind = kNumber,
            .dimension = kMassPerLength,
-           .meaning = "Puts point masses on it (stay.0, stay.1, ...), with "
-                      "spherical joints at its points.",
+           .meaning = "Mass per length: adds point masses (stay.0, stay.1, ...), with spherical "
+                      "joints at its points.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "elements",
            .kind = kInteger,
-           .meaning = "Pieces from one point to the next, if it has mass.",
+           .meaning = "Number of elements from one point to the next, if it has mass.",
            .standard = "1",
            .range = {1.0, 1e6}},
           {.name = "contact",
            .kind = kSection,
-           .meaning = "The cable touches bodies, beams and other cables as a round rope, beside "
+           .meaning = "The cable touches bodies, beams and other cables as a round rope; needs "
                       "'contacts'.",
-           .standard = "it touches nothing",
+           .standard = "no contact",
            .table = "cable contact"},
       }};
   return table;
@@ -287,20 +289,19 @@ const FieldTable& muscle_fields() {
           {.name = "optimal_length",
            .kind = kNumber,
            .dimension = kLength,
-           .meaning = "Of the fibres, at which they are strongest.",
+           .meaning = "Optimal length of the fibres, at which their force is largest.",
            .required = true,
            .range = kPositive},
           {.name = "tendon_length",
            .kind = kNumber,
            .dimension = kLength,
-           .meaning = "Of the tendon, which does not stretch.",
+           .meaning = "Length of the rigid tendon.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "pennation",
            .kind = kNumber,
            .dimension = kAngle,
-           .meaning = "Angle between fibres and tendon at the optimal length; the muscle keeps its "
-                      "width.",
+           .meaning = "Pennation angle at the optimal length; the muscle has constant width.",
            .standard = "0",
            .range = {0.0, 1.4}},
           {.name = "max_velocity",
@@ -310,12 +311,12 @@ const FieldTable& muscle_fields() {
            .range = kPositive},
           {.name = "damping",
            .kind = kNumber,
-           .meaning = "Of the fibres: force over max_force, by velocity over the largest one.",
+           .meaning = "Damping of the fibres: force over max_force, by velocity over max_velocity.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "activation",
            .kind = kTimeNumber,
-           .meaning = "From 0 to 1, over time.",
+           .meaning = "Activation over time, from 0 to 1.",
            .required = true},
       }};
   return table;
@@ -328,12 +329,12 @@ const FieldTable& cable_contact_fields() {
                  {{.name = "radius",
                    .kind = kNumber,
                    .dimension = kLength,
-                   .meaning = "Of the cable, about its centre line.",
+                   .meaning = "Radius of the cable.",
                    .required = true,
                    .range = kPositive},
                   {.name = "self",
                    .kind = kBoolean,
-                   .meaning = "true: it touches itself, too, where it is wound or folded.",
+                   .meaning = "true: the cable also touches itself, where it is wound or folded.",
                    .standard = "false"}}};
     const std::vector<Field>& side = contact_side_fields().fields;
     t.fields.insert(t.fields.end(), side.begin(), side.end());

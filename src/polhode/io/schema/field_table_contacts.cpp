@@ -13,114 +13,120 @@ const Field kFriction{.name = "friction",
                       .meaning = "Coefficient of friction.",
                       .standard = "0",
                       .range = kNotNegative};
-const Field kRestitution{
-    .name = "restitution",
-    .kind = kNumber,
-    .meaning = "Speed of separation over speed of approach: 1 gives all energy back.",
-    .standard = "0",
-    .range = {0.0, 1.0}};
+const Field kRestitution{.name = "restitution",
+                         .kind = kNumber,
+                         .meaning =
+                             "Coefficient of restitution, speed of separation over speed of "
+                             "approach; 1 dissipates nothing.",
+                         .standard = "0",
+                         .range = {0.0, 1.0}};
 
 std::vector<Field> law_fields() {
   return {
       {.name = "law",
        .kind = kChoice,
-       .meaning = "Potential of the normal force: a barrier on a thin band around the surface, "
-                  "which no load breaks through, or a force linear in the overlap, or that of "
-                  "Hertz, with overlap to the power 3/2. nonsmooth: no forces but impulses, for "
-                  "many bodies without joints; in default only.",
+       .meaning = "Potential of the normal force: a barrier in a thin band at the surface, which "
+                  "no load exceeds; a force linear in the penetration; or Hertz's law, with "
+                  "penetration to the power 3/2. nonsmooth: impulses instead of forces, for many "
+                  "bodies without joints; in default only.",
        .standard = "barrier",
        .choices = {"barrier", "linear", "hertz", "nonsmooth"}},
       {.name = "gap_tolerance",
        .kind = kNumber,
        .dimension = kLength,
-       .meaning = "The barrier acts at gaps between minus and plus this length.",
+       .meaning =
+           "Largest penetration: the barrier acts at gaps between minus this length and zero, "
+           "between deformable surfaces and for cables between minus and plus this length.",
        .standard = "1e-3 of the smaller shape",
        .range = kPositive},
       {.name = "stiffness",
        .kind = kNumber,
        .dimension = kStiffness,
-       .meaning = "Of the barrier or of the linear law, for each contact point.",
+       .meaning = "Stiffness of the barrier or of the linear law, for each contact point.",
        .standard = "from weight, reference_load and step",
        .range = kPositive},
       {.name = "hertz_stiffness",
        .kind = kNumber,
-       .meaning = "Of law hertz: force over overlap^1.5, in N/m^1.5 whatever 'units' says.",
+       .meaning = "Stiffness of law hertz: force over penetration^1.5, always in N/m^1.5.",
        .standard = "likewise",
        .range = kPositive},
       {.name = "reference_load",
        .kind = kNumber,
        .dimension = kForce,
-       .meaning = "A normal force that the barrier carries at gap 0; it chooses the stiffness.",
+       .meaning = "Normal force from which the stiffness is chosen: the barrier carries it at a "
+                  "twentieth of gap_tolerance, springs at gap_tolerance.",
        .standard = "the weight of the lighter body",
        .range = kPositive},
       {.name = "reference_pressure",
        .kind = kNumber,
        .dimension = kPressure,
-       .meaning = "Of surfaces of solids, and of cables on their diameter: a pressure that the "
-                  "barrier carries at gap 0; it chooses the stiffness.",
+       .meaning = "Pressure from which the stiffness of surfaces of solids and of cables (on their "
+                  "diameter) is chosen: the barrier carries it in the middle of its band.",
        .standard = "from elasticity, density and step",
        .range = kPositive},
       kRestitution,
       {.name = "rebound",
        .kind = kChoice,
-       .meaning = "How restitution comes about: by the speed with which the contact opens, exact "
-                  "at any step, or by a damper beside a linear or Hertz potential (Gonthier, "
-                  "Carvalho and Martins), which wants some twenty steps in a contact.",
+       .meaning = "Model of restitution: exit sets the speed of separation, exact at any step; "
+                  "damped is a damper parallel to a linear or Hertz potential (Gonthier, Carvalho "
+                  "and Martins), which needs some twenty steps in a contact.",
        .standard = "exit",
        .choices = {"exit", "damped"}},
       kFriction,
       {.name = "static_friction",
        .kind = kNumber,
-       .meaning = "Coefficient while it sticks.",
+       .meaning = "Coefficient of static friction.",
        .standard = "as friction",
        .range = kNotNegative},
       {.name = "friction_across",
        .kind = kNumber,
-       .meaning = "Coefficient across direction; friction then acts along it.",
+       .meaning = "Coefficient transverse to direction; friction is then that along it.",
        .standard = "as friction",
        .range = kPositive},
       {.name = "direction",
        .kind = kDirection,
-       .meaning = "Of friction beside friction_across, in coordinates of the first body.",
+       .meaning =
+           "Direction of friction, if friction_across is given; in coordinates of the first body.",
        .standard = "x"},
       {.name = "rolling_friction",
        .kind = kNumber,
        .dimension = kLength,
-       .meaning = "Largest moment against rolling over normal force.",
+       .meaning = "Largest rolling moment over normal force.",
        .standard = "0",
        .range = kNotNegative},
       {.name = "torsional_friction",
        .kind = kNumber,
        .dimension = kLength,
-       .meaning = "Largest moment about the normal over normal force.",
+       .meaning = "Largest spin moment (about the normal) over normal force.",
        .standard = "0",
        .range = kNotNegative},
       {.name = "friction_stiffness",
        .kind = kNumber,
        .dimension = kStiffness,
-       .meaning = "Of the bristle that holds while it sticks.",
+       .meaning = "Stiffness of the bristle in static friction.",
        .standard = "that of the normal force",
        .range = kPositive},
       {.name = "friction_damping",
        .kind = kNumber,
        .dimension = kDamping,
-       .meaning = "Of the bristle while it sticks.",
+       .meaning = "Damping of the bristle in static friction.",
        .standard = "0.7 of the critical one",
        .range = kPositive},
   };
 }
 
 FieldTable pair_table(const std::string& title, const std::string& meaning) {
-  FieldTable t{title,
-               meaning,
-               {
-                   {.name = "between",
-                    .kind = kBodyPair,
-                    .meaning = "Two bodies, a fixed one too, or a body and a solid."},
-                   {.name = "materials",
-                    .kind = kNames,
-                    .meaning = "Two contact materials, or one twice, instead of between."},
-               }};
+  FieldTable t{
+      title,
+      meaning,
+      {
+          {.name = "between",
+           .kind = kBodyPair,
+           .meaning = "Two bodies (one may be fixed), or a body, solid or cable and another one."},
+          {.name = "materials",
+           .kind = kNames,
+           .meaning = "Two contact materials, or one twice, instead of between."},
+      }};
   for (Field& f : law_fields()) {
     f.standard = f.name == "friction" || f.name == "restitution"
                      ? "default's; of materials, their combination"
@@ -135,14 +141,14 @@ FieldTable pair_table(const std::string& title, const std::string& meaning) {
 const FieldTable& contacts_fields() {
   static const FieldTable table{
       "contacts",
-      "Contact between the shapes of bodies, and of surfaces of solids with them. Without this "
-      "section all pass through one another; with it, an empty one too, every shape meets those of "
-      "all other bodies but neighbours at a joint, and every solid meets the shapes of all bodies "
-      "but those it is bonded to. Beams and cables take part that have the key contact.",
+      "Contact between shapes of bodies and surfaces of solids. Without this section they pass "
+      "through one another. With it, even if empty, every shape can touch those of all other "
+      "bodies except neighbours at a joint, and every solid can touch all shapes except those of "
+      "bodies it is bonded to. Beams and cables touch if they have the key contact.",
       {
           {.name = "default",
            .kind = kSection,
-           .meaning = "The law of pairs for which nothing else is stated.",
+           .meaning = "The law of all pairs without a law of their own.",
            .table = "contact law"},
           {.name = "materials",
            .kind = kNamed,
@@ -152,20 +158,21 @@ const FieldTable& contacts_fields() {
            .table = "contact material"},
           {.name = "combine",
            .kind = kSection,
-           .meaning = "How two materials make a pair.",
+           .meaning = "How the law of a pair follows from two materials.",
            .table = "contact combination"},
           {.name = "pairs",
            .kind = kNamed,
-           .meaning = "Laws of pairs of bodies, of a body and a solid or cable, or of materials, "
-                      "by a name "
-                      "of your choice; those that name bodies go before those of materials.",
+           .meaning =
+               "Laws of pairs of bodies, of a body and a solid or cable, or of materials, by a "
+               "name of your choice; laws of bodies have priority over laws of materials.",
            .table = "contact pair"},
           {.name = "exclude",
            .kind = kBodyPairs,
-           .meaning = "Pairs of bodies, solids and cables that do not meet."},
+           .meaning = "Pairs of bodies, solids and cables that do not touch."},
           {.name = "joint_neighbours",
            .kind = kBoolean,
-           .meaning = "Bodies with a common joint meet, and solids the bodies they are bonded to.",
+           .meaning = "Bodies with a common joint can touch, and solids can touch the bodies they "
+                      "are bonded to.",
            .standard = "false"},
           {.name = "sensors",
            .kind = kNamed,
@@ -173,38 +180,38 @@ const FieldTable& contacts_fields() {
            .table = "contact sensor"},
           {.name = "overlaps",
            .kind = kChoice,
-           .meaning = "What to do with what overlaps at the start: refuse it by name, or move "
-                      "bodies and solids apart, the lighter ones farther.",
+           .meaning = "Treatment of overlaps at the start: refuse the model, or move bodies and "
+                      "solids apart, lighter ones farther.",
            .standard = "error",
            .choices = {"error", "resolve"}},
           {.name = "sweeps",
            .kind = kInteger,
-           .meaning = "With law: nonsmooth, how often a step goes over all points at most.",
+           .meaning = "With law: nonsmooth, largest number of Gauss-Seidel sweeps in a step.",
            .standard = "100",
            .range = {1.0, 1e6}},
           {.name = "sweep_tolerance",
            .kind = kNumber,
-           .meaning = "With law: nonsmooth, change of a point's speed in a sweep, over what "
-                      "gravity adds in a step, below which a step is solved.",
+           .meaning = "With law: nonsmooth, change of speed in a sweep at which a step has "
+                      "converged, relative to gravity times the step.",
            .standard = "1e-3",
            .range = kPositive},
           {.name = "record",
            .kind = kBoolean,
-           .meaning = "Keep results of every pair of bodies that may meet; false: only of those "
-                      "that pairs, sensors and probes name.",
+           .meaning = "Record results of every pair of bodies that may touch; false: only of those "
+                      "named in pairs, sensors and probes.",
            .standard = "true for at most 100 pairs"},
       }};
   return table;
 }
 
 const FieldTable& contact_law_fields() {
-  static const FieldTable table{"contact law", "What two surfaces do to each other.", law_fields()};
+  static const FieldTable table{"contact law", "The contact law of two surfaces.", law_fields()};
   return table;
 }
 
 const FieldTable& contact_pair_fields() {
   static const FieldTable table =
-      pair_table("contact pair", "A law of its own for two bodies or two materials.");
+      pair_table("contact pair", "The contact law of two bodies or two materials.");
   return table;
 }
 
@@ -213,35 +220,35 @@ const FieldTable& contact_sensor_fields() {
                                 "Reports when two bodies overlap; they exert no force.",
                                 {{.name = "between",
                                   .kind = kBodyPair,
-                                  .meaning = "Two bodies; a fixed one too.",
+                                  .meaning = "Two bodies; one may be fixed.",
                                   .required = true}}};
   return table;
 }
 
 const FieldTable& contact_material_fields() {
-  static const FieldTable table{
-      "contact material",
-      "A surface. Two of them make a pair by combination, unless pairs states one.",
-      {kFriction, kRestitution}};
+  static const FieldTable table{"contact material",
+                                "A contact material. The law of two materials is combined from "
+                                "them, unless it is given in pairs.",
+                                {kFriction, kRestitution}};
   return table;
 }
 
 const FieldTable& contact_combination_fields() {
   static const std::vector<std::string> ways{"geometric_mean", "mean", "minimum", "maximum",
                                              "product"};
-  static const FieldTable table{"contact combination",
-                                "How friction and restitution of a pair follow from those of its "
-                                "materials.",
-                                {{.name = "friction",
-                                  .kind = kChoice,
-                                  .meaning = "Of the two coefficients.",
-                                  .standard = "geometric_mean",
-                                  .choices = ways},
-                                 {.name = "restitution",
-                                  .kind = kChoice,
-                                  .meaning = "Of the two restitutions.",
-                                  .standard = "minimum",
-                                  .choices = ways}}};
+  static const FieldTable table{
+      "contact combination",
+      "How friction and restitution of a pair are combined from those of its materials.",
+      {{.name = "friction",
+        .kind = kChoice,
+        .meaning = "Combination of the two coefficients of friction.",
+        .standard = "geometric_mean",
+        .choices = ways},
+       {.name = "restitution",
+        .kind = kChoice,
+        .meaning = "Combination of the two coefficients of restitution.",
+        .standard = "minimum",
+        .choices = ways}}};
   return table;
 }
 
@@ -249,12 +256,11 @@ const FieldTable& contact_side_fields() {
   static const FieldTable table{
       "contact side",
       "How a shape takes part in contact. On a body it holds for all its shapes; on a shape it "
-      "goes "
-      "before that of the body.",
+      "overrides that of the body.",
       {
           {.name = "touches",
            .kind = kBoolean,
-           .meaning = "false: the shape meets nothing; it is weighed and drawn only.",
+           .meaning = "false: the shape does not touch; it has mass and is drawn only.",
            .standard = "true"},
           {.name = "material",
            .kind = kText,
@@ -262,11 +268,11 @@ const FieldTable& contact_side_fields() {
            .standard = "friction and restitution of contacts.default"},
           {.name = "groups",
            .kind = kNames,
-           .meaning = "Groups it belongs to; names are yours.",
+           .meaning = "Groups it belongs to; names are free.",
            .standard = "[default]"},
           {.name = "meets",
            .kind = kNames,
-           .meaning = "Groups it meets; two shapes touch if both say so.",
+           .meaning = "Groups it can touch; two shapes touch if each accepts the other.",
            .standard = "all"},
       }};
   return table;
@@ -283,10 +289,10 @@ const FieldTable& solid_contact_fields() {
                    .table = "selection"},
                   {.name = "self",
                    .kind = kBoolean,
-                   .meaning = "true: it touches itself, too, where it is folded.",
+                   .meaning = "true: the solid also touches itself, where it is folded.",
                    .standard = "false"}}};
     for (const Field& field : contact_side_fields().fields) t.fields.push_back(field);
-    t.fields[2].meaning = "false: the solid meets nothing.";
+    t.fields[2].meaning = "false: the solid does not touch.";
     return t;
   }();
   return table;
@@ -300,11 +306,11 @@ const FieldTable& hull_fields() {
           {.name = "points",
            .kind = kPoints,
            .dimension = kLength,
-           .meaning = "In the shape's coordinates; four at least, not in a plane."},
+           .meaning = "Points in the shape's coordinates; at least four, not in one plane."},
           {.name = "file",
            .kind = kText,
-           .meaning = "An STL or OBJ file whose corners are the points, seen from the model file's "
-                      "folder."},
+           .meaning = "An STL or OBJ file whose corners are the points; path relative to the model "
+                      "file's folder."},
           {.name = "scale",
            .kind = kNumber,
            .dimension = kLength,
@@ -323,13 +329,13 @@ const FieldTable& height_field_fields() {
           {.name = "spacing",
            .kind = kNumber,
            .dimension = kLength,
-           .meaning = "Between the points of the grid, along x and y.",
+           .meaning = "Spacing of the grid, along x and y.",
            .required = true,
            .range = kPositive},
           {.name = "heights",
            .kind = kRows,
            .dimension = kLength,
-           .meaning = "Along z: a list of rows, y growing from row to row, x along a row.",
+           .meaning = "Heights along z: a list of rows, y growing from row to row, x along a row.",
            .required = true},
       }};
   return table;

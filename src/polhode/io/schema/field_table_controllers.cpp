@@ -10,8 +10,8 @@ const FieldTable& controller_fields() {
   static const FieldTable table = [] {
     FieldTable t{
         "controller",
-        "Sets a number by the error setpoint - channel, for loads and cables that name it. Give "
-        "one of body, joint, load, solid, beam, cable and contact, and gains or a transfer "
+        "Computes a value from the error setpoint - channel, for loads and cables that name it. "
+        "Give one of body, joint, load, solid, beam, cable and contact, and gains or a transfer "
         "function. Gains and limits are in SI and radians, whatever 'units' says.",
         channel_fields()};
     t.fields.insert(
@@ -19,39 +19,43 @@ const FieldTable& controller_fields() {
         {
             {.name = "setpoint",
              .kind = kTimeNumber,
-             .meaning = "What the number should be. In the unit of the channel.",
+             .meaning = "Setpoint, in the unit of the channel.",
              .standard = "0"},
             {.name = "sample",
              .kind = kNumber,
              .dimension = kTime,
-             .meaning = "Time between samples; between them what it sets stands still.",
+             .meaning = "Sample time; the output is constant between samples.",
              .standard = "it is continuous",
              .range = kPositive},
             {.name = "proportional",
              .kind = kNumber,
-             .meaning = "Gain of the error.",
+             .meaning = "Proportional gain, of the error.",
              .standard = "0"},
             {.name = "integral",
              .kind = kNumber,
-             .meaning = "Gain of its integral.",
+             .meaning = "Integral gain, of the error's integral.",
              .standard = "0"},
             {.name = "derivative",
              .kind = kNumber,
-             .meaning = "Gain of its rate, of a channel whose rate is reported too.",
+             .meaning =
+                 "Derivative gain, of the error's rate; for channels whose rate is available.",
              .standard = "0"},
             {.name = "filter",
              .kind = kNumber,
              .dimension = kTime,
-             .meaning = "Time constant of a lag of that rate.",
+             .meaning = "Time constant of a first-order filter of that rate.",
              .standard = "0",
              .range = kNotNegative},
             {.name = "numerator",
              .kind = kNumberList,
-             .meaning = "Instead of gains: polynomial in s, the highest power first."},
-            {.name = "denominator", .kind = kNumberList, .meaning = "Likewise, of no lower order."},
+             .meaning = "Numerator of a transfer function instead of gains: polynomial in s, the "
+                        "highest power first."},
+            {.name = "denominator",
+             .kind = kNumberList,
+             .meaning = "Denominator of the transfer function, of the same order or higher."},
             {.name = "minimum",
              .kind = kNumber,
-             .meaning = "Of what it sets. The integral stands still there.",
+             .meaning = "Limits of the output. The integral stops there.",
              .standard = "none"},
             {.name = "maximum", .kind = kNumber, .meaning = "Likewise.", .standard = "none"},
         });
@@ -62,7 +66,7 @@ const FieldTable& controller_fields() {
 
 const FieldTable& controlled_value_fields() {
   static const FieldTable table{"controlled value",
-                                "What a controller sets, where a number over time may stand.",
+                                "The output of a controller, as a value over time.",
                                 {
                                     {.name = "controller",
                                      .kind = kText,

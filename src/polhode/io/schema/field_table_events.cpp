@@ -9,32 +9,32 @@ using enum FieldKind;
 const FieldTable& event_fields() {
   static const FieldTable table{
       "event",
-      "Switches joints, loads and contacts off and on: at a time, or when a reported number "
-      "crosses a value. "
-      "An event at time 0 tells how the model starts. Positions are continuous, velocities too "
-      "unless a joint closes or a drive begins.",
+      "Switches joints, loads and contacts off and on, at a time or when a channel crosses a "
+      "value. An event at time 0 sets the initial state. Positions are continuous; velocities, "
+      "too, unless a joint closes or a drive begins.",
       {
           {.name = "at",
            .kind = kNumber,
            .dimension = kTime,
-           .meaning = "The time. Or when.",
+           .meaning = "The time; or 'when'.",
            .range = kNotNegative},
           {.name = "when",
            .kind = kSection,
-           .meaning = "The condition: the event comes when it begins to hold.",
+           .meaning = "The condition: the event occurs when it becomes true.",
            .table = "condition"},
           {.name = "after",
            .kind = kText,
-           .meaning = "Name of an event before which this one does not come.",
-           .standard = "it may come from the start"},
+           .meaning = "Name of an event before which this one cannot occur.",
+           .standard = "it may occur from the start"},
           {.name = "off",
            .kind = kNames,
-           .meaning = "Joints, loads, pairs and sensors of contacts, and bodies whose contacts all "
-                      "cease to act."},
-          {.name = "on", .kind = kNames, .meaning = "Likewise what begins to act."},
+           .meaning = "Names to switch off: joints, loads, pairs and sensors of contacts, and "
+                      "bodies (all their contacts)."},
+          {.name = "on", .kind = kNames, .meaning = "Names to switch on."},
           {.name = "repeat",
            .kind = kBoolean,
-           .meaning = "Comes each time the condition begins to hold, not only the first time.",
+           .meaning =
+               "The event occurs each time the condition becomes true, not only the first time.",
            .standard = "false"},
           {.name = "stop", .kind = kBoolean, .meaning = "Ends the run.", .standard = "false"},
       }};
@@ -50,7 +50,7 @@ std::vector<Field> channel_fields() {
   }
   list.push_back({.name = "channel",
                   .kind = kText,
-                  .meaning = "The number, named as the column of such a probe: z, vz, 'rate rz', "
+                  .meaning = "The channel, named as the column of such a probe: z, vz, 'rate rz', "
                              "fx, tension, gap; also the magnitudes speed, force and moment.",
                   .required = true});
   return list;
@@ -58,20 +58,19 @@ std::vector<Field> channel_fields() {
 
 const FieldTable& condition_fields() {
   static const FieldTable table = [] {
-    FieldTable t{
-        "condition",
-        "A reported number beyond a value. Give one of body, joint, load, solid, beam, cable "
-        "and contact, and one of above and below.",
-        channel_fields()};
+    FieldTable t{"condition",
+                 "A channel above or below a value. Give one of body, joint, load, solid, beam, "
+                 "cable and contact, and one of above and below.",
+                 channel_fields()};
     t.fields.insert(
         t.fields.end(),
         {
             {.name = "above",
              .kind = kNumber,
-             .meaning = "The condition holds from here up. In the unit of the channel."},
+             .meaning = "The condition holds above this value, in the unit of the channel."},
             {.name = "below",
              .kind = kNumber,
-             .meaning = "The condition holds from here down. In the unit of the channel."},
+             .meaning = "The condition holds below this value, in the unit of the channel."},
         });
     return t;
   }();
@@ -81,7 +80,7 @@ const FieldTable& condition_fields() {
 const FieldTable& strength_fields() {
   static const FieldTable table{
       "strength",
-      "Reaction at which a joint breaks: from then on it is gone. Give one of them or both.",
+      "Reaction at which a joint breaks and is removed. Give one of them or both.",
       {
           {.name = "force",
            .kind = kNumber,

@@ -21,58 +21,61 @@ Field friction_number(const std::string& name, const Dimension& dimension,
 
 const Field kMu = friction_number("mu", kNone, "Coefficient of friction.", "0");
 const Field kMoment0 =
-    friction_number("moment", kMoment, "Moment at which it slips without load, as of a seal.", "0");
+    friction_number("moment", kMoment, "Friction moment without load, as of a seal.", "0");
 const Field kForce0 =
-    friction_number("force", kForce, "Force at which it slips without load, as of a seal.", "0");
+    friction_number("force", kForce, "Friction force without load, as of a seal.", "0");
 const Field kBearing = friction_number(
-    "length", kLength, "Length of the bearing; 0: moments across the axis press nothing.", "0");
+    "length", kLength,
+    "Length of the bearing; 0: moments transverse to the axis cause no friction.", "0");
 
 void add_bristle(std::vector<Field>& fields, bool turns) {
-  fields.push_back(friction_number("stiffness", turns ? kAngularStiffness : kStiffness,
-                                   "Of the bristle that holds before it slips.",
-                                   turns ? "gives way by 1e-5 rad at the bodies' weight"
-                                         : "gives way by 1e-5 of the bodies' size at their weight",
-                                   kPositive));
+  fields.push_back(friction_number(
+      "stiffness", turns ? kAngularStiffness : kStiffness,
+      "Stiffness of the bristle in static friction.",
+      turns ? "1e-5 rad under the bodies' weight" : "1e-5 of the bodies' size under their weight",
+      kPositive));
   fields.push_back(friction_number("damping", turns ? kAngularDamping : kDamping,
-                                   "Of the bristle while it holds.", "0.7 of critical damping"));
+                                   "Damping of the bristle in static friction.",
+                                   "0.7 of critical damping"));
 }
 
 FieldTable revolute() {
   FieldTable t{
       "friction revolute",
       "Friction of a pin in its bearing. It slips at mu (radius F + 2 radius/length M + "
-      "face_radius F_z) + moment, with the reaction's force F and moment M across the "
-      "axis and its force F_z along it.",
+      "face_radius F_z) + moment, with the reaction's force F and moment M transverse to the axis "
+      "and its axial force F_z.",
       {kMu, friction_number("radius", kLength, "Radius of the pin.", "0"),
-       friction_number("face_radius", kLength, "Mean radius of the faces that take F_z.", "0"),
+       friction_number("face_radius", kLength, "Mean radius of the faces that carry F_z.", "0"),
        kBearing, kMoment0}};
   add_bristle(t.fields, true);
   return t;
 }
 
 FieldTable prismatic() {
-  FieldTable t{"friction prismatic",
-               "Friction of a slider in its guide. It slips at mu (F + 2/length M + M_z/radius) + "
-               "force, with the reaction's force F and moment M across the axis and its moment "
-               "M_z about it.",
-               {kMu,
-                friction_number("radius", kLength,
-                                "Arm at which the guide takes M_z; 0: M_z presses nothing.", "0"),
-                kBearing, kForce0}};
+  FieldTable t{
+      "friction prismatic",
+      "Friction of a slider in its guide. It slips at mu (F + 2/length M + M_z/radius) + force, "
+      "with the reaction's force F and moment M transverse to the axis and its moment M_z about "
+      "it.",
+      {kMu,
+       friction_number("radius", kLength,
+                       "Lever arm at which the guide carries M_z; 0: M_z causes no friction.", "0"),
+       kBearing, kForce0}};
   add_bristle(t.fields, false);
   return t;
 }
 
 FieldTable cylindrical() {
-  FieldTable t{"friction cylindrical",
-               "Friction of a sleeve on its shaft, one cone for both motions: it slips where the "
-               "force along the axis and the moment about it over radius together reach "
-               "mu (F + 2/length M) + force, with the reaction's force F and moment M across the "
-               "axis.",
-               {kMu,
-                friction_number("radius", kLength,
-                                "Radius of the shaft; 0: it turns without friction.", "0"),
-                kBearing, kForce0}};
+  FieldTable t{
+      "friction cylindrical",
+      "Friction of a sleeve on its shaft, with one friction cone for both motions: it slips where "
+      "the resultant of the axial force and of the moment about the axis over radius reaches mu (F "
+      "+ 2/length M) + force, with the reaction's force F and moment M transverse to the axis.",
+      {kMu,
+       friction_number("radius", kLength, "Radius of the shaft; 0: rotation without friction.",
+                       "0"),
+       kBearing, kForce0}};
   add_bristle(t.fields, false);
   return t;
 }
@@ -90,11 +93,11 @@ FieldTable spherical() {
 FieldTable universal() {
   FieldTable t{
       "friction universal",
-      "Friction of the two pins of the cross, x of the first body and y of the second. Each "
-      "slips at mu (radius F + 2 radius/length M + face_radius F_p) + moment, with the "
-      "reaction's force F across the pin and F_p along it, and its moment M across both.",
+      "Friction of the two pins of the cross, x of the first body and y of the second. Each slips "
+      "at mu (radius F + 2 radius/length M + face_radius F_p) + moment, with the reaction's force "
+      "F transverse to the pin and F_p along it, and its moment M transverse to both.",
       {kMu, friction_number("radius", kLength, "Radius of the pins.", "0"),
-       friction_number("face_radius", kLength, "Mean radius of the faces that take F_p.", "0"),
+       friction_number("face_radius", kLength, "Mean radius of the faces that carry F_p.", "0"),
        kBearing, kMoment0}};
   add_bristle(t.fields, true);
   return t;
@@ -107,15 +110,17 @@ FieldTable limits(const std::string& title, const std::string& what, bool turns)
       "Stops of the joint's " + what + ". Give one of them or both.",
       {friction_number("lower", x, "Lower end.", "no stop", kAnyNumber),
        friction_number("upper", x, "Upper end.", "no stop", kAnyNumber),
-       friction_number("restitution", kNone, "Speed after an impact over that before it.", "0",
-                       {.least = 0.0, .most = 1.0}),
+       friction_number("restitution", kNone,
+                       "Coefficient of restitution: speed after an impact over speed before it.",
+                       "0", {.least = 0.0, .most = 1.0}),
        friction_number("band", x,
-                       "The stop acts from half of this in front of the end to half of it behind.",
+                       "Width of the barrier: the stop acts from half of it before the limit to "
+                       "half of it beyond.",
                        turns ? "1e-3 rad" : "1e-3 of the bodies' size", kPositive),
        friction_number(
            "stiffness", turns ? kAngularStiffness : kStiffness,
            "k of the barrier k band²/3 (1/s - 3 + 3s - s²) over the part s of the band.",
-           "bears the bodies' weight in its middle and stops them in a step", kPositive)}};
+           "carries the bodies' weight in its middle and stops them in a step", kPositive)}};
 }
 
 }  // namespace
@@ -152,22 +157,22 @@ const FieldTable& distance_limit_fields() {
 const FieldTable& enforcement_fields() {
   static const FieldTable table{
       "enforcement",
-      "Stiffness by which a joint is held, where multipliers would hold it exactly.",
+      "Enforcement of a joint by a stiffness instead of exact multipliers.",
       {
           {.name = "type",
            .kind = kChoice,
-           .meaning = "Springs that give way, or an augmented Lagrangian, which holds exactly.",
+           .meaning = "Compliant springs (penalty), or an augmented Lagrangian, which is exact.",
            .required = true,
            .choices = {"penalty", "augmented"}},
           {.name = "stiffness",
            .kind = kNumber,
            .dimension = kStiffness,
-           .meaning = "Against displacements; of a joint that holds some.",
+           .meaning = "Stiffness against displacements, if the joint constrains any.",
            .range = kPositive},
           {.name = "turning_stiffness",
            .kind = kNumber,
            .dimension = kAngularStiffness,
-           .meaning = "Against rotations; of a joint that holds some.",
+           .meaning = "Stiffness against rotations, if the joint constrains any.",
            .range = kPositive},
       }};
   return table;

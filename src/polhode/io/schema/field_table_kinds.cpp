@@ -16,17 +16,17 @@ namespace {
 const Field kBodies{.name = "bodies",
                     .kind = kBodyPair,
                     .meaning =
-                        "[a, b]: coordinates are those of b's frame seen from a's; a positive "
-                        "angle turns b about +z.",
+                        "[a, b]: coordinates are those of b's frame relative to a's; a positive "
+                        "angle rotates b about +z.",
                     .required = true};
 const Field kAt{.name = "at",
                 .kind = kVector,
                 .dimension = kLength,
-                .meaning = "The joint's point at the start, world. Or at_body."};
+                .meaning = "The joint's point at the start, world; or at_body."};
 const Field kPointsAt{.name = "at",
                       .kind = kVectorPair,
                       .dimension = kLength,
-                      .meaning = "The points on a and on b at the start, world. Or at_body."};
+                      .meaning = "The points on a and on b at the start, world; or at_body."};
 const Field kAtBody{.name = "at_body",
                     .kind = kVectorPair,
                     .dimension = kLength,
@@ -40,10 +40,11 @@ const Field kAxisBody{
     .kind = kDirectionPair,
     .meaning =
         "Instead of axis: z on a and on b, each in its body's axes; the start is then assembled."};
-const Field kXAxis{.name = "x_axis",
-                   .kind = kDirection,
-                   .meaning = "The joint's x at the start, world; made perpendicular to z.",
-                   .standard = "the world axis least along z, made perpendicular"};
+const Field kXAxis{
+    .name = "x_axis",
+    .kind = kDirection,
+    .meaning = "The joint's x at the start, world; made perpendicular to z.",
+    .standard = "the world axis with the smallest component along z, made perpendicular"};
 
 enum class Axis { kRequired, kOptional, kNone };
 
@@ -85,15 +86,16 @@ void add_resistance(const std::string& name, std::vector<Field>& fields) {
   for (const KindTable& kind : friction_tables())
     if (kind.name == name) section("friction", kind.table.title, "Dry friction in the joint.");
   if (name == "revolute")
-    section("limits", angle_limit_fields().title, "Stops of the joint's angle.");
+    section("limits", angle_limit_fields().title, "Limits of the joint's angle, as stops.");
   if (name == "prismatic" || name == "cylindrical")
-    section("limits", stroke_limit_fields().title, "Stops of the joint's displacement.");
+    section("limits", stroke_limit_fields().title, "Limits of the joint's displacement, as stops.");
   if (name == "slack_link") {
-    section("limits", distance_limit_fields().title, "Stops of the distance of its points.");
+    section("limits", distance_limit_fields().title,
+            "Limits of the distance of its points, as stops.");
     fields.back().required = true;
   }
   if (name == "cylindrical")
-    section("angle_limits", angle_limit_fields().title, "Stops of the joint's angle.");
+    section("angle_limits", angle_limit_fields().title, "Limits of the joint's angle, as stops.");
 }
 
 KindTable joint_table(const JointKind& kind) {
@@ -121,7 +123,7 @@ KindTable joint_table(const JointKind& kind) {
   if (kind.takes_free_list)
     fields.push_back({.name = "free",
                       .kind = kChoices,
-                      .meaning = "The free ones, in the joint's axes.",
+                      .meaning = "The free coordinates, in the joint's axes.",
                       .required = true,
                       .choices = {"x", "y", "z", "rx", "ry", "rz"}});
   for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
@@ -134,7 +136,7 @@ KindTable joint_table(const JointKind& kind) {
   if (kind.name != "slack_link")
     fields.push_back({.name = "enforcement",
                       .kind = kSection,
-                      .meaning = "Stiffness by which the joint is held.",
+                      .meaning = "Enforcement by a stiffness.",
                       .standard = "exact, by multipliers",
                       .table = enforcement_fields().title});
   fields.push_back({.name = "breaks",
@@ -150,7 +152,7 @@ const Field kLoadBody{
 const Field kBodyPointAt{.name = "at",
                          .kind = kVector,
                          .dimension = kLength,
-                         .meaning = "The body's point, world at the start. Or at_body."};
+                         .meaning = "The body's point at the start, world; or at_body."};
 const Field kBodyPoint{.name = "at_body",
                        .kind = kVector,
                        .dimension = kLength,
@@ -158,7 +160,7 @@ const Field kBodyPoint{.name = "at_body",
                        .standard = "the centre of mass"};
 const Field kBodyFixed{.name = "body_fixed",
                        .kind = kBoolean,
-                       .meaning = "The components turn with the body.",
+                       .meaning = "The components rotate with the body.",
                        .standard = "false"};
 const Field kLoadBodies{.name = "bodies", .kind = kBodyPair, .meaning = "[a, b]", .required = true};
 const Field kLoadPointsBody{
@@ -173,13 +175,13 @@ const Field kLoadJoints{
 const Field kLoadFrameAt{.name = "at",
                          .kind = kVector,
                          .dimension = kLength,
-                         .meaning = "The point at the start on both bodies, world. Or at_body."};
+                         .meaning = "The point on both bodies at the start, world; or at_body."};
 
 const Field kWheelAt{
     .name = "at",
     .kind = kVectorPair,
     .dimension = kLength,
-    .meaning = "A point of the plane and the wheel's centre at the start, world. Or at_body."};
+    .meaning = "A point of the plane and the wheel's centre at the start, world; or at_body."};
 const Field kPlaneNormal{
     .name = "axis",
     .kind = kDirection,
@@ -193,7 +195,7 @@ const Field kOtherXAxis{.name = "other_x_axis",
                         .standard = "x_axis"};
 const Field kAxle{.name = "axle",
                   .kind = kDirection,
-                  .meaning = "The wheel's axle at the start, world; of no meaning to a ball.",
+                  .meaning = "The wheel's axle at the start, world; without effect for a ball.",
                   .standard = "y"};
 
 KindTable load(const std::string& name, const std::string& meaning,
@@ -223,7 +225,7 @@ KindTable load_table(const LoadKind& kind) {
       fields.push_back(kLoadJoints);
       fields.push_back({.name = "coordinates",
                         .kind = kNames,
-                        .meaning = "Which free coordinate of each: x, y, z, rx, ry or rz.",
+                        .meaning = "The free coordinate of each: x, y, z, rx, ry or rz.",
                         .standard = "the only one of each"});
       break;
     case LoadPlace::frames:
@@ -264,13 +266,13 @@ KindTable load_table(const LoadKind& kind) {
                       .variable = l.variable,
                       .of = l.of == "-" ? kNone : read_unit(l.of).unit.value().dimension});
   for (const std::string& prefix : kind.curves)
-    fields.push_back({.name = prefix + "points",
-                      .kind = kPoints,
-                      .dimension = kLength,
-                      .meaning = format("Points of the curve in the frame on {}, z = 0: a cubic "
-                                        "spline goes through them, closed if the last is the "
-                                        "first. Or {}curve_x and {}curve_y.",
-                                        prefix.empty() ? "a" : "b", prefix, prefix)});
+    fields.push_back(
+        {.name = prefix + "points",
+         .kind = kPoints,
+         .dimension = kLength,
+         .meaning = format("Points of the curve in the frame on {}, z = 0, interpolated by a cubic "
+                           "spline, closed if the last is the first; or {}curve_x and {}curve_y.",
+                           prefix.empty() ? "a" : "b", prefix, prefix)});
   for (const ChoiceParameter& w : kind.words)
     fields.push_back({.name = w.name,
                       .kind = kChoice,
@@ -287,7 +289,7 @@ KindTable load_table(const LoadKind& kind) {
   if (kind.place == LoadPlace::joint && kind.name != "screw")
     fields.push_back({.name = "coordinate",
                       .kind = kChoice,
-                      .meaning = "Which of the joint's free coordinates.",
+                      .meaning = "The free coordinate of the joint.",
                       .standard = "the only one of its kind",
                       .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
                                             : std::vector<std::string>{"x", "y", "z"}});
@@ -315,7 +317,7 @@ const std::vector<KindTable>& load_tables() {
       .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
   const Field surface{.name = "surface",
                       .kind = kSelection,
-                      .meaning = "The faces, among those of the solid's boundary.",
+                      .meaning = "Faces of the solid's boundary.",
                       .standard = "the whole boundary",
                       .table = "selection"};
   static const std::vector<KindTable> tables = [&] {
@@ -329,17 +331,18 @@ const std::vector<KindTable>& load_tables() {
               {.name = "pressure",
                .kind = kTimeNumber,
                .dimension = kPressure,
-               .meaning = "Positive pushes inward.",
+               .meaning = "Positive is compression.",
                .required = true},
               {.name = "follower",
                .kind = kBoolean,
-               .meaning = "Turns with the faces and acts on their deformed area; else as on the "
-                          "undeformed solid.",
+               .meaning = "A follower pressure: normal to the deformed faces, on their deformed "
+                          "area; else as on the undeformed solid.",
                .standard = "true"},
               {.name = "keeps",
                .kind = kChoice,
-               .meaning = "What a follower keeps exactly over a step: on a closed surface no force "
-                          "and moment, or the work, pressure times change of volume.",
+               .meaning =
+                   "What a follower pressure conserves exactly over a step: zero force and moment "
+                   "on a closed surface, or the work, pressure times change of volume.",
                .standard = "momentum",
                .choices = {"momentum", "work"}}}),
         load("traction", "A force per area on faces of a deformable solid.",
@@ -348,14 +351,14 @@ const std::vector<KindTable>& load_tables() {
               {.name = "traction",
                .kind = kTimeVector,
                .dimension = kPressure,
-               .meaning = "World components, per undeformed area.",
+               .meaning = "Force per undeformed area, world components.",
                .required = true}}),
-        load("body_force", "A force on all of a deformable solid, in proportion to its mass.",
+        load("body_force", "A force on a deformable solid in proportion to its mass.",
              {solid,
               {.name = "acceleration",
                .kind = kTimeVector,
                .dimension = kAcceleration,
-               .meaning = "Force per mass, world components; gravity acts by itself.",
+               .meaning = "Force per mass, world components, in addition to gravity.",
                .required = true}}),
         load("nodal_force", "A force on each of some nodes of a deformable solid.",
              {solid,
@@ -367,7 +370,7 @@ const std::vector<KindTable>& load_tables() {
               {.name = "force",
                .kind = kTimeVector,
                .dimension = kForce,
-               .meaning = "On each of the nodes, world components.",
+               .meaning = "Force on each of the nodes, world components.",
                .required = true}}),
     };
     list.insert(list.end(), on_solids.begin(), on_solids.end());

@@ -77,7 +77,7 @@ KindTable material_table(const std::string& name, const MaterialKind& kind) {
   fields.insert(fields.end(), {{.name = "density",
                                 .kind = kNumber,
                                 .dimension = kDensity,
-                                .meaning = "In the undeformed shape.",
+                                .meaning = "Density of the undeformed material.",
                                 .standard = "given with each solid",
                                 .range = kPositive},
                                {.name = "viscosity",
@@ -87,7 +87,7 @@ KindTable material_table(const std::string& name, const MaterialKind& kind) {
                                 .table = "viscosity"},
                                {.name = "fibre",
                                 .kind = kSection,
-                                .meaning = "Fibres that resist stretch only.",
+                                .meaning = "Fibres that carry tension only.",
                                 .standard = "none",
                                 .table = "fibre"}});
   return result;
@@ -110,23 +110,23 @@ const std::vector<KindTable>& material_tables() {
 const FieldTable& viscosity_fields() {
   static const FieldTable table{
       "viscosity",
-      "Kelvin-Voigt viscosity: a relaxation time, or moduli of its own.",
+      "Kelvin-Voigt viscosity: a relaxation time, or viscous moduli.",
       {
           {.name = "relaxation_time",
            .kind = kNumber,
            .dimension = kTime,
-           .meaning = "Viscous over elastic moduli of the undeformed material.",
+           .meaning = "Ratio of viscous to elastic moduli of the undeformed material.",
            .range = kPositive},
           {.name = "shear",
            .kind = kNumber,
            .dimension = kViscosity,
-           .meaning = "Stress per rate of strain: 2 times this times the rate.",
+           .meaning = "Shear viscosity: the stress is 2 times this times the rate of strain.",
            .standard = "0",
            .range = kNotNegative},
           {.name = "lame",
            .kind = kNumber,
            .dimension = kViscosity,
-           .meaning = "Stress per rate of volume strain.",
+           .meaning = "Viscous first Lamé constant: stress per rate of volume strain.",
            .standard = "0"},
       }};
   return table;
@@ -143,7 +143,7 @@ const std::vector<KindTable>& fibre_tables() {
                               type_field("law", "The law of the fibres.", kind.name));
       one.table.fields.push_back({.name = "direction",
                                   .kind = kDirection,
-                                  .meaning = "Of the fibres, in the mesh's own axes.",
+                                  .meaning = "Direction of the fibres, in the mesh's axes.",
                                   .required = true});
       list.push_back(std::move(one));
     }

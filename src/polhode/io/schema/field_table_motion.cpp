@@ -22,15 +22,15 @@ void add_rotation(std::vector<Field>& fields, const std::string& axes) {
   fields.push_back({.name = "rotation_vector",
                     .kind = kTimeVector,
                     .dimension = kAngle,
-                    .meaning = "Axis times angle, along " + axes +
+                    .meaning = "Axis times angle, components along " + axes +
                                ". One of rotation_vector, euler, quaternion, or none of them."});
   fields.push_back({.name = "euler",
                     .kind = kSection,
-                    .meaning = "Three turns one after the other.",
+                    .meaning = "Three successive rotations.",
                     .table = moving_euler_fields().title});
   fields.push_back({.name = "quaternion",
                     .kind = kSection,
-                    .meaning = "Made to length 1.",
+                    .meaning = "It is normalised.",
                     .table = moving_quaternion_fields().title});
 }
 
@@ -39,14 +39,14 @@ void add_rotation(std::vector<Field>& fields, const std::string& axes) {
 const FieldTable& motion_fields() {
   static const FieldTable table = [] {
     FieldTable t{"motion",
-                 "How a joint's frame on its first body moves away from where it is at rest, as "
-                 "functions of time: a displacement, and a rotation about the moved point. In "
-                 "statics they follow the load factor.",
+                 "Prescribed motion of a joint's frame on its first body, relative to its initial "
+                 "position, as functions of time: a displacement, and a rotation about the "
+                 "displaced point. In statics they follow the load factor.",
                  {}};
     for (const char* axis : {"x", "y", "z"})
       t.fields.push_back(moving_number(
           axis, kLength, std::string("Displacement along the joint's ") + axis + " at rest.", "0"));
-    add_rotation(t.fields, "the joint's axes at rest");
+    add_rotation(t.fields, "the joint's initial axes");
     return t;
   }();
   return table;
@@ -54,19 +54,21 @@ const FieldTable& motion_fields() {
 
 const FieldTable& body_motion_fields() {
   static const FieldTable table = [] {
-    FieldTable t{"body motion",
-                 "Prescribed motion of a body, as functions of time; what is left out is free. A "
-                 "rotation prescribes all three turns: to prescribe one or two, use a joint.",
-                 {}};
+    FieldTable t{
+        "body motion",
+        "Prescribed motion of a body, as functions of time; components left out are free. A "
+        "rotation prescribes all three components: to prescribe one or two, use a joint.",
+        {}};
     for (const char* axis : {"x", "y", "z"}) {
       t.fields.push_back(moving_number(
-          axis, kLength, std::string("Of the centre of mass, along the world's ") + axis + ".",
+          axis, kLength,
+          std::string("Displacement of the centre of mass, along the world's ") + axis + ".",
           "free"));
     }
     add_rotation(t.fields, "the world's axes");
     t.fields.push_back({.name = "measured_from",
                         .kind = kChoice,
-                        .meaning = "What displacement and rotation count from: the body's position "
+                        .meaning = "Reference of displacement and rotation: the body's position "
                                    "and orientation in this file, or the world's origin and axes.",
                         .standard = "start",
                         .choices = {"start", "world"}});
@@ -78,8 +80,8 @@ const FieldTable& body_motion_fields() {
 const FieldTable& moving_euler_fields() {
   static const FieldTable table{
       "moving euler",
-      "Euler angles as functions of time. Lower-case letters turn about the axes that turn along, "
-      "upper-case letters about those at rest.",
+      "Euler angles as functions of time. Lower-case letters are rotations about moving axes "
+      "(intrinsic), upper-case letters about fixed ones (extrinsic).",
       {{.name = "sequence",
         .kind = kText,
         .meaning = "Three letters, e.g. zxz or XYZ; neighbours differ.",

@@ -13,7 +13,7 @@ namespace {
 KindTable generator_table(const MeshGenerator& generator) {
   KindTable kind{generator.name, {"mesh " + generator.name, sentence(generator.meaning), {}}};
   if (!generator.sides.empty())
-    kind.table.meaning += " Its sides, for selections by name: " + generator.sides + ".";
+    kind.table.meaning += " Sets of nodes for selections: " + generator.sides + ".";
   for (const MeshParameter& p : generator.parameters) {
     const bool length =
         p.kind == MeshParameter::Kind::kLength || p.kind == MeshParameter::Kind::kPoint;
@@ -51,14 +51,14 @@ const FieldTable& solid_fields() {
       {
           {.name = "mesh",
            .kind = kSection,
-           .meaning = "Where its nodes and elements come from, and where they stand.",
+           .meaning = "The mesh and its position.",
            .required = true,
            .table = "solid mesh"},
           {.name = "element",
            .kind = kText,
-           .meaning = "Kind of element, or a cell such as hex8: the kind then suits the material. "
-                      "'polhode info --kinds elements' lists them.",
-           .standard = "what suits the cells of the mesh and the material"},
+           .meaning = "Kind of element, or a cell such as hex8: the kind is then chosen for the "
+                      "material. 'polhode info --kinds elements' lists them.",
+           .standard = "chosen for the cells of the mesh and the material"},
           {.name = "material",
            .kind = kMaterial,
            .meaning = "Name of a material.",
@@ -66,22 +66,22 @@ const FieldTable& solid_fields() {
           {.name = "density",
            .kind = kNumber,
            .dimension = kDensity,
-           .meaning = "In the undeformed shape.",
+           .meaning = "Density of the undeformed material.",
            .standard = "the material's",
            .range = kPositive},
           {.name = "stress",
            .kind = kChoice,
-           .meaning = "Stress over a step: by a discrete gradient, which keeps the energy at any "
-                      "step, or at the middle of the step, for comparison.",
+           .meaning = "Stress over a step: a discrete gradient, which conserves energy at any "
+                      "step, or the stress at the middle of the step, for comparison.",
            .standard = "conserving",
            .choices = {"conserving", "midpoint"}},
           {.name = "bonded",
            .kind = kBonds,
-           .meaning = "Nodes that move rigidly with a body, by name of the body; ground holds them "
-                      "where they are."},
+           .meaning = "Nodes that move rigidly with a body, by name of the body; with ground they "
+                      "are fixed."},
           {.name = "prescribed",
            .kind = kNamed,
-           .meaning = "Nodes whose displacement is given, by name.",
+           .meaning = "Nodes with prescribed displacement, by name.",
            .table = "prescribed"},
           {.name = "contact",
            .kind = kSection,
@@ -90,13 +90,13 @@ const FieldTable& solid_fields() {
           {.name = "velocity",
            .kind = kVector,
            .dimension = kVelocity,
-           .meaning = "Of the centre of mass at the start, world.",
-           .standard = "moving rigidly with the first body it is bonded to, or at rest"},
+           .meaning = "Velocity of the centre of mass at the start, world.",
+           .standard = "rigid motion with the first body it is bonded to, or at rest"},
           {.name = "angular_velocity",
            .kind = kVector,
            .dimension = kAngularVelocity,
-           .meaning = "At the start, about the centre of mass, world axes.",
-           .standard = "as velocity; [0, 0, 0] beside a velocity"},
+           .meaning = "Angular velocity at the start, about the centre of mass, world axes.",
+           .standard = "as velocity; [0, 0, 0] if velocity is given"},
       }};
   return table;
 }
@@ -105,16 +105,16 @@ const FieldTable& solid_mesh_fields() {
   static const FieldTable table = [] {
     FieldTable t{
         "solid mesh",
-        "One of: file, a generator, nodes with elements. Coordinates are the mesh's own; position "
-        "and orientation then place it in the world.",
+        "One of: file, a generator, nodes with elements. Mesh coordinates are local; position and "
+        "orientation place the mesh in the world.",
         {
             {.name = "file",
              .kind = kText,
-             .meaning = "Path of a mesh file (.msh, .vtu, .inp), seen from the model file's "
-                        "folder."},
+             .meaning =
+                 "Path of a mesh file (.msh, .vtu, .inp), relative to the model file's folder."},
             {.name = "group",
              .kind = kText,
-             .meaning = "Only the elements of this set of the file.",
+             .meaning = "Use only the elements of this set of the file.",
              .standard = "all solid elements"},
             {.name = "scale",
              .kind = kNumber,
@@ -134,22 +134,22 @@ const FieldTable& solid_mesh_fields() {
             {.name = "nodes",
              .kind = kPoints,
              .dimension = kLength,
-             .meaning = "Positions of nodes; goes with elements. The first node is number 0."},
+             .meaning = "Positions of nodes; requires elements. The first node is number 0."},
             {.name = "elements",
              .kind = kIndexLists,
              .meaning = "Nodes of each element, by number: 8, 20 or 27 for a hexahedron, 4 or 10 "
                         "for a tetrahedron, 6 for a wedge, in the order of VTK."},
             {.name = "sets",
              .kind = kIndexSets,
-             .meaning = "Nodes by number, for selections by name; goes with nodes."},
+             .meaning = "Sets of nodes by number, for selections; requires nodes."},
             {.name = "position",
              .kind = kVector,
              .dimension = kLength,
-             .meaning = "Of the origin of the mesh's coordinates, world.",
+             .meaning = "Position of the origin of the mesh's coordinates, world.",
              .standard = "[0, 0, 0]"},
             {.name = "orientation",
              .kind = kSection,
-             .meaning = "Turn from the world's axes to the mesh's.",
+             .meaning = "Rotation from the world's axes to the mesh's.",
              .standard = "along the world's axes",
              .table = "orientation"},
         });
@@ -161,8 +161,8 @@ const FieldTable& solid_mesh_fields() {
 const FieldTable& prescribed_fields() {
   static const FieldTable table = [] {
     FieldTable t{"prescribed",
-                 "Nodes of a solid whose displacement from the start is given, component by "
-                 "component. A component that is left out is free.",
+                 "Nodes of a solid with prescribed displacement from the start. Components left "
+                 "out are free.",
                  {{.name = "nodes",
                    .kind = kSelection,
                    .meaning = "The nodes.",
@@ -184,8 +184,8 @@ const FieldTable& selection_fields() {
   static const FieldTable table{
       "selection",
       "Nodes or faces of a solid: the name of a set, a map with one of these keys, or a list of "
-      "such selections, which means all of them together. A face belongs to a selection if all its "
-      "nodes do. Coordinates are the mesh's own, before it is placed by position and orientation.",
+      "such selections, which is their union. A face belongs to a selection if all its nodes do. "
+      "Coordinates are those of the mesh, before position and orientation.",
       {
           {.name = "set", .kind = kText, .meaning = "Name of a set of the mesh."},
           {.name = "plane", .kind = kSection, .meaning = "Nodes on a plane.", .table = "plane"},
@@ -200,7 +200,7 @@ const FieldTable& selection_fields() {
           {.name = "tolerance",
            .kind = kNumber,
            .dimension = kLength,
-           .meaning = "How far off a node of a plane, box or sphere may lie.",
+           .meaning = "Largest distance of a node from the plane, box or sphere.",
            .standard = "1e-6 of the mesh's extent",
            .range = kPositive},
       }};
@@ -210,13 +210,13 @@ const FieldTable& selection_fields() {
 const FieldTable& plane_fields() {
   static const FieldTable table{
       "plane",
-      "A plane, given by its normal and where it stands along it.",
+      "A plane, given by its normal and its coordinate along it.",
       {
           {.name = "axis", .kind = kDirection, .meaning = "Its normal.", .required = true},
           {.name = "at",
            .kind = kLevel,
            .dimension = kLength,
-           .meaning = "Where along the normal: min and max are the ends of the mesh.",
+           .meaning = "Coordinate along the normal: min and max are the ends of the mesh.",
            .required = true},
       }};
   return table;
@@ -242,7 +242,7 @@ const FieldTable& box_fields() {
 
 const FieldTable& sphere_fields() {
   static const FieldTable table{"sphere",
-                                "A ball, or the sphere around it.",
+                                "A ball, or its surface.",
                                 {
                                     {.name = "centre",
                                      .kind = kVector,
@@ -257,7 +257,7 @@ const FieldTable& sphere_fields() {
                                      .range = kPositive},
                                     {.name = "surface",
                                      .kind = kBoolean,
-                                     .meaning = "Only nodes at the radius itself.",
+                                     .meaning = "Only nodes on the surface.",
                                      .standard = "false"},
                                 }};
   return table;

@@ -231,7 +231,8 @@ json definitions() {
       {"type", json::array({"number", "string"})}};
   defs["time_number"] = {
       {"description",
-       "A number or expression, of the time t too, a table over time, or what a controller sets."},
+       "A number, an expression (the time is t), a table over time, or the output of a "
+       "controller."},
       {"anyOf", json::array({reference("number"), reference("table"),
                              reference(definition_name(controlled_value_fields().title))})}};
   defs["vector"] = list_of(reference("number"), 3, 3);

@@ -139,24 +139,22 @@ std::string in_code(const std::vector<std::string>& names) {
 
 std::string reference_markdown() {
   std::string page =
-      "# The model file\n\n"
-      "<!-- Made from the field tables in src/polhode/io; a test tells how to make it anew. -->\n\n"
-      "A model file is YAML 1.2 or JSON. Unknown keys, duplicate keys, anchors, tags, several "
-      "documents, numbers that are not finite and more than 64 levels are refused; all faults are "
-      "told at once, with their place. Booleans are `true` and `false`.\n\n"
-      "## Numbers\n\n"
-      "A number stands alone (`2.5`), with its unit after a blank (`30 deg`, `5 N/mm`, "
-      "`100 kg/m^3`), or as an expression of the `variables` (`-speed*L/2`), which may be followed "
-      "by a unit (`2*pi rad/s`). Where a value may depend on time, an expression may use `t`, and "
-      "a table may stand instead of it; `t` counts from the start in the file's unit of time.\n\n"
-      "Without a unit a number counts in the `units` of the file. Dimensions are followed through "
-      "expressions: a variable with a unit is of that dimension, a variable without one is of any. "
-      "Angles may be left out of products, so that a speed may be an angular velocity times a "
-      "length. The functions sin, cos and tan take bare numbers in radians whatever `units` "
-      "says.\n\n";
+      "# The model file\n\n<!-- Generated from the field tables in src/polhode/io/schema; the test "
+      "Schema says how. -->\n\nA model file is YAML 1.2 or JSON. Unknown keys, duplicate keys, "
+      "anchors, tags, several documents, numbers that are not finite and more than 64 levels are "
+      "refused; all errors are reported at once, with their position. Booleans are `true` and "
+      "`false`.\n\n## Numbers\n\nA number is written alone (`2.5`), with its unit after a space "
+      "(`30 deg`, `5 N/mm`, `100 kg/m^3`), or as an expression of the `variables` (`-speed*L/2`), "
+      "which may be followed by a unit (`2*pi rad/s`). A value that may depend on time is an "
+      "expression of `t` or a table; `t` is the time since the start in the file's unit of "
+      "time.\n\nA number without a unit has the `units` of the file. Dimensions are checked in "
+      "expressions: a variable with a unit has that dimension, a variable without one has any. "
+      "Angles count as dimensionless in products, so that a speed may be an angular velocity times "
+      "a length. The functions sin, cos and tan take numbers without a unit in radians for any "
+      "`units`.\n\n";
   page += "* Units: " + in_code(unit_names()) +
           "; m, g, s, rad, N, Pa, J, W and Hz take the prefixes n, u, m, c, k, M, G. They are "
-          "joined by blanks, `*`, `/` and `^`; g is the gram, g0 standard gravity.\n";
+          "combined by spaces, `*`, `/` and `^`; g is the gram, g0 standard gravity.\n";
   page += "* Taken names: " + in_code(reserved_names()) + ".\n";
   page +=
       "* Operators: `+ - * / ^`, brackets, `< <= > >= == !=`, `&& || !`, `c ? a : b`.\n\n"

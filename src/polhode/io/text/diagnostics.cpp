@@ -21,7 +21,7 @@ std::string joined_text(const std::vector<Diagnostic>& diagnostics) {
     text += diagnostics[k].text();
   }
   if (diagnostics.size() > kMaxDiagnostics)
-    text += format("\n... and {} more faults", diagnostics.size() - kMaxDiagnostics);
+    text += format("\n... and {} more errors", diagnostics.size() - kMaxDiagnostics);
   return text;
 }
 

@@ -115,7 +115,7 @@ class ExpressionParser {
   void read_written_unit(Part& whole) {
     const std::string_view written = text_.substr(at_);
     if (text_[at_ - 1] != ' ' && is_letter(text_[at_])) {
-      stop(at_, written.size(), quote(text_) + " lacks a blank before the unit",
+      stop(at_, written.size(), quote(text_) + " lacks a space before the unit",
            format("Write '{} {}'.", text_.substr(0, at_), written));
     }
     const UnitReading reading = read_unit(written);
@@ -415,7 +415,7 @@ class ExpressionParser {
     const auto want_number = [&](const char* wanted) {
       if (is_known(a) && !a.type.dimension.matches({}))
         stop(a.offset, at_ - a.offset, format("{}() is given {}", f.name, a.type.dimension.name()),
-             format("It wants {}.", wanted));
+             format("It needs {}.", wanted));
     };
     switch (f.rule) {
       case FunctionRule::kAngleToNumber:

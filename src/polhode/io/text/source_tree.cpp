@@ -212,7 +212,7 @@ SourceStop parser_complaint(const SourceText& source, const YAML::Exception& err
   const std::string_view text = source.line(line);
   const std::size_t indent = text.find_first_not_of(" \t");
   if (text.substr(0, indent).find('\t') != std::string_view::npos)
-    return {line, 1, "a tab cannot indent", "Indent with blanks."};
+    return {line, 1, "a tab cannot indent", "Indent with spaces."};
   if (error.msg.find("anchor") != std::string::npos) return {line, column, kNoAliases, kWriteOut};
   return {line, column, "the text is not YAML: " + error.msg,
           "Check indentation, brackets and quotes here and in the line above."};

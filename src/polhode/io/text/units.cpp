@@ -133,7 +133,7 @@ class UnitParser {
         return fail("unexpected " + quote(text_.substr(at_)));
       }
       if (sign > 0.0 && divided)
-        return fail("what follows a '/' is not clear", "Write brackets, e.g. N/(m s).");
+        return fail("the '/' is ambiguous", "Write brackets, e.g. N/(m s).");
       divided = sign < 0.0;
       Unit next;
       skip_blanks();

@@ -84,8 +84,7 @@ const ElementKind& choose_element(std::string_view where, std::string_view wante
                                      : "For these there are: " + name_list(names_of(fitting)));
   if (found->sizes().mean_dilatation && !uncoupled)
     throw InputError(
-        where,
-        format("'{}' averages the volume, which the material does not hold apart", found->name),
+        where, format("'{}' averages the volume, which needs an uncoupled material", found->name),
         "Use an uncoupled material, e.g. mooney_rivlin_uncoupled, or hex8_eas9");
   return *found;
 }

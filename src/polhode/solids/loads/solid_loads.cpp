@@ -38,7 +38,7 @@ void check_faces(const std::string& name, std::span<const LoadedFaces> faces) {
     (void)face_rule(f.shape);
     if (f.nodes.size() % static_cast<std::size_t>(cell_shape(f.shape).size()) != 0)
       throw InputError(name,
-                       format("{} numbers of nodes do not make faces {}", f.nodes.size(), f.shape),
+                       format("{} node numbers do not form faces {}", f.nodes.size(), f.shape),
                        "Give all nodes of each face");
     count += f.nodes.size();
   }

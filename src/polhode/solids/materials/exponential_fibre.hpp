@@ -32,7 +32,7 @@ struct ExponentialFibre {
             .meaning = "F = ξ/(2α) (exp(α (I₄ − 1)²) − 1)",
             .parameters = {
                 {"xi", "Pa", {}, kPositive, kInfinity, "ξ: a quarter of the modulus at rest"},
-                {"alpha", "-", {}, kPositive, kInfinity, "α: how fast it stiffens"}}};
+                {"alpha", "-", {}, kPositive, kInfinity, "α: rate of stiffening"}}};
   }
   static ExponentialFibre from(const ParameterValues& v) { return {v.at("xi"), v.at("alpha")}; }
 

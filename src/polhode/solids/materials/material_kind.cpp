@@ -56,10 +56,10 @@ void check_alternatives(std::string_view where, const MaterialKind& kind,
         present.push_back(p.name);
   for (const auto& set : kind.alternatives)
     if (has_all(given, set) && present.size() == set.size()) return;
-  const std::string what = present.empty() ? "elastic moduli are missing"
-                           : present.size() == 1
-                               ? format("'{}' alone does not say how stiff it is", present.front())
-                               : format("{} do not go together", joined(present));
+  const std::string what =
+      present.empty()       ? "elastic moduli are missing"
+      : present.size() == 1 ? format("'{}' alone does not determine the stiffness", present.front())
+                            : format("{} cannot be combined", joined(present));
   throw InputError(where, what, format("Give {}", listed(kind.alternatives)));
 }
 

@@ -24,7 +24,7 @@ struct MooneyRivlin {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     constexpr double kPositive = std::numeric_limits<double>::min();
     return {.name = kKind,
-            .meaning = "compressible Mooney-Rivlin: shape and volume coupled",
+            .meaning = "compressible Mooney-Rivlin: deviatoric and volumetric response coupled",
             .parameters =
                 {
                     {"c1", "Pa", {}, -kInfinity, kInfinity, "of I₁; c1 + c2 is half of μ"},

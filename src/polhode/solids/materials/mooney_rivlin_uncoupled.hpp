@@ -24,7 +24,9 @@ struct MooneyRivlinUncoupled {
   static MaterialKind kind() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     return {.name = kKind,
-            .meaning = "nearly incompressible Mooney-Rivlin: shape and volume apart; rubber",
+            .meaning =
+                "nearly incompressible Mooney-Rivlin: deviatoric and volumetric response "
+                "uncoupled; rubber",
             .parameters =
                 {
                     {"c1", "Pa", {}, -kInfinity, kInfinity, "of Ī₁; c1 + c2 is half of μ"},

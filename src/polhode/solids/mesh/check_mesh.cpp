@@ -74,7 +74,7 @@ void find_duplicates(const Mesh& mesh, std::vector<MeshFault>& faults) {
   if (twice.empty()) return;
   faults.push_back(
       {FaultKind::kDuplicateNodes, false,
-       format("{} on others, so that parts may not hang together: {}; {}",
+       format("{} on others, so that parts may not be connected: {}; {}",
               counted(twice.size(), "node lies", "nodes lie"), numbers(twice), example),
        "Have duplicate nodes merged if the parts are one"});
 }
@@ -125,7 +125,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
     if (pieces.size() > 5) list += format(" and {} more", pieces.size() - 5);
     faults.push_back({FaultKind::kPieces, false,
                       format("the mesh has {} pieces that share no node: {}", pieces.size(), list),
-                      "Merge duplicate nodes if they are one, or hold every piece by itself"});
+                      "Merge duplicate nodes if they are one, or constrain every piece"});
   }
   std::vector<std::int64_t> loose;
   for (int i = 0; i < static_cast<int>(used.size()); ++i)
@@ -134,7 +134,7 @@ void find_pieces(const Mesh& mesh, std::vector<MeshFault>& faults) {
     faults.push_back({FaultKind::kLooseNodes, false,
                       format("{} to no element: {}",
                              counted(loose.size(), "node belongs", "nodes belong"), numbers(loose)),
-                      "They are left out; nothing has to be done"});
+                      "They are ignored; no action is needed"});
 }
 
 }  // namespace

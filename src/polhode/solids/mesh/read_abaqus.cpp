@@ -92,7 +92,7 @@ class AbaqusReader {
     }
     if (!ignored_.empty()) {
       const std::vector<std::string> names(ignored_.begin(), ignored_.end());
-      mesh_.note(format("left out, as it says nothing of the mesh: {}", name_list(names)));
+      mesh_.note(format("ignored, as it does not define the mesh: {}", name_list(names)));
     }
     if (!faces_seen_.empty())
       mesh_.note(format("elements of type {} are taken as faces of surfaces",
@@ -365,7 +365,7 @@ class AbaqusReader {
   int cell_of(std::int64_t label) const {
     const auto found = elements_.find(label);
     if (found == elements_.end())
-      refuse(format("element {} does not exist", label), "Name elements that stand above");
+      refuse(format("element {} does not exist", label), "Name elements that are defined above");
     return found->second;
   }
   const std::vector<int>& cells_of_set(const std::string& name) {

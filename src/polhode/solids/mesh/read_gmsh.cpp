@@ -77,8 +77,7 @@ int read_header(GmshFile& file) {
     const auto one = in.binary<std::int32_t>("the number 1");
     in.swap = one == 0x01000000;
     if (one != 1 && !in.swap)
-      in.refuse(format("the order of bytes cannot be told: 1 reads as {}", one), kExportMeshAgain,
-                true);
+      in.refuse(format("the byte order is unknown: 1 reads as {}", one), kExportMeshAgain, true);
   }
   file.expect_end("MeshFormat");
   return two ? 2 : 4;
@@ -90,7 +89,7 @@ void read_names(GmshFile& file) {
   for (std::size_t i = 0; i < n; ++i) {
     const std::int64_t dimension = in.integer("a dimension");
     if (dimension < 0 || dimension > 3)
-      in.refuse(format("a group of dimension {} cannot be", dimension), kExportMeshAgain);
+      in.refuse(format("a group cannot have the dimension {}", dimension), kExportMeshAgain);
     const std::int64_t tag = in.integer("the number of a group");
     const std::string_view name = in.line();
     if (name.size() < 2 || name.front() != '"' || name.back() != '"')
@@ -172,7 +171,7 @@ Mesh parse_gmsh(const std::string& name, std::string_view bytes) {
       version == 2 ? read_gmsh2_elements(file) : read_gmsh4_elements(file, entities);
       elements = true;
     } else if (version == 4 && (section == "Entities" || section == "PartitionedEntities")) {
-      if (elements) in.refuse("the entities stand behind the elements", kExportMeshAgain);
+      if (elements) in.refuse("the entities come after the elements", kExportMeshAgain);
       read_gmsh4_entities(file, entities, section == "PartitionedEntities");
     } else if (section == "ParametricNodes") {
       in.refuse("nodes with parametric coordinates are not supported in this version",

@@ -11,7 +11,7 @@ namespace {
 int read_dimension(GmshFile& file) {
   const auto dimension = file.read<std::int32_t>("the dimension of an entity");
   if (dimension < 0 || dimension > 3)
-    file.in.refuse(format("an entity of dimension {} cannot be", dimension), kExportMeshAgain,
+    file.in.refuse(format("an entity cannot have the dimension {}", dimension), kExportMeshAgain,
                    file.binary);
   return dimension;
 }
@@ -31,7 +31,7 @@ Announced read_counts(GmshFile& file, const char* things, std::size_t text_bytes
   Announced counts{};
   counts.blocks = file.count<std::uint64_t>("blocks", 8, 20);
   counts.things = file.count<std::uint64_t>(things, text_bytes, binary_bytes);
-  (void)file.read<std::uint64_t>("the least number");
+  (void)file.read<std::uint64_t>("the smallest number");
   (void)file.read<std::uint64_t>("the largest number");
   return counts;
 }

@@ -271,7 +271,8 @@ class VtuReader {
       if (jacobian(wedge, X.data(), {1.0 / 3.0, 1.0 / 3.0, 0.0}) > 0.0) ++as_given;
     }
     if (2 * as_given > static_cast<int>(wedges.size())) {
-      mesh_.note("the wedges are in the order of Gmsh and Abaqus, not in that of VTK; taken so");
+      mesh_.note(
+          "the wedges have the node order of Gmsh and Abaqus, not that of VTK; it is accepted");
       return;
     }
     for (int c : wedges) mesh_.reorder(c, kWedgeOrder);

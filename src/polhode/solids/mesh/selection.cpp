@@ -36,7 +36,7 @@ std::string description(const Selection& s) {
       return s.level == Level::kValue
                  ? format("the plane with normal {} at {:.6g} m", point_text(s.normal), s.value)
                  : format("the plane with normal {} at the {}", point_text(s.normal),
-                          s.level == Level::kMin ? "least extent" : "largest extent");
+                          s.level == Level::kMin ? "smallest extent" : "largest extent");
     case Kind::kBox:
       return format("the box from {} to {} m", point_text(s.least), point_text(s.most));
     case Kind::kSphere:
