@@ -14,7 +14,7 @@
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
-#include <polhode/engines/crowd_engine.hpp>
+#include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/kernels/dispatch.hpp>
 #include <polhode/stepping/single_step.hpp>
@@ -158,8 +158,8 @@ int main(int argc, char** argv) {
   if (task.nonsmooth)
     owned = std::make_unique<NonsmoothEngine>(system);
   else
-    owned = std::make_unique<CrowdEngine>(system, task.residual);
-  const auto* crowd = dynamic_cast<const CrowdEngine*>(owned.get());
+    owned = std::make_unique<ContactCgEngine>(system, task.residual);
+  const auto* cg = dynamic_cast<const ContactCgEngine*>(owned.get());
   const auto* impulses = dynamic_cast<const NonsmoothEngine*>(owned.get());
   Runner runner(system, std::move(owned));
   runner.begin(state);
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
   int steps = 0, late = 0, touching = 0, unconverged = 0;
   while (state.t < task.duration - 1e-9) {
     const double before = processor_seconds();
-    const long inner_before = crowd ? crowd->inner_iterations() : 0;
+    const long inner_before = cg ? cg->inner_iterations() : 0;
     if (!runner.step(state)) return 1;
     const double took = processor_seconds() - before;
     const bool is_late = state.t > task.duration - 1.0;
@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
     late += is_late;
     time.add(1e3 * took, is_late);
     iterations.add(impulses ? impulses->last_search().sweeps : runner.iterations, is_late);
-    inner.add(crowd ? static_cast<double>(crowd->inner_iterations() - inner_before) : 0.0, is_late);
+    inner.add(cg ? static_cast<double>(cg->inner_iterations() - inner_before) : 0.0, is_late);
     if (impulses && !impulses->last_search().converged) ++unconverged;
     const double now = runner.energy(state);
     rise = std::max(rise, now - energy);

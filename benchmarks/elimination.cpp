@@ -63,9 +63,9 @@ const std::vector<Family>& families() {
 }
 
 /// Above this many bodies only the first instruction set runs, and no block LU.
-constexpr int kMostBodiesCompared = 1000;
+constexpr int kMaxBodiesCompared = 1000;
 /// Bodies times steps of one repetition, and bounds of the number of steps.
-constexpr int kBodySteps = 200'000, kFewestSteps = 3, kMostSteps = 200;
+constexpr int kBodySteps = 200'000, kFewestSteps = 3, kMaxSteps = 200;
 
 /// One way to solve the steps of a system, run from the same start again and again.
 class Contender {
@@ -146,13 +146,13 @@ void measure(const Family& family, int size, const std::vector<std::string>& set
 
   std::vector<Contender> contenders;
   contenders.reserve(sets.size() + 1);
-  const bool compared = bodies <= kMostBodiesCompared && !alone;
+  const bool compared = bodies <= kMaxBodiesCompared && !alone;
   for (const std::string& isa : sets)
     if (compared || alone || contenders.empty())
       contenders.emplace_back(system, start, family.step, isa);
   if (compared) contenders.emplace_back(system, start, family.step, "");
 
-  const int steps = std::clamp(kBodySteps / bodies, kFewestSteps, kMostSteps);
+  const int steps = std::clamp(kBodySteps / bodies, kFewestSteps, kMaxSteps);
   for (int i = 0; i < repetitions; ++i)
     for (Contender& c : contenders) c.repeat(steps);
 

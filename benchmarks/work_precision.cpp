@@ -151,7 +151,7 @@ Truth find_truth(const Case& c) {
 }
 
 /// So many runs of a case may fail for steps too coarse.
-constexpr int kMostFailures = 20;
+constexpr int kMaxFailures = 20;
 /// Short runs are repeated until they have taken so long together [s].
 constexpr double kEnoughSeconds = 0.2;
 /// Errors of interest [m or rad]: coarser ones are not reported, finer ones end a row of runs.
@@ -173,7 +173,7 @@ class Row {
       o = run(case_, a, kEnoughSeconds);
     } catch (const std::exception& e) {  // too coarse
       std::fprintf(stderr, "%s, order %s: %s\n", case_.name.c_str(), order.c_str(), e.what());
-      return ++failures_ < kMostFailures;
+      return ++failures_ < kMaxFailures;
     }
     const double error = difference(o.end, truth_.value);
     j["error"] = error;

@@ -38,8 +38,8 @@ INTERACTIONS = SOURCE / "system/interaction_group.hpp"
 MOST_VIRTUALS = 14
 VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
 # What a group of elements may be besides, and the function by which it says so.
-FACETS = {"BarrierPoints": "barrier_points", "InternalUnknowns": "internal_unknowns",
-          "MovingPattern": "moving_pattern", "SurfaceImpacts": "surface_impacts"}
+FACETS = {"BarrierConstraint": "barrier_constraint", "InternalUnknowns": "internal_unknowns",
+          "ChangingSparsity": "changing_sparsity", "SurfaceImpacts": "surface_impacts"}
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 

@@ -12,7 +12,7 @@ namespace {
 nb::object errors() { return nb::module_::import_("polhode._errors"); }
 
 nb::tuple fault(const Diagnostic& d) {
-  return nb::make_tuple(d.place.file, d.place.line, d.place.column, d.path, d.what, d.mend,
+  return nb::make_tuple(d.place.file, d.place.line, d.place.column, d.path, d.what, d.hint,
                         d.excerpt);
 }
 
@@ -33,7 +33,7 @@ void translate(const std::exception_ptr& thrown, void*) {
     Diagnostic d;
     d.path = e.where();
     d.what = e.what_is_wrong();
-    d.mend = e.mend();
+    d.hint = e.hint();
     nb::list faults;
     faults.append(fault(d));
     raise_model_error(faults);

@@ -251,7 +251,7 @@ TEST(BeamElement, AsksForAFinerMeshWhereItBendsTooMuch) {
   Random random(10);
   BeamSample sample(random, context_of(1.0));
   const BeamElement beam = sample.element();
-  EXPECT_TRUE(beam.always_asked());
+  EXPECT_TRUE(beam.always_queried());
   sample.motion.with(Displacement::Zero(),
                      [&](const PairStep& s) { EXPECT_TRUE(beam.acceptable(s)); });
   sample.spec.end_2.Q = sample.spec.end_2.Q * exp_map(Vec3(0, 3.0, 0));

@@ -43,7 +43,7 @@ TEST(SolidPoint, OutsideIsRefusedWithTheNearestNode) {
     FAIL() << "was found";
   } catch (const InputError& error) {
     EXPECT_EQ(error.where(), "output.probes.tip.point");
-    EXPECT_NE(error.mend().find("(0.5, 0.5, 0.5), 0.2 m away"), std::string::npos) << error.mend();
+    EXPECT_NE(error.hint().find("(0.5, 0.5, 0.5), 0.2 m away"), std::string::npos) << error.hint();
   }
 }
 

@@ -184,11 +184,11 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
       const Encounter e = meet(a_, b_, context_of(rho, 0.01), random, kReach);
       int of_this = 0;
       for (const OrderedPair& p : e.pairs) {
-        for (const bool rubs : {false, true}) {
+        for (const bool has_friction : {false, true}) {
           NormalLaw law{NormalPotential::barrier, 1e5, kReach, {}, {}, {}};
           PointData d = data_of(p, a_, b_, law);
           d.end_share = trial % 2 == 1 ? 0.5 : 0.0;
-          if (rubs) {
+          if (has_friction) {
             d.friction.mu = 0.4;
             d.friction.mu_across = trial % 3 == 0 ? 0.2 : 0.0;
             d.friction.rolling = 0.01;
@@ -215,7 +215,7 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
               12, h);
           EXPECT_LT((analytic - numeric).cwiseAbs().maxCoeff() / scale, 3e-5)
               << static_cast<int>(p.pair.kind) << " i " << p.pair.i << " j " << p.pair.j << " rubs "
-              << rubs << " gaps " << report.gap_n << " " << report.gap_n1;
+              << has_friction << " gaps " << report.gap_n << " " << report.gap_n1;
           ++checked;
           if (++of_this > 6) break;
         }

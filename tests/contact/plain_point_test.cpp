@@ -3,7 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <polhode/contact/plain_point.hpp>
+#include <polhode/contact/closed_form_point.hpp>
 
 #include "support/random_steps.hpp"
 
@@ -52,7 +52,7 @@ TEST(PlainPoint, GivesWhatTheGeneralFormulasGive) {
   for (unsigned seed = 1; seed <= 40; ++seed)
     for (const bool plane_below : {false, true}) {
       Case c(seed, plane_below);
-      ASSERT_TRUE(is_plain(c.data));
+      ASSERT_TRUE(has_closed_form(c.data));
       const auto distance = [&](const Vec3& r_a, const Mat3& L_a, const Vec3& r_b,
                                 const Mat3& L_b) {
         return gap(c.data.pair, *c.data.a, *c.data.b, Placement<double>(r_a, L_a, 0),
@@ -61,11 +61,11 @@ TEST(PlainPoint, GivesWhatTheGeneralFormulasGive) {
       };
       const BodyStep &a = c.step_a, &b = c.step_b;
       const double g_0 = distance(a.r_n, a.Lambda_n, b.r_n, b.Lambda_n);
-      const double g_1 = plain_gap_n1(c.data, g_0, a, b);
+      const double g_1 = closed_form_gap_n1(c.data, g_0, a, b);
       EXPECT_NEAR(g_1, distance(a.r_n1, a.Lambda_n1, b.r_n1, b.Lambda_n1), 1e-15);
       PointReport fast_report, report;
       const PointForce fast =
-          plain_force(c.data, g_0, g_1, c.step_a, c.step_b, c.context, &fast_report);
+          closed_form_force(c.data, g_0, g_1, c.step_a, c.step_b, c.context, &fast_report);
       PairTerms terms;
       terms.set_zero();
       c.context.tangents = false;

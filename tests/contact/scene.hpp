@@ -8,9 +8,9 @@
 #include <string>
 
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/contact_engine.hpp>
 #include <polhode/engines/coupled_engine.hpp>
-#include <polhode/engines/crowd_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/registry.hpp>
@@ -40,7 +40,7 @@ class Scene {
   std::shared_ptr<contact::ContactSet> contacts = std::make_shared<contact::ContactSet>();
   State state;
   int iterations = 0, steps = 0, cuts = 0;
-  double crowd_residual = 0.0;  ///< Above 0: the engine for crowds.
+  double cg_residual = 0.0;  ///< Above 0: the contact CG engine.
   double newton_tolerance = 1e-12;
   int max_iterations = 40;
 
@@ -164,8 +164,8 @@ class Scene {
     std::unique_ptr<NewtonEngine> engine;
     if (contacts->impulses())
       engine = std::make_unique<NonsmoothEngine>(system);
-    else if (crowd_residual > 0.0)
-      engine = std::make_unique<CrowdEngine>(system, crowd_residual);
+    else if (cg_residual > 0.0)
+      engine = std::make_unique<ContactCgEngine>(system, cg_residual);
     else if (!system.nodes().empty())
       engine = std::make_unique<CoupledEngine>(system, "block_lu", MomentumRate::momentum,
                                                NodeFactor::every_iteration);

@@ -9,11 +9,11 @@ namespace {
 constexpr double kFall = 9.81e-3;  ///< What gravity adds in a step [m/s].
 
 /// Balls one on the other, on the ground, that have fallen for a step and slide along x.
-ImpulseSweeps column(const std::vector<double>& masses, double along) {
-  ImpulseSweeps s;
+ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
+  ProjectedGaussSeidel s;
   const double R = 0.05;
   for (const double m : masses) {
-    ImpulseSweeps::Body b;
+    ProjectedGaussSeidel::Body b;
     b.inverse_mass = 1.0 / m;
     b.inverse_inertia = Mat3::Identity() / (0.4 * m * R * R);
     b.v = Vec3(along, 0.0, -kFall);
@@ -21,7 +21,7 @@ ImpulseSweeps column(const std::vector<double>& masses, double along) {
   }
   s.bodies.emplace_back();
   for (std::size_t k = 0; k < masses.size(); ++k) {
-    ImpulseSweeps::Point p;
+    ProjectedGaussSeidel::Point p;
     p.a = static_cast<int>(k);
     p.b = static_cast<int>(k == 0 ? masses.size() : k - 1);
     p.normal = Vec3::UnitZ();
@@ -36,7 +36,7 @@ ImpulseSweeps column(const std::vector<double>& masses, double along) {
 
 /// A ton on a gram: sweeps contract by 1e-6, Newton's method ends at the weights.
 TEST(ImpulseNewton, CarriesATonOnAGram) {
-  ImpulseSweeps s = column({1e-3, 1e3}, 0.0);
+  ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
   EXPECT_LT(s.points[1].push, 1e-3);  // of 9.81 N s
   ASSERT_TRUE(solve_impulses(s, 1e-6 * kFall));
@@ -49,7 +49,7 @@ TEST(ImpulseNewton, CarriesATonOnAGram) {
 /// @tests{nonsmooth-projection}
 TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
   for (const double along : {0.0, 1e-3, 0.05}) {
-    ImpulseSweeps swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
+    ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, along), found = swept;
     for (int k = 0; k < 20000; ++k) swept.sweep(k % 2 == 1);
     for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
     ASSERT_TRUE(solve_impulses(found, 1e-7 * kFall)) << along;

@@ -51,7 +51,7 @@ inline int read(Parser parse, const std::uint8_t* data, std::size_t size) {
     (void)boundary(mesh);
   } catch (const InputError& error) {
     require(error.where().starts_with("fuzz") && !error.what_is_wrong().empty() &&
-            !error.mend().empty());
+            !error.hint().empty());
   }
   return 0;
 }

@@ -35,7 +35,7 @@ void tolerate(const std::string& where, Use&& use) {
     use();
   } catch (const InputError& error) {
     require(error.where().starts_with(where) && !error.what_is_wrong().empty() &&
-            !error.mend().empty());
+            !error.hint().empty());
   }
 }
 

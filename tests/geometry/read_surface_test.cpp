@@ -171,22 +171,22 @@ TEST(ReadObj, IsExactForAFaceThatIsNotConvex) {
 
 TEST(ReadObj, SaysWhatIsWrongAndWhere) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  const std::string mend = ". Export the file again from the program that made it.";
+  const std::string hint = ". Export the file again from the program that made it.";
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 4\n"),
-            "a.obj:4: point 4 is used, but 3 points stand above" + mend);
+            "a.obj:4: point 4 is used, but 3 points stand above" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 -4\n"),
-            "a.obj:4: point -4 is used, but 3 points stand above" + mend);
+            "a.obj:4: point -4 is used, but 3 points stand above" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 0\n"),
-            "a.obj:4: '0' is not the number of a point" + mend);
+            "a.obj:4: '0' is not the number of a point" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2\n"),
-            "a.obj:4: a face has at least three corners, but 2 are given" + mend);
+            "a.obj:4: a face has at least three corners, but 2 are given" + hint);
   EXPECT_EQ(refusal("a.obj", points + "f 1 2 \\\n"),
-            "a.obj:4: the file is cut short: it ends within a face" + mend);
+            "a.obj:4: the file is cut short: it ends within a face" + hint);
   EXPECT_EQ(refusal("a.obj", "v 0 0\n"),
-            "a.obj:1: a point has three coordinates, but fewer are given" + mend);
-  EXPECT_EQ(refusal("a.obj", points), "a.obj: the file has no triangles" + mend);
+            "a.obj:1: a point has three coordinates, but fewer are given" + hint);
+  EXPECT_EQ(refusal("a.obj", points), "a.obj: the file has no triangles" + hint);
   EXPECT_EQ(refusal("a.obj", binary_stl(box())),
-            "a.obj: the file is not text, so it is no OBJ file" + mend);
+            "a.obj: the file is not text, so it is no OBJ file" + hint);
 }
 
 TEST(ReadSurface, RefusesOtherFormats) {

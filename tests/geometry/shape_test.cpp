@@ -89,7 +89,7 @@ TEST(SurfaceFiles, ThatBrokeShapesAreReadOrRefused) {
         EXPECT_GT(shape.rounding, 0.0) << name;
         for (const Vec3& x : shape.corners) EXPECT_TRUE(x.allFinite()) << name;
       } catch (const InputError& e) {
-        EXPECT_FALSE(e.mend().empty()) << name;
+        EXPECT_FALSE(e.hint().empty()) << name;
       }
     }
   }

@@ -16,13 +16,13 @@ namespace {
 using test::Numbers;
 
 /// Bodies that push each other and the ground at points.
-struct Crowd {
+struct ManyBodies {
   std::vector<Mat6> blocks;
   std::vector<ContactSpring> springs;
 };
 
-Crowd crowd(int bodies, double stiffness, unsigned seed) {
-  Crowd c;
+ManyBodies many_bodies(int bodies, double stiffness, unsigned seed) {
+  ManyBodies c;
   Numbers number(seed);
   const auto vector = [&] {
     Vec3 x;
@@ -43,13 +43,13 @@ Crowd crowd(int bodies, double stiffness, unsigned seed) {
   return c;
 }
 
-std::vector<ActingPoint> acting(const Crowd& c) {
+std::vector<ActingPoint> acting(const ManyBodies& c) {
   std::vector<ActingPoint> points;
   for (const ContactSpring& s : c.springs) points.emplace_back().spring = s;
   return points;
 }
 
-void set(BlockCg& cg, const Crowd& c) {
+void set(BlockCg& cg, const ManyBodies& c) {
   ASSERT_TRUE(cg.set_bodies(c.blocks));
   std::vector<int> all(c.blocks.size());
   std::iota(all.begin(), all.end(), 0);
@@ -57,7 +57,7 @@ void set(BlockCg& cg, const Crowd& c) {
 }
 
 /// The matrix that BlockCg never writes down.
-Eigen::MatrixXd assembled(const Crowd& c) {
+Eigen::MatrixXd assembled(const ManyBodies& c) {
   const auto n = 6 * static_cast<Eigen::Index>(c.blocks.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
@@ -86,7 +86,7 @@ Vec flat(const std::vector<Vec6>& x) {
 /// Single precision: some seven digits, less what the condition of the matrix takes.
 TEST(BlockCg, AgreesWithADirectSolver) {
   for (const double stiffness : {0.0, 1.0, 100.0}) {
-    const Crowd c = crowd(40, stiffness, 3);
+    const ManyBodies c = many_bodies(40, stiffness, 3);
     BlockCg cg;
     set(cg, c);
     const std::vector<Vec6> rhs = numbers(40, 5);
@@ -100,7 +100,7 @@ TEST(BlockCg, AgreesWithADirectSolver) {
 /// Sliding points whose friction follows their normal forces: with every direction of GMRES more of
 /// the unsymmetric system is solved, and without any of them it is not.
 TEST(BlockCg, FollowsNormalForcesWithFriction) {
-  Crowd c = crowd(40, 100.0, 3);
+  ManyBodies c = many_bodies(40, 100.0, 3);
   Numbers number(8);
   for (ContactSpring& s : c.springs) {
     s.normal = Vec3(number(), number(), number()).normalized();
@@ -123,10 +123,10 @@ TEST(BlockCg, FollowsNormalForcesWithFriction) {
 }
 
 /// Ties between bodies and rows between them and the ground, some of them redundant, beside points
-/// whose friction follows normal forces. @tests{crowd-rows}
+/// whose friction follows normal forces. @tests{cg-rows}
 TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
   for (const bool rubbing : {false, true}) {
-    Crowd c = crowd(40, 20.0, 3);
+    ManyBodies c = many_bodies(40, 20.0, 3);
     Numbers number(8);
     if (rubbing)
       for (ContactSpring& s : c.springs) {
@@ -186,7 +186,7 @@ TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
 /// What Newton iterations do: the rest of one solution is what the next one is asked for.
 TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
   for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness
-    Crowd c = crowd(40, 100.0, 3);
+    ManyBodies c = many_bodies(40, 100.0, 3);
     for (Mat6& B : c.blocks) B *= unit;
     for (ContactSpring& s : c.springs) s.C *= unit;
     const Eigen::MatrixXd A = assembled(c);
@@ -209,7 +209,7 @@ TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
 }
 
 TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
-  const Crowd c = crowd(60, 50.0, 9);
+  const ManyBodies c = many_bodies(60, 50.0, 9);
   BlockCg cg;
   set(cg, c);
   const std::vector<Vec6> rhs = numbers(60, 6);
@@ -229,7 +229,7 @@ TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
 
 /// Springs that leave nothing of the bodies in single precision.
 TEST(BlockCg, StandsSpringsOfAnyStiffness) {
-  const Crowd c = crowd(12, 1e12, 7);
+  const ManyBodies c = many_bodies(12, 1e12, 7);
   BlockCg cg;
   set(cg, c);
   std::vector<Vec6> x;
@@ -239,7 +239,7 @@ TEST(BlockCg, StandsSpringsOfAnyStiffness) {
 
 /// Of A x = f the rows and columns of what moves.
 TEST(BlockCg, LeavesBodiesWhereTheyAre) {
-  const Crowd c = crowd(40, 20.0, 3);
+  const ManyBodies c = many_bodies(40, 20.0, 3);
   const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};
   BlockCg cg;
   ASSERT_TRUE(cg.set_bodies(c.blocks));
@@ -260,7 +260,7 @@ TEST(BlockCg, LeavesBodiesWhereTheyAre) {
 }
 
 TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
-  Crowd c = crowd(7, 0.0, 1);
+  ManyBodies c = many_bodies(7, 0.0, 1);
   c.springs.clear();
   c.blocks[3] *= 5.0;
   BlockCg cg;
@@ -272,7 +272,7 @@ TEST(BlockCg, SolvesBodiesWithoutSpringsInOneIteration) {
 }
 
 TEST(BlockCg, RefusesABlockThatIsNotPositive) {
-  Crowd c = crowd(3, 1.0, 4);
+  ManyBodies c = many_bodies(3, 1.0, 4);
   c.blocks[1] -= 50.0 * Mat6::Identity();
   BlockCg cg;
   EXPECT_FALSE(cg.set_bodies(c.blocks));

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/engines/coupled_engine.hpp>
-#include <polhode/equations/kept_iterate.hpp>
+#include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/solids/loads/solid_loads.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/mesh/generators.hpp>
@@ -100,7 +100,7 @@ TEST(Retreat, EndsWithTheWorstElementNamedWhereThereIsNoWay) {
   EXPECT_THAT(report.message, HasSubstr("of 'solids.cube'"));
 }
 
-TEST(KeptIterate, RestoresWhatIterationsMoveAndNothingElse) {
+TEST(IterateSnapshot, RestoresWhatIterationsMoveAndNothingElse) {
   System system;
   press(system, "hex8_eas9", kFoam, 0.1);
   const State state = system.initial_state();
@@ -113,7 +113,7 @@ TEST(KeptIterate, RestoresWhatIterationsMoveAndNothingElse) {
   std::vector<double> inside = element_unknowns(system, trial);
   ASSERT_FALSE(inside.empty());
   EXPECT_LT(inside.size(), trial.element_scratch.size() / 10);
-  KeptIterate kept;
+  IterateSnapshot kept;
   kept.keep(system, trial);
   for (std::size_t k = 0; k < inside.size(); ++k) inside[k] = static_cast<double>(k);
   set_element_unknowns(system, inside, trial);

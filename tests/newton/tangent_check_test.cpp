@@ -229,7 +229,7 @@ TEST(CheckTangents, SaysThatImpulsesHaveNoTangent) {
 
 /// One pair of bodies that repel each other, by the distance of their centres along x. Its tangent
 /// knows nothing of one of them.
-class WrongContacts final : public MovingContacts {
+class WrongContacts final : public BodyContacts {
  public:
   void prepare(const System&) override {}
   bool begin_step(const State&, std::span<const BodyStep>, const StepContext&) override {
@@ -255,7 +255,7 @@ class WrongContacts final : public MovingContacts {
   Work commit(State&, std::span<const BodyStep>, const StepContext&) override { return {}; }
   bool touched() const override { return true; }
   Work impacts(State&, std::vector<PairImpact>&) override { return {}; }
-  void settled(std::span<const SettledImpact>) override {}
+  void settled(std::span<const ResolvedImpact>) override {}
   std::string tightest() const override { return {}; }
 
  private:

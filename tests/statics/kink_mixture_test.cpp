@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <polhode/statics/kink_mixture.hpp>
+#include <polhode/statics/clarke_combination.hpp>
 
 namespace polhode::kink_mixture_tests {
 namespace {
@@ -15,8 +15,8 @@ Vec vec(std::initializer_list<double> numbers) {
 }
 
 /// Two sides of a roof: what is across cancels, what is along stays. @tests{statics-kink}
-TEST(KinkMixture, BalancesTwoSidesOfARoof) {
-  KinkMixture kinks;
+TEST(ClarkeCombination, BalancesTwoSidesOfARoof) {
+  ClarkeCombination kinks;
   kinks.add(vec({0.0, 2.0, 0.5}));
   EXPECT_EQ(kinks.shortest(), vec({0.0, 2.0, 0.5}));
   kinks.add(vec({0.0, -1.0, 0.5}));
@@ -24,8 +24,8 @@ TEST(KinkMixture, BalancesTwoSidesOfARoof) {
 }
 
 /// Forces of one sign never cancel: the shorter one is the best there is.
-TEST(KinkMixture, DoesNotBalanceWhatPushesOneWay) {
-  KinkMixture kinks;
+TEST(ClarkeCombination, DoesNotBalanceWhatPushesOneWay) {
+  ClarkeCombination kinks;
   kinks.add(vec({3.0, 0.0}));
   kinks.add(vec({1.0, 0.0}));
   EXPECT_LT((kinks.shortest() - vec({1.0, 0.0})).norm(), 1e-15);
@@ -35,10 +35,10 @@ TEST(KinkMixture, DoesNotBalanceWhatPushesOneWay) {
 }
 
 /// Against a fine grid of all mixtures of four, the oldest of five being forgotten.
-TEST(KinkMixture, IsTheShortestOfAll) {
+TEST(ClarkeCombination, IsTheShortestOfAll) {
   for (int seed = 0; seed < 20; ++seed) {
     std::vector<Vec> all;
-    KinkMixture kinks;
+    ClarkeCombination kinks;
     for (int k = 0; k < 5; ++k) {
       Vec r(3);
       for (int i = 0; i < 3; ++i) r[i] = std::sin(12.3 * seed + 3.1 * k * k + 7.7 * i) + 0.2 * i;
@@ -60,8 +60,8 @@ TEST(KinkMixture, IsTheShortestOfAll) {
 }
 
 /// Sides that tell the same twice.
-TEST(KinkMixture, StandsEqualResiduals) {
-  KinkMixture kinks;
+TEST(ClarkeCombination, StandsEqualResiduals) {
+  ClarkeCombination kinks;
   for (int k = 0; k < 4; ++k) kinks.add(vec({k % 2 == 0 ? 1e-9 : -3e-9, 0.0}));
   EXPECT_LT(kinks.shortest().norm(), 1e-20);
 }

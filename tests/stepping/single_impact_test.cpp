@@ -64,10 +64,10 @@ TEST(SingleImpact, IsNewtonsAndCoulombsOfASphere) {
     for (const double mu : {0.0, 0.1, 0.5}) {
       const Vec3 v(-2.0, 3.0, -4.0);
       const SingleImpactEnd end = end_of({K, v, mu, mu, e});
-      const double p = 2.0 * (1.0 + e), rubs = std::min(mu * p, 5.0 / 3.5);
+      const double p = 2.0 * (1.0 + e), has_friction = std::min(mu * p, 5.0 / 3.5);
       EXPECT_NEAR(end.impulse.x(), p, 1e-14);
-      EXPECT_NEAR(end.impulse.y(), -0.6 * rubs, 1e-14);
-      EXPECT_NEAR(end.impulse.z(), 0.8 * rubs, 1e-14);
+      EXPECT_NEAR(end.impulse.y(), -0.6 * has_friction, 1e-14);
+      EXPECT_NEAR(end.impulse.z(), 0.8 * has_friction, 1e-14);
       EXPECT_NEAR(end.velocity.x(), 2.0 * e, 1e-14);
       EXPECT_LT((end.velocity - v - K * end.impulse).norm(), 1e-13);
     }

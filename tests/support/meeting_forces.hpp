@@ -6,7 +6,7 @@
 
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/surface_law.hpp>
-#include <polhode/system/moving_pattern.hpp>
+#include <polhode/system/changing_sparsity.hpp>
 #include <polhode/system/nodes.hpp>
 #include <support/random_steps.hpp>
 

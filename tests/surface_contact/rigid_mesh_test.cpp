@@ -132,7 +132,7 @@ TEST(RigidMesh, BecomesTheCylinderOfSecondOrder) {
 
 /// Points within the band over a rough surface, many of them near several features.
 template <class What>
-void for_points(const RigidMesh& mesh, const GapQuestion& question, What&& what) {
+void for_points(const RigidMesh& mesh, const GapQuery& question, What&& what) {
   const contact::NormalLaw& law = question.law;
   Random random(23);
   int found = 0;
@@ -150,7 +150,7 @@ void for_points(const RigidMesh& mesh, const GapQuestion& question, What&& what)
 TEST(RigidMesh, HasTheDerivativesOfItsGap) {
   const contact::NormalLaw law = band(0.2);
   for (const double radius : {0.0, 0.9}) {
-    const GapQuestion question{law, 100.0, false, radius};
+    const GapQuery question{law, 100.0, false, radius};
     for (const RigidMesh& mesh : {RigidMesh(hills(0.2)), ring(0.2)}) {
       double several = 0.0;
       for_points(mesh, question, [&](const Vec3& y) {
@@ -173,7 +173,7 @@ TEST(RigidMesh, HasTheDerivativesOfItsGap) {
 
 /// Along a way, kept at a distance, the energy changes by what the force does. Returns the most of
 /// it.
-double expect_work(const RigidMesh& mesh, const GapQuestion& question, const Vec3& from,
+double expect_work(const RigidMesh& mesh, const GapQuery& question, const Vec3& from,
                    const Vec3& to, double height, int n = 4000) {
   const contact::NormalLaw& law = question.law;
   const auto over = [&](double part) {
@@ -222,7 +222,7 @@ TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
 TEST(RigidMesh, HoldsBackWhatIsWiderThanAHole) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(contact::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
-  const GapQuestion question{law, 100.0, false, 2.3};
+  const GapQuery question{law, 100.0, false, 2.3};
   Random random(9);
   int acted = 0;
   for (int k = 0; k < 500; ++k) {

@@ -60,7 +60,7 @@ Cook cook(const std::string& element, const std::string& shape, int n,
   Selection right;
   right.kind = Selection::Kind::kPlane;
   right.normal = Vec3::UnitX();
-  right.level = Selection::Level::kMost;
+  right.level = Selection::Level::kMax;
   for (const FaceBlock& block : select_faces("right", mesh, {right}).blocks)
     faces.push_back({block.type, block.nodes});
   system.add_elements(

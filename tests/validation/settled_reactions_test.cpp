@@ -8,7 +8,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation.hpp>
-#include <polhode/stepping/settled_velocities.hpp>
+#include <polhode/stepping/extrapolated_velocities.hpp>
 
 namespace polhode::settled_reactions_tests {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 TEST(SettledReactions, TakeWeightsThatAreExactForQuadraticsAndLeaveOutWhatAlternates) {
   for (const std::vector<double>& dt :
        {std::vector<double>{0.1, 0.1, 0.1, 0.1}, {0.02, 0.03, 0.015, 0.04}, {0.01, 0.01, 0.02}}) {
-    const std::vector<double> w = settled_weights(dt);
+    const std::vector<double> w = extrapolation_weights(dt);
     ASSERT_EQ(w.size(), dt.size());
     double one = 0.0, first = 0.0, second = 0.0, alternating = 0.0, end = 0.0;
     for (std::size_t k = 0; k < dt.size(); ++k) {
@@ -37,8 +37,8 @@ TEST(SettledReactions, TakeWeightsThatAreExactForQuadraticsAndLeaveOutWhatAltern
     }
     EXPECT_NEAR(alternating * dt[0], 0.0, 1e-12);
   }
-  EXPECT_TRUE(settled_weights({0.1, 0.1}).empty());
-  EXPECT_TRUE(settled_weights({0.1, -0.1, 0.1}).empty()) << "a stage that goes back";
+  EXPECT_TRUE(extrapolation_weights({0.1, 0.1}).empty());
+  EXPECT_TRUE(extrapolation_weights({0.1, -0.1, 0.1}).empty()) << "a stage that goes back";
 }
 
 /// A body of 20 kg with a bar of 10 kg bonded to it, pushed by 30 N from rest, spinning or not: the

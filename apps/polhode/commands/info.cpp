@@ -24,7 +24,7 @@ namespace polhode::cli {
 namespace {
 
 /// Tables of a large model stop after this many lines.
-constexpr std::size_t kMostLines = 40;
+constexpr std::size_t kMaxLines = 40;
 
 struct Options {
   ModelArguments model;
@@ -115,15 +115,15 @@ std::string name_of(const Model& model, int body) {
 
 std::string numbers(const Vec3& x) { return format("{:.4g} {:.4g} {:.4g}", x[0], x[1], x[2]); }
 
-/// Adds a line for each item, at most kMostLines of them.
+/// Adds a line for each item, at most kMaxLines of them.
 template <class Items, class Line>
 std::string section(const std::string& heading, const std::vector<std::string>& columns,
                     const Items& items, Line line) {
   if (items.empty()) return "";
   std::vector<std::vector<std::string>> rows{columns};
-  for (std::size_t i = 0; i < items.size() && i < kMostLines; ++i) rows.push_back(line(items[i]));
+  for (std::size_t i = 0; i < items.size() && i < kMaxLines; ++i) rows.push_back(line(items[i]));
   std::string text = format("\n{}: {}\n", heading, items.size()) + table(rows);
-  if (items.size() > kMostLines) text += format("  and {} more\n", items.size() - kMostLines);
+  if (items.size() > kMaxLines) text += format("  and {} more\n", items.size() - kMaxLines);
   return text;
 }
 

@@ -57,7 +57,7 @@ class BeamElement : public InteractionItem {
   [[nodiscard]] bool dissipates() const { return viscous(); }
   [[nodiscard]] double coupled_mass() const { return coupled_mass_; }
   [[nodiscard]] double reach() const { return 0.5 * L_; }
-  [[nodiscard]] bool always_asked() const { return true; }
+  [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
     return "bends by more than 2.5 rad between its ends: use more elements";
   }

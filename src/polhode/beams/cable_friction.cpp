@@ -11,7 +11,7 @@ namespace polhode {
 namespace {
 
 /// Sweeps over the points after which the direction of slip is taken as found.
-constexpr int kMostGripSweeps = 5000;
+constexpr int kMaxGripSweeps = 5000;
 /// A sweep that changes no tension by more than this part of the largest one is the last.
 constexpr double kGripFound = 1e-14;
 
@@ -36,7 +36,7 @@ CableFriction::Slip CableFriction::search(Vec N, const Vec& a, const Vec& b) con
   const Eigen::Index points = k_.size() - 1;
   Slip slip{Vec::Zero(points), std::vector<int>(static_cast<std::size_t>(points), 0)};
   const double scale = std::max(N.cwiseAbs().maxCoeff(), 1e-300);
-  for (int sweep = 0; sweep < kMostGripSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxGripSweeps; ++sweep) {
     double most = 0.0;
     for (Eigen::Index j = 0; j < points; ++j) {
       const double before = slip.q[j];

@@ -25,8 +25,8 @@ constexpr double kShortestFibre = 1e-2;
 
 RunningCable::RunningCable(RunningCableSpec spec) : spec_(std::move(spec)) {
   const std::string where = format("cables.{}", spec_.name);
-  const auto refuse = [&](const std::string& key, const std::string& what, const char* mend) {
-    throw InputError(key.empty() ? where : where + "." + key, what, mend);
+  const auto refuse = [&](const std::string& key, const std::string& what, const char* hint) {
+    throw InputError(key.empty() ? where : where + "." + key, what, hint);
   };
   if (spec_.nodes.size() < 2) refuse("through", "has fewer than two points", "Give two or more");
   if (!(spec_.stiffness >= 0.0) || !(spec_.damping >= 0.0))

@@ -138,7 +138,7 @@ void add_half(BodySpec& node, const BeamSection& section, double length, const Q
   node.inertia += 0.5 * length * Q * section.inertia_per_length.asDiagonal() * Q.transpose();
 }
 
-JointSpec bond(const std::string& name, const Place& place, const std::string& type,
+JointSpec bond(const std::string& name, const SourceLocation& place, const std::string& type,
                const Model& model, int body, int node) {
   JointSpec joint;
   joint.name = name;

@@ -106,7 +106,7 @@ class ContactsBuilder {
 
   /// Number of the shape's class.
   int surface(const ContactSide& side, int body) {
-    ContactParty key{.material = material_of(spec_, side)};
+    ContactLawKey key{.material = material_of(spec_, side)};
     if (std::any_of(named_.begin(), named_.end(),
                     [&](const auto& p) { return p.first == body || p.second == body; }))
       key.side = body;
@@ -123,7 +123,7 @@ class ContactsBuilder {
         if (i <= j) set_->set_law(i, j, law_of(x, y));
   }
 
-  [[nodiscard]] contact::ContactLaw law_of(const ContactParty& x, const ContactParty& y) const {
+  [[nodiscard]] contact::ContactLaw law_of(const ContactLawKey& x, const ContactLawKey& y) const {
     const StatedLaw stated = law_between(spec_, x, y);
     contact::ContactLaw law = contact_law(stated.law);
     law.sensor = stated.pair && stated.pair->sensor;
@@ -172,7 +172,7 @@ class ContactsBuilder {
       for (int b = a + 1; b < static_cast<int>(shapes_of_.size()); ++b) {
         if (!may_meet(a, b)) continue;
         found.emplace_back(a, b);
-        if (!spec_.record && static_cast<int>(found.size()) > kMostContactPairs) return;
+        if (!spec_.record && static_cast<int>(found.size()) > kMaxContactPairs) return;
       }
     for (const auto& [a, b] : found) keep(a, b, "");
     map_.all_pairs = true;
@@ -205,7 +205,7 @@ class ContactsBuilder {
   ContactMap& map_;
   std::shared_ptr<contact::ContactSet> set_;
   std::set<std::pair<int, int>> named_, excluded_;
-  std::map<ContactParty, int> classes_;
+  std::map<ContactLawKey, int> classes_;
   std::vector<std::vector<int>> shapes_of_;
 };
 
@@ -270,7 +270,7 @@ void check_contact_shapes(const Model& model, std::vector<InputError>& faults) {
         faults.emplace_back(path, (of_file ? e.where() + ": " : "") + e.what_is_wrong(),
                             of_file ? "Contact needs a closed surface: mend it in the program that "
                                       "made it, or set contact: {touches: false}"
-                                    : e.mend());
+                                    : e.hint());
       }
     }
 }

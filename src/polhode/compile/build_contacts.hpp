@@ -12,7 +12,7 @@
 namespace polhode {
 
 class SolidContact;
-class TouchingSurface;
+class SurfaceContactInterface;
 namespace contact {
 class ContactSet;
 }
@@ -35,7 +35,7 @@ struct ContactMap {
     int side = 0;           ///< What it meets, see contact_spec.hpp.
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
-    const TouchingSurface* touching = nullptr;  ///< That group; the System keeps it.
+    const SurfaceContactInterface* touching = nullptr;  ///< That group; the System keeps it.
     /// Likewise, if it meets the mesh of a solid; else null.
     const SolidContact* on_mesh = nullptr;
   };
@@ -43,7 +43,7 @@ struct ContactMap {
 };
 
 /// Models with more pairs of bodies that may meet keep only those that are named.
-inline constexpr int kMostContactPairs = 100;
+inline constexpr int kMaxContactPairs = 100;
 
 /// Finds what only the shapes show: hulls without volume, open meshes, point masses that would
 /// turn, unknown materials, too many groups.

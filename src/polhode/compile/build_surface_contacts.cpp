@@ -44,7 +44,7 @@ double modulus(const Model& model, const SolidSpec& solid) {
       model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
   const LinearModuli m =
       make_material(format("materials.{}", spec.name), material_description(spec))->linear();
-  return m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear);
+  return m.shear * (3.0 * m.slowly_contracting + 2.0 * m.shear) / (m.slowly_contracting + m.shear);
 }
 
 class SurfacesBuilder {
@@ -98,7 +98,7 @@ class SurfacesBuilder {
     for (const LoadedFaces& block : faces) {
       const std::string where = name_of(pair);
       const double edge = median_edge(block, X);
-      const SurfaceLaw law = law_of(pair.law, stuff_of({own}), edge,
+      const SurfaceLaw law = law_of(pair.law, material_of({own}), edge,
                                     std::min(edge, smallest_detail(shape)), Band::below);
       SurfacePoints points;
       try {
@@ -133,7 +133,7 @@ class SurfacesBuilder {
     const CableSide a{cable_of(pair.own), line_of(pair.own)},
         b{cable_of(pair.side), line_of(pair.side)};
     const double radius = std::min(a.line.radius, b.line.radius);
-    const SurfaceLaw law = law_of(pair.law, lesser(stuff_of(a.cable), stuff_of(b.cable)),
+    const SurfaceLaw law = law_of(pair.law, lesser(material_of(a.cable), material_of(b.cable)),
                                   2.0 * radius, radius, Band::about);
     const std::vector<Vec3> X = positions();
     const std::vector<int> carriers = this->carriers();
@@ -157,7 +157,7 @@ class SurfacesBuilder {
     const CableLine& line = line_of(pair.own);
     const CableSizes sizes = cable_sizes(shape, line.radius);
     const SurfaceLaw law =
-        law_of(pair.law, stuff_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
+        law_of(pair.law, material_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
     const std::string where = name_of(pair);
     const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
@@ -188,7 +188,7 @@ class SurfacesBuilder {
     const MeshSurface surface = triangulated(faces);
     if (surface.triangles.empty()) return;
     const SurfaceLaw law =
-        law_of(pair.law, lesser(stuff_of({s}), stuff_of(cable)), 2.0 * line.radius,
+        law_of(pair.law, lesser(material_of({s}), material_of(cable)), 2.0 * line.radius,
                kOnSolid / kTolerance * line.radius, Band::about);
     const std::vector<int> carriers = this->carriers();
     std::vector<int> moving = nodes_of({s});
@@ -263,7 +263,8 @@ class SurfacesBuilder {
     }
     if (surfaces[0].triangles.empty() || surfaces[1].triangles.empty()) return;
     const double least = std::min(edge[0], edge[1]);
-    SurfaceLaw law = law_of(pair.law, stuff_of({solids[0], solids[1]}), least, least, Band::about);
+    SurfaceLaw law =
+        law_of(pair.law, material_of({solids[0], solids[1]}), least, least, Band::about);
     const std::vector<int> carriers = this->carriers();
     const auto& name = [&](int side) -> const std::string& {
       return model_.solids[static_cast<std::size_t>(solids[side])].name;
@@ -353,24 +354,25 @@ class SurfacesBuilder {
   }
 
   /// What decides how stiff a surface is.
-  struct Stuff {
+  struct SurfaceMaterial {
     double E = std::numeric_limits<double>::infinity();  ///< Young's modulus [Pa].
     double pressure = E;                                 ///< At gap zero, at least [Pa].
   };
   /// The softest of several solids.
-  [[nodiscard]] Stuff stuff_of(const std::vector<int>& solids) const {
-    Stuff stuff;
+  [[nodiscard]] SurfaceMaterial material_of(const std::vector<int>& solids) const {
+    SurfaceMaterial material;
     for (const int s : solids) {
-      stuff.E = std::min(stuff.E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
-      stuff.pressure = kPressure * stuff.E;
+      material.E =
+          std::min(material.E, modulus(model_, model_.solids[static_cast<std::size_t>(s)]));
+      material.pressure = kPressure * material.E;
     }
-    return stuff;
+    return material;
   }
-  [[nodiscard]] static Stuff lesser(const Stuff& a, const Stuff& b) {
+  [[nodiscard]] static SurfaceMaterial lesser(const SurfaceMaterial& a, const SurfaceMaterial& b) {
     return {std::min(a.E, b.E), std::min(a.pressure, b.pressure)};
   }
   /// A cable counts as a full round bar, which is not flattened. @eq{cable-stiffness}
-  [[nodiscard]] static Stuff stuff_of(const CableLineSpec& cable) {
+  [[nodiscard]] static SurfaceMaterial material_of(const CableLineSpec& cable) {
     const double area = std::numbers::pi * cable.contact->radius * cable.contact->radius;
     return {0.0, kCablePressure * cable.stiffness / area};
   }
@@ -380,8 +382,8 @@ class SurfacesBuilder {
 
   /// @param edge      Of the mesh, or the diameter of a cable [m].
   /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
-  [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const Stuff& stuff, double edge,
-                                  double smallest, Band place) const {
+  [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const SurfaceMaterial& material,
+                                  double edge, double smallest, Band place) const {
     SurfaceLaw law;
     if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
     law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
@@ -390,7 +392,7 @@ class SurfacesBuilder {
     const double band = barrier ? law.normal.band() : 2.0 * law.normal.tolerance;
     double& k = law.normal.stiffness;
     k = spec.reference_pressure > 0.0 ? 1.5 * spec.reference_pressure / band
-                                      : 1.5 * std::max(stuff.E / edge, stuff.pressure / band);
+                                      : 1.5 * std::max(material.E / edge, material.pressure / band);
     law.end_share = 0.5 * (1.0 - spec.restitution);
     law.mu = spec.friction;
     law.bristle = k;

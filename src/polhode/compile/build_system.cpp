@@ -135,7 +135,7 @@ class Builder {
     try {
       return kind.recipe(frames, parameters);
     } catch (const InputError& e) {
-      throw InputError(format("{}.{}", where, e.where()), e.what_is_wrong(), e.mend());
+      throw InputError(format("{}.{}", where, e.where()), e.what_is_wrong(), e.hint());
     }
   }
 
@@ -166,7 +166,7 @@ class Builder {
     try {
       item.set_enforcement(*joint.enforcement, stiffest_augmented());
     } catch (const InputError& e) {
-      throw InputError(format("{}.enforcement.{}", where, e.where()), e.what_is_wrong(), e.mend());
+      throw InputError(format("{}.enforcement.{}", where, e.where()), e.what_is_wrong(), e.hint());
     }
   }
 
@@ -429,7 +429,7 @@ class Builder {
                 [&](const LoadSpec& load) { return load.solid < 0 && load.type == kind; }));
           system_.set_switching(kind, item, how);
         } catch (const InputError& e) {
-          throw InputError("events." + event.name, e.what_is_wrong(), e.mend());
+          throw InputError("events." + event.name, e.what_is_wrong(), e.hint());
         }
       }
     };

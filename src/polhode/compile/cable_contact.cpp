@@ -15,7 +15,7 @@ constexpr double kNear = std::numbers::pi;
 constexpr double kRoundedPart = 1e-9;
 /// Points may come apart to so many times the spacing that is asked for: below four nothing passes,
 /// as every place is then nearer to one of them than what they keep away.
-constexpr double kMostStretch = 3.2;
+constexpr double kMaxStretch = 3.2;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ CablePoints cable_points(const CableLine& line, double spacing) {
   CablePoints all;
   all.points.nodes_per_point = 2;
   all.points.radius = line.radius;
-  all.points.most_apart = kMostStretch * spacing;
+  all.points.most_apart = kMaxStretch * spacing;
   const auto add = [&](std::size_t piece, double part, double span, double length) {
     SurfacePoints::Point p;
     p.area = 2.0 * line.radius * length;

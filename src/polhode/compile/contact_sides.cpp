@@ -12,7 +12,7 @@ namespace polhode {
 namespace {
 
 /// Groups are bits.
-constexpr std::size_t kMostGroups = 32;
+constexpr std::size_t kMaxGroups = 32;
 
 double combine(Combination way, double a, double b) {
   switch (way) {
@@ -123,11 +123,11 @@ ContactGroups::ContactGroups(const Model& model, std::vector<InputError>* faults
     if (!side.groups) return;
     for (const std::string& name : *side.groups) {
       if (bits_.contains(name)) continue;
-      if (bits_.size() < kMostGroups)
+      if (bits_.size() < kMaxGroups)
         bits_.emplace(name, 1U << bits_.size());
       else if (faults)
         faults->emplace_back(side.groups_path, format("'{}' is one contact group too many", name),
-                             format("Use at most {}, 'default' among them", kMostGroups));
+                             format("Use at most {}, 'default' among them", kMaxGroups));
     }
   });
   if (!faults) return;
@@ -152,7 +152,8 @@ std::uint32_t ContactGroups::mask(const std::vector<std::string>* names,
   return sum;
 }
 
-StatedLaw law_between(const ContactsSpec& contacts, const ContactParty& x, const ContactParty& y) {
+StatedLaw law_between(const ContactsSpec& contacts, const ContactLawKey& x,
+                      const ContactLawKey& y) {
   for (const bool of_materials : {false, true})
     for (const ContactPairSpec& pair : contacts.pairs) {
       if (pair.of_materials != of_materials) continue;

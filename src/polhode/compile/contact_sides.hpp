@@ -54,10 +54,10 @@ class ContactGroups {
 };
 
 /// What decides the law of one side of a contact.
-struct ContactParty {
+struct ContactLawKey {
   int material = -1;   ///< Index into ContactsSpec::materials, or −1.
   int side = kGround;  ///< See contact_spec.hpp; kGround: no pair names it.
-  auto operator<=>(const ContactParty&) const = default;  // NOLINT(modernize-use-nullptr)
+  auto operator<=>(const ContactLawKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// What holds between two sides: a pair of sides goes before a pair of materials, that before the
@@ -66,8 +66,8 @@ struct StatedLaw {
   ContactLawSpec law;
   const ContactPairSpec* pair = nullptr;  ///< That states it; null: combined.
 };
-[[nodiscard]] StatedLaw law_between(const ContactsSpec& contacts, const ContactParty& x,
-                                    const ContactParty& y);
+[[nodiscard]] StatedLaw law_between(const ContactsSpec& contacts, const ContactLawKey& x,
+                                    const ContactLawKey& y);
 
 /// Friction and restitution of a pair of materials by the rules of combination.
 /// @param a, b  Indices into ContactsSpec::materials; −1: the default law.

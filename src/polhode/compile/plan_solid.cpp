@@ -49,8 +49,8 @@ class SolidPlanner {
     if (!faults_) throw e;
     faults_->push_back(e);
   }
-  void fault(const std::string& key, const std::string& what, const std::string& mend) {
-    fault(InputError(key.empty() ? where_ : where_ + "." + key, what, mend));
+  void fault(const std::string& key, const std::string& what, const std::string& hint) {
+    fault(InputError(key.empty() ? where_ : where_ + "." + key, what, hint));
   }
 
   Mesh mesh() {
@@ -67,12 +67,12 @@ class SolidPlanner {
     try {
       mesh = read_mesh(solid_.mesh.file, solid_.mesh.scale);
     } catch (const InputError& e) {
-      throw InputError(where + ".file", e.where() + ": " + e.what_is_wrong(), e.mend());
+      throw InputError(where + ".file", e.where() + ": " + e.what_is_wrong(), e.hint());
     }
     try {
       mesh = part_of(mesh, solid_.mesh.group);
     } catch (const InputError& e) {
-      throw InputError(where + ".group", e.what_is_wrong(), e.mend());
+      throw InputError(where + ".group", e.what_is_wrong(), e.hint());
     }
     return mesh;
   }
@@ -104,10 +104,10 @@ class SolidPlanner {
       const bool loose = one.kind == MeshFault::Kind::kLooseNodes;
       if (one.fatal || loose) {
         fault(solid_.mesh.type == "file" ? "mesh.file" : "mesh", one.what,
-              loose ? "Leave it out, or name it in an element" : one.mend);
+              loose ? "Leave it out, or name it in an element" : one.hint);
         sound = false;
       } else {
-        plan_.warnings.push_back(format("{}: {}. {}.", where_, one.what, one.mend));
+        plan_.warnings.push_back(format("{}: {}. {}.", where_, one.what, one.hint));
       }
     }
     return sound;
@@ -119,7 +119,7 @@ class SolidPlanner {
       const int index = model_.material_index(solid_.material);
       material = &model_.materials[static_cast<std::size_t>(index)];
     } catch (const InputError& e) {
-      fault("material", e.what_is_wrong(), e.mend());
+      fault("material", e.what_is_wrong(), e.hint());
       return;
     }
     plan_.density = solid_.density.value_or(material->density);
@@ -132,7 +132,7 @@ class SolidPlanner {
         plan_.elements.push_back(
             choose_element(where_, solid_.element, block.type, uncoupled).name);
       } catch (const InputError& e) {
-        fault("element", e.what_is_wrong(), e.mend());
+        fault("element", e.what_is_wrong(), e.hint());
         return;
       }
     }
@@ -232,7 +232,7 @@ class SolidPlanner {
         nodes.insert(nodes.end(), one.begin(), one.end());
       } catch (const InputError& e) {
         const std::string at = selections.size() > 1 ? format("{}.{}", key, k) : key;
-        fault(at, e.what_is_wrong(), e.mend());
+        fault(at, e.what_is_wrong(), e.hint());
       }
     }
     std::sort(nodes.begin(), nodes.end());

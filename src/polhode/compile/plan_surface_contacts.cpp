@@ -212,9 +212,9 @@ class SurfacePlanner {
     }
   }
 
-  void fault(const std::string& where, const std::string& what, const std::string& mend) {
-    if (!faults_) throw InputError(where, what, mend);
-    if (told_.insert(where + what).second) faults_->emplace_back(where, what, mend);
+  void fault(const std::string& where, const std::string& what, const std::string& hint) {
+    if (!faults_) throw InputError(where, what, hint);
+    if (told_.insert(where + what).second) faults_->emplace_back(where, what, hint);
   }
 
   const Model& model_;

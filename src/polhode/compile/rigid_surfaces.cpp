@@ -16,10 +16,10 @@ namespace {
 /// Part of the smallest half size, or edge of triangles, by which edges are rounded, at least.
 constexpr double kRounding = 1e-3;
 /// The same of boxes and cylinders, of cones and hulls, and of triangles, at most.
-constexpr double kMostOfBoxes = 0.5, kMostOfHulls = 0.2, kMostOfTriangles = 0.25;
+constexpr double kMaxOfBoxes = 0.5, kMaxOfHulls = 0.2, kMaxOfTriangles = 0.25;
 /// Part of the radius of a cable that its band may take: its points, no farther apart than 1.6
 /// radii, then let nothing through between them.
-constexpr double kMostOfRadius = 0.125;
+constexpr double kMaxOfRadius = 0.125;
 
 bool has_triangles(const ShapeSpec& shape) {
   return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
@@ -48,10 +48,10 @@ double smallest_detail(const ShapeSpec& shape) {
 
 double widest_tolerance(const ShapeSpec& shape, double radius) {
   if (!has_triangles(shape)) return std::numeric_limits<double>::infinity();
-  return kMostOfTriangles * smallest_detail(shape) + widest_tolerance(radius);
+  return kMaxOfTriangles * smallest_detail(shape) + widest_tolerance(radius);
 }
 
-double widest_tolerance(double radius) { return kMostOfRadius * radius; }
+double widest_tolerance(double radius) { return kMaxOfRadius * radius; }
 
 CableSizes cable_sizes(const ShapeSpec& shape, double radius) {
   if (has_triangles(shape)) return {radius, 0.5 * radius};
@@ -76,19 +76,19 @@ RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, dou
     s.kind = RigidSurface::Kind::cylinder;
     s.radius = 0.5 * size[0];
     s.half = Vec3(s.radius, s.radius, 0.5 * size[1]);
-    s.rounding = rounding(s.half.minCoeff(), kMostOfBoxes);
+    s.rounding = rounding(s.half.minCoeff(), kMaxOfBoxes);
   } else if (shape.type == "box") {
     s.kind = RigidSurface::Kind::box;
     s.half = 0.5 * Vec3(size[0], size[1], size[2]);
-    s.rounding = rounding(s.half.minCoeff(), kMostOfBoxes);
+    s.rounding = rounding(s.half.minCoeff(), kMaxOfBoxes);
   } else if (has_triangles(shape)) {
     s.kind = RigidSurface::Kind::mesh;
     s.triangles = std::make_shared<RigidMesh>(
-        contact_shape(where, {}, shape, rounding(smallest_detail(shape), kMostOfTriangles)));
+        contact_shape(where, {}, shape, rounding(smallest_detail(shape), kMaxOfTriangles)));
   } else if (shape.type != "plane") {
     s.kind = RigidSurface::Kind::convex;
     s.solid = std::make_shared<contact::Shape>(
-        contact_shape(where, {}, shape, rounding(half_size(shape), kMostOfHulls)));
+        contact_shape(where, {}, shape, rounding(half_size(shape), kMaxOfHulls)));
   }
   return s;
 }

@@ -23,7 +23,7 @@ namespace {
 
 /// Shapes are looked at along their edges at distances of this part of a face of the solid.
 constexpr double kSpacing = 0.5;
-constexpr int kMostParts = 1000;  ///< Of an edge.
+constexpr int kMaxParts = 1000;  ///< Of an edge.
 /// Tolerances at which nothing acts: solids keep as many apart from each other.
 constexpr double kFree = 2.0;
 
@@ -36,7 +36,7 @@ std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
   for (const contact::Shape::Edge& edge : shape.edges) {
     const Vec3 &p = shape.corners[static_cast<std::size_t>(edge.i)],
                &q = shape.corners[static_cast<std::size_t>(edge.j)];
-    const int parts = static_cast<int>(std::min(1.0 * kMostParts, (q - p).norm() / spacing));
+    const int parts = static_cast<int>(std::min(1.0 * kMaxParts, (q - p).norm() / spacing));
     for (int k = 1; k < parts; ++k) list.emplace_back(p + (q - p) * k / parts);
   }
   if (!shape.round()) return list;

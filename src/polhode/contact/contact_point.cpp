@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_point.hpp>
-#include <polhode/contact/plain_point.hpp>
 #include <polhode/contact/point_weight.hpp>
 #include <polhode/contact_laws/bristle.hpp>
 
@@ -152,7 +152,7 @@ class Evaluation {
     f.normal = n;
     f.slide = slide_;
     f.lag = lag_;
-    if (lag_ > 0.0) f.rub = (k * rub_) * slide_.normalized();
+    if (lag_ > 0.0) f.friction_slope = (k * rub_) * slide_.normalized();
     return f;
   }
 
@@ -483,7 +483,7 @@ bool has_closed_form(const PointData& data) {
 }
 
 double gap_n1(const PointData& data, double gap_n, const BodyStep& a, const BodyStep& b) {
-  if (has_closed_form(data)) return plain_gap_n1(data, gap_n, a, b);
+  if (has_closed_form(data)) return closed_form_gap_n1(data, gap_n, a, b);
   const Vec3 from = near_contact(data, a);
   return gap(data.pair, *data.a, *data.b, Placement<double>(a, from, 0),
              Placement<double>(b, from, 6))

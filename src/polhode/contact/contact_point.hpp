@@ -132,8 +132,9 @@ struct PointForce {
   Mat3 C = Mat3::Zero();       ///< Symmetric stiffness between the points of a and b there [N/m].
   Vec3 normal = Vec3::Zero();  ///< Unit, from b to a.
   Vec3 slide = Vec3::Zero();   ///< Stretch of a bristle that slides [m]; zero of one that sticks.
-  Vec3 rub = Vec3::Zero();     ///< Its force on a by the displacement along the normal [N/m].
-  double lag = 0.0;            ///< Force over stretch of it, which C has not along the slide [N/m].
+  Vec3 friction_slope =
+      Vec3::Zero();  ///< Its force on a by the displacement along the normal [N/m].
+  double lag = 0.0;  ///< Force over stretch of it, which C has not along the slide [N/m].
 };
 
 /// The point's force, the same as that of add_contact(), and the spring that its tangent is like.

@@ -4,8 +4,8 @@
 #include <limits>
 #include <tuple>
 
-#include <polhode/contact/buried.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/fully_enclosed.hpp>
 #include <polhode/core/format.hpp>
 
 namespace polhode::contact {
@@ -64,7 +64,8 @@ using Overlaps = std::map<std::pair<int, int>, ShapeOverlap>;
 /// @param touch  (shape, shape) → whether they may.
 /// @param at     (shape) → where it is.
 template <class Touch, class At>
-void add_buried(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at, Overlaps& deepest) {
+void add_fully_enclosed(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at,
+                        Overlaps& deepest) {
   const int n = static_cast<int>(shapes.size());
   for (int b = 0; b < n; ++b) {
     const Shape& B = shapes[b].shape;
@@ -75,7 +76,7 @@ void add_buried(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at, 
       const Placement<double> at_a = at(a), at_b = at(b);
       const Vec3 between = value(at_a.point(A.bound_centre)) - value(at_b.point(B.bound_centre));
       if (between.norm() > A.bound_radius + B.bound_radius) continue;
-      const std::optional<Buried> found = buried(A, B, at_a, at_b);
+      const std::optional<FullyEnclosed> found = buried(A, B, at_a, at_b);
       if (!found) continue;
       deepest[std::minmax(a, b)] = {std::min(a, b), std::max(a, b), found->depth,
                                     a < b ? found->normal : Vec3(-found->normal)};
@@ -106,7 +107,7 @@ std::vector<ShapeOverlap> ContactSet::overlaps_at(const State& state,
     const double sign = p.a < p.b ? 1.0 : -1.0;
     found = {std::min(p.a, p.b), std::max(p.a, p.b), -p.gap_n, sign * value(g.normal)};
   }
-  add_buried(
+  add_fully_enclosed(
       shapes_,
       [&](int a, int b) {
         return may_meet(shapes_[a], shapes_[b]) && !is_off(shapes_[a], shapes_[b]) &&

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_set.hpp>
-#include <polhode/contact/plain_point.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 
@@ -29,8 +29,8 @@ constexpr double kOfRounding = 0.85;
 constexpr double kWideMargin = 8.0;
 
 void check_law(const ContactLaw& law) {
-  const auto refuse = [](const char* what, double value, const char* mend) {
-    throw InputError("contacts", format("{} is {}", what, value), mend);
+  const auto refuse = [](const char* what, double value, const char* hint) {
+    throw InputError("contacts", format("{} is {}", what, value), hint);
   };
   if (!(law.friction.mu >= 0.0) || !(law.friction.mu_across >= 0.0))
     refuse("the coefficient of friction", std::min(law.friction.mu, law.friction.mu_across),
@@ -202,7 +202,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.restitution = law.restitution;
   p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
-  p.may_be_plain = d.a && is_plain(d);
+  p.may_be_plain = d.a && has_closed_form(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
   const PointHistory& h = d.history;
@@ -234,7 +234,7 @@ void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContex
   if (!impulses_) share_friction();
 }
 
-void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
+void ContactSet::open_or_close(Point& p, SpherePairCache& balls, std::span<const BodyStep> steps,
                                const StepContext& context) const {
   PointHistory& h = p.data.history;
   p.plain = p.may_be_plain && context.ga.alpha_f == 0.5;
@@ -244,7 +244,7 @@ void ContactSet::open_or_close(Point& p, ApproachOfBalls& balls, std::span<const
   };
   const int at_a = index(p.a), at_b = index(p.b);
   const BodyStep &a = steps[at_a], &b = steps[at_b];
-  balls = p.plain ? approach_of_balls(p.data, a, b) : ApproachOfBalls{};
+  balls = p.plain ? sphere_pair_cache(p.data, a, b) : SpherePairCache{};
   balls.a = at_a;
   balls.b = at_b;
   Vec3 c, n;
@@ -416,7 +416,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
     unused.wrench_a.setZero();
     unused.wrench_b.setZero();
     if (p.plain && pointwise_) {
-      const PointForce f = plain_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
+      const PointForce f = closed_form_force(p.data, p.gap_n, gap_1, a, b, values, &p.report);
       unused.wrench_a << f.force, f.moment_a;
       unused.wrench_b << -f.force, f.moment_b;
     } else {

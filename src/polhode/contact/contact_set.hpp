@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_point.hpp>
 #include <polhode/contact/contact_reports.hpp>
 #include <polhode/contact/feature_pairs.hpp>
-#include <polhode/contact/plain_point.hpp>
 #include <polhode/geometry/broad_phase.hpp>
+#include <polhode/system/body_contacts.hpp>
 #include <polhode/system/contact_springs.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
-#include <polhode/system/moving_contacts.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode::contact {
@@ -61,7 +61,7 @@ inline constexpr int kEveryOwner = std::numeric_limits<int>::max();
 ///
 /// Candidates are found when a body has moved by more than its margin since they were found last;
 /// they are sorted, so that sums do not depend on how they were found.
-class ContactSet final : public MovingContacts, public PointwiseContacts, public ImpulsiveContacts {
+class ContactSet final : public BodyContacts, public PointwiseContacts, public ImpulsiveContacts {
  public:
   /// @returns the shape's number.
   int add_shape(PlacedShape shape);
@@ -135,7 +135,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   Work impacts(State& state, std::vector<PairImpact>& list) override;
   void resting(const State& state, std::span<const int> bodies,
                std::vector<PairImpact>& list) override;
-  void settled(std::span<const SettledImpact> impacts) override;
+  void settled(std::span<const ResolvedImpact> impacts) override;
   std::string tightest() const override;
 
   const ImpulseOptions* impulses() const override { return impulses_ ? &*impulses_ : nullptr; }
@@ -237,7 +237,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   /// point so far, renewed with tightest_ [m].
   [[nodiscard]] bool acts(int point, double gap_1, double& least);
   void open_or_close(std::span<const BodyStep> steps, const StepContext& context);
-  void open_or_close(Point& p, ApproachOfBalls& balls, std::span<const BodyStep> steps,
+  void open_or_close(Point& p, SpherePairCache& balls, std::span<const BodyStep> steps,
                      const StepContext& context) const;
   void share_friction();
   void release_patches(std::span<const BodyStep> steps, double dt);
@@ -280,7 +280,7 @@ class ContactSet final : public MovingContacts, public PointwiseContacts, public
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
-  std::vector<ApproachOfBalls> balls_;               ///< By point.
+  std::vector<SpherePairCache> balls_;               ///< By point.
   std::vector<ActingPoint> acting_, acting_before_;  ///< When forces were asked for last.
   std::vector<Slide> slides_;                        ///< By point.
   bool renewed_ = true;                              ///< Points are others since then.

@@ -25,7 +25,7 @@ constexpr double kHertzTime = 2.9432;
 /// Steps in an impact that a damper needs.
 constexpr double kResolved = 20.0;
 /// Least part of the tolerance between a gap and the floor of its barrier.
-constexpr double kLeastBand = 0.1;
+constexpr double kMinBand = 0.1;
 /// Part of the speed that lasting contact may have, at which it answers impacts elsewhere.
 constexpr double kPressed = 0.1;
 
@@ -73,7 +73,7 @@ void ContactSet::set_phase(Point& p, ContactPhase phase) const {
 void ContactSet::start_band(Point& p) const {
   const NormalLaw& law = p.data.normal;
   if (law.potential != NormalPotential::barrier || of_surface(p.data.pair.kind)) return;
-  const double least = kLeastBand * law.tolerance, standard = -law.tolerance;
+  const double least = kMinBand * law.tolerance, standard = -law.tolerance;
   const double lower = std::min(standard, p.gap_n - least);
   const double narrower = std::min(1.0, (p.gap_n - lower) / law.tolerance);
   set_band(p, p.open_stiffness ? law.stiffness / narrower : law.stiffness, p.gap_n, lower);
@@ -274,7 +274,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const Vec3 n = impact.on_a.head<3>();
   const double speed = impact.wanted;
   impact.given = step_length_ * p.report.normal_force;
-  if (lasts) impact.rubbed = step_length_ * p.report.friction_force;
+  if (lasts) impact.friction_impulse = step_length_ * p.report.friction_force;
   const bool turns = speed >= 0.0;  // friction may have turned it at t_n
   const auto rests = [&] {
     if (!h.closed) return;
@@ -368,15 +368,15 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     r.slow = kPressed * slow_speed(p, p.force_n, step_length_);
     // By the midpoint rule it throws back what an impact in the step pressed on it.
     r.impact.given = step_length_ * p.report.normal_force;
-    r.impact.rubbed = step_length_ * p.report.friction_force;
+    r.impact.friction_impulse = step_length_ * p.report.friction_force;
   }
 }
 
 /// Reported forces of the step, with the impulses at its end.
-void ContactSet::settled(std::span<const SettledImpact> impacts) {
+void ContactSet::settled(std::span<const ResolvedImpact> impacts) {
   for (std::size_t k = 0; k < settling_.size(); ++k) {
     Point& p = points_[settling_[k]];
-    const SettledImpact& s = impacts[k];
+    const ResolvedImpact& s = impacts[k];
     p.impact_loss += s.normal_loss;
     p.friction_loss += s.friction_loss;
     lost_in_impacts_ += s.normal_loss;

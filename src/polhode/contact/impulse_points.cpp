@@ -32,14 +32,14 @@ namespace contact {
 namespace {
 
 /// A point whose potential would have faded by more than this has a neighbour that acts instead.
-constexpr double kLeastWeight = 0.5;
+constexpr double kMinWeight = 0.5;
 /// Normals of the middle of the step that turn by more than this (cosine) since its start come from
 /// bodies that would pass one another.
 constexpr double kPasses = 0.5;
 /// Turns and displacements below these, the latter as part of the size, have no direction.
-constexpr double kLeastTurn = 1e-6, kLeastMove = 1e-6;
+constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
 /// A place is moved by at most this part of the size, a normal turned by at most this.
-constexpr double kMostShift = 0.1, kMostTilt = 0.1;
+constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
 /// Points of one surface that are closer than this part of the rounding are one.
 constexpr double kSamePlace = 1e-6;
 
@@ -112,9 +112,9 @@ void follow_gap(const PointData& d, double change, const BodyStep& a, const Body
   };
   const Vec3 u = apart();
   const double miss = change - at.normal.dot(u), angle = across.norm();
-  if (angle > kLeastTurn && std::abs(miss) < kMostShift * d.length * angle) {
+  if (angle > kMinTurn && std::abs(miss) < kMaxShift * d.length * angle) {
     at.place += miss / (angle * angle) * across;
-  } else if (u.norm() > kLeastMove * d.length && std::abs(miss) < kMostTilt * u.norm()) {
+  } else if (u.norm() > kMinMove * d.length && std::abs(miss) < kMaxTilt * u.norm()) {
     at.normal = (at.normal + miss / u.squaredNorm() * u).normalized();
   }
 }
@@ -171,7 +171,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     point.place = c;
     if (!balls_[i].holds) {
       const Placement<double> at_a(a.r_n, a.Lambda_n, 0), at_b(b.r_n, b.Lambda_n, 6);
-      if (weight_of(p.data, at_a, at_b) < kLeastWeight) continue;
+      if (weight_of(p.data, at_a, at_b) < kMinWeight) continue;
       if (p.data.pair.kind == GapKind::edge_edge) {
         Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
         if (!mend_edges(p.data, a, b, g)) continue;
@@ -215,7 +215,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
 void ContactSet::place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const {
   for (ImpulsePoint& at : list) {
     const Point& p = points_[at.number];
-    const ApproachOfBalls& balls = balls_[at.number];
+    const SpherePairCache& balls = balls_[at.number];
     const BodyStep &a = steps[balls.a], &b = steps[balls.b];
     if (balls.holds) {
       const Vec3 r = a.r_n + 0.5 * a.u;

@@ -10,7 +10,7 @@ namespace polhode::contact {
 namespace {
 
 /// Looks for features with ever more room between them.
-constexpr int kMostDoublings = 60;
+constexpr int kMaxDoublings = 60;
 
 /// Distance of two shapes [m].
 double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a,
@@ -23,7 +23,7 @@ double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a
                               a.bound_radius - b.bound_radius);
   std::vector<OrderedPair> found;
   // All pairs of features within the search radius `near` are in the list.
-  for (int k = 0; k < kMostDoublings && !(least <= near); ++k, near *= 2.0) {
+  for (int k = 0; k < kMaxDoublings && !(least <= near); ++k, near *= 2.0) {
     found.clear();
     near_feature_pairs(a, b, at_a, at_b, near, found);
     for (const OrderedPair& f : found) {

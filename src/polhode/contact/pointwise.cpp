@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces and springs of contacts point by point, for the solvers of crowds.
+// Forces and springs of contacts point by point, for iterative solvers.
 #include <cmath>
 #include <limits>
 
@@ -42,7 +42,7 @@ std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const Body
   double least = std::numeric_limits<double>::infinity();
   auto before = acting_before_.begin();
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    const ApproachOfBalls& balls = balls_[i];
+    const SpherePairCache& balls = balls_[i];
     if (!all && !moved[balls.a] && !moved[balls.b]) {
       while (before != acting_before_.end() && before->point < i) ++before;
       if (before != acting_before_.end() && before->point == i) acting_.push_back(*before);
@@ -59,12 +59,12 @@ std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const Body
     }
     if (!acts(i, gap_1, least)) continue;
     const Point& p = points_[i];
-    PointForce f = p.plain ? plain_force(p.data, p.gap_n, gap_1, a, b, context)
+    PointForce f = p.plain ? closed_form_force(p.data, p.gap_n, gap_1, a, b, context)
                            : point_force(p.data, a, b, context);
     damp_slide(slides_[i], f);
     acting_.push_back(
         {i,
-         {shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C, f.rub, f.normal},
+         {shapes_[p.a].body, shapes_[p.b].body, f.arm_a, f.arm_b, f.C, f.friction_slope, f.normal},
          f.force,
          f.moment_a,
          f.moment_b});

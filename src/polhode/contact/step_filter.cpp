@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_set.hpp>
-#include <polhode/contact/plain_point.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 
@@ -19,7 +19,7 @@ constexpr double kKeptByBalls = 0.35;
 /// Points that cannot use more than this part of their room are not followed.
 constexpr double kHarmless = 0.9;
 /// An advance below this part of the increment ends the search.
-constexpr double kLeastAdvance = 1e-4;
+constexpr double kMinAdvance = 1e-4;
 /// Of what a point shall keep, this part may be missing in the end.
 constexpr double kMissing = 0.5;
 constexpr int kHalvings = 30;
@@ -119,7 +119,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
   std::vector<Followed> closing;
   const auto ground = static_cast<int>(steps.size()) - 1;
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
-    if (const ApproachOfBalls& balls = balls_[i]; balls.holds) {
+    if (const SpherePairCache& balls = balls_[i]; balls.holds) {
       const Vec6 &x_a = balls.a == ground ? still : increments[balls.a],
                  &x_b = balls.b == ground ? still : increments[balls.b];
       const Vec3 change = x_a.head<3>() - x_b.head<3>();
@@ -148,15 +148,15 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
     // The one gap of several features may be used up faster than any of theirs.
     const bool surface =
         p.data.pair.kind == GapKind::point_surface || p.data.pair.kind == GapKind::part_surface;
-    const auto harmless = [&](double room) {
-      return most * speed <= (surface ? 0.5 : 1.0) * kHarmless * room &&
+    const auto harmless = [&](double clearance) {
+      return most * speed <= (surface ? 0.5 : 1.0) * kHarmless * clearance &&
              p.data.pair.kind != GapKind::extreme_plane;
     };
     if (harmless(least_gap_at_end(p, a, b) - p.least_gap)) continue;
-    const double room = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
-    if (harmless(room)) continue;
+    const double clearance = gap_n1(p.data, p.gap_n, a, b) - p.least_gap;
+    if (harmless(clearance)) continue;
     const double band = p.data.normal.reach() - p.least_gap;
-    closing.push_back({i, p.least_gap + kKept * std::min(room, band)});
+    closing.push_back({i, p.least_gap + kKept * std::min(clearance, band)});
   }
   if (closing.empty()) return most;
   double part = most;
@@ -229,7 +229,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
     if (step >= most - done) return most;
     tightest_ = followed.point;
     // Bodies that part from a narrow gap start with small advances, each larger than the last.
-    if (!(step > 0.0) || (step < kLeastAdvance * most && step < last))
+    if (!(step > 0.0) || (step < kMinAdvance * most && step < last))
       return done > 0.0 ? done : 1e-3 * most;
     last = step;
     done += step;
@@ -346,7 +346,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
       }
       if (step >= most - done) {
         done = most;
-      } else if (!(step > 0.0) || (step < kLeastAdvance * most && step < last)) {
+      } else if (!(step > 0.0) || (step < kMinAdvance * most && step < last)) {
         most = done > 0.0 ? done : 1e-3 * most;
         tightest_ = point;
         break;

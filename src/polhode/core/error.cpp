@@ -3,12 +3,12 @@
 
 namespace polhode {
 
-InputError::InputError(std::string_view where, std::string_view what, std::string_view mend)
+InputError::InputError(std::string_view where, std::string_view what, std::string_view hint)
     : std::invalid_argument(std::string(where) + ": " + std::string(what) + ". " +
-                            std::string(mend) + "."),
+                            std::string(hint) + "."),
       where_(where),
       what_(what),
-      mend_(mend) {}
+      hint_(hint) {}
 
 SolveError::SolveError(std::string_view what, std::string_view hint)
     : std::runtime_error(std::string(what) + ". " + std::string(hint) + ".") {}

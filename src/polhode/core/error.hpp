@@ -13,14 +13,14 @@ namespace polhode {
 /// value that was given and its unit), and how to mend it.
 class InputError : public std::invalid_argument {
  public:
-  InputError(std::string_view where, std::string_view what, std::string_view mend);
+  InputError(std::string_view where, std::string_view what, std::string_view hint);
 
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] const std::string& what_is_wrong() const { return what_; }
-  [[nodiscard]] const std::string& mend() const { return mend_; }
+  [[nodiscard]] const std::string& hint() const { return hint_; }
 
  private:
-  std::string where_, what_, mend_;
+  std::string where_, what_, hint_;
 };
 
 /// Equations of a model that cannot be solved: a matrix that is too large or has no inverse, an

@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-constexpr int kMostIterations = 20;
+constexpr int kMaxIterations = 20;
 constexpr double kRoundOff = 4.4e-16;
 /// Where iterations gain nothing any more, this part of the momenta counts as round-off.
 constexpr double kNoGain = 1e-13;
@@ -22,7 +22,7 @@ bool try_mean_turn(const Mat3& J, const Vec3& omega_n, const Vec3& tau, double d
   const Vec3 h_n = J * omega_n, aim = h_n + tau;
   const double scale = h_n.norm() + tau.norm();
   double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     const Vec3 theta = dt * mean;
     const Mat3 C = cay(theta);
     const Vec3 h = C * (J * (2.0 * mean - omega_n)), residual = aim - h;

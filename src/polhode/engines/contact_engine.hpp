@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/newton_system.hpp>
-#include <polhode/equations/touching_bodies.hpp>
 
 namespace polhode {
 
@@ -33,7 +33,7 @@ class ContactEngine final : public NewtonEngine {
   void end_step(const State& state, Trial& trial) override { touching_.end_step(state, trial); }
   [[nodiscard]] double stored(const State& state) const override { return touching_.stored(state); }
   Work commit(State& state, const Trial& trial) override { return touching_.commit(state, trial); }
-  [[nodiscard]] MovingContacts* contacts() const override { return touching_.contacts(); }
+  [[nodiscard]] BodyContacts* contacts() const override { return touching_.contacts(); }
 
   [[nodiscard]] int analyses() const { return analyses_; }
 
@@ -43,7 +43,7 @@ class ContactEngine final : public NewtonEngine {
   bool solve(const State& state, const Trial& trial, bool refactor);
 
   const System* system_;
-  TouchingBodies touching_;
+  BodyContactAssembler touching_;
   std::unique_ptr<LinearSolver> solver_;
   NewtonSystem newton_;
   Vec x_, rhs_;

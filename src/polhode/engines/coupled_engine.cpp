@@ -24,7 +24,7 @@ constexpr int kCoupledHalvings = 8;
 /// Increments below this do not turn an element inside out: no iterate is kept to go back to.
 constexpr double kHarmless = 1e-3;
 /// Bodies that may touch are looked up so often for one iteration.
-constexpr int kMostPairChanges = 4;
+constexpr int kMaxPairChanges = 4;
 /// Round-off of a merit, as part of ℓ² m.
 constexpr double kNoForce = 1e-28;
 
@@ -33,7 +33,7 @@ constexpr double kNoForce = 1e-28;
 bool meshes_meet(const Nodes& nodes) {
   if (nodes.unknowns() == 0) return false;
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (nodes.group(g).barrier_points()) return true;
+    if (nodes.group(g).barrier_constraint()) return true;
   return false;
 }
 
@@ -99,7 +99,7 @@ bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor,
 }
 
 bool CoupledEngine::solve(const State& state, const Trial& trial) {
-  for (int again = 0; again < kMostPairChanges; ++again) {
+  for (int again = 0; again < kMaxPairChanges; ++again) {
     newton_.assemble(state, trial, true);
     KktValues& values = newton_.values();
     const auto couplings = newton_.cleared_couplings();

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include <polhode/equations/kept_iterate.hpp>
+#include <polhode/equations/body_contact_assembler.hpp>
+#include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/equations/node_condensation.hpp>
-#include <polhode/equations/touching_bodies.hpp>
 
 namespace polhode {
 
@@ -43,7 +43,7 @@ class CoupledEngine final : public NewtonEngine {
   void add_ground_wrench(double* force, double* moment) const override;
   [[nodiscard]] double stored(const State& state) const override;
   Work commit(State& state, const Trial& trial) override;
-  [[nodiscard]] MovingContacts* contacts() const override {
+  [[nodiscard]] BodyContacts* contacts() const override {
     return touching_ ? touching_->contacts() : nullptr;
   }
 
@@ -75,14 +75,14 @@ class CoupledEngine final : public NewtonEngine {
   NodeCondensation condensation_;
   NodeSystem nodes_;
   NewtonSystem newton_;
-  std::optional<TouchingBodies> touching_;  ///< If bodies may touch.
-  bool searches_ = false;                   ///< Line search on the merit, see MeritSearch.
+  std::optional<BodyContactAssembler> touching_;  ///< If bodies may touch.
+  bool searches_ = false;                         ///< Line search on the merit, see MeritSearch.
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Vec6> shares_;
   std::vector<double> du_;
   Vec x_, rhs_;
-  KeptIterate before_;  ///< The iterate before, as long as increments are large.
-  double part_ = 1.0;   ///< Of x_ that was applied to it.
+  IterateSnapshot before_;  ///< The iterate before, as long as increments are large.
+  double part_ = 1.0;       ///< Of x_ that was applied to it.
   bool reuse_ = false;
   double factored_dt_ = 0.0;
   int step_iterations_ = 0;

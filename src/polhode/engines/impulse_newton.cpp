@@ -12,7 +12,7 @@ namespace polhode {
 
 namespace {
 
-constexpr int kMostIterations = 60, kMostHalvings = 8;
+constexpr int kMaxIterations = 60, kMaxHalvings = 8;
 /// The merit may rise above that of the last iterate, but not above those of so many.
 constexpr std::size_t kLookBack = 5;
 /// Share of D on its diagonal by which points that carry a load together become unique.
@@ -22,23 +22,23 @@ using Frame = std::array<Vec3, 3>;  ///< Normal and two tangents.
 
 class Solution {
  public:
-  explicit Solution(ImpulseSweeps& sweeps)
+  explicit Solution(ProjectedGaussSeidel& sweeps)
       : s_(&sweeps), count_(static_cast<Eigen::Index>(sweeps.points.size())) {
     const Eigen::Index n = 3 * count_;
     D_.setZero(n, n);
     p_start_.resize(n);
     y_start_.resize(n);
     wanted_.resize(n);
-    for (const ImpulseSweeps::Point& p : sweeps.points) {
+    for (const ProjectedGaussSeidel::Point& p : sweeps.points) {
       const Vec3 t = p.normal.unitOrthogonal();
       frames_.push_back({p.normal, t, p.normal.cross(t)});
     }
     for (Eigen::Index k = 0; k < count_; ++k) {
-      const ImpulseSweeps::Point& p = point(k);
+      const ProjectedGaussSeidel::Point& p = point(k);
       const Vec3 y = speed(p);
       for (int i = 0; i < 3; ++i) {
         const Vec3& e = frames_[k][i];
-        p_start_[3 * k + i] = i == 0 ? p.push : e.dot(p.rub);
+        p_start_[3 * k + i] = i == 0 ? p.normal_impulse : e.dot(p.friction_impulse);
         y_start_[3 * k + i] = e.dot(y);
         wanted_[3 * k + i] = i == 0 ? p.least : e.dot(p.wanted);
       }
@@ -51,7 +51,7 @@ class Solution {
   bool find(double enough) {
     std::array<double, kLookBack> merits{};
     merits.fill(std::numeric_limits<double>::infinity());
-    for (int it = 0; it < kMostIterations; ++it) {
+    for (int it = 0; it < kMaxIterations; ++it) {
       const double merit = residual(p_, true);
       if (!std::isfinite(merit)) return false;
       if (std::sqrt(merit) <= enough) return true;
@@ -61,7 +61,7 @@ class Solution {
       const double allowed = *std::max_element(merits.begin(), merits.end());
       double part = 1.0;
       Vec next = p_ + step;
-      for (int k = 0; k < kMostHalvings && !(residual(next, false) < allowed); ++k)
+      for (int k = 0; k < kMaxHalvings && !(residual(next, false) < allowed); ++k)
         next = p_ + (part *= 0.5) * step;
       p_ = next;
     }
@@ -71,29 +71,29 @@ class Solution {
   /// Impulses and speeds of bodies become those that were found.
   void give_back() {
     for (Eigen::Index k = 0; k < count_; ++k) {
-      ImpulseSweeps::Point& p = s_->points[static_cast<std::size_t>(k)];
-      const Vec3 before = p.push * p.normal + p.rub;
-      p.push = std::max(0.0, p_[3 * k]);
-      p.rub = p_[3 * k + 1] * frames_[k][1] + p_[3 * k + 2] * frames_[k][2];
-      const double limit = p.friction * p.push, size = p.rub.norm();
-      if (size > limit) p.rub *= limit / size;
-      s_->push(p, p.push * p.normal + p.rub - before);
+      ProjectedGaussSeidel::Point& p = s_->points[static_cast<std::size_t>(k)];
+      const Vec3 before = p.normal_impulse * p.normal + p.friction_impulse;
+      p.normal_impulse = std::max(0.0, p_[3 * k]);
+      p.friction_impulse = p_[3 * k + 1] * frames_[k][1] + p_[3 * k + 2] * frames_[k][2];
+      const double limit = p.friction * p.normal_impulse, size = p.friction_impulse.norm();
+      if (size > limit) p.friction_impulse *= limit / size;
+      s_->apply(p, p.normal_impulse * p.normal + p.friction_impulse - before);
     }
   }
 
  private:
-  [[nodiscard]] const ImpulseSweeps::Point& point(Eigen::Index k) const {
+  [[nodiscard]] const ProjectedGaussSeidel::Point& point(Eigen::Index k) const {
     return s_->points[static_cast<std::size_t>(k)];
   }
-  [[nodiscard]] Vec3 speed(const ImpulseSweeps::Point& p) const {
-    const ImpulseSweeps::Body &a = s_->bodies[p.a], &b = s_->bodies[p.b];
+  [[nodiscard]] Vec3 speed(const ProjectedGaussSeidel::Point& p) const {
+    const ProjectedGaussSeidel::Body &a = s_->bodies[p.a], &b = s_->bodies[p.b];
     return a.v + a.w.cross(p.arm_a) - b.v - b.w.cross(p.arm_b);
   }
   /// Speeds at k by unit impulses at l.
   void couple(Eigen::Index k, Eigen::Index l) {
-    const ImpulseSweeps::Point &to = point(k), &from = point(l);
+    const ProjectedGaussSeidel::Point &to = point(k), &from = point(l);
     const auto add = [&](int body, double sign, const Vec3& arm_to, const Vec3& arm_from) {
-      const ImpulseSweeps::Body& b = s_->bodies[body];
+      const ProjectedGaussSeidel::Body& b = s_->bodies[body];
       for (int j = 0; j < 3; ++j) {
         const Vec3& e = frames_[l][j];
         const Vec3 turned = b.inverse_inertia * arm_from.cross(e);
@@ -115,38 +115,39 @@ class Solution {
     if (derivative) J_.setIdentity(p.size(), p.size());
     double most = 0.0;
     for (Eigen::Index k = 0; k < count_; ++k) {
-      const ImpulseSweeps::Point& at = point(k);
+      const ProjectedGaussSeidel::Point& at = point(k);
       const Eigen::Index n = 3 * k, t = n + 1;
-      const double z_n = p[n] - at.free_push * off[n], push = std::max(0.0, z_n);
-      const Eigen::Vector2d z = p.segment<2>(t) - at.free_rub * off.segment<2>(t);
-      const double limit = at.friction * push, size = z.norm();
-      F_[n] = p[n] - push;
-      const bool sticks = push > 0.0 && size <= limit;
+      const double z_n = p[n] - at.free_normal * off[n], normal_impulse = std::max(0.0, z_n);
+      const Eigen::Vector2d z = p.segment<2>(t) - at.free_friction * off.segment<2>(t);
+      const double limit = at.friction * normal_impulse, size = z.norm();
+      F_[n] = p[n] - normal_impulse;
+      const bool sticks = normal_impulse > 0.0 && size <= limit;
       F_.segment<2>(t) = p.segment<2>(t);
       if (sticks)
         F_.segment<2>(t) -= z;
       else if (limit > 0.0)
         F_.segment<2>(t) -= limit / size * z;
-      const double normal = F_[n] * at.per_push, across = F_.segment<2>(t).norm() * at.per_rub;
+      const double normal = F_[n] * at.per_normal,
+                   across = F_.segment<2>(t).norm() * at.per_friction;
       most = std::max({most, normal * normal, across * across});
-      if (!derivative || push == 0.0) continue;
-      J_.row(n) = at.free_push * D_.row(n);
+      if (!derivative || normal_impulse == 0.0) continue;
+      J_.row(n) = at.free_normal * D_.row(n);
       if (sticks) {
-        J_.middleRows<2>(t) = at.free_rub * D_.middleRows<2>(t);
+        J_.middleRows<2>(t) = at.free_friction * D_.middleRows<2>(t);
       } else if (limit > 0.0) {
         const Eigen::Vector2d e = z / size;
         const Eigen::Matrix2d turn =
             limit / size * (Eigen::Matrix2d::Identity() - e * e.transpose());
-        J_.middleRows<2>(t) += turn * at.free_rub * D_.middleRows<2>(t);
+        J_.middleRows<2>(t) += turn * at.free_friction * D_.middleRows<2>(t);
         J_.block<2, 2>(t, t) -= turn;
-        J_.middleRows<2>(t) += (at.friction * at.free_push) * e * D_.row(n);
+        J_.middleRows<2>(t) += (at.friction * at.free_normal) * e * D_.row(n);
         J_.block<2, 1>(t, n) -= at.friction * e;
       }
     }
     return most;
   }
 
-  ImpulseSweeps* s_;
+  ProjectedGaussSeidel* s_;
   Eigen::Index count_;
   std::vector<Frame> frames_;
   Eigen::MatrixXd D_, J_;
@@ -155,7 +156,7 @@ class Solution {
 
 }  // namespace
 
-bool solve_impulses(ImpulseSweeps& sweeps, double enough) {
+bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough) {
   Solution solution(sweeps);
   if (!solution.find(enough)) return false;
   solution.give_back();

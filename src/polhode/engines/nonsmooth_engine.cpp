@@ -14,17 +14,17 @@ namespace polhode {
 namespace {
 
 /// Searches with geometry renewed, after the first.
-constexpr int kMostRounds = 4;
+constexpr int kMaxRounds = 4;
 /// Loads that depend on the motion are repeated until the motion changes by less than this part.
 constexpr double kSameMotion = 1e-13;
-constexpr int kMostRepeats = 60;
+constexpr int kMaxRepeats = 60;
 /// Depth of an overlap, as part of the smaller size, that no step may bring about.
 constexpr double kPressedIn = 0.1;
 /// Change of speeds in the last sweep over few points, over what gravity adds in a step, with which
 /// no step may end.
 constexpr double kFarOff = 1.0;
 /// Solutions in a step that would gain energy, with more points held back in each.
-constexpr int kMostHeldBack = 3;
+constexpr int kMaxHeldBack = 3;
 /// Without gravity, the speed that tolerances are a part of: this part of the fastest.
 constexpr double kPartOfSpeed = 1e-2;
 
@@ -86,7 +86,7 @@ bool NonsmoothEngine::move(const State& state, const Trial& trial) {
   const double dt = trial.context.dt, per_length = 1.0 / system_->length_scale();
   StepContext values = trial.context;
   values.tangents = false;
-  for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
+  for (int repeat = 0; repeat < kMaxRepeats; ++repeat) {
     std::fill(loads_now_.begin(), loads_now_.end(), Vec6::Zero());
     if (!loads_.empty())
       loads_.run(steps_, values, trial.lambda.data(), state.history.data(),
@@ -103,8 +103,10 @@ bool NonsmoothEngine::move(const State& state, const Trial& trial) {
     double change = 0.0, size = 0.0;
     for (int b = 0; b < bodies_; ++b) {
       BodyStep& s = steps_[b];
-      const Vec3 before = s.u, push = dt * loads_now_[b].head<3>() + impulses_[b].head<3>();
-      s.u = dt * (s.v_n + 0.5 * (dt * system_->gravity() + push / system_->bodies()[b].mass));
+      const Vec3 before = s.u,
+                 normal_impulse = dt * loads_now_[b].head<3>() + impulses_[b].head<3>();
+      s.u = dt *
+            (s.v_n + 0.5 * (dt * system_->gravity() + normal_impulse / system_->bodies()[b].mass));
       change = std::max(change, per_length * (s.u - before).norm());
       size = std::max(size, per_length * s.u.norm());
     }
@@ -154,7 +156,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
   sweeps_.turns.clear();
   for (int k = 0; k < point_count(); ++k) {
     ImpulsePoint& at = points_[k];
-    ImpulseSweeps::Point& p = sweeps_.points[k];
+    ProjectedGaussSeidel::Point& p = sweeps_.points[k];
     const BodyStep &a = steps_[index(at.a)], &b = steps_[index(at.b)];
     p.a = index(at.a);
     p.b = index(at.b);
@@ -168,13 +170,13 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.wanted = Vec3::Zero();
     if (!held_back) p.wanted = at.velocity - p.normal.dot(at.velocity) * p.normal;
     p.friction = at.friction;
-    p.push = std::max(0.0, p.normal.dot(at.impulse));
-    p.rub = at.impulse - p.normal.dot(at.impulse) * p.normal;
-    const double limit = p.friction * p.push, size = p.rub.norm();
-    if (size > limit) p.rub *= limit / size;
+    p.normal_impulse = std::max(0.0, p.normal.dot(at.impulse));
+    p.friction_impulse = at.impulse - p.normal.dot(at.impulse) * p.normal;
+    const double limit = p.friction * p.normal_impulse, size = p.friction_impulse.norm();
+    if (size > limit) p.friction_impulse *= limit / size;
     if (first) {
-      at.impulse = p.push * p.normal + p.rub;
-      sweeps_.push(p, at.impulse);
+      at.impulse = p.normal_impulse * p.normal + p.friction_impulse;
+      sweeps_.apply(p, at.impulse);
     } else if (k < static_cast<int>(places_.size())) {  // what it did, it does from here
       const Vec3 moment = (at.place - places_[k]).cross(at.impulse);
       sweeps_.turn(p, moment);
@@ -189,7 +191,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
 /// Where sweeps do not end, Newton's method goes on from what they left, if there are few points.
 void NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
-  const bool balls = BallSweeps::suit(sweeps_);
+  const bool balls = SphereGaussSeidel::suit(sweeps_);
   balls ? balls_.take(sweeps_) : sweeps_.prepare();
   search_.converged = false;
   do {
@@ -205,10 +207,10 @@ void NonsmoothEngine::sweep() {
     search_.converged = solve_impulses(sweeps_, enough);
   }
   for (int k = 0; k < point_count(); ++k) {
-    const ImpulseSweeps::Point& p = sweeps_.points[k];
-    points_[k].impulse = p.push * p.normal + p.rub;
+    const ProjectedGaussSeidel::Point& p = sweeps_.points[k];
+    points_[k].impulse = p.normal_impulse * p.normal + p.friction_impulse;
   }
-  for (const ImpulseSweeps::Turn& t : sweeps_.turns) points_[t.point].turning = t.impulse;
+  for (const ProjectedGaussSeidel::Turn& t : sweeps_.turns) points_[t.point].turning = t.impulse;
 }
 
 /// The first search starts from where bodies go without contact and from the impulses of the last
@@ -221,7 +223,7 @@ bool NonsmoothEngine::search(const State& state, const Trial& trial) {
   search_.converged = true;
   if (!move(state, trial)) return false;
   const double scale = state.dt_last > 0.0 ? context.dt / state.dt_last : 1.0;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const int known = point_count();
     const int found = impulsive_->find_points(steps_, context, points_);
     for (int k = known; k < point_count(); ++k) {
@@ -243,7 +245,7 @@ bool NonsmoothEngine::search(const State& state, const Trial& trial) {
 
 Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, double) {
   Iteration done;
-  for (int again = 0; again < kMostRounds; ++again) {
+  for (int again = 0; again < kMaxRounds; ++again) {
     if (!search(state, trial)) {
       done.reason = worst_body_ >= 0 ? "a body turns too far in one step"
                                      : "loads are too stiff for the step";
@@ -254,7 +256,7 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     contacts_->cover(steps_, trial.context, nowhere_);
   }
   add_up(trial.context.dt);
-  for (int round = 0; round < kMostHeldBack && hold_back(); ++round) {
+  for (int round = 0; round < kMaxHeldBack && hold_back(); ++round) {
     places_.clear();
     for (const ImpulsePoint& p : points_) places_.push_back(p.place);
     set_up(trial.context.dt, false);
@@ -338,10 +340,11 @@ void NonsmoothEngine::add_up(double dt) {
       return Vec3(s.u + s.theta.cross(p.place - s.r_n - 0.5 * s.u));
     };
     const Vec3 slip = way(a) - way(b);
-    const double push = p.normal.dot(p.impulse), along = p.normal.dot(slip);
-    losses_[k].normal = -push * along / dt;
+    const double normal_impulse = p.normal.dot(p.impulse), along = p.normal.dot(slip);
+    losses_[k].normal = -normal_impulse * along / dt;
     losses_[k].friction =
-        -((p.impulse - push * p.normal).dot(slip) + p.turning.dot(a.theta - b.theta)) / dt;
+        -((p.impulse - normal_impulse * p.normal).dot(slip) + p.turning.dot(a.theta - b.theta)) /
+        dt;
   }
 }
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include <polhode/engines/ball_sweeps.hpp>
 #include <polhode/engines/impulse_newton.hpp>
-#include <polhode/engines/impulse_sweeps.hpp>
+#include <polhode/engines/projected_gauss_seidel.hpp>
+#include <polhode/engines/sphere_gauss_seidel.hpp>
 #include <polhode/equations/newton_system.hpp>
+#include <polhode/system/body_contacts.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
-#include <polhode/system/moving_contacts.hpp>
 
 namespace polhode {
 
@@ -44,7 +44,7 @@ class NonsmoothEngine final : public NewtonEngine {
   void set_up(double dt, bool first);
   void sweep();
   [[nodiscard]] bool is_small() const {
-    return point_count() <= kMostDensePoints && sweeps_.turns.empty();
+    return point_count() <= kMaxDensePoints && sweeps_.turns.empty();
   }
   void add_up(double dt);
   /// @returns whether any point is new among those that are held back.
@@ -52,13 +52,13 @@ class NonsmoothEngine final : public NewtonEngine {
   [[nodiscard]] int pressed_in() const;
 
   const System* system_;
-  MovingContacts* contacts_;
+  BodyContacts* contacts_;
   ImpulsiveContacts* impulsive_;
   int bodies_;
   InteractionSweep loads_;
   ImpulseOptions options_;
-  ImpulseSweeps sweeps_;
-  BallSweeps balls_;
+  ProjectedGaussSeidel sweeps_;
+  SphereGaussSeidel balls_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<ImpulsePoint> points_;
   std::vector<ImpulseLoss> losses_;

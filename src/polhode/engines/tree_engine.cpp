@@ -17,7 +17,7 @@ constexpr double kProximalOfLoops = 1e-11;
 /// What is evaluated one by one.
 std::vector<int> not_in_lanes(const TreeLoopPlan& plan) {
   std::vector<int> list;
-  for (const TreeExtra& x : plan.extras)
+  for (const OffTreeInteraction& x : plan.extras)
     if (!x.in_lanes) list.push_back(x.interaction);
   return list;
 }
@@ -133,7 +133,7 @@ void TreeEngine::lay_out() {
 
   extra_index_.assign(system_->interactions().size(), -1);
   for (int i = 0; i < static_cast<int>(plan_.extras.size()); ++i) {
-    const TreeExtra& x = plan_.extras[i];
+    const OffTreeInteraction& x = plan_.extras[i];
     extra_index_[x.interaction] = i;
     if (x.in_lanes) continue;
     loops_outside_ = loops_outside_ || x.rows > 0;

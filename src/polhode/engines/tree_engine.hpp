@@ -49,10 +49,10 @@ class TreeEngine final : public NewtonEngine {
   /// Steps of the bodies that extras act on; `first`: of the step, else only t_{n+1} has changed.
   void take_steps(const State& state, const Trial& trial, bool first);
   void evaluate_extras(const State& state, const Trial& trial);
-  void add_extra(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
-  void write_loop(const TreeExtra& x, const PairTerms& terms, const Trial& trial);
-  void write_couple(const TreeExtra& x, const PairTerms& terms, const double* softness);
-  void write_coupling(const TreeExtra& x, const PairTerms& terms);
+  void add_extra(const OffTreeInteraction& x, const PairTerms& terms, const Trial& trial);
+  void write_loop(const OffTreeInteraction& x, const PairTerms& terms, const Trial& trial);
+  void write_couple(const OffTreeInteraction& x, const PairTerms& terms, const double* softness);
+  void write_coupling(const OffTreeInteraction& x, const PairTerms& terms);
   void move_multipliers(Trial& trial, double damping);
   template <class Move>
   void for_each_tree_joint(Move&& move);

@@ -39,7 +39,7 @@ class Planner {
   [[nodiscard]] int slot(int body) const { return body == kGround ? -1 : tree_.slot_of_body[body]; }
 
   void add(int interaction, const InteractionRef& ref) {
-    TreeExtra x;
+    OffTreeInteraction x;
     x.interaction = interaction;
     x.slot_a = slot(ref.a);
     x.slot_b = slot(ref.b);
@@ -99,7 +99,7 @@ class Planner {
   /// Marks the bodies on the path between a loop's ends, up to their lowest common ancestor.
   void trace_loops() {
     for (int l = 0; l < static_cast<int>(plan_.loops.size()); ++l) {
-      TreeExtra& x = plan_.extras[loop_extra_[l]];
+      OffTreeInteraction& x = plan_.extras[loop_extra_[l]];
       if (x.slot_a >= 0) x.pair_a = pair_of(x.slot_a, l);
       if (x.slot_b >= 0) x.pair_b = pair_of(x.slot_b, l);
       int p = x.slot_a, q = x.slot_b;
@@ -156,7 +156,7 @@ class Planner {
 
   void write_lists() {
     std::set<int> written;
-    for (const TreeExtra& x : plan_.extras) {
+    for (const OffTreeInteraction& x : plan_.extras) {
       if (x.pair_a >= 0) written.insert(x.pair_a);
       if (x.pair_b >= 0) written.insert(x.pair_b);
     }

@@ -11,7 +11,7 @@
 namespace polhode {
 
 /// An interaction that the tree does not hold: loop joint, spring, load.
-struct TreeExtra {
+struct OffTreeInteraction {
   int interaction = -1;
   int slot_a = -1, slot_b = -1;  ///< −1: the ground.
   int rows = 0;
@@ -32,7 +32,7 @@ struct TreeExtra {
 /// loops are eliminated, which blocks between loops fill in.
 /// docs/theory/elimination_along_the_tree.md
 struct TreeLoopPlan {
-  std::vector<TreeExtra> extras;
+  std::vector<OffTreeInteraction> extras;
   std::vector<int> extra_of_slot;  ///< Index of a slot's extra rows, −1 none.
   std::vector<int> edge_of_slot;   ///< Index of the edge to the parent, −1 none.
   int extra_count = 0, edge_count = 0, couple_count = 0;

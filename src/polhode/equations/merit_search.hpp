@@ -33,7 +33,7 @@ class MeritSearch {
   [[nodiscard]] double part() const { return part_; }
   /// Whether the merit there is asked for: no increment is searched for ever.
   [[nodiscard]] bool wants(double increment) const {
-    return tries_ < kMostTries && !found_ && !(increment < kNoSearchBelow);
+    return tries_ < kMaxTries && !found_ && !(increment < kNoSearchBelow);
   }
   /// Whether the increment may stand as it is; if not, part() is another one.
   [[nodiscard]] bool accepts(double after) {
@@ -46,7 +46,7 @@ class MeritSearch {
       part_ *= std::isfinite(after) ? std::clamp(best, 0.1, 0.5) : 0.25;
       return false;
     }
-    if (too_much_ > kClose * stands_ && tries_ < kMostTries) {
+    if (too_much_ > kClose * stands_ && tries_ < kMaxTries) {
       part_ = std::sqrt(stands_ * too_much_);
       return false;
     }
@@ -56,7 +56,7 @@ class MeritSearch {
   }
 
  private:
-  static constexpr int kMostTries = 10;
+  static constexpr int kMaxTries = 10;
   static constexpr double kClose = 3.0;  ///< No kink is looked for between parts closer than this.
 
   double before_, part_;

@@ -215,7 +215,7 @@ void NodeCondensation::gather_moving(const std::vector<double>& K,
 }
 
 /// Pairs of bodies whose nodes may meet, unless a piece reaches both.
-void NodeCondensation::find_meetings() {
+void NodeCondensation::find_neighbours() {
   const Nodes& nodes = system_->nodes();
   std::map<std::pair<int, int>, std::size_t> now;
   for (std::size_t k = 0; k < moving_.row.size(); ++k) {
@@ -236,7 +236,7 @@ void NodeCondensation::find_meetings() {
 bool NodeCondensation::factor(const NodeSystem& nodes, const Trial& trial) {
   if (!(nodes.moving() == moving_)) {
     moving_ = nodes.moving();
-    find_meetings();
+    find_neighbours();
     analyse();
   }
   return factor(nodes.tangent(), nodes.residual(), trial, {});
@@ -362,7 +362,7 @@ void NodeCondensation::expand(const double* x, std::vector<double>& du) const {
   const int n = nodes.unknowns();
   std::vector<Vec6> local;
   for (std::size_t p = 0; p < couplings_.size(); ++p) {
-    const NodePiece& piece = nodes.pieces()[p];
+    const ConnectedComponent& piece = nodes.pieces()[p];
     local.clear();
     for (int body : piece.bodies)
       local.push_back(turned(Mat3(turn_[p].transpose()), Vec6(of_body(body))));

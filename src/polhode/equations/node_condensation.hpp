@@ -74,7 +74,7 @@ class NodeCondensation {
     Eigen::Matrix<double, 6, 3> bf;
   };
   void analyse();
-  void find_meetings();
+  void find_neighbours();
   void gather_moving(const std::vector<double>& K, const std::vector<const Bond*>& bond_of);
   [[nodiscard]] Coupling& coupling(int piece, int node, int body);
   /// The first piece that reaches both bodies; −1 if none does.

@@ -7,7 +7,7 @@ NodeSystem::NodeSystem(const System& system) : system_(&system) {
   const Nodes& nodes = system.nodes();
   residual_.assign(3 * static_cast<std::size_t>(nodes.count()), 0.0);
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const MovingPattern* pattern = nodes.group(g).moving_pattern())
+    if (const ChangingSparsity* pattern = nodes.group(g).changing_sparsity())
       moving_groups_.push_back({g, pattern, 0});
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <polhode/equations/node_motion.hpp>
-#include <polhode/system/moving_pattern.hpp>
+#include <polhode/system/changing_sparsity.hpp>
 
 namespace polhode {
 
@@ -46,7 +46,7 @@ class NodeSystem {
   std::vector<double> residual_, tangent_, acceleration_;
   struct MovingGroup {
     int group;
-    const MovingPattern* pattern;
+    const ChangingSparsity* pattern;
     std::size_t first;  ///< Its first block of moving_.
   };
   std::vector<MovingGroup> moving_groups_;

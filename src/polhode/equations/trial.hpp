@@ -87,7 +87,7 @@ class NewtonEngine {
   /// The step is accepted, the state still at t_n: histories and work of such forces.
   virtual Work commit(State& /*state*/, const Trial& /*trial*/) { return {}; }
   /// Contacts that it solves, whose impacts are to be settled when the state has moved to t_{n+1}.
-  [[nodiscard]] virtual MovingContacts* contacts() const { return nullptr; }
+  [[nodiscard]] virtual BodyContacts* contacts() const { return nullptr; }
   /// Called after convergence: makes trial.lambda complete.
   virtual void end_step(const State& state, Trial& trial) = 0;
 };

@@ -60,7 +60,7 @@ TriangleSurface placed(TriangleSurface surface, const ShapePlace& place) {
 }
 
 /// Beyond these sizes products of lengths leave the numbers [m].
-constexpr double kLeastSize = 1e-15, kLargestSize = 1e15;
+constexpr double kMinSize = 1e-15, kLargestSize = 1e15;
 /// Area of a triangle over the square of its longest edge, below which its corners lie on a line.
 constexpr double kNoArea = 1e-10;
 
@@ -71,7 +71,7 @@ constexpr double kFlatShape = 1e-9;
 double check_extent(std::string_view where, std::span<const Vec3> points) {
   double size = 0.0;
   for (const Vec3& x : points) size = std::max(size, (x - points[0]).cwiseAbs().maxCoeff());
-  if (!(size >= kLeastSize && size <= kLargestSize))
+  if (!(size >= kMinSize && size <= kLargestSize))
     throw InputError(where, format("its points are up to {:.3g} m apart", size),
                      "Check its unit of length, or give a scale");
   return size;

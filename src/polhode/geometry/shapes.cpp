@@ -191,23 +191,23 @@ const ShapeKind* find_shape_kind(std::string_view name) {
 void check_shape_sizes(std::string_view where, const ShapeKind& kind, Sizes sizes) {
   std::string names;
   for (const ShapeSize& size : kind.sizes) names += (names.empty() ? "" : ", ") + size.name;
-  const std::string mend = format("Write {}: [{}], full lengths", kind.name, names);
+  const std::string hint = format("Write {}: [{}], full lengths", kind.name, names);
   if (sizes.size() != kind.sizes.size())
     throw InputError(
         where,
         format("'{}' has {} size{}, but {} given", kind.name, kind.sizes.size(),
                kind.sizes.size() == 1 ? "" : "s",
                sizes.size() == 1 ? std::string("1 is") : format("{} are", sizes.size())),
-        mend);
+        hint);
   for (std::size_t i = 0; i < sizes.size(); ++i)
     if (!std::isfinite(sizes[i]) || sizes[i] <= 0.0)
       throw InputError(where,
                        format("the size '{}' of '{}' must be positive and finite, but is {:g} m",
                               kind.sizes[i].name, kind.name, sizes[i]),
-                       mend);
+                       hint);
   if (kind.misfit != nullptr)
     if (const std::string misfit = kind.misfit(sizes); !misfit.empty())
-      throw InputError(where, misfit, mend);
+      throw InputError(where, misfit, hint);
 }
 
 MassProperties shape_mass_properties(std::string_view where, const ShapeKind& kind, Sizes sizes,

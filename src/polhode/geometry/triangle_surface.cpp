@@ -79,7 +79,7 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
   if (surface.triangles.empty())
     throw InputError(where, "the surface has no triangles", "Export it again as a triangle mesh");
   const EdgeReport report = edge_report(surface);
-  const char* mend =
+  const char* hint =
       "A density needs a closed surface: mend it in the program that made it, or give mass and "
       "inertia";
   if (report.open + report.crowded > 0)
@@ -87,13 +87,13 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
                      format("the surface is not closed: {} of its edges belong to one triangle "
                             "only and {} to more than two, the first {}",
                             report.open, report.crowded, report.first),
-                     mend);
+                     hint);
   if (report.opposed > 0)
     throw InputError(where,
                      format("the triangles do not agree which side is outside: at {} edges "
                             "neighbours face opposite sides, the first {}",
                             report.opposed, report.first),
-                     mend);
+                     hint);
   double area = 0.0;
   for (const auto& [a, b, c] : surface.triangles) {
     const Vec3& origin = surface.points[static_cast<std::size_t>(a)];
@@ -105,7 +105,7 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
   // an area and no volume.
   if (std::abs(signed_volume(surface)) <= 1e-12 * std::pow(area, 1.5))
     throw InputError(where, format("the surface encloses no volume (its area is {:.6g} m²)", area),
-                     mend);
+                     hint);
 }
 
 double signed_volume(const TriangleSurface& surface) {

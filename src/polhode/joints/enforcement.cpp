@@ -13,7 +13,7 @@ namespace {
 constexpr double kEqualTurnsByTwist = 2.0;
 /// Stiffnesses of augmented joints farther apart than this are not told apart: ε times it must stay
 /// small beside the masses.
-constexpr double kMostWeight = 1e6;
+constexpr double kMaxWeight = 1e6;
 
 /// Derivative of the part's rows by the rotation that they measure; 0 for those that measure a
 /// displacement.
@@ -60,11 +60,11 @@ void Joint::set_enforcement(const JointEnforcement& e, double stiffest) {
   }
   Vec6 weight = Vec6::Ones();
   weight.head(rows_) = (stiffest * compliance.head(rows_)).cwiseMax(1.0);
-  if (weight.maxCoeff() > kMostWeight)
+  if (weight.maxCoeff() > kMaxWeight)
     throw InputError("type",
                      format("augmented joints have stiffnesses from {:.3g} to {:.3g}",
                             stiffest / weight.maxCoeff(), stiffest),
-                     format("Bring them within {:.0e} of each other", kMostWeight));
+                     format("Bring them within {:.0e} of each other", kMaxWeight));
   held_by_ = std::make_shared<const Held>(Held{Vec6::Zero(), weight});
 }
 

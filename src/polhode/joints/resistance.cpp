@@ -70,7 +70,7 @@ struct Resistance::Coordinate {
 
 struct Resistance::Motion {
   int count = 0;
-  Coordinate of[kMost];
+  Coordinate of[kMax];
   AngleStep angle[2];
   int slide = -1, turn = -1;  ///< Which coordinate is which.
 };

@@ -106,7 +106,7 @@ class Resistance {
   [[nodiscard]] ResistanceReport report(const View& view) const;
 
  private:
-  static constexpr int kMost = 3;
+  static constexpr int kMax = 3;
   struct Coordinate;
   struct Motion;
   struct Bristle;

@@ -18,7 +18,7 @@ constexpr double kSlowSteps = 2.0;
 /// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
 /// Least part of the tolerance between a gap and the floor of its barrier.
-constexpr double kLeastBand = 0.1;
+constexpr double kMinBand = 0.1;
 
 /// Places of the numbers in the memory of a stop.
 enum Memory { kAcceleration, kPhase, kRestitution, kStiffness, kReach, kFloor, kSide };
@@ -76,7 +76,7 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
   if (!(gap_n_ < 0.0)) return;
   // Within the band although nothing stopped it on its way there: nothing is stored.
   closed_ = true;
-  law_.lower = std::min(-tolerance, gap_n_ - kLeastBand * tolerance);
+  law_.lower = std::min(-tolerance, gap_n_ - kMinBand * tolerance);
   law_.stiffness *= tolerance / std::min(tolerance, gap_n_ - *law_.lower);
   law_.upper = gap_n_;
 }

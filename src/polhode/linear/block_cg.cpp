@@ -115,7 +115,7 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
   }
   inverse_ = block_;
   springs_.clear();
-  rubs_.clear();
+  friction_.clear();
   ties_.clear();
   rows_.clear();
   for (const ActingPoint& point : points) {
@@ -130,9 +130,9 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
     if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
     springs_.push_back(s);
-    if (!from.rub.isZero(0.0))
-      rubs_.push_back(
-          {four(from.rub, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
+    if (!from.friction.isZero(0.0))
+      friction_.push_back(
+          {four(from.friction, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
   }
   // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
   for (int k = 0; k < count; ++k)
@@ -249,9 +249,10 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
   const double size = scale(rhs, force_of_rows(), basis_[0]);
   if (size == 0.0) return 0;
   const Vectors asked = rows_.empty() ? Vectors{} : fulfil_rows(size, basis_[0]);
-  const int iterations = rubs_.empty() || directions == 0
-                             ? iterate(basis_[0], part, most)
-                             : iterate_rubbing(part, most, std::min(directions, kMostDirections));
+  const int iterations =
+      friction_.empty() || directions == 0
+          ? iterate(basis_[0], part, most)
+          : iterate_with_friction(part, most, std::min(directions, kMaxDirections));
   for (std::size_t k = 0; k < asked.size(); ++k) {
     x_[k].moved += asked[k].moved;
     x_[k].turned += asked[k].turned;
@@ -263,8 +264,8 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
   return iterations;
 }
 
-void BlockCg::subtract_rubs(const Vectors& p, Vectors& y) const {
-  for (const Rub& s : rubs_) {
+void BlockCg::subtract_friction(const Vectors& p, Vectors& y) const {
+  for (const FrictionTerm& s : friction_) {
     const Pair &a = p[s.a], &b = p[s.b];
     const Four u = (a.moved - b.moved) + (cross(a.turned, s.arm_a) - cross(b.turned, s.arm_b));
     const Four n = s.normal * u, F = (n[0] + n[1] + n[2]) * s.force;
@@ -277,7 +278,7 @@ void BlockCg::subtract_rubs(const Vectors& p, Vectors& y) const {
 
 /// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993) for S − U: S z is what conjugate gradients
 /// took from v.
-int BlockCg::iterate_rubbing(double part, int most, int directions) {
+int BlockCg::iterate_with_friction(double part, int most, int directions) {
   const std::size_t n = moving_.size();
   const auto product = [n](const Vectors& p, const Vectors& q) {
     double sum = 0.0;
@@ -308,7 +309,7 @@ int BlockCg::iterate_rubbing(double part, int most, int directions) {
     x_.resize(n + 1);
     w.resize(n + 1);
     x_.back() = Pair{};
-    subtract_rubs(x_, w);
+    subtract_friction(x_, w);
     w.resize(n);
     found_[j] = x_;
     if (!rows_.empty()) {  // w has their multipliers, too

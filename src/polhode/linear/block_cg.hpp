@@ -16,7 +16,7 @@ namespace polhode {
 ///
 /// A few joints, springs and motors may couple bodies as well. Their rows are held by projection
 /// (Gould, Hribar and Nocedal, SIAM J. Sci. Comput. 23, 2001): with M the inverse blocks' matrix
-/// and D = G M⁻¹ Gᵀ, factored, every direction fulfils G z = 0. @eq{crowd-rows}
+/// and D = G M⁻¹ Gᵀ, factored, every direction fulfils G z = 0. @eq{cg-rows}
 ///
 /// Works in single precision, four numbers at a time, on a matrix scaled to blocks of size one: it
 /// serves Newton iterations, which ask for a few digits of an increment and mend the rest in the
@@ -66,7 +66,7 @@ class BlockCg {
     Pair column[6];
   };
   /// Friction that follows a normal force.
-  struct Rub {
+  struct FrictionTerm {
     Four force, normal, arm_a, arm_b;
     int a, b;
   };
@@ -92,16 +92,16 @@ class BlockCg {
   /// x_ from zero, r_ what is left of b then.
   int iterate(const Vectors& b, double part, int most);
   /// The same with friction, from basis_[0].
-  int iterate_rubbing(double part, int most, int directions);
+  int iterate_with_friction(double part, int most, int directions);
   /// y −= U p, U the friction that follows normal forces; both have what stays last.
-  void subtract_rubs(const Vectors& p, Vectors& y) const;
+  void subtract_friction(const Vectors& p, Vectors& y) const;
 
   double per_length_ = 1.0, per_turn_ = 1.0;  ///< Scales of the matrix: S A S.
   std::vector<Block> own_, own_inverse_;      ///< By body.
   std::vector<int> moving_, place_;           ///< Bodies that move; by body its place among them.
   std::vector<Block> block_, inverse_;        ///< Of bodies that move, as everything from here on.
   std::vector<Spring> springs_;
-  std::vector<Rub> rubs_;
+  std::vector<FrictionTerm> friction_;
   struct ScaledTie {
     Block ab, ba;
     int a, b;
@@ -117,9 +117,9 @@ class BlockCg {
   std::vector<int> row_bodies_;  ///< Places, ascending.
   Vec row_values_, carried_, multipliers_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> D_;
-  static constexpr int kMostDirections = 4;
-  Vectors basis_[kMostDirections + 1], found_[kMostDirections];  ///< Of GMRES.
-  Vectors x_, r_, z_, p_, y_;  ///< p_ and y_ have what stays last.
+  static constexpr int kMaxDirections = 4;
+  Vectors basis_[kMaxDirections + 1], found_[kMaxDirections];  ///< Of GMRES.
+  Vectors x_, r_, z_, p_, y_;                                  ///< p_ and y_ have what stays last.
 };
 
 }  // namespace polhode

@@ -147,7 +147,7 @@ BlockCg::Vectors BlockCg::fulfil_rows(double size, Vectors& b) {
     go(row.b, row.along_b);
   }
   multiply();
-  subtract_rubs(p_, y_);
+  subtract_friction(p_, y_);
   for (std::size_t k = 0; k < n; ++k) {
     b[k].moved -= y_[k].moved;
     b[k].turned -= y_[k].turned;

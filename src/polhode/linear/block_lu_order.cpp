@@ -12,7 +12,7 @@ namespace polhode {
 namespace {
 
 /// Joints with fewer rows hold a body too loosely to be worth a place in its node.
-constexpr int kLeastTreeRows = 3;
+constexpr int kMinTreeRows = 3;
 
 void insert_sorted(std::vector<int>& list, int x) {
   const auto at = std::lower_bound(list.begin(), list.end(), x);
@@ -40,7 +40,7 @@ NodeGraph gather_nodes(const KktTopology& topology) {
   std::vector<int> grounded;
   for (int p = 0; p < pairs; ++p) {
     const KktPair& pair = topology.pairs[p];
-    if (pair.rows < kLeastTreeRows) continue;
+    if (pair.rows < kMinTreeRows) continue;
     if (pair.a == kGround || pair.b == kGround) {
       grounded.push_back(p);
     } else {

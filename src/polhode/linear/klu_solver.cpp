@@ -11,7 +11,7 @@ namespace polhode {
 namespace {
 
 /// Kept pivots are given up when max|A|/max|U| of some column falls below this [-].
-constexpr double kLeastPivotGrowth = 1e-3;
+constexpr double kMinPivotGrowth = 1e-3;
 /// A diagonal pivot is taken if it is at least this part of its column [-]: KLU's own 1e-3 saves
 /// fill and costs digits, which the polish iteration would miss.
 constexpr double kPivotTolerance = 0.1;
@@ -49,7 +49,7 @@ class KluSolver final : public LinearSolver {
     return klu_refactor(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
            common_.status == KLU_OK &&
            klu_rgrowth(starts(), rows(), x, symbolic_, numeric_, &common_) != 0 &&
-           common_.rgrowth > kLeastPivotGrowth;
+           common_.rgrowth > kMinPivotGrowth;
   }
 
   KktMatrix matrix_;

@@ -15,7 +15,7 @@ using Vec4 = CurvePair::Vec4;
 /// of the work is below round-off, and quotients would lose digits.
 constexpr double kShortPart = 1e-5;
 /// c² + s² is the square of the cosine between the planes' normals where one is tilted.
-constexpr double kLeastSquare = 0.99;
+constexpr double kMinSquare = 0.99;
 
 /// Four numbers with their derivatives.
 using Dual4 = std::array<Dual, 4>;
@@ -165,7 +165,7 @@ bool CurveOnCurve::acceptable(const PairStep& step) const {
   const CurvePair::Vec4 q = place(step);
   const CurvePair::Places before{step.history[0], step.history[1]};
   const CurvePair::Distance d = curves_.distance(q, before);
-  return d.touches && curves_.contains(d.at) && q.tail<2>().squaredNorm() > kLeastSquare &&
+  return d.touches && curves_.contains(d.at) && q.tail<2>().squaredNorm() > kMinSquare &&
          curves_.leads_to(place_n(step), before, d.at);
 }
 

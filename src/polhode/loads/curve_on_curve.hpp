@@ -33,7 +33,7 @@ class CurveOnCurve : public InteractionItem {
   void commit(const PairStep& step, double* history) const;
   void switch_on(const PairStep& step, double* history) const { initialize(step, history); }
   [[nodiscard]] bool acceptable(const PairStep& step) const;
-  [[nodiscard]] bool always_asked() const { return true; }
+  [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
     return "two curves came to the end of one of them, fit each other where they touch, so that "
            "the place would jump, or do not lie in parallel planes";

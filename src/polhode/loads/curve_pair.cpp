@@ -11,7 +11,7 @@ namespace {
 
 using Vec2 = PlanarCurve::Vec2;
 
-constexpr int kMostPlaces = 60;
+constexpr int kMaxPlaces = 60;
 /// Longest step of a search along the second curve, as a part of it.
 constexpr double kLongestPlaceStep = 0.02;
 /// After a step of this part of the curve the search has converged, by its quadratic order.
@@ -48,9 +48,9 @@ CurvePair::Distance CurvePair::distance(const Vec4& q, const Places& near) const
     const double pace = p.slope.squaredNorm() / size();
     least = kFits * pace;
     const double step = -d.normal.dot(slope) / (bend > least ? bend : pace);
-    if (std::abs(step) < 1e-15 * b_.length() || i == kMostPlaces) break;
+    if (std::abs(step) < 1e-15 * b_.length() || i == kMaxPlaces) break;
     u += std::clamp(step, -longest, longest);
-    if (std::abs(step) < last) i = kMostPlaces - 1;  // once more, for the values there
+    if (std::abs(step) < last) i = kMaxPlaces - 1;  // once more, for the values there
   }
   Eigen::Matrix<double, 2, 4> by_q;
   by_q << Eigen::Matrix2d::Identity(), p.X, quarter(p.X);

@@ -10,7 +10,7 @@ namespace polhode {
 namespace {
 
 /// Halvings that leave nothing of an interval but round-off.
-constexpr int kMostHalvings = 44;
+constexpr int kMaxHalvings = 44;
 /// Part of the largest value below which two estimates agree.
 constexpr double kAgree = 4e-16;
 /// Steps shorter than this part of x have no difference quotient worth the name.
@@ -78,7 +78,7 @@ double mean_value(const TimeFunction& f, double p, double q) {
     const TimeBreak kink = f.next_break(from, high);
     const double to = kink.exists() && kink.t > from && kink.t < high ? kink.t : high;
     const Estimate whole = gauss(f, from, to);
-    sum += (to - from) / (high - low) * refine(f, from, to, whole, 1.0, whole.size, kMostHalvings);
+    sum += (to - from) / (high - low) * refine(f, from, to, whole, 1.0, whole.size, kMaxHalvings);
     from = to;
   }
   return sum;

@@ -99,7 +99,7 @@ double Motor::work_of_step(const PairStep& step) const {
   return step.lambda[0] * rows.increment[0];
 }
 
-/// Nothing for a motor with a row, whose work LedgerKeeper counts.
+/// Nothing for a motor with a row, whose work EnergyLedger counts.
 Work Motor::work(const PairStep& step) const {
   return rows() > 0 ? Work{} : Work{.put_in = work_of_step(step)};
 }

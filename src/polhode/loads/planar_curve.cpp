@@ -12,7 +12,7 @@ namespace polhode {
 namespace {
 
 constexpr int kSamples = 720;  ///< Of the whole curve, for sizes and first feet.
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 /// Longest step of a search along the curve, as a part of it.
 constexpr double kLongestStep = 0.02;
 
@@ -46,7 +46,7 @@ PlanarCurve::Point PlanarCurve::at(double s) const {
 PlanarCurve::Distance PlanarCurve::distance(const Vec2& P, double near) const {
   double s = near;
   Point p = at(s);
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const Vec2 d = P - p.X;
     const double first = -p.slope.dot(d), square = p.slope.squaredNorm();
     const double second = square - p.second.dot(d);

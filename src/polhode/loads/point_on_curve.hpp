@@ -31,7 +31,7 @@ class PointOnCurve : public InteractionItem {
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
-  [[nodiscard]] bool always_asked() const { return true; }
+  [[nodiscard]] bool always_queried() const { return true; }
   [[nodiscard]] const char* refusal() const {
     return "a point ran off the end of its curve, or its roller does not fit into a hollow of it";
   }

@@ -28,7 +28,7 @@ class Rolling : public InteractionItem {
   /// False where the wheel fell through the plane that it would lie flat on: there no point of its
   /// edge is the lowest.
   [[nodiscard]] bool acceptable(const PairStep& step) const;
-  [[nodiscard]] bool always_asked() const { return circle_ > 0.0; }
+  [[nodiscard]] bool always_queried() const { return circle_ > 0.0; }
   [[nodiscard]] const char* refusal() const { return "a rolling wheel fell flat on its side"; }
 
  private:

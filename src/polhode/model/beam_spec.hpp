@@ -8,7 +8,7 @@
 #include <polhode/beams/bar_strain.hpp>
 #include <polhode/beams/hill_muscle.hpp>
 #include <polhode/beams/section.hpp>
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
 #include <polhode/model/contact_spec.hpp>
 
@@ -17,7 +17,7 @@ namespace polhode {
 /// A cross-section as described, its material counted in.
 struct SectionSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   BeamSection section;
   double relaxation_time = 0.0;      ///< Kelvin-Voigt viscosity [s].
   double height = 0.0, width = 0.0;  ///< Extent along y and z, for pictures [m]; 0: not known.
@@ -38,7 +38,7 @@ struct BeamContactSpec {
 /// One beam as described. add_beam() turns it into nodes, which are bodies, and elements.
 struct BeamSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   /// Polyline, free of stress, world at the start [m]; corners are rigid. Or, if arc, a circle's
   /// start, a point on it and its end.
   std::vector<Vec3> points;
@@ -85,7 +85,7 @@ struct CableContactSpec {
 /// piece has its own elongation; nothing slides through the points between.
 struct CableLineSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   std::vector<AttachmentSpec> through;
   double stiffness = 0.0;             ///< EA [N].
   std::optional<double> free_length;  ///< Of the whole [m]; left out: the length at the start.

@@ -6,28 +6,28 @@
 #include <string>
 #include <vector>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
 
 namespace polhode {
 
 // A side of contact is a body, by its index into Model::bodies, the surface of a solid, or a cable:
 /// More solids than a model has: the sides of cables come behind theirs.
-inline constexpr int kMostSolids = 1 << 24;
+inline constexpr int kMaxSolids = 1 << 24;
 /// The side of a solid, by its index into Model::solids.
 [[nodiscard]] constexpr int side_of_solid(int solid) { return kGround - 1 - solid; }
 /// The side of a cable, by its index into Model::cables.
-[[nodiscard]] constexpr int side_of_cable(int cable) { return kGround - 1 - kMostSolids - cable; }
+[[nodiscard]] constexpr int side_of_cable(int cable) { return kGround - 1 - kMaxSolids - cable; }
 /// No body: a solid or a cable.
 [[nodiscard]] constexpr bool is_surface_side(int side) { return side < kGround; }
-[[nodiscard]] constexpr bool is_cable_side(int side) { return side < kGround - kMostSolids; }
+[[nodiscard]] constexpr bool is_cable_side(int side) { return side < kGround - kMaxSolids; }
 [[nodiscard]] constexpr bool is_solid_side(int side) {
   return is_surface_side(side) && !is_cable_side(side);
 }
 /// Index into Model::solids of a side that is a solid's.
 [[nodiscard]] constexpr int solid_of_side(int side) { return kGround - 1 - side; }
 /// Index into Model::cables of a side that is a cable's.
-[[nodiscard]] constexpr int cable_of_side(int side) { return kGround - 1 - kMostSolids - side; }
+[[nodiscard]] constexpr int cable_of_side(int side) { return kGround - 1 - kMaxSolids - side; }
 
 /// How a shape takes part in contact; what is absent is as the body's, then as the model's. Of a
 /// solid: how its surface does. Of a beam or cable: how all of it does.
@@ -36,7 +36,7 @@ struct ContactSideSpec {
   std::optional<std::string> material;             ///< Name of a contact material.
   std::optional<std::vector<std::string>> groups;  ///< Belongs to these; none: to 'default'.
   std::optional<std::vector<std::string>> meets;   ///< Meets shapes of these; none: of all.
-  Place place;
+  SourceLocation place;
 };
 
 /// What two surfaces do to each other. Zero, where no other meaning is told: chosen from the
@@ -61,14 +61,14 @@ struct ContactLawSpec {
 /// A surface that pairs are made of.
 struct ContactMaterialSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   double friction = 0.0, restitution = 0.0;
 };
 
 /// A pair of sides or of materials with a law of its own, or a sensor between two bodies.
 struct ContactPairSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   bool of_materials = false;
   int a = 0, b = 0;  ///< Sides, or indices into ContactsSpec::materials.
   bool sensor = false;
@@ -82,7 +82,7 @@ enum class Combination { geometric_mean, mean, minimum, maximum, product };
 /// described.
 struct ContactsSpec {
   bool present = false;
-  Place place;
+  SourceLocation place;
   ContactLawSpec standard;
   std::vector<ContactMaterialSpec> materials;
   Combination friction = Combination::geometric_mean;

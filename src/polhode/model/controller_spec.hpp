@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/model/event_spec.hpp>
 
@@ -48,7 +48,7 @@ class ControlledValue final : public TimeFunction {
 /// A controller: what it makes of the error r(t) − y of a channel y. @eq{controller}
 struct ControllerSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   ChannelSpec channel;
   TimeFunctionPtr setpoint;      ///< In SI; null: zero.
   std::optional<double> sample;  ///< Time between samples [s]; nothing: continuous.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/model/probe_spec.hpp>
 
 namespace polhode {
@@ -26,7 +26,7 @@ struct ConditionSpec {
 /// Something that switches joints, loads and contacts, at a time or when a condition comes to hold.
 struct EventSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   std::optional<double> at;           ///< [s]; at 0 it tells how the model starts.
   std::optional<ConditionSpec> when;  ///< Instead of a time.
   std::string after;                  ///< Event that must have come before; "" for none.

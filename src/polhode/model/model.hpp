@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
 #include <polhode/joints/enforcement.hpp>
@@ -40,13 +40,13 @@ struct ShapeSpec {
   Quat orientation = Quat::Identity();
   std::optional<double> density;  ///< [kg/m^3]; else the body's.
   ContactSideSpec contact;
-  Place place;
+  SourceLocation place;
 };
 
 /// One rigid body as described; all vectors in SI.
 struct BodySpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   bool fixed = false;
   bool point_mass = false;
   double mass = 0.0;             ///< [kg], resolved (from shapes if not given).
@@ -81,7 +81,7 @@ struct JointLimitsSpec {
 /// world).
 struct JointSpec {
   std::string name, type;
-  Place place;
+  SourceLocation place;
   int a = kGround, b = kGround;  ///< Indices into Model::bodies.
   Vec3 Z_a = Vec3::Zero(),
        Z_b = Vec3::Zero();  ///< Joint point from the centre of mass, body axes [m].
@@ -101,7 +101,7 @@ struct JointSpec {
 /// One load as described; which fields matter depends on the type (see loads/registry).
 struct LoadSpec {
   std::string name, type;  ///< force, moment, spring_damper, torsional_spring, gravity ...
-  Place place;
+  SourceLocation place;
   int a = kGround, b = kGround;  ///< Bodies; single-body loads act on b.
   std::string joint;             ///< Of a torsional spring or motor.
   std::string coordinate;        ///< Of a motor: "x" ... "rz"; "": the joint's only one.
@@ -160,7 +160,7 @@ struct AnalysisSpec {
   int count = 10;                     ///< Modes: how many.
   std::string about = "equilibrium";  ///< Modes: equilibrium | start.
   double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.
-  Place place;
+  SourceLocation place;
 };
 
 /// What the user described: plain data, SI units, names and places kept.

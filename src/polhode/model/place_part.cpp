@@ -88,8 +88,8 @@ class Placer {
     return (body == kGround ? A_ : S_) * R * D;
   }
 
-  void refuse_mirror(const std::string& where, const std::string& what, const char* mend) const {
-    if (mirrored_) throw InputError(where, what + " cannot be mirrored", mend);
+  void refuse_mirror(const std::string& where, const std::string& what, const char* hint) const {
+    if (mirrored_) throw InputError(where, what + " cannot be mirrored", hint);
   }
 
   [[nodiscard]] TimeVector turned(const Mat3& T, const TimeVector& v,

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
 
 namespace polhode {
@@ -13,7 +13,7 @@ namespace polhode {
 /// What a probe records at its own rate, or a channel reads: columns of numbers of one thing.
 struct ProbeSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   std::string kind;             ///< body, joint, load, solid, beam, cable, contact, controller.
   std::string target;           ///< Its name.
   std::array<int, 2> pair{};    ///< Of a contact probe: sides.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/core/place.hpp>
+#include <polhode/core/source_location.hpp>
 #include <polhode/core/time_function.hpp>
 #include <polhode/core/types.hpp>
 #include <polhode/model/contact_spec.hpp>
@@ -35,14 +35,14 @@ struct MeshSpec {
 /// Nodes that move rigidly with a body.
 struct BondSpec {
   int body = kGround;  ///< Index into Model::bodies, or kGround.
-  Place place;
+  SourceLocation place;
   std::vector<Selection> nodes;
 };
 
 /// Nodes whose displacement from the start is given as a function of time.
 struct PrescribedSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   std::vector<Selection> nodes;
   TimeVector displacement;  ///< World components [m]; null: this component is free.
 };
@@ -50,7 +50,7 @@ struct PrescribedSpec {
 /// A deformable solid as described.
 struct SolidSpec {
   std::string name;
-  Place place;
+  SourceLocation place;
   MeshSpec mesh;
   std::string element;   ///< A kind of the registry of elements; "": what suits mesh and material.
   std::string material;  ///< Name of a material of the model.

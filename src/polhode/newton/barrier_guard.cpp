@@ -29,7 +29,7 @@ BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& tria
     : system_(system), state_(state), trial_(trial), engine_(engine) {
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const BarrierPoints* points = nodes.group(g).barrier_points())
+    if (const BarrierConstraint* points = nodes.group(g).barrier_constraint())
       points_.push_back({points, state.element_history.data() + nodes.first_history(g)});
   idle_ = system.barriers().empty() && points_.empty();
 }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include <polhode/equations/kept_iterate.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/equations/iterate_snapshot.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 
 namespace polhode {
 
@@ -37,14 +37,14 @@ class BarrierGuard {
   Trial& trial_;
   NewtonEngine& engine_;
   struct Watched {
-    const BarrierPoints* points;
+    const BarrierConstraint* points;
     const double* history;
   };
   std::vector<Watched> points_;    ///< Groups of elements, at t_n.
   bool idle_ = true;               ///< Nothing has barriers.
   std::vector<double> from_, to_;  ///< Clearances.
   std::vector<double> from_x_;     ///< Positions of nodes [m].
-  KeptIterate iterate_;
+  IterateSnapshot iterate_;
   bool near_ = false;
 };
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <polhode/core/format.hpp>
-#include <polhode/equations/kept_iterate.hpp>
+#include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/newton/barrier_guard.hpp>
 #include <polhode/newton/newton.hpp>
 
@@ -14,11 +14,11 @@ namespace {
 
 /// An increment below this leaves a quadratic remainder below round-off: no polish is needed,
 /// unless friction depends on multipliers, whose increments are not looked at.
-constexpr double kNoPolishBelow = 1e-10;
-/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it moved
-/// was the softness of redundant rows, given back by the proximal centre: how contraction goes on
-/// cannot be told from it, and the leak of the multipliers is measured.
-constexpr double kPolishedBelow = 1e-9;
+constexpr double kNoExtraIterationBelow = 1e-10;
+/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it
+/// moved was the softness of redundant rows, given back by the proximal centre: how contraction
+/// goes on cannot be told from it, and the leak of the multipliers is measured.
+constexpr double kMeasuredBelow = 1e-9;
 /// What may be left of the increments to come: the motion of the step is that close to the solution
 /// of its equations, which is what momenta and energy of the bodies hang on [-].
 constexpr double kLeft = 1e-13;
@@ -33,7 +33,7 @@ constexpr double kLeaves = 1.5;
 /// Increments above this part of the tolerance are no round-off [-].
 constexpr double kRoundOffBelow = 1e-2;
 /// Kept factors that contract by less than this are renewed.
-constexpr double kLame = 0.05;
+constexpr double kSlowContraction = 0.05;
 /// Iterations that a step may take for one that is allowed to come close: beside a singular
 /// position multipliers of redundant rows come by slow, but sure, proximal repeats.
 constexpr int kMoreWhenClose = 3;
@@ -84,7 +84,7 @@ class LineSearch {
   const State& state_;
   Trial& trial_;
   NewtonEngine& engine_;
-  KeptIterate iterate_;
+  IterateSnapshot iterate_;
   double damping_ = 1.0;
 };
 
@@ -102,12 +102,12 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
 
   LineSearch search(options.line_search, system, state, trial, engine);
-  bool close = false;     // an increment was below the tolerance
-  bool polished = false;  // and another iteration followed
-  int slow = 0;           // iterations in a row that hardly contracted
-  int stalled = 0;        // iterations without gain, once close
+  bool close = false;           // an increment was below the tolerance
+  bool iterated_again = false;  // and another iteration followed
+  int slow = 0;                 // iterations in a row that hardly contracted
+  int stalled = 0;              // iterations without gain, once close
   double least = std::numeric_limits<double>::infinity();  // increment since then
-  bool lame = false;  // the factors that were kept contract too little
+  bool slowly_contracting = false;  // the factors that were kept contract too little
   double defect_before = 0.0;
   const auto fail = [&](std::string reason) {
     report.reason = std::move(reason);
@@ -119,14 +119,14 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   const bool kept = engine.keeps_factor();
   const double left = system.stiff() ? kLeftStiff : kLeft;
   const auto most_iterations = [&] {
-    return (polished && !kept ? kMoreWhenClose : 1) * options.max_iterations;
+    return (iterated_again && !kept ? kMoreWhenClose : 1) * options.max_iterations;
   };
   for (int it = 0; it < most_iterations(); ++it) {
     const double last = report.increments.empty() ? 0.0 : report.increments.back();
     search.before(last);
     const bool refactor = options.jacobian == JacobianPolicy::every_iteration ||
                           (options.jacobian == JacobianPolicy::automatic
-                               ? !close || lame
+                               ? !close || slowly_contracting
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
     guard.before();
     const Iteration done = guard.hold(engine.iterate(state, trial, refactor, search.damping()),
@@ -155,7 +155,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
                : 0;
     if (slow >= 2) return fail("contracts too slowly"), report;
 
-    polished = close;
+    iterated_again = close;
     close = e < options.tolerance;  // it was by chance if it does not stay so
     if (!close) continue;
     if (kept) {  // converges linearly: what is left is a geometric series
@@ -165,16 +165,16 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
         continue;
     }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
-    if (!polished && (e > kNoPolishBelow || system.stiff()) && !kept) continue;
+    if (!iterated_again && (e > kNoExtraIterationBelow || system.stiff()) && !kept) continue;
     // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers come by
     // proximal repeats, contract by a constant factor: these go on.
     const double contraction = last > 0.0 ? e / last : 1.0;
-    lame = polished && contraction > kLame;
+    slowly_contracting = iterated_again && contraction > kSlowContraction;
     const bool leaves = guard.near() && e > kLeaves * last;
-    if (!leaves) stalled = polished && !kept && e > kGains * least ? stalled + 1 : 0;
+    if (!leaves) stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
-    const bool measured = e < kPolishedBelow && !system.stiff();  // by check() below
-    if (polished && !kept && !measured && e * contraction * contraction > left &&
+    const bool measured = e < kMeasuredBelow && !system.stiff();  // by check() below
+    if (iterated_again && !kept && !measured && e * contraction * contraction > left &&
         stalled < kStalled)
       continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
@@ -188,7 +188,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const ConstraintCheck& c = report.constraints;
     if (!std::isfinite(c.residual)) return fail("a value is not finite"), report;
     const double allowed = kEnergyLeak * options.energy_scale + kNewtonRoundOff * c.work_scale;
-    const bool stagnates = polished && it > 2 && c.work_defect > 0.5 * defect_before;
+    const bool stagnates = iterated_again && it > 2 && c.work_defect > 0.5 * defect_before;
     defect_before = c.work_defect;
     if (c.work_defect <= allowed || system.rows() == 0 || stagnates) {
       engine.end_step(state, trial);
@@ -199,7 +199,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   }
   // Increments are small: what is left is round-off of the multipliers.
   if (close &&
-      (kept || (polished && report.increments.back() < kRoundOffBelow * options.tolerance))) {
+      (kept || (iterated_again && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     engine.end_step(state, trial);
     report.converged = report.hard = true;
     return report;

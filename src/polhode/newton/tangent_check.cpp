@@ -2,12 +2,12 @@
 #include <optional>
 
 #include <polhode/core/format.hpp>
+#include <polhode/equations/body_contact_assembler.hpp>
 #include <polhode/equations/newton_system.hpp>
 #include <polhode/equations/node_condensation.hpp>
-#include <polhode/equations/touching_bodies.hpp>
 #include <polhode/linear/kkt_matrix.hpp>
 #include <polhode/newton/tangent_columns.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
 
 namespace polhode {
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kAssembled = "assembled";
 /// Nodes of solids that are moved, evenly chosen.
-constexpr int kMostNodesMoved = 24;
+constexpr int kMaxNodesMoved = 24;
 /// A prediction that turns elements inside out or passes through a surface is shortened so often.
 constexpr int kShortenings = 8;
 
@@ -144,7 +144,7 @@ class WholeTangent {
   [[nodiscard]] bool clear() const {
     std::vector<double> clearance;
     for (int g = 0; g < system_.nodes().group_count(); ++g)
-      if (const BarrierPoints* points = system_.nodes().group(g).barrier_points())
+      if (const BarrierConstraint* points = system_.nodes().group(g).barrier_constraint())
         points->clearances(node_step(state_, trial_),
                            state_.element_history.data() + system_.nodes().first_history(g),
                            clearance);
@@ -309,7 +309,7 @@ class WholeTangent {
   NewtonSystem newton_;
   std::optional<NodeSystem> nodes_;
   std::optional<NodeCondensation> condensation_;
-  std::optional<TouchingBodies> touching_;
+  std::optional<BodyContactAssembler> touching_;
   std::vector<Mat3> still_;  ///< By piece: none has turned.
   KktMatrix matrix_;
   std::optional<TangentColumns> columns_;
@@ -324,7 +324,7 @@ void compare_whole(const System& system, WholeTangent& whole, int most_bodies,
   std::vector<int> free;
   for (int i = 0; i < system.nodes().count(); ++i)
     if (!system.nodes().bonded(i)) free.push_back(i);
-  const int step = stride_of(static_cast<int>(free.size()), kMostNodesMoved);
+  const int step = stride_of(static_cast<int>(free.size()), kMaxNodesMoved);
   for (std::size_t i = 0; i < free.size(); i += static_cast<std::size_t>(step)) {
     whole.move_free(free[i]);
     ++report.nodes_moved;

@@ -5,15 +5,15 @@
 #include <polhode/core/names.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/newton/tangent_columns.hpp>
+#include <polhode/system/changing_sparsity.hpp>
 #include <polhode/system/impulsive_contacts.hpp>
-#include <polhode/system/moving_pattern.hpp>
 
 namespace polhode {
 
 namespace {
 
 /// At most so many interactions of a kind, nodes of a group and bodies in contact are moved.
-constexpr int kMostItems = 1000, kMostNodes = 24, kMostTouching = 60;
+constexpr int kMaxItems = 1000, kMaxNodes = 24, kMaxTouching = 60;
 
 /// Two bodies, of which the ground is none, and multipliers, as columns of unknowns or as rows.
 struct PairUnknowns {
@@ -150,7 +150,7 @@ class GroupForces {
         slots_(nodes_.slots(group)),
         history_(state.element_history.data() + nodes_.first_history(group)),
         first_scratch_(nodes_.first_scratch(group)),
-        moving_(group_.moving_pattern()) {
+        moving_(group_.changing_sparsity()) {
     if (moving_)
       blocks_ = moving_->blocks(history_);
     else if (!slots_.empty())
@@ -188,7 +188,7 @@ class GroupForces {
   std::span<const int> slots_;
   const double* history_;
   std::size_t first_scratch_;
-  const MovingPattern* moving_;  ///< Null: slots of the graph.
+  const ChangingSparsity* moving_;  ///< Null: slots of the graph.
   NodeBlocks blocks_;
 };
 
@@ -221,7 +221,7 @@ void compare_group(const System& system, const State& state, Trial& trial, int g
     report.left_out.push_back(format("{}, which exerts no force in this step", name));
   TangentColumns columns(sizes);
   TangentPart part{name, 0, static_cast<int>(acted_on.size()), {}};
-  const int every = stride_of(part.of, kMostNodes);
+  const int every = stride_of(part.of, kMaxNodes);
   for (int k = 0; k < part.of; k += every, ++part.compared)
     for (int c = 0; c < 3; ++c) {
       const int node = acted_on[static_cast<std::size_t>(k)], column = 3 * node + c;
@@ -299,7 +299,7 @@ void check_interactions(const System& system, const State& state, Trial& trial,
     TangentPart part{
         system.group(list.front()->group).kind(), 0, static_cast<int>(list.size()), {}};
     int kinks = 0;
-    const int every = stride_of(part.of, kMostItems);
+    const int every = stride_of(part.of, kMaxItems);
     for (int k = 0; k < part.of; k += every, ++part.compared)
       kinks += compare_interaction(system, state, trial, *list[static_cast<std::size_t>(k)], part);
     finish(std::move(part), kinks, report);
@@ -313,7 +313,7 @@ void check_elements(const System& system, const State& state, Trial& trial, Tang
 
 /// All pairs are evaluated for each displacement: each body is moved once for all its pairs.
 void check_contacts(const System& system, const State& state, Trial& trial, TangentReport& report) {
-  MovingContacts& contacts = *system.contacts();
+  BodyContacts& contacts = *system.contacts();
   const auto n = static_cast<std::size_t>(system.body_count());
   std::vector<BodyStep> steps(n + 1);
   steps.back() = BodyStep::ground(trial.context.ga.alpha_f);
@@ -350,7 +350,7 @@ void check_contacts(const System& system, const State& state, Trial& trial, Tang
   std::vector<int> bodies;
   for (std::size_t b = 0; b < n; ++b)
     if (moves[b]) bodies.push_back(static_cast<int>(b));
-  const int every = stride_of(static_cast<int>(bodies.size()), kMostTouching);
+  const int every = stride_of(static_cast<int>(bodies.size()), kMaxTouching);
   std::vector<char> seen(acting.size(), 0);
   for (std::size_t at = 0; at < bodies.size(); at += static_cast<std::size_t>(every)) {
     const int body = bodies[at];

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/engines/contact_engine.hpp>
 #include <polhode/engines/coupled_engine.hpp>
-#include <polhode/engines/crowd_engine.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
 #include <polhode/engines/tree_engine.hpp>
 #include <polhode/simulation/method.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 
 namespace polhode {
 
@@ -29,7 +29,7 @@ constexpr double kToleranceCables = 1e-7;
 constexpr double kToleranceContact = 1e-12;
 constexpr int kIterationsContact = 40;
 /// So many bodies that only contact couples are solved by conjugate gradients.
-constexpr int kCrowd = 50;
+constexpr int kManyBodies = 50;
 /// Error of automatic steps if the user gives none.
 constexpr double kDefaultError = 1e-6;
 /// Below this many loops open at one body the tree is ahead whatever the rest.
@@ -66,8 +66,8 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   }
   const int order = *a.order;
   if (order == 2) return order;
-  const auto refuse = [&](const std::string& why, const std::string& mend) {
-    throw InputError("analysis.order", format("is {}, but {}", order, why), mend);
+  const auto refuse = [&](const std::string& why, const std::string& hint) {
+    throw InputError("analysis.order", format("is {}, but {}", order, why), hint);
   };
   if (order != 4 && order != 6 && order != 8) refuse("only 2, 4, 6 and 8 exist", "Use one of them");
   if (a.rho_inf != 1.0)
@@ -89,7 +89,7 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
 /// Surfaces of solids touch.
 bool has_surfaces(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g)
-    if (system.nodes().group(g).barrier_points()) return true;
+    if (system.nodes().group(g).barrier_constraint()) return true;
   return false;
 }
 
@@ -127,11 +127,11 @@ std::unique_ptr<NewtonEngine> choose_engine(const System& system, const Analysis
       throw InputError("analysis.solver", "'tree' has no contacts",
                        "Use solver: automatic, block_lu, klu or sparse_lu");
     if (a.solver == "automatic" && rate == MomentumRate::momentum && a.rho_inf == 1.0 &&
-        CrowdEngine::suits(system) && CrowdEngine::free_bodies(system) >= kCrowd) {
+        ContactCgEngine::suits(system) && ContactCgEngine::free_bodies(system) >= kManyBodies) {
       narration += format("Solver: conjugate gradients, as contact alone couples {} bodies.\n",
-                          CrowdEngine::free_bodies(system));
-      return std::make_unique<CrowdEngine>(
-          system, a.newton_tolerance > 0.0 ? a.newton_tolerance : CrowdEngine::kResidual);
+                          ContactCgEngine::free_bodies(system));
+      return std::make_unique<ContactCgEngine>(
+          system, a.newton_tolerance > 0.0 ? a.newton_tolerance : ContactCgEngine::kResidual);
     }
   }
   if (!system.nodes().empty()) {

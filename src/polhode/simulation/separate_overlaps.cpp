@@ -10,9 +10,9 @@ namespace polhode {
 
 namespace {
 
-constexpr int kMostRounds = 1000;
+constexpr int kMaxRounds = 1000;
 /// Surfaces are looked at in full each time.
-constexpr int kMostSurfaceRounds = 50;
+constexpr int kMaxSurfaceRounds = 50;
 /// Part of the depth by which a pair moves beyond just touching, so that rounds end.
 constexpr double kBeyond = 1e-6;
 
@@ -114,7 +114,7 @@ class Separation {
   void run() {
     const bool surfaces = !map_.contact.surfaces.empty();
     bool moved = false;
-    for (int k = 0; k < kMostSurfaceRounds; ++k) {
+    for (int k = 0; k < kMaxSurfaceRounds; ++k) {
       if (map_.contacts) moved = part_shapes() || moved;
       if (!surfaces || !part_surfaces()) break;
       moved = true;
@@ -125,7 +125,7 @@ class Separation {
  private:
   bool part_shapes() {
     int rounds = 0;
-    for (bool moved = true; moved && rounds < kMostRounds; rounds += moved ? 1 : 0) {
+    for (bool moved = true; moved && rounds < kMaxRounds; rounds += moved ? 1 : 0) {
       moved = false;
       for (const auto& o : map_.contacts->deepest_overlaps(instants_of(system_, state_))) {
         const auto body = [&](int shape) {

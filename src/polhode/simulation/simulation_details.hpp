@@ -5,7 +5,7 @@
 
 #include <polhode/compile/build_solids.hpp>
 #include <polhode/compile/solid_point.hpp>
-#include <polhode/simulation/contact_keeper.hpp>
+#include <polhode/simulation/contact_statistics.hpp>
 #include <polhode/simulation/simulation.hpp>
 #include <polhode/solids/nodal_recovery.hpp>
 #include <polhode/statics/statics.hpp>

@@ -19,7 +19,7 @@ constexpr double kMoreThanSecant = 1.5;
 /// An event is found when the condition is that close to its level, as part of its change over the
 /// step, or its time is known to this part of the step.
 constexpr double kFound = 1e-13;
-constexpr int kMostLooks = 60;
+constexpr int kMaxLooks = 60;
 
 }  // namespace
 
@@ -87,7 +87,7 @@ void Simulation::Impl::find_event(const Simulation& simulation, const Reached& b
   const double same =
       std::max(kFound * H, 4.0 * std::numeric_limits<double>::epsilon() * std::abs(state.t));
   int side = 0;
-  for (int k = 0; k < kMostLooks && beyond > close && high - low > same; ++k) {
+  for (int k = 0; k < kMaxLooks && beyond > close && high - low > same; ++k) {
     const double secant = std::isinf(at_low) || std::isinf(at_high)
                               ? 0.5 * (low + high)
                               : (low * at_high - high * at_low) / (at_high - at_low);

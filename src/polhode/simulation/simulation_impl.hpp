@@ -26,14 +26,14 @@
 #include <polhode/simulation/simulation_details.hpp>
 #include <polhode/simulation/surface_contact_report.hpp>
 #include <polhode/solids/solid_elements.hpp>
-#include <polhode/stepping/settled_velocities.hpp>
+#include <polhode/stepping/extrapolated_velocities.hpp>
 
 namespace polhode {
 
 /// Above this many bodies the start does not solve for multipliers that the method does not need.
 inline constexpr int kSmallSystem = 2000;
 /// Breaks of a prescribed motion that are looked at before a run.
-inline constexpr int kMostBreaks = 10000;
+inline constexpr int kMaxBreaks = 10000;
 /// An estimated error of one step from which on the motion is not resolved [-].
 inline constexpr double kUnresolved = 1e-2;
 /// Velocities normal to the constraints, over those of the rows' terms, that call for a warning.
@@ -54,7 +54,7 @@ struct Simulation::Impl {
   Method method;
   std::unique_ptr<Stepper> stepper;
   std::unique_ptr<LoadStepper> statics;  ///< Of a static analysis; `stepper` keeps its ledger.
-  ContactKeeper contacts;
+  ContactStatistics contacts;
   std::unique_ptr<EventWatch> events;        ///< Null if there are none.
   std::unique_ptr<Controllers> controllers;  ///< Likewise.
   State state;
@@ -273,7 +273,7 @@ struct Simulation::Impl {
   }
   void refuse_jumps(const std::string& where, const TimeFunction& d, const char* unit) const {
     TimeBreak at;
-    for (int k = 0; k < kMostBreaks; ++k) {
+    for (int k = 0; k < kMaxBreaks; ++k) {
       at = d.next_break(k == 0 ? state.t : at.t, end());
       if (!at.exists()) return;
       if (at.derivative > 0) continue;
@@ -478,7 +478,7 @@ struct Simulation::Impl {
       velocity_residual = v.residual_before;
       velocity_time = state.t;
     }
-    std::vector<double> node_v = settled_velocities(system, projected);
+    std::vector<double> node_v = extrapolated_velocities(system, projected);
     projected.node_v.swap(node_v);
     instant = instant_solver->accelerations(projected, contacts.wrenches());
     projected.node_v.swap(node_v);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <polhode/compile/build_contacts.hpp>
-#include <polhode/simulation/contact_keeper.hpp>
+#include <polhode/simulation/contact_statistics.hpp>
 
 namespace polhode {
 

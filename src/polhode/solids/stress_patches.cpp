@@ -14,7 +14,7 @@ namespace {
 
 /// Least variance that a polynomial must have over the points of a patch to be determined by them.
 /// Two elements side by side have 0.75 for the square of a direction, one has none.
-constexpr double kLeastVariance = 0.05;
+constexpr double kMinVariance = 0.05;
 /// Spread of points below which they lie in a plane, of the largest.
 constexpr double kFlat = 1e-6;
 /// Sine of the angle beyond which a face of the boundary does not continue another one: faces
@@ -93,7 +93,7 @@ CloudFit::CloudFit(std::span<const Vec3> points, int order, const Mat3* directio
     rest -= basis_ * (basis_.transpose() * (gram * rest));
     const Eigen::SelfAdjointEigenSolver<Mat> own(Mat(rest.transpose() * gram * rest));
     for (int k = columns - 1; k >= 0; --k) {
-      if (!(own.eigenvalues()[k] > kLeastVariance * count)) continue;
+      if (!(own.eigenvalues()[k] > kMinVariance * count)) continue;
       const Vec column = rest * own.eigenvectors().col(k) / std::sqrt(own.eigenvalues()[k]);
       basis_.conservativeResize(Eigen::NoChange, basis_.cols() + 1);
       basis_.rightCols<1>() = column;

@@ -32,7 +32,7 @@ constexpr double kZero = 1e-7;
 /// Imaginary parts below this part of |λ| are rounding.
 constexpr double kReal = 1e-12;
 constexpr double kArnoldi = 1e-12;
-constexpr int kMostFree = 60;
+constexpr int kMaxFree = 60;
 
 /// Shift about which eigenvalues are looked for: a real number above zero, so that matrices stay
 /// real and free motions do no harm.
@@ -77,7 +77,7 @@ Mat free_of(ModalMatrices& m, double sigma) {
     if (square > 0.0) x /= std::sqrt(square);
     return square > 0.0;
   };
-  while (V.cols() < kMostFree) {
+  while (V.cols() < kMaxFree) {
     Vec x(m.n());
     const double step = 2.7 + 0.3 * static_cast<double>(V.cols());
     for (int i = 0; i < m.n(); ++i) x[i] = 1.0 + std::sin(1.0 + step * i);

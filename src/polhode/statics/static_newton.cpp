@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <polhode/core/format.hpp>
-#include <polhode/equations/kept_iterate.hpp>
+#include <polhode/equations/iterate_snapshot.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/math/quaternion.hpp>
 #include <polhode/statics/static_newton.hpp>
@@ -61,8 +61,8 @@ StaticNewton::StaticNewton(const System& system, const StaticOptions& options)
       turns_.push_back(i);
   }
   for (int g = 0; g < nodes.group_count(); ++g)
-    if (const MovingPattern* pattern = nodes.group(g).moving_pattern())
-      meetings_.push_back({pattern, nodes.group(g).barrier_points(),
+    if (const ChangingSparsity* pattern = nodes.group(g).changing_sparsity())
+      meetings_.push_back({pattern, nodes.group(g).barrier_constraint(),
                            static_cast<std::size_t>(nodes.first_history(g))});
 }
 
@@ -92,7 +92,7 @@ ElementReport StaticNewton::assemble() {
   if (!system_->nodes().empty()) {
     follow_bodies(*system_, work_, trial_);
     std::fill(trial_.node_u.begin(), trial_.node_u.end(), 0.0);
-    look_for_meetings();
+    look_for_neighbours();
     report = nodes_.assemble(work_, trial_, true, here_);
     if (!(report.least_volume > 0.0)) return report;
     if (matrix_.set_moving(nodes_.moving())) solver_.forget();

@@ -6,9 +6,9 @@
 
 #include <polhode/engines/saddle_solver.hpp>
 #include <polhode/equations/newton_system.hpp>
-#include <polhode/statics/kink_mixture.hpp>
+#include <polhode/statics/clarke_combination.hpp>
 #include <polhode/statics/static_report.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 
 namespace polhode {
 
@@ -78,7 +78,7 @@ class StaticNewton {
   std::vector<Vec> name_free_motions(StaticStep& step);
   void assemble_unmixed();
   void aim(std::vector<double>& du) const;
-  void look_for_meetings();
+  void look_for_neighbours();
   [[nodiscard]] double free_part(const State& at, const double* from, const double* to) const;
   [[nodiscard]] double free_part_of_increment();
   double apply(double part, StaticStep& step);
@@ -102,14 +102,14 @@ class StaticNewton {
   std::vector<double> du_, forces_, given_, held_;
   /// Surfaces of solids that may meet each other.
   struct Meeting {
-    const MovingPattern* pattern;
-    const BarrierPoints* points;
+    const ChangingSparsity* pattern;
+    const BarrierConstraint* points;
     std::size_t first_history;
   };
   std::vector<Meeting> meetings_;
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
   std::vector<Vec> free_;         ///< Orthonormal, see keep_free(); of the last factorisation.
-  KinkMixture kinks_;             ///< Residuals of the iterates that hardly move any more.
+  ClarkeCombination kinks_;       ///< Residuals of the iterates that hardly move any more.
   double force_ = 0.0;            ///< Largest force of the last assembly [N].
   bool resisted_ = false;         ///< Ill-conditioned in this search, but without free motions.
   bool shifted_ = false;          ///< The last factorisation is not that of the tangent itself.

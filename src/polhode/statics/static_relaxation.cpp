@@ -9,10 +9,10 @@ namespace polhode {
 
 namespace {
 
-constexpr int kMostSteps = 2000;
+constexpr int kMaxSteps = 2000;
 /// Every step is to move something by this part of the model's size; none moves anything by more
 /// than the second part of it, or turns it by more [-].
-constexpr double kMove = 0.02, kMostMove = 0.1;
+constexpr double kMove = 0.02, kMaxMove = 0.1;
 /// Change of the resistance allowed from one step to the next.
 constexpr double kEase = 0.5, kBrake = 1.5;
 /// Newton's method is tried when steps are below this part of the size, and every so many steps.
@@ -52,7 +52,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
   const int bodies = 6 * system_->body_count();
   const double length = system_->length_scale();
   double resistance = 0.0;
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMaxSteps; ++k) {
     if (!(assemble().least_volume > 0.0)) break;
     aim(given_);
     ++step.iterations;
@@ -73,8 +73,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
     double move = 0.0;
     for (int i = 0; i < matrix_.movable(); ++i)
       move = std::max(move, std::abs(x_[i]) / (i < bodies && i % 6 >= 3 ? 1.0 : length));
-    const double part =
-        std::min(move > kMostMove ? kMostMove / move : 1.0, free_part_of_increment());
+    const double part = std::min(move > kMaxMove ? kMaxMove / move : 1.0, free_part_of_increment());
     step.increments.push_back(apply(part, step));
     resistance *= std::clamp(move / kMove, kEase, kBrake);
     if ((move < kSmallSpeed && k % 5 == 4) || k % kTries == kTries - 1) {

@@ -18,12 +18,12 @@ constexpr double kTangentShift = 1e-6;
 /// A solution that grows to this, out of a right-hand side of size one, may tell of a free motion.
 constexpr double kNearlySingular = 1e10;
 /// Most free motions that are sought and supported; the first of them are named.
-constexpr int kMostSupported = 24;
+constexpr int kMaxSupported = 24;
 /// Corrections of a solution by its own residual.
 constexpr int kRefinements = 3;
 constexpr int kSoftestIterations = 6;
 /// Free motions that are named.
-constexpr int kMostFreeMotions = 6;
+constexpr int kMaxFreeMotions = 6;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ bool StaticNewton::factor(bool symmetric, StaticStep& step) {
   const auto weight = [&](int unknown) {
     return unknown < 6 * system_->body_count() && unknown % 6 >= 3 ? length * length : 1.0;
   };
-  if (!free.empty() && static_cast<int>(free.size()) < kMostSupported) {
+  if (!free.empty() && static_cast<int>(free.size()) < kMaxSupported) {
     std::vector<double> supports(matrix_.movable(), 0.0);
     for (const int unknown : supports_of(free, matrix_, length))
       supports[unknown] = weight(unknown);
@@ -146,10 +146,10 @@ bool StaticNewton::nearly_singular() const {
 }
 
 std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
-  std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMostSupported,
+  std::vector<Vec> free = free_motions(matrix_, system_->length_scale(), kMaxSupported,
                                        rigid_free_motions(*system_, work_, matrix_));
   for (const PlainMotion& motion : plain_motions(*system_, work_, matrix_, free)) {
-    if (static_cast<int>(step.free_motions.size()) == kMostFreeMotions) break;
+    if (static_cast<int>(step.free_motions.size()) == kMaxFreeMotions) break;
     const std::string& text = motion.text;
     if (std::find(step.free_motions.begin(), step.free_motions.end(), text) ==
         step.free_motions.end())

@@ -18,7 +18,7 @@ namespace {
 /// Up to so many iterations the next increment of the load doubles; from so many on it halves.
 constexpr int kEasy = 6, kHard = 12;
 /// After a failure the increment is this part, down to the least.
-constexpr double kCut = 0.25, kLeastIncrement = 1e-4;
+constexpr double kCut = 0.25, kMinIncrement = 1e-4;
 /// Load factors closer than this are the same.
 constexpr double kSame = 1e-12;
 /// A load step may have left its branch if it led farther than this many times the way that was
@@ -186,7 +186,7 @@ struct LoadStepper::Impl {
         return true;
       }
       increment = kCut * (factor - from);
-      if (increment < kLeastIncrement) {
+      if (increment < kMinIncrement) {
         std::string soft;
         if (equilibria > 0) {
           newton.assemble_at(state, from);

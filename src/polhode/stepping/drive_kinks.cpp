@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-void DriveKinks::pass(State& state, LedgerKeeper& ledger) {
+void DriveKinks::pass(State& state, EnergyLedger& ledger) {
   if (!find(state)) return;
   const BodySums sums = ledger.sums(state);
   settle(state);

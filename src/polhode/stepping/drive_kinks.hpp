@@ -19,7 +19,7 @@ class DriveKinks {
 
   /// At the end of a step: makes velocities jump where drives have kinks, and adds what that puts
   /// in to the ledger.
-  void pass(State& state, LedgerKeeper& ledger);
+  void pass(State& state, EnergyLedger& ledger);
 
  private:
   /// Compares the velocities of drives with those that they go on with.

@@ -7,7 +7,7 @@ namespace polhode {
 
 /// Bodies that a row presses on, and pieces of solids, as they are numbered in `tie_`.
 template <class Use>
-void SettleImpacts::for_bodies(int row, Use&& use) const {
+void ImpactResolver::for_bodies(int row, Use&& use) const {
   if (const SurfaceImpact* hit = surface(row)) {
     for (const auto& [node, rate] : hit->nodes) {
       const int body = system_->nodes()[node].body, piece = system_->nodes().piece(node);
@@ -21,7 +21,7 @@ void SettleImpacts::for_bodies(int row, Use&& use) const {
   if (b != kGround) use(b);
 }
 
-std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
+std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
   std::vector<int> root = tie_;
   const int bodies = system_->body_count(), rows = static_cast<int>(rows_.size());
   const auto first = [&](int row) {
@@ -63,7 +63,7 @@ std::vector<SettleImpacts::Island> SettleImpacts::islands() const {
   return list;
 }
 
-std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const Island& island) {
+std::vector<ImpactResolver::Row> ImpactResolver::rows_of(const State& state, const Island& island) {
   std::vector<Row> rows;
   const int bodies = static_cast<int>(island.bodies.size());
   std::vector<Vec6> impulses;
@@ -96,11 +96,11 @@ std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const
         at_node(on_nodes, island.nodes[static_cast<std::size_t>(place - bodies)]).setZero();
     }
   };
-  const auto add = [&](int impact, std::vector<std::pair<int, Vec6>> on, bool rubs) {
+  const auto add = [&](int impact, std::vector<std::pair<int, Vec6>> on, bool has_friction) {
     Row& row = rows.emplace_back();
     row.impact = impact;
     row.on = std::move(on);
-    row.rubs = rubs;
+    row.has_friction = has_friction;
     if (island.tied) add_tied(row);
     for (const auto& [place, J] : row.on) {
       if (island.tied) break;
@@ -162,8 +162,8 @@ std::vector<SettleImpacts::Row> SettleImpacts::rows_of(const State& state, const
   return rows;
 }
 
-std::vector<double> SettleImpacts::on_nodes(const Island& island, const std::vector<Row>& rows,
-                                            double part) const {
+std::vector<double> ImpactResolver::on_nodes(const Island& island, const std::vector<Row>& rows,
+                                             double part) const {
   std::vector<double> sum(system_->nodes().no_displacement().size(), 0.0);
   const int bodies = static_cast<int>(island.bodies.size());
   for (const Row& row : rows)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows behind SettleImpacts; only its source files include this.
+// The rows behind ImpactResolver; only its source files include this.
 #pragma once
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include <polhode/stepping/settle_impacts.hpp>
+#include <polhode/stepping/impact_resolver.hpp>
 
 namespace polhode {
 
@@ -26,14 +26,14 @@ inline void join(std::vector<int>& tie, int a, int b) {
 }  // namespace impact_rows
 
 /// A relative velocity J v, and how the island answers a unit impulse along it.
-struct SettleImpacts::Row {
+struct ImpactResolver::Row {
   int impact = 0;  ///< Its number.
   /// J, by places in the island: of its bodies, then of its nodes, which do not turn.
   std::vector<std::pair<int, Vec6>> on;
   std::vector<std::pair<int, Vec6>> answer;  ///< By place: X = M⁻¹ Jᵀ under G v = 0.
   double mobility = 0.0;                     ///< J X.
   double before = 0.0, impulse = 0.0;        ///< J v at first [m/s]; [N s].
-  bool rubs = false;                         ///< The first of two tangents.
+  bool has_friction = false;                 ///< The first of two tangents.
 
   [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
     double sum = 0.0;
@@ -48,7 +48,7 @@ struct SettleImpacts::Row {
         if (own == place) sum += J.dot(x);
     return sum;
   }
-  void push(double p, std::vector<Vec6>& v) {
+  void apply(double p, std::vector<Vec6>& v) {
     impulse += p;
     for (const auto& [place, x] : answer) v[static_cast<std::size_t>(place)] += p * x;
   }

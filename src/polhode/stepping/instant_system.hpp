@@ -17,7 +17,7 @@ namespace polhode {
 inline constexpr double kInstantRoundOff = std::numeric_limits<double>::epsilon();
 /// ε where multipliers count: rounding of the redundant part is divided by it, repeats do the rest.
 inline constexpr double kInstantProximal = 1e-8;
-inline constexpr int kMostInstantRepeats = 40;
+inline constexpr int kMaxInstantRepeats = 40;
 
 struct InstantSolver::Impl {
   const System& system;
@@ -246,7 +246,7 @@ struct InstantSolver::Impl {
     G_x.resize(rows);
     M_x.resize(bodies);
     double before = std::numeric_limits<double>::infinity();
-    while (outcome.solves < kMostInstantRepeats) {
+    while (outcome.solves < kMaxInstantRepeats) {
       solver->solve(correction);
       ++outcome.solves;
       if (!correction.allFinite()) return {};

@@ -36,7 +36,7 @@ Vec3 vec(const double* x) { return {x[0], x[1], x[2]}; }
 
 }  // namespace
 
-LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
+EnergyLedger::EnergyLedger(const System& system, const LaneKernels& kernels,
                            const NewtonEngine& engine)
     : system_(&system),
       kernels_(&kernels),
@@ -62,7 +62,7 @@ LedgerKeeper::LedgerKeeper(const System& system, const LaneKernels& kernels,
   if (!touched_.empty()) steps_.resize(system.body_count() + 1);
 }
 
-BodySums LedgerKeeper::sums(const State& state) const {
+BodySums EnergyLedger::sums(const State& state) const {
   BodySums s;
   const double g[3] = {system_->gravity()[0], system_->gravity()[1], system_->gravity()[2]};
   kernels_->sums(state.blocks.data(), mass_.data(), system_->tree().body_of_slot.data(),
@@ -83,7 +83,7 @@ BodySums LedgerKeeper::sums(const State& state) const {
   return s;
 }
 
-double LedgerKeeper::stored(const State& state) const {
+double EnergyLedger::stored(const State& state) const {
   double potential = nodes_.stored(state) + engine_->stored(state);
   for (int i : working_) {
     const InteractionRef& ref = system_->interactions()[i];
@@ -93,7 +93,7 @@ double LedgerKeeper::stored(const State& state) const {
   return potential;
 }
 
-void LedgerKeeper::begin(State& state) {
+void EnergyLedger::begin(State& state) {
   Ledger& l = state.ledger;
   l = Ledger{};
   at_n_ = sums(state);
@@ -110,7 +110,7 @@ void LedgerKeeper::begin(State& state) {
   sums_are_of_state_ = true;
 }
 
-void LedgerKeeper::before_commit(State& state, Trial& trial) {
+void EnergyLedger::before_commit(State& state, Trial& trial) {
   if (!sums_are_of_state_) at_n_ = sums(state);
   Ledger& l = state.ledger;
   const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
@@ -155,7 +155,7 @@ void LedgerKeeper::before_commit(State& state, Trial& trial) {
 }
 
 /// @eq{drive-work}
-void LedgerKeeper::add_drives(State& state, const Trial& trial) const {
+void EnergyLedger::add_drives(State& state, const Trial& trial) const {
   for (const int i : system_->drives()) {
     const InteractionRef& ref = system_->interactions()[i];
     const PairView view = pair_view(*system_, state, trial, ref);
@@ -166,19 +166,19 @@ void LedgerKeeper::add_drives(State& state, const Trial& trial) const {
   }
 }
 
-void LedgerKeeper::add(State& state, const Work& work) {
+void EnergyLedger::add(State& state, const Work& work) {
   potential_ += work.stored;
   state.ledger.dissipated.add(work.dissipated);
   state.ledger.put_in.add(work.put_in);
 }
 
-void LedgerKeeper::add_jump(State& state, const BodySums& before) {
+void EnergyLedger::add_jump(State& state, const BodySums& before) {
   const BodySums after = sums(state);
   state.ledger.dissipated.add(before.kinetic - after.kinetic);
   add_impulses(state, before, after);
 }
 
-void LedgerKeeper::add_driven_jump(State& state, const BodySums& before) {
+void EnergyLedger::add_driven_jump(State& state, const BodySums& before) {
   at_n_ = sums(state);
   state.ledger.put_in.add(at_n_.kinetic - before.kinetic);
   add_impulses(state, before, at_n_);
@@ -186,7 +186,7 @@ void LedgerKeeper::add_driven_jump(State& state, const BodySums& before) {
   sums_are_of_state_ = true;
 }
 
-void LedgerKeeper::add_switch(State& state, const BodySums& before, double lost, double potential) {
+void EnergyLedger::add_switch(State& state, const BodySums& before, double lost, double potential) {
   Ledger& l = state.ledger;
   at_n_ = sums(state);
   l.dissipated.add(lost + std::max(0.0, -potential));
@@ -196,14 +196,14 @@ void LedgerKeeper::add_switch(State& state, const BodySums& before, double lost,
   sums_are_of_state_ = true;
 }
 
-void LedgerKeeper::add_impulses(State& state, const BodySums& before, const BodySums& after) {
+void EnergyLedger::add_impulses(State& state, const BodySums& before, const BodySums& after) {
   for (int i = 0; i < 3; ++i) {
     state.ledger.impulse[i].add(after.p[i] - before.p[i]);
     state.ledger.angular_impulse[i].add(after.l[i] - before.l[i]);
   }
 }
 
-void LedgerKeeper::after_commit(State& state, const Trial& trial) {
+void EnergyLedger::after_commit(State& state, const Trial& trial) {
   at_n1_ = sums(state);
   const double dt = trial.context.dt, alpha_f = trial.context.ga.alpha_f;
   // Gravity: m g at the centres of mass, averaged as all positions are.
@@ -223,7 +223,7 @@ void LedgerKeeper::after_commit(State& state, const Trial& trial) {
   sums_are_of_state_ = true;
 }
 
-void LedgerKeeper::close_step(State& state) {
+void EnergyLedger::close_step(State& state) {
   if (!sums_are_of_state_) {
     at_n_ = sums(state);
     potential_ = stored(state);
@@ -263,7 +263,7 @@ Drifts drifts(const Ledger& l) {
           relative(l.l_drift, l.l_scale, std::sqrt(l.l_noise))};
 }
 
-Balance LedgerKeeper::balance(const State& state) const {
+Balance EnergyLedger::balance(const State& state) const {
   const BodySums s = sums(state);
   return {.kinetic = s.kinetic,
           .potential = s.gravity_potential + stored(state),

@@ -20,9 +20,9 @@ struct Drifts {
 
 /// Keeps the balance of energy and momenta: what loads and ground put in over each step, and how
 /// far what the bodies hold is from that.
-class LedgerKeeper {
+class EnergyLedger {
  public:
-  LedgerKeeper(const System& system, const LaneKernels& kernels, const NewtonEngine& engine);
+  EnergyLedger(const System& system, const LaneKernels& kernels, const NewtonEngine& engine);
 
   /// Starts the sums at a state.
   void begin(State& state);

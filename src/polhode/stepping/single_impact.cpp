@@ -22,7 +22,7 @@ constexpr double kNoSlip = 1e-12;
 constexpr double kStraight = 1e-12;
 /// Greatest relative change of the slip in one step along its curve.
 constexpr double kCurveStep = 0.04;
-constexpr int kMostCurveSteps = 4000;
+constexpr int kMaxCurveSteps = 4000;
 /// Directions in which a slip that resumes is sought first.
 constexpr int kDirections = 180;
 
@@ -34,12 +34,12 @@ class Course {
   explicit Course(const SingleImpact& impact)
       : law_(impact), v_(impact.velocity), stored_(impact.stored) {
     slow_ = kNoSlip * impact.velocity.norm();
-    rubs_ = impact.mu > 0.0 && impact.mu_across > 0.0;
+    has_friction_ = impact.mu > 0.0 && impact.mu_across > 0.0;
   }
 
   SingleImpactEnd follow() {
     if (v_.x() >= 0.0) turn();
-    if (!rubs_) go_straight(Vec2::Zero(), kEndless);
+    if (!has_friction_) go_straight(Vec2::Zero(), kEndless);
     while (!over_) {
       if (slip().norm() <= slow_) {
         go_straight(friction_without_slip(), kEndless);
@@ -184,7 +184,7 @@ class Course {
     y << v_, p_.tail<2>(), p_.x(), stored_;
     const double end = std::max(slow_, 1e-10 * slip().norm());
     bool slips = true;
-    for (int i = 0; i < kMostCurveSteps && slips && !over_; ++i) {
+    for (int i = 0; i < kMaxCurveSteps && slips && !over_; ++i) {
       const double h = kCurveStep / slip_rate(friction(y.segment<2>(1))).norm();
       // Sign change of what ends the phase at hand.
       const auto left = [&](const Values& z) {
@@ -223,7 +223,7 @@ class Course {
   SingleImpact law_;
   Vec3 v_, p_ = Vec3::Zero();
   double stored_, slow_ = 0.0;
-  bool rubs_ = false, turned_ = false, over_ = false;
+  bool has_friction_ = false, turned_ = false, over_ = false;
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ SingleStep::SingleStep(const System& system, std::unique_ptr<NewtonEngine> engin
   for (int i = 0; i < static_cast<int>(system.interactions().size()); ++i) {
     const InteractionRef& ref = system.interactions()[i];
     const InteractionGroup& group = system.group(ref.group);
-    if (group.traits(ref.item).always_asked) always_asked_.push_back(i);
+    if (group.traits(ref.item).always_queried) always_queried_.push_back(i);
     if (group.traits(ref.item).history_size > 0)
       (group.traits(ref.item).lazy_history ? lazy_ : eager_).push_back(i);
   }
@@ -149,7 +149,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   state.past_next = (state.past_next + 1) % kPast;
   state.past_count = std::min(kPast, state.past_count + 1);
   impacts_.find_turns(state);
-  if (MovingContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
+  if (BodyContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
     ledger_.add(state, impacts_.find(state, *contacts));
     state.past_count = 0;  // measured: steps start best from the velocities at t_n then
   }
@@ -178,7 +178,7 @@ bool SingleStep::refused(const State& state, NewtonReport& report) const {
     report.worst.clear();
     return true;
   };
-  for (int i : always_asked_)
+  for (int i : always_queried_)
     if (refuses(system_->interactions()[i])) return true;
   if (report.rotation <= kNoMirrorBelow) return false;
   for (const InteractionRef& ref : system_->interactions())

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <polhode/newton/newton.hpp>
+#include <polhode/stepping/impact_resolver.hpp>
 #include <polhode/stepping/ledger.hpp>
-#include <polhode/stepping/settle_impacts.hpp>
 
 namespace polhode {
 
@@ -34,8 +34,8 @@ class SingleStep {
   /// A stop of a joint acted in the last accepted trial.
   [[nodiscard]] bool stopped() const { return stopped_; }
 
-  LedgerKeeper& ledger() { return ledger_; }
-  [[nodiscard]] const LedgerKeeper& ledger() const { return ledger_; }
+  EnergyLedger& ledger() { return ledger_; }
+  [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
   [[nodiscard]] const NewtonEngine& engine() const { return *engine_; }
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
 
@@ -50,14 +50,14 @@ class SingleStep {
   const System* system_;
   std::unique_ptr<NewtonEngine> engine_;
   const LaneKernels* kernels_;
-  LedgerKeeper ledger_;
-  SettleImpacts impacts_;
+  EnergyLedger ledger_;
+  ImpactResolver impacts_;
   Trial trial_;
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
-  std::vector<int> eager_, lazy_;  ///< Interactions with a history of either sort.
-  std::vector<int> always_asked_;  ///< Whether they accept what was reached.
+  std::vector<int> eager_, lazy_;    ///< Interactions with a history of either sort.
+  std::vector<int> always_queried_;  ///< Whether they accept what was reached.
   double error_ = 0.0;
   bool jumped_ = false, stopped_ = false;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.

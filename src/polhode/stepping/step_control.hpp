@@ -10,22 +10,22 @@ inline constexpr double kSameTime = 1e-9;
 inline constexpr double kLeftOver = 1e-6;
 /// How much longer a step may be if it ends at a wanted time then [-].
 inline constexpr double kStretch = 1e-3;
-inline constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kLeastFactor = 0.3, kMostFactor = 1.6;
+inline constexpr double kSafety = 0.9, kSafetyComposed = 0.8, kMinFactor = 0.3, kMaxFactor = 1.6;
 /// What the companions' errors say of the error at order 6 and at order 8, measured.
 inline constexpr double kErrorOfSix = 1.0, kErrorOfEight = 2.5;
 /// Round-off of an error estimate, for places at the origin and as part of how far others are:
 /// nothing below can be asked of a step.
-inline constexpr double kLeastError = 1e-15, kStepRoundOff = 2.2e-16;
+inline constexpr double kMinError = 1e-15, kStepRoundOff = 2.2e-16;
 inline constexpr double kRoundOffComposed =
     30.0;  ///< At higher orders stages and companions add to it.
 /// A refused step's error falls with this power of its length at least, or it is noise; and noise
 /// is small.
-inline constexpr double kFalls = 1.5, kMostNoise = 1e-8, kMostNoiseComposed = 1e-11;
+inline constexpr double kFalls = 1.5, kMaxNoise = 1e-8, kMaxNoiseComposed = 1e-11;
 /// Noise that was found counts for the steps after it, less and less.
 inline constexpr double kNoiseAllowed = 2.0, kNoiseFades = 0.98;
 /// Error of an impact allowed in time, times the velocities that jump, as part of the tolerance;
 /// and the part to which a step that holds one is shortened at once at most.
-inline constexpr double kImpactError = 0.1, kLeastImpactFactor = 0.02;
+inline constexpr double kImpactError = 0.1, kMinImpactFactor = 0.02;
 /// Highest derivatives of the motion whose jumps end steps.
 inline constexpr int kBreaksOfTwo = 3, kBreaksComposed = 5;
 /// Independent samples of loads that a composed step takes, to be on the safe side.

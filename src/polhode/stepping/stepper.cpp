@@ -30,7 +30,7 @@ struct Stepper::Impl {
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
   State before, companion;             ///< Copies to return to and to compare with.
   StepReach reach;
-  double least_error = kLeastError;  ///< What rounding of positions leaves [-].
+  double least_error = kMinError;  ///< What rounding of positions leaves [-].
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
        const StepControl& c, const LaneKernels& kernels)
@@ -44,7 +44,7 @@ struct Stepper::Impl {
     for (int b = 0; b < s.body_count(); ++b)
       far = std::max(far, s.motion(s.initial_state(), b).r.norm());
     for (const double x : s.initial_state().node_x) far = std::max(far, std::abs(x));
-    least_error = std::max(kLeastError, kStepRoundOff * far / s.length_scale()) *
+    least_error = std::max(kMinError, kStepRoundOff * far / s.length_scale()) *
                   (c.order > 2 ? kRoundOffComposed : 1.0);
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
@@ -248,13 +248,13 @@ struct Stepper::Impl {
   }
   /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
   /// it per step.
-  [[nodiscard]] double asked_error(double dt) const {
+  [[nodiscard]] double requested_error(double dt) const {
     return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
                               : control.tolerance;
   }
   /// The same, but no less than what noise leaves.
   [[nodiscard]] double allowed_error(const State& state, double dt) const {
-    return std::max({least_error, asked_error(dt), kNoiseAllowed * noise(state)});
+    return std::max({least_error, requested_error(dt), kNoiseAllowed * noise(state)});
   }
 
   /// Verdict of an estimate on a step that converged.
@@ -289,10 +289,10 @@ Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State&
   v.error = jump_difference(system, from, reached, H);
   const double allowed = kImpactError * control.tolerance;
   v.fine = v.error <= allowed || H <= least_step();
-  const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMostFactor;
+  const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMaxFactor;
   // After an impact steps grow from the one that held it.
-  v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMostFactor)
-                    : std::clamp(wanted, kLeastImpactFactor, 0.9);
+  v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMaxFactor)
+                    : std::clamp(wanted, kMinImpactFactor, 0.9);
   if (v.fine) v.error = 0.0;  // that was a bound for one impact, no error of each of its steps
   return v;
 }
@@ -301,7 +301,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
                                             Refused& refused) {
   Verdict v;
   companion_iterations = 0;
-  double power = 0.5, safety = kSafety, longest = kMostFactor;
+  double power = 0.5, safety = kSafety, longest = kMaxFactor;
   const double allowed = allowed_error(from, H);
   std::optional<double> error;
   if (composed()) {
@@ -314,7 +314,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   } else if (from.past_count < 2 && !fresh) {
     // find_length() has tried these steps, or they are as short as the impact's. Where bodies touch
     // there is no estimate at all.
-    if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMostFactor);
+    if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMaxFactor);
     return v;
   } else {
     if (!fresh) error = single.error_estimate();
@@ -332,10 +332,10 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   v.error = *error;
   v.factor = longest;
   if (v.error > 0.0)
-    v.factor = std::clamp(safety * std::pow(allowed / v.error, power), kLeastFactor, longest);
+    v.factor = std::clamp(safety * std::pow(allowed / v.error, power), kMinFactor, longest);
   v.fine = v.error <= allowed;
   if (v.fine) return v;
-  const double most_noise = composed() ? kMostNoiseComposed : kMostNoise;
+  const double most_noise = composed() ? kMaxNoiseComposed : kMaxNoise;
   if (shortest || (v.error < most_noise && refused.leaves_noise(H, v.error))) {
     v.fine = v.noise = true;
     // The longer one was as good.
@@ -352,7 +352,7 @@ void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int i
   if (automatic()) {
     const double shortest = std::min(least_step(), H);
     state.dt_next = std::min(most_step(), std::max({kept, shortest, verdict.factor * H}));
-    reach.count(state.t, verdict.error, asked_error(H), verdict.noise);
+    reach.count(state.t, verdict.error, requested_error(H), verdict.noise);
     return;
   }
   const int per_stage = iterations / static_cast<int>(stages.size());

@@ -20,7 +20,7 @@ double* history_of(State& state, const InteractionRef& ref) {
 }  // namespace
 
 SwitchReport switch_interactions(const System& system, State& state, std::span<const int> on,
-                                 std::span<const int> off, LedgerKeeper& ledger) {
+                                 std::span<const int> off, EnergyLedger& ledger) {
   SwitchReport report;
   const State before = state;
   const BodySums sums = ledger.sums(state);

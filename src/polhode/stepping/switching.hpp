@@ -26,6 +26,6 @@ struct SwitchReport {
 /// @param on, off  Indices into System::interactions(); those that are so already are left out.
 /// @returns what happened; with `worst` or not `solved` the state is as it was.
 SwitchReport switch_interactions(const System& system, State& state, std::span<const int> on,
-                                 std::span<const int> off, LedgerKeeper& ledger);
+                                 std::span<const int> off, EnergyLedger& ledger);
 
 }  // namespace polhode

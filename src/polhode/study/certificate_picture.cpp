@@ -19,7 +19,7 @@ constexpr std::array<const char*, 3> kColours = {"#1f5fa8", "#c8641b", "#2d8a4e"
 constexpr const char* kBar = "#1f5fa8";
 constexpr const char* kOwn = "#888888";
 constexpr const char* kLost = "#f6d9d5";
-constexpr double kMostDecades = 12.0;
+constexpr double kMaxDecades = 12.0;
 
 /// Lowest and highest finite value.
 struct Range {
@@ -104,7 +104,7 @@ std::string bar_panel(const Row& row) {
   for (const double y : bar) range.add(y);
   for (const double y : own) range.add(y);
   range = range.roomy();
-  range.low = std::floor(std::max(range.low, range.high - kMostDecades));
+  range.low = std::floor(std::max(range.low, range.high - kMaxDecades));
   range.high = std::max(std::ceil(range.high), range.low + 1.0);
   SvgPanel panel(row.box(535, 330), 0.0, row.duration, range.low, range.high,
                  format("error bar [{}]; grey: from the coarse to the fine run", q.unit), true);
@@ -137,7 +137,7 @@ std::string verdict(const CertifiedQuantity& q) {
 }  // namespace
 
 std::string certificate_svg(const Certificate& certificate) {
-  const std::size_t count = std::min(certificate.quantities.size(), kMostPictured);
+  const std::size_t count = std::min(certificate.quantities.size(), kMaxPictured);
   std::string text =
       svg_text(30, 32, certificate.title.empty() ? "Certificate" : certificate.title, "head");
   std::string runs = certificate.automatic ? "tolerance " : "step ";

@@ -15,7 +15,7 @@ namespace polhode {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 1000;
+constexpr std::size_t kMaxSamples = 1000;
 /// Common times of automatic steps whose model asks for no output times.
 constexpr int kAutomaticSamples = 100;
 /// Automatic steps above this part of the distance of common times are those that fit into it, as
@@ -24,13 +24,13 @@ constexpr double kLanding = 0.125, kShorter = 1.5;
 /// Two times closer than this part of their distance are the same.
 constexpr double kSameTime = 1e-9;
 /// Tolerance of automatic steps if the model gives none, and the least a run may be given.
-constexpr double kStandardTolerance = 1e-6, kLeastTolerance = 1e-14;
+constexpr double kStandardTolerance = 1e-6, kMinTolerance = 1e-14;
 /// Differences below this part of what is large in a model are those of iterations that stop.
 constexpr double kNegligible = 1e-9;
 /// Differences above this part of what moves in a model, and not smaller with the step, are another
 /// motion.
 constexpr double kMatters = 0.05;
-constexpr double kLeastShown = 0.5;
+constexpr double kMinShown = 0.5;
 /// Columns that count or mark and are no measure of anything.
 constexpr std::array<const char*, 3> kMarks = {"points", "status", "slips"};
 
@@ -106,7 +106,7 @@ class Sampler {
 /// Multiples of a distance up to the end, every so-manieth if there are too many, and the end.
 std::vector<double> common_times(double distance, double end) {
   const double count = std::floor(end / distance * (1.0 + kSameTime));
-  const double stride = std::max(1.0, std::ceil(count / static_cast<double>(kMostSamples)));
+  const double stride = std::max(1.0, std::ceil(count / static_cast<double>(kMaxSamples)));
   std::vector<double> times;
   for (double k = 0.0; k * distance < end * (1.0 - kSameTime); k += stride)
     times.push_back(k * distance);
@@ -119,7 +119,7 @@ void add_probes(Model& model, std::vector<std::string>& notes) {
   if (!model.output.probes.empty()) return;
   std::size_t moving = 0;
   for (const BodySpec& body : model.bodies) {
-    if (body.fixed || ++moving > kMostOwnProbes) continue;
+    if (body.fixed || ++moving > kMaxOwnProbes) continue;
     ProbeSpec probe;
     probe.name = probe.target = body.name;
     probe.kind = "body";
@@ -128,10 +128,10 @@ void add_probes(Model& model, std::vector<std::string>& notes) {
   if (model.output.probes.empty())
     throw InputError("output.probes", "are missing, so that there is nothing to compare",
                      "Name what matters, such as  tip: {solid: beam, point: [1, 0, 0]}");
-  notes.push_back(moving > kMostOwnProbes
+  notes.push_back(moving > kMaxOwnProbes
                       ? format("The model has no probes: the first {} of {} moving bodies are "
                                "compared. Give it probes of what matters.",
-                               kMostOwnProbes, moving)
+                               kMaxOwnProbes, moving)
                       : "The model has no probes: its moving bodies are compared.");
 }
 
@@ -186,10 +186,10 @@ void check_certifiable(const Model& model) {
   if (a.type != "dynamics")
     throw InputError("analysis.type", format("is {}, which takes no steps in time", a.type),
                      "Certify a model of type dynamics; refine a mesh by hand");
-  if (!a.step && a.tolerance.value_or(kStandardTolerance) < 99.9 * kLeastTolerance)
+  if (!a.step && a.tolerance.value_or(kStandardTolerance) < 99.9 * kMinTolerance)
     throw InputError("analysis.tolerance",
                      format("is {:g}, whose hundredth no run can reach", *a.tolerance),
-                     format("Write {:g} or more", 100.0 * kLeastTolerance));
+                     format("Write {:g} or more", 100.0 * kMinTolerance));
 }
 
 std::string CertifiedQuantity::name() const {
@@ -199,11 +199,11 @@ std::string CertifiedQuantity::name() const {
 }
 
 std::string CertifiedQuantity::order_text() const {
-  constexpr double kMostShown = 10.0;
+  constexpr double kMaxShown = 10.0;
   if (report.noise) return "rounding";
   if (!report.order) return "none";
-  if (*report.order < kLeastShown) return format("below {}", kLeastShown);
-  if (*report.order > kMostShown) return format("above {}", kMostShown);
+  if (*report.order < kMinShown) return format("below {}", kMinShown);
+  if (*report.order > kMaxShown) return format("above {}", kMaxShown);
   return format("{:.2f}", *report.order);
 }
 

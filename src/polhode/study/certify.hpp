@@ -66,7 +66,7 @@ struct CertifyHooks {
 
 /// Runs a model with its step, half and a quarter of it (automatic steps: its tolerance, a tenth
 /// and a hundredth) and compares all probes at common times; a model without probes is given one
-/// of each moving body, up to kMostOwnProbes.
+/// of each moving body, up to kMaxOwnProbes.
 ///
 /// Automatic steps end at the common times in all runs. Where these landings rather than the
 /// tolerance choose the steps, each run's are made shorter than those of the one before: else all
@@ -80,6 +80,6 @@ struct CertifyHooks {
 void check_certifiable(const Model& model);
 
 /// Probes that a model without any is given.
-inline constexpr std::size_t kMostOwnProbes = 20;
+inline constexpr std::size_t kMaxOwnProbes = 20;
 
 }  // namespace polhode

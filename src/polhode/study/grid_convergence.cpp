@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kLeastOrder = -4.0, kMostOrder = 20.0;
+constexpr double kMinOrder = -4.0, kMaxOrder = 20.0;
 /// Steps that shorten by less than this from run to run tell nothing.
-constexpr double kLeastRefinement = 1.05;
+constexpr double kMinRefinement = 1.05;
 
 /// Sizes of the differences of two runs at each time; NaN where one of them has no value.
 std::vector<double> sizes(const Mat& a, const Mat& b) {
@@ -111,7 +111,7 @@ double observed_order(double coarse, double fine, const std::array<double, 3>& h
   const auto ratio = [&](double p) {
     return std::abs(p) < 1e-9 ? a / b : std::expm1(p * a) / -std::expm1(-p * b);
   };
-  double low = kLeastOrder, high = kMostOrder;
+  double low = kMinOrder, high = kMaxOrder;
   if (ratio(low) >= wanted) return low;
   if (ratio(high) <= wanted) return high;
   for (int i = 0; i < 60; ++i) {
@@ -129,7 +129,7 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
   const std::size_t half = samples_of(0.5 * rule.window, n);
   const std::size_t near = samples_of(0.5 * rule.bar_window, n);
   const double refinement = rule.h[1] / rule.h[2];
-  const bool refined = refinement >= kLeastRefinement && rule.h[0] / rule.h[1] >= kLeastRefinement;
+  const bool refined = refinement >= kMinRefinement && rule.h[0] / rule.h[1] >= kMinRefinement;
   const auto order_of = [&](const Part& part) {
     return refined ? observed_order(part.coarse, part.fine, rule.h) : 0.0;
   };
@@ -141,7 +141,7 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
   report.extrapolated = f3;
   const Part all = part_of(coarse, fine, 0, n);
   const auto order_or_limit = [&](const Part& part) {
-    return part.fine == 0.0 ? kMostOrder : part.coarse == 0.0 ? kLeastOrder : order_of(part);
+    return part.fine == 0.0 ? kMaxOrder : part.coarse == 0.0 ? kMinOrder : order_of(part);
   };
   report.noise =
       all.most == 0.0 || (all.most <= rule.negligible && order_or_limit(all) < rule.least_order);

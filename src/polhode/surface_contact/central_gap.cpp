@@ -9,10 +9,10 @@ constexpr int kLengths = NearestFour::kLengths;
 /// Changes of squared lengths below this part of them have no direction.
 constexpr double kNoCentralChange = 1e-14;
 
-template <int kMostSets>
-typename CentralGapOf<kMostSets>::Over between(const FourMoves& from, const NearestFour& at_n,
-                                               const FourMoves* to, const NearestFour& at_n1) {
-  typename CentralGapOf<kMostSets>::Over over;
+template <int kMaxSets>
+typename CentralGapOf<kMaxSets>::Over between(const FourMoves& from, const NearestFour& at_n,
+                                              const FourMoves* to, const NearestFour& at_n1) {
+  typename CentralGapOf<kMaxSets>::Over over;
   over.sets = to ? 2 : 1;
   over.moves[0] = from;
   if (to) over.moves[1] = *to;
@@ -29,15 +29,15 @@ typename CentralGapOf<kMostSets>::Over between(const FourMoves& from, const Near
 
 }  // namespace
 
-template <int kMostSets>
-CentralGapOf<kMostSets>::CentralGapOf(const FourMoves& from, const NearestFour& at_n,
-                                      const FourMoves* to, const NearestFour& at_n1, double alpha_f,
-                                      bool conserving)
-    : CentralGapOf(between<kMostSets>(from, at_n, to, at_n1), alpha_f, conserving) {}
+template <int kMaxSets>
+CentralGapOf<kMaxSets>::CentralGapOf(const FourMoves& from, const NearestFour& at_n,
+                                     const FourMoves* to, const NearestFour& at_n1, double alpha_f,
+                                     bool conserving)
+    : CentralGapOf(between<kMaxSets>(from, at_n, to, at_n1), alpha_f, conserving) {}
 
 /// @eq{central-gap}
-template <int kMostSets>
-CentralGapOf<kMostSets>::CentralGapOf(const Over& over, double alpha_f, bool conserving)
+template <int kMaxSets>
+CentralGapOf<kMaxSets>::CentralGapOf(const Over& over, double alpha_f, bool conserving)
     : points_(4 * over.sets),
       lengths_(kLengths * over.sets),
       alpha_(alpha_f),
@@ -80,9 +80,9 @@ CentralGapOf<kMostSets>::CentralGapOf(const Over& over, double alpha_f, bool con
 }
 
 /// ∂s/∂x by point.
-template <int kMostSets>
-typename CentralGapOf<kMostSets>::Slopes CentralGapOf<kMostSets>::slopes(
-    const Vec3 (&x)[kMostPoints]) const {
+template <int kMaxSets>
+typename CentralGapOf<kMaxSets>::Slopes CentralGapOf<kMaxSets>::slopes(
+    const Vec3 (&x)[kMaxPoints]) const {
   Slopes B = Slopes::Zero(lengths_, 3 * points_);
   for (int l = 0; l < lengths_; ++l) {
     const int i = ends_[l][0], j = ends_[l][1];
@@ -93,8 +93,8 @@ typename CentralGapOf<kMostSets>::Slopes CentralGapOf<kMostSets>::slopes(
   return B;
 }
 
-template <int kMostSets>
-typename CentralGapOf<kMostSets>::Force CentralGapOf<kMostSets>::force(double lambda) const {
+template <int kMaxSets>
+typename CentralGapOf<kMaxSets>::Force CentralGapOf<kMaxSets>::force(double lambda) const {
   Force f = Force::Zero(3 * points_);
   const double mu = lambda / (2.0 * d_alpha_);
   for (int l = 0; l < lengths_; ++l) {
@@ -106,13 +106,13 @@ typename CentralGapOf<kMostSets>::Force CentralGapOf<kMostSets>::force(double la
   return f;
 }
 
-template <int kMostSets>
-typename CentralGapOf<kMostSets>::Force CentralGapOf<kMostSets>::slope() const {
+template <int kMaxSets>
+typename CentralGapOf<kMaxSets>::Force CentralGapOf<kMaxSets>::slope() const {
   return slopes(x_n1_).transpose() * g_n1_ / (2.0 * d_n1_);
 }
 
-template <int kMostSets>
-typename CentralGapOf<kMostSets>::Stiffness CentralGapOf<kMostSets>::stiffness(
+template <int kMaxSets>
+typename CentralGapOf<kMaxSets>::Stiffness CentralGapOf<kMaxSets>::stiffness(
     const contact::ForceAndSlope& lambda) const {
   const double mu = lambda.value / (2.0 * d_alpha_);
   const Lengths d_slope = g_n1_ / (2.0 * d_n1_);
@@ -148,6 +148,6 @@ typename CentralGapOf<kMostSets>::Stiffness CentralGapOf<kMostSets>::stiffness(
 }
 
 template class CentralGapOf<2>;
-template class CentralGapOf<kMostTriangles>;
+template class CentralGapOf<kMaxTriangles>;
 
 }  // namespace polhode

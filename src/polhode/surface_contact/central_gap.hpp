@@ -26,24 +26,22 @@ struct FourMoves {
 /// ends, and the force of length (i, j) on i 2 q_ij (x̄_i − x̄_j). Weighted by |ḡ| the correction
 /// knows only lengths that the distance depends on: it goes over from a face to its edges and
 /// corners without a jump, whichever of the faces around these is looked at. @eq{central-gap}
-/// @tparam kMostSets  Sets of four points, each with six lengths.
-template <int kMostSets>
+/// @tparam kMaxSets  Sets of four points, each with six lengths.
+template <int kMaxSets>
 class CentralGapOf {
  public:
-  static constexpr int kMostPoints = 4 * kMostSets,
-                       kMostLengths = kMostSets * NearestFour::kLengths;
-  using Force = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostPoints, 1>;
+  static constexpr int kMaxPoints = 4 * kMaxSets, kMaxLengths = kMaxSets * NearestFour::kLengths;
+  using Force = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMaxPoints, 1>;
   using Stiffness =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMostPoints, 3 * kMostPoints>;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMaxPoints, 3 * kMaxPoints>;
 
-  using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostLengths, 1>;
-  using Square =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, kMostLengths>;
+  using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxLengths, 1>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxLengths, kMaxLengths>;
 
   /// A distance of several sets of four points over a step.
   struct Over {
     int sets = 0;
-    FourMoves moves[kMostSets];
+    FourMoves moves[kMaxSets];
     double d_n = 0.0, d_n1 = 0.0;  ///< [m]
     Lengths g_n, g_n1;             ///< ∂(d²)/∂s at both ends.
     Square H_n1;                   ///< ∂g_n1/∂s_n1
@@ -69,14 +67,14 @@ class CentralGapOf {
 
  private:
   using Slopes =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostLengths, 3 * kMostPoints>;
-  [[nodiscard]] Slopes slopes(const Vec3 (&x)[kMostPoints]) const;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxLengths, 3 * kMaxPoints>;
+  [[nodiscard]] Slopes slopes(const Vec3 (&x)[kMaxPoints]) const;
 
   int points_ = 4, lengths_ = NearestFour::kLengths;
   double alpha_;
   double d_n_, d_n1_, d_alpha_;
-  Vec3 x_alpha_[kMostPoints], x_n1_[kMostPoints];
-  int ends_[kMostLengths][2];
+  Vec3 x_alpha_[kMaxPoints], x_n1_[kMaxPoints];
+  int ends_[kMaxLengths][2];
   Lengths change_;                             ///< Δs
   Lengths sign_;                               ///< Of ḡ: pushed apart or drawn together.
   Lengths g_n1_, g_;                           ///< ∂d²/∂s at t_{n+1}; ḡ + κ |ḡ| Δs
@@ -88,6 +86,6 @@ class CentralGapOf {
 /// Between one feature at each end of the step.
 using CentralGap = CentralGapOf<2>;
 /// Triangles about one point, at both ends of a step together.
-inline constexpr int kMostTriangles = 8;
+inline constexpr int kMaxTriangles = 8;
 
 }  // namespace polhode

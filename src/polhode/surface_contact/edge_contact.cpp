@@ -209,7 +209,7 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
   std::fill(memory(history, 0), numbers, 0.0);
   for (const Touch& t : list) {
     const EdgePair::Force f = t.pair.force() + t.slide.force + t.along.force;
-    const Vec3 rubbing = sides_.area * (t.slide.friction + t.along.on_first);
+    const Vec3 friction_force = sides_.area * (t.slide.friction + t.along.on_first);
     const bool slips = t.slide.slips || t.along.slips;
     const Vec3 on_first = sides_.area * (f.segment<3>(0) + f.segment<3>(3));
     const double normal = sides_.area * std::max(0.0, t.pair.pressure());
@@ -220,7 +220,7 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
       sums.normal_force += normal;
       (slips ? sums.slipping : sums.sticking) += 1.0;
       force += on_first;
-      friction += rubbing;
+      friction += friction_force;
       moment += normal * t.pair.point();
     }
     if (t.slot_n1 < 0) continue;
@@ -236,7 +236,7 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     for (int k = 0; k < 3; ++k) {
       kept[1 + k] = closed ? t.slide.bristle_n1[k] : 0.0;
       kept[5 + k] = on_first[k];
-      kept[8 + k] = rubbing[k];
+      kept[8 + k] = friction_force[k];
     }
     kept[11] = normal;
     kept[kAlong] = closed ? t.along.bristle_n1 : 0.0;

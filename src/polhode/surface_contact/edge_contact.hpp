@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/surface_contact/edge_lines.hpp>
 #include <polhode/surface_contact/edge_pair.hpp>
-#include <polhode/surface_contact/meeting_nodes.hpp>
 #include <polhode/surface_contact/point_band.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
 
 namespace polhode {
@@ -22,9 +22,9 @@ namespace polhode {
 /// Each edge remembers the bristles with one other edge; a pair that neither of its edges remembers
 /// rubs all the same, but begins anew in each step. @eq{edge-potential}
 class EdgeContact final : public ElementGroup,
-                          public BarrierPoints,
-                          public MovingPattern,
-                          public TouchingSurface,
+                          public BarrierConstraint,
+                          public ChangingSparsity,
+                          public SurfaceContactInterface,
                           public SurfaceImpacts {
  public:
   struct Sides {
@@ -44,14 +44,14 @@ class EdgeContact final : public ElementGroup,
   std::string kind() const override { return of_cables() ? kCablesKind : kKind; }
   [[nodiscard]] bool of_cables() const { return sides_.retreat > 0.0; }  ///< Round edges.
   const std::string& name() const override { return name_; }
-  int size() const override { return 0; }  // its blocks are those of MovingPattern
+  int size() const override { return 0; }  // its blocks are those of ChangingSparsity
   int nodes_per_element() const override { return 1; }
   std::span<const int> nodes(int /*element*/) const override { return {}; }
   bool has_tangent() const override { return false; }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
-  const BarrierPoints* barrier_points() const override { return this; }
-  const MovingPattern* moving_pattern() const override { return this; }
+  const BarrierConstraint* barrier_constraint() const override { return this; }
+  const ChangingSparsity* changing_sparsity() const override { return this; }
   const SurfaceImpacts* surface_impacts() const override { return this; }
   std::size_t history_size() const override;
   void initialize(double* history) const override;
@@ -83,7 +83,7 @@ class EdgeContact final : public ElementGroup,
   void impacts(const NodeStep& step, const double* history,
                std::vector<SurfaceImpact>& list) const override;
   double turn(const SurfaceImpact& impact, double held, double* history) const override;
-  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+  void settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                double* history) const override;
 
  private:
@@ -94,7 +94,7 @@ class EdgeContact final : public ElementGroup,
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<std::pair<int, int>> pairs;
-    MeetingNodes::Blocks blocks;
+    ContactNeighbours::Blocks blocks;
   };
   /// A pair that acts over a step.
   struct Touch;
@@ -133,7 +133,7 @@ class EdgeContact final : public ElementGroup,
   void write_start(double* history) const;
   [[nodiscard]] double least_gap(const double* x, const double* history) const;
   /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
-  [[nodiscard]] double room(int e, int f, const Vec3 (&x)[4]) const;
+  [[nodiscard]] double clearance(int e, int f, const Vec3 (&x)[4]) const;
 
   std::string name_;
   Sides sides_;
@@ -142,7 +142,7 @@ class EdgeContact final : public ElementGroup,
   double centre_ = 0.0;                               ///< Distance at which the gap is zero [m].
   std::vector<double> shared_first_, shared_second_;  ///< By vertex.
   std::vector<double> square_first_, square_second_;  ///< |e|² at the start, by edge [m²].
-  MeetingNodes nodes_;
+  ContactNeighbours nodes_;
   mutable Search search_;  ///< Of the last history asked for.
 };
 

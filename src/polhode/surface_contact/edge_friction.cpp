@@ -11,12 +11,12 @@ using contact::V3;
 
 /// Squared sines of the angles from which round edges rub across their mean direction, and do so
 /// fully: 10 and 30 degrees.
-constexpr double kRolls = 0.03015, kRubs = 0.25;
+constexpr double kRolls = 0.03015, kSlidesAcross = 0.25;
 
 template <class T>
 struct EdgeOnEdge {
   V3<T> force[4], slid;
-  PlaneRub<T> rub;
+  PlaneSliding<T> sliding;
 };
 
 /// What round edges take of a vector in the plane of contact: the less they cross, the more they
@@ -31,8 +31,8 @@ struct Rolling {
     const T ee = dot(e, e), ff = dot(f, f), ef = dot(e, f);
     const T square = 1.0 - ef * ef / (ee * ff);
     const double s = contact::value(square);
-    if (s >= kRubs) return;
-    const T part = (1.0 / (kRubs - kRolls)) * (square - kRolls);
+    if (s >= kSlidesAcross) return;
+    const T part = (1.0 / (kSlidesAcross - kRolls)) * (square - kRolls);
     w = s > kRolls ? part * part * (3.0 - 2.0 * part) : T(0.0);
     const double sign = contact::value(ef) < 0.0 ? -1.0 : 1.0;
     t = unit((1.0 / sqrt(ee)) * e + (sign / sqrt(ff)) * f);
@@ -79,7 +79,7 @@ EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceL
                   slid,
                   {SlidePlane<T>(e, f), SlidePlane<double>(direction(0, 1), direction(2, 3)), law,
                    pressure, kept, slid, alpha}};
-  const V3<T> h = rolling.of(r.rub.friction);
+  const V3<T> h = rolling.of(r.sliding.friction);
   const V3<T> moment = cross(y, h);
   const T on_n = dot(n, moment);
   const V3<T> on_e = per * (dot(f, moment) * n - (0.5 * on_n) * f);
@@ -121,11 +121,11 @@ std::array<Mat3, 4> EdgePair::slip_rates(const Vec3& n) const {
 
 FourSlide EdgePair::slide(const Vec3& kept, bool tangent) const {
   if (round() && !(pressure_ > 0.0)) return {};
-  const auto rub = [&](const auto& p, bool seeded) {
+  const auto sliding = [&](const auto& p, bool seeded) {
     return edge_friction(moves_, alpha_, law_, p, kept, round(), seeded);
   };
   const auto& x = moves_.x_n1;
-  return FourSlide(rub, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),
+  return FourSlide(sliding, SlidePlane<double>(contact::v3(x[1] - x[0]), contact::v3(x[3] - x[2])),
                    std::max(0.0, pressure_), tangent);
 }
 

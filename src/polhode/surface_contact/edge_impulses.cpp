@@ -65,7 +65,7 @@ double EdgeContact::turn(const SurfaceImpact& impact, double held, double* histo
   return energy;
 }
 
-void EdgeContact::settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+void EdgeContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                           double* history) const {
   SurfaceTotals::add_impulse(impact.normal, settled, dt, memory(history, slots()));
 }

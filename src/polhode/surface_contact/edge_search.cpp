@@ -6,8 +6,8 @@
 #include <limits>
 
 #include <polhode/geometry/broad_phase.hpp>
+#include <polhode/surface_contact/conservative_advancement.hpp>
 #include <polhode/surface_contact/edge_contact.hpp>
-#include <polhode/surface_contact/free_way.hpp>
 
 namespace polhode {
 
@@ -57,7 +57,7 @@ bool EdgeContact::may_meet(int e, int f) const {
 
 /// Of sharp edges that are not along each other; of round ones to where the potential of the edges
 /// and that of their points is infinite.
-double EdgeContact::room(int e, int f, const Vec3 (&x)[4]) const {
+double EdgeContact::clearance(int e, int f, const Vec3 (&x)[4]) const {
   const EdgePairData own = data(e, f);
   const double m = crossing(x[1] - x[0], x[3] - x[2], own.squares);
   const double left = law_.normal.tolerance - centre_;
@@ -135,7 +135,7 @@ double EdgeContact::least_of_terms(const double* x, const double* history) const
   for (const auto& [e, f] : search(history).pairs) {
     Vec3 at[4];
     four_ends(e, f, x, at);
-    least = std::min(least, room(e, f, at) - law_.normal.tolerance);
+    least = std::min(least, clearance(e, f, at) - law_.normal.tolerance);
   }
   return least;
 }
@@ -160,7 +160,7 @@ void EdgeContact::clearances(const NodeStep& step, const double* history,
     Vec3 x[4];
     four_ends(e, f, step.x_n1, x);
     double& least = list[first + static_cast<std::size_t>(e)];
-    least = std::min(least, room(e, f, x) / (2.0 * law_.normal.tolerance));
+    least = std::min(least, clearance(e, f, x) / (2.0 * law_.normal.tolerance));
   }
 }
 
@@ -188,17 +188,17 @@ double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
     for (int i = 0; i < 2; ++i)
       for (int j = 2; j < 4; ++j) length = std::max(length, (way[i] - way[j]).norm());
     // What a sharp edge meets only at the end of its way is kept away from at once.
-    const auto room_at = [&](const Vec3(&at)[4]) {
+    const auto clearance_at = [&](const Vec3(&at)[4]) {
       return sharp ? nearest_of_edges(at).distance - centre_ + law_.normal.tolerance
-                   : room(e, f, at);
+                   : clearance(e, f, at);
     };
     length *= 1.0 + turn;
-    const double now = room_at(x);
+    const double now = clearance_at(x);
     const double least = kLeave * std::min(now, 2.0 * law_.normal.tolerance);
-    most = free_way(most, now, least, length, [&](double part) {
+    most = conservative_advancement(most, now, least, length, [&](double part) {
       Vec3 at[4];
       for (int k = 0; k < 4; ++k) at[k] = x[k] + part * way[k];
-      return room_at(at);
+      return clearance_at(at);
     });
   }
   return most;
@@ -211,7 +211,7 @@ std::optional<SurfaceOverlap> EdgeContact::overlap(const NodeStep& instant) cons
   for (const auto& [e, f] : search(key.data()).pairs) {
     Vec3 x[4];
     four_ends(e, f, instant.x_n1, x);
-    const double left = room(e, f, x);
+    const double left = clearance(e, f, x);
     if (of_cables() && !(left > 0.0))
       deepest = std::max(deepest, sides_.radius - nearest_of_edges(x).distance);
     else if (!of_cables() && left < 0.5 * law_.normal.tolerance)

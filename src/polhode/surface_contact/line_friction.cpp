@@ -25,8 +25,8 @@ T held(const T& s, const T& most) {
 
 /// @eq{cable-along}
 template <class T>
-Along<T> rub(const FourMoves& moves, double alpha, const SurfaceLaw& law, const T& pressure,
-             double kept, bool seeded) {
+Along<T> sliding(const FourMoves& moves, double alpha, const SurfaceLaw& law, const T& pressure,
+                 double kept, bool seeded) {
   const FourPoints<T> at(moves, alpha, seeded);
   const V3<T> e = at.x[1] - at.x[0], f = at.x[3] - at.x[2];
   const T per_e = 1.0 / norm(e), per_f = (contact::value(dot(e, f)) < 0.0 ? -1.0 : 1.0) / norm(f);
@@ -54,7 +54,7 @@ Along<T> rub(const FourMoves& moves, double alpha, const SurfaceLaw& law, const 
 
 LineSlide::LineSlide(const FourMoves& moves, double alpha, const SurfaceLaw& law, double pressure,
                      const CentralGap::Force& by_pressure, double kept, bool tangent) {
-  const Along<double> r = rub(moves, alpha, law, pressure, kept, false);
+  const Along<double> r = sliding(moves, alpha, law, pressure, kept, false);
   friction = r.friction;
   slid = r.slid;
   bristle_n1 = r.bristle;
@@ -64,7 +64,7 @@ LineSlide::LineSlide(const FourMoves& moves, double alpha, const SurfaceLaw& law
   if (!tangent) return;
   contact::Dual p(pressure);
   for (int j = 0; j < 12; ++j) p.d[j] = by_pressure[j];
-  const Along<contact::Dual> D = rub(moves, alpha, law, p, kept, true);
+  const Along<contact::Dual> D = sliding(moves, alpha, law, p, kept, true);
   for (int k = 0; k < 4; ++k)
     for (int j = 0; j < 12; ++j)
       K.block<3, 1>(3 * k, j) << D.force[k].x.d[j], D.force[k].y.d[j], D.force[k].z.d[j];

@@ -52,17 +52,17 @@ struct TriangleAt {
 
 /// The distance over a step, by the lengths between the points of all its features.
 struct MeshGapStep {
-  CentralGapOf<kMostTriangles>::Over over;
+  CentralGapOf<kMaxTriangles>::Over over;
   std::vector<int> triangles;  ///< Of its sets of points.
 
-  /// Features beyond kMostTriangles triangles have no part in the direction of the force; its work
+  /// Features beyond kMaxTriangles triangles have no part in the direction of the force; its work
   /// is exact all the same.
   /// @param moves  (triangle) → FourMoves.
   template <class Moves>
   MeshGapStep(const MeshGap& at_n, const MeshGap& at_n1, Moves&& moves) {
     for (const MeshGap* gap : {&at_n1, &at_n})
       for (const MeshGap::Part& p : gap->parts)
-        if (triangles.size() < static_cast<std::size_t>(kMostTriangles) && place(p.triangle) < 0)
+        if (triangles.size() < static_cast<std::size_t>(kMaxTriangles) && place(p.triangle) < 0)
           triangles.push_back(p.triangle);
     over.sets = static_cast<int>(triangles.size());
     for (std::size_t k = 0; k < triangles.size(); ++k) over.moves[k] = moves(triangles[k]);

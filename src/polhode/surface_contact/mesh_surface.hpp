@@ -12,10 +12,10 @@ namespace polhode {
 
 /// A point of a mesh: Σ N_a x_a.
 struct MeshPoint {
-  static constexpr int kMostNodes = 9;
+  static constexpr int kMaxNodes = 9;
   int count = 0;
-  int node[kMostNodes]{};
-  double N[kMostNodes]{};
+  int node[kMaxNodes]{};
+  double N[kMaxNodes]{};
   double area = 0.0;  ///< Its share of the reference area [m²].
 
   /// Weights that are zero add nothing.

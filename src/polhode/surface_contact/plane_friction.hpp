@@ -55,7 +55,7 @@ struct FourPoints {
 
 /// A bristle in a plane over a step, per area. @eq{contact-bristle}
 template <class T>
-struct PlaneRub {
+struct PlaneSliding {
   contact::V3<T> bristle, friction;
   bool slips = false;
   double parts[2]{};  ///< Of the bristle along the plane's directions.
@@ -63,8 +63,8 @@ struct PlaneRub {
   /// @param kept  The bristle at t_n, in the plane `before` of t_n; it turns with the directions
   /// and
   ///              keeps its length.
-  PlaneRub(const SlidePlane<T>& here, const SlidePlane<double>& before, const SurfaceLaw& law,
-           const T& pressure, const Vec3& kept, const contact::V3<T>& slid, double alpha) {
+  PlaneSliding(const SlidePlane<T>& here, const SlidePlane<double>& before, const SurfaceLaw& law,
+               const T& pressure, const Vec3& kept, const contact::V3<T>& slid, double alpha) {
     const contact::V3<double> s = contact::v3(kept);
     contact::Cone<T> cone;
     cone.radius = (law.mu / law.bristle) * pressure;
@@ -89,23 +89,24 @@ struct FourSlide {
   Eigen::Matrix<double, 12, 12> K = Eigen::Matrix<double, 12, 12>::Zero();    ///< By x_{n+1}.
   Eigen::Matrix<double, 12, 1> by_pressure = Eigen::Matrix<double, 12, 1>::Zero();
 
-  /// @param rub  (pressure in numbers of sort T, seeded) → what has force[4], slid and a PlaneRub
+  /// @param rub  (pressure in numbers of sort T, seeded) → what has force[4], slid and a
+  /// PlaneSliding
   ///             `rub`, all of sort T.
   /// @param end  The plane, or what else bristles are told in, at t_{n+1}.
-  template <class Rub, class End>
-  FourSlide(Rub&& rub, const End& end, double pressure, bool tangent) {
-    const auto values = rub(pressure, false);
-    friction = contact::value(values.rub.friction);
+  template <class Sliding, class End>
+  FourSlide(Sliding&& sliding, const End& end, double pressure, bool tangent) {
+    const auto values = sliding(pressure, false);
+    friction = contact::value(values.sliding.friction);
     slid = contact::value(values.slid);
-    bristle = contact::value(values.rub.bristle);
-    slips = values.rub.slips;
-    bristle_n1 = contact::value(end.along(values.rub.parts, bristle.norm()));
+    bristle = contact::value(values.sliding.bristle);
+    slips = values.sliding.slips;
+    bristle_n1 = contact::value(end.along(values.sliding.parts, bristle.norm()));
     for (int k = 0; k < 4; ++k) force.segment<3>(3 * k) = contact::value(values.force[k]);
     if (!tangent) return;
-    const auto by_x = rub(contact::Dual(pressure), true);
+    const auto by_x = sliding(contact::Dual(pressure), true);
     contact::Dual seed(pressure);
     seed.d[0] = 1.0;
-    const auto by_p = rub(seed, false);
+    const auto by_p = sliding(seed, false);
     for (int k = 0; k < 4; ++k) {
       const contact::V3<contact::Dual>&f = by_x.force[k], &g = by_p.force[k];
       for (int j = 0; j < 12; ++j) K.block<3, 1>(3 * k, j) << f.x.d[j], f.y.d[j], f.z.d[j];

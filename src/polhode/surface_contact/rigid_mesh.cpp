@@ -173,7 +173,7 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
 /// With V = Σ w β(gᵢ) and f = −β′ the gap g = β⁻¹(V) has the gradient n = Σ w f(gᵢ) nᵢ / f(g).
 /// @eq{surface-feature-sum} @eq{surface-feature-holes}
 SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
-                          const GapQuestion& question) const {
+                          const GapQuery& question) const {
   const contact::NormalLaw& law = question.law;
   const double round = surface_.rounding + question.radius;
   std::vector<std::pair<SurfaceGap, int>> near;
@@ -209,7 +209,7 @@ SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
   return g;
 }
 
-SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuestion& question) const {
+SurfaceGap RigidMesh::gap(const Vec3& y, const GapQuery& question) const {
   const double round = surface_.rounding + question.radius;
   const TriangleTree::Hit hit = nearest(y, question.at_most + round, question.sided);
   if (hit.triangle < 0) return {question.at_most, Vec3::UnitZ(), Mat3::Zero()};

@@ -18,7 +18,7 @@ struct SurfaceGap {
 };
 
 /// What is asked about a gap.
-struct GapQuestion {
+struct GapQuery {
   const contact::NormalLaw& law;  ///< Which makes one gap of those of several features.
   double at_most = std::numeric_limits<double>::infinity();  ///< Larger gaps are told as this [m].
   bool sided = false;   ///< Gaps within surfaces of triangles are negative, see RigidMesh.
@@ -44,7 +44,7 @@ class RigidMesh {
   /// @param surface  A Solid::surface; one with a border is free above, towards +z.
   explicit RigidMesh(contact::Shape surface);
 
-  [[nodiscard]] SurfaceGap gap(const Vec3& y, const GapQuestion& question) const;
+  [[nodiscard]] SurfaceGap gap(const Vec3& y, const GapQuery& question) const;
   /// The least of the gaps to features.
   [[nodiscard]] double distance(const Vec3& y, double at_most, bool sided) const;
   /// No point of it, nor what is behind it, is farther from the origin [m]; infinite with a border.
@@ -66,7 +66,7 @@ class RigidMesh {
   [[nodiscard]] SurfaceGap gap_of(const Feature& feature, const Vec3& y, double round) const;
   [[nodiscard]] Features features_near(const Vec3& point, double distance) const;
   [[nodiscard]] SurfaceGap sum(const Vec3& y, const SurfaceGap& nearest,
-                               const GapQuestion& question) const;
+                               const GapQuery& question) const;
 
   contact::Shape surface_;
   contact::TriangleTree tree_;

@@ -61,7 +61,7 @@ RigidSurface::Gap over(const contact::Shape& solid, const Vec3& y) {
 
 }  // namespace
 
-RigidSurface::Gap RigidSurface::gap(const Vec3& y, const GapQuestion& question) const {
+RigidSurface::Gap RigidSurface::gap(const Vec3& y, const GapQuery& question) const {
   if (kind == Kind::mesh) return triangles->gap(y, question);
   Gap g = plain_gap(y);
   g.value -= question.radius;

@@ -31,9 +31,9 @@ struct RigidSurface {
   std::shared_ptr<const RigidMesh> triangles = nullptr;
 
   using Gap = SurfaceGap;
-  [[nodiscard]] Gap gap(const Vec3& y, const GapQuestion& question) const;
+  [[nodiscard]] Gap gap(const Vec3& y, const GapQuery& question) const;
   /// How far the surface is: the gap, of several features the least one.
-  /// @param at_most  As in GapQuestion, like `sided`.
+  /// @param at_most  As in GapQuery, like `sided`.
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;

@@ -31,7 +31,7 @@ struct Sides : SlidePlane<T> {
 };
 
 template <class T>
-struct Rub {
+struct Sliding {
   V3<T> bristle, friction;
   bool slips = false;
   double parts[3]{};  ///< Of the bristle, see Sides.
@@ -40,7 +40,7 @@ struct Rub {
 template <class T>
 struct RoundPoint {
   V3<T> force[4], slid;
-  Rub<T> rub;
+  Sliding<T> sliding;
 };
 
 template <class T>
@@ -80,14 +80,14 @@ RoundPoint<T> round_point_friction(const FourMoves& moves, double alpha, const S
   contact::Cone<T> cone;
   cone.radius = (law.mu / law.bristle) * pressure;
   const V3<T> start = cone.nearest(turned);
-  r.rub.slips = cone.outside(contact::value(start + r.slid));
-  r.rub.bristle = cone.nearest(start + r.slid);
-  r.rub.friction = -law.bristle * cone.nearest(start + alpha * r.slid);
-  const V3<T>& bristle = r.rub.bristle;
-  r.rub.parts[0] = contact::value(dot(here.grad_e, bristle));
-  r.rub.parts[1] = contact::value(dot(here.grad_f, bristle));
-  r.rub.parts[2] = contact::value(dot(here.normal, bristle));
-  const V3<T>& h = r.rub.friction;
+  r.sliding.slips = cone.outside(contact::value(start + r.slid));
+  r.sliding.bristle = cone.nearest(start + r.slid);
+  r.sliding.friction = -law.bristle * cone.nearest(start + alpha * r.slid);
+  const V3<T>& bristle = r.sliding.bristle;
+  r.sliding.parts[0] = contact::value(dot(here.grad_e, bristle));
+  r.sliding.parts[1] = contact::value(dot(here.grad_f, bristle));
+  r.sliding.parts[2] = contact::value(dot(here.normal, bristle));
+  const V3<T>& h = r.sliding.friction;
   const V3<T> moment = cross(y, h);
   const T on_n = dot(here.normal, moment);
   const V3<T> on_e = here.per * (dot(here.f, moment) * here.normal - (0.5 * on_n) * here.f);
@@ -103,12 +103,12 @@ RoundPoint<T> round_point_friction(const FourMoves& moves, double alpha, const S
 
 FourSlide round_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                          double pressure, const Vec3& kept, bool tangent) {
-  const auto rub = [&](const auto& p, bool seeded) {
+  const auto sliding = [&](const auto& p, bool seeded) {
     return round_point_friction(moves, alpha, law, p, kept, seeded);
   };
   const auto& x = moves.x_n1;
   const Sides<double> end = sides_at(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
-  return {rub, end, pressure, tangent};
+  return {sliding, end, pressure, tangent};
 }
 
 }  // namespace polhode

@@ -101,7 +101,7 @@ SolidContact::Action SolidContact::act(const NodeStep& step, const Field& x_n, c
                                            .alpha_f = step.alpha_f,
                                            .conserving = step.context.conserving,
                                            .end_share = in_step.end_share});
-  a.push = {resultant * a.pressure.value, resultant * a.pressure.slope};
+  a.normal_force = {resultant * a.pressure.value, resultant * a.pressure.slope};
   return a;
 }
 
@@ -136,13 +136,13 @@ ElementReport SolidContact::evaluate(const NodeStep& step, const double* history
             nodes_.add(s.blocks, at(i), at(j), area * K.template block<3, 3>(3 * i, 3 * j),
                        sink.tangent);
       }
-      if (!a.rubs(law_) || step.context.dt == 0.0) return;
-      const Slide slide =
-          this->slide(step, x_n1, u, triangles, p, a.push.value, memory(history, p), tangent);
+      if (!a.has_friction(law_) || step.context.dt == 0.0) return;
+      const Slide slide = this->slide(step, x_n1, u, triangles, p, a.normal_force.value,
+                                      memory(history, p), tangent);
       for (int k = 0; k < 4; ++k)
         add_force(corner(p, slide.triangle, k), area * slide.force.segment<3>(3 * k));
       if (!tangent) return;
-      const auto by_x = (a.push.slope * gap.slope()).eval();
+      const auto by_x = (a.normal_force.slope * gap.slope()).eval();
       for (int i = 0; i < 4; ++i) {
         const MeshPoint& row = corner(p, slide.triangle, i);
         for (int j = 0; j < 4; ++j)

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include <polhode/surface_contact/contact_neighbours.hpp>
 #include <polhode/surface_contact/line_stretch.hpp>
-#include <polhode/surface_contact/meeting_nodes.hpp>
 #include <polhode/surface_contact/mesh_gap.hpp>
 #include <polhode/surface_contact/point_band.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
@@ -22,14 +22,14 @@ namespace polhode {
 /// d is never negative: surfaces keep apart, by 2 g_tol where they do not press. Forces act along
 /// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
 /// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet,
-/// see MeetingNodes. @eq{mesh-contact}
+/// see ContactNeighbours. @eq{mesh-contact}
 ///
 /// Points of a cable keep its radius away, and what they have to triangles is a MeshGap: the gap is
 /// the distance less the radius. @eq{cable-on-mesh}
 class SolidContact final : public ElementGroup,
-                           public BarrierPoints,
-                           public MovingPattern,
-                           public TouchingSurface,
+                           public BarrierConstraint,
+                           public ChangingSparsity,
+                           public SurfaceContactInterface,
                            public SurfaceImpacts {
  public:
   SolidContact(std::string name, std::vector<MeshPoint> points, MeshSurface surface,
@@ -37,14 +37,14 @@ class SolidContact final : public ElementGroup,
 
   std::string kind() const override { return of_cable() ? kCableContact : "contact of solids"; }
   const std::string& name() const override { return name_; }
-  int size() const override { return 0; }  // its blocks are those of MovingPattern
+  int size() const override { return 0; }  // its blocks are those of ChangingSparsity
   int nodes_per_element() const override { return 1; }
   std::span<const int> nodes(int /*element*/) const override { return {}; }
   bool has_tangent() const override { return false; }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
-  const BarrierPoints* barrier_points() const override { return this; }
-  const MovingPattern* moving_pattern() const override { return this; }
+  const BarrierConstraint* barrier_constraint() const override { return this; }
+  const ChangingSparsity* changing_sparsity() const override { return this; }
   const SurfaceImpacts* surface_impacts() const override { return this; }
   std::size_t history_size() const override;
   void initialize(double* history) const override;
@@ -82,7 +82,7 @@ class SolidContact final : public ElementGroup,
   void impacts(const NodeStep& step, const double* history,
                std::vector<SurfaceImpact>& list) const override;
   double turn(const SurfaceImpact& impact, double held, double* history) const override;
-  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+  void settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                double* history) const override;
 
  private:
@@ -96,7 +96,7 @@ class SolidContact final : public ElementGroup,
   struct Search {
     std::vector<double> key;  ///< The part of the history that it follows from.
     std::vector<int> first, triangle;
-    MeetingNodes::Blocks blocks;
+    ContactNeighbours::Blocks blocks;
   };
   /// The nearest triangle of a point.
   struct Nearest {
@@ -106,13 +106,13 @@ class SolidContact final : public ElementGroup,
   /// A point that acts, over a step.
   struct Action {
     MeshGap at_n, at_n1;
-    contact::ForceAndSlope pressure;   ///< Conjugate to the distance.
-    contact::ForceAndSlope push;       ///< Of what acts on the point: the resultant.
-    double gap_n = 0.0, gap_n1 = 0.0;  ///< [m]
-    PointPhase phase;                  ///< In the step.
+    contact::ForceAndSlope pressure;      ///< Conjugate to the distance.
+    contact::ForceAndSlope normal_force;  ///< Of what acts on the point: the resultant.
+    double gap_n = 0.0, gap_n1 = 0.0;     ///< [m]
+    PointPhase phase;                     ///< In the step.
     bool acts = false;
 
-    [[nodiscard]] bool rubs(const SurfaceLaw& law) const {
+    [[nodiscard]] bool has_friction(const SurfaceLaw& law) const {
       return acts && law.mu > 0.0 && !phase.in_impact();
     }
   };
@@ -146,7 +146,7 @@ class SolidContact final : public ElementGroup,
   void with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point, const Action& a,
                 Use&& use) const;
   /// How far a point at a distance may come nearer.
-  [[nodiscard]] double room(double distance) const {
+  [[nodiscard]] double clearance(double distance) const {
     return distance - centre_ + law_.normal.tolerance;
   }
   [[nodiscard]] const MeshPoint& corner(int point, int triangle, int k) const;
@@ -172,7 +172,7 @@ class SolidContact final : public ElementGroup,
   bool self_ = false;
   RoundLine cable_;
   double centre_ = 0.0;  ///< Distance at which the gap is zero [m].
-  MeetingNodes nodes_;
+  ContactNeighbours nodes_;
   mutable Search search_;  ///< Of the last history asked for.
 };
 

@@ -35,7 +35,7 @@ void SolidContact::with_gap(const NodeStep& step, const Field& x_n1, const Field
     return;
   }
   const MeshGapStep over(a.at_n, a.at_n1, of);
-  const CentralGapOf<kMostTriangles> gap(over.over, step.alpha_f, step.context.conserving);
+  const CentralGapOf<kMaxTriangles> gap(over.over, step.alpha_f, step.context.conserving);
   use(gap, [&](int k) -> const MeshPoint& {
     return corner(point, over.triangles[static_cast<std::size_t>(k / 4)], k % 4);
   });

@@ -20,7 +20,7 @@ constexpr double kAlike = 1e-9;
 template <class T>
 struct PointOnTriangle {
   V3<T> force[4], slid;
-  PlaneRub<T> rub;
+  PlaneSliding<T> sliding;
 };
 
 template <class T>
@@ -46,7 +46,7 @@ PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const
   const SlidePlane<double> before =
       slide_plane(contact::v3(at.x_n[1]), contact::v3(at.x_n[2]), contact::v3(at.x_n[3]));
   PointOnTriangle<T> r{{}, slid, {here, before, law, pressure, kept, slid, alpha}};
-  const V3<T>& f = r.rub.friction;
+  const V3<T>& f = r.sliding.friction;
   r.force[0] = f;
   for (int k = 0; k < 3; ++k) r.force[k + 1] = (d * dot(f, gradient[k])) * n - w[k] * f;
   return r;
@@ -78,13 +78,13 @@ SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1,
         round_friction(moves, step.alpha_f, law_, pressure, kept, tangent);
     return slide;
   }
-  const auto rub = [&](const auto& p, bool seeded) {
+  const auto sliding = [&](const auto& p, bool seeded) {
     return triangle_friction(moves, step.alpha_f, law_, p, kept, seeded);
   };
   const auto& x = moves.x_n1;
   const SlidePlane<double> end =
       slide_plane(contact::v3(x[1]), contact::v3(x[2]), contact::v3(x[3]));
-  static_cast<FourSlide&>(slide) = FourSlide(rub, end, pressure, tangent);
+  static_cast<FourSlide&>(slide) = FourSlide(sliding, end, pressure, tangent);
   return slide;
 }
 

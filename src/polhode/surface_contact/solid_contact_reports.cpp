@@ -52,9 +52,9 @@ Work SolidContact::work(const NodeStep& step, const double* history,
     }
     const Action a = act(step, x_n, x_n1, triangles, p, kept);
     if (!a.acts) continue;
-    const Slide slide = a.rubs(law_)
-                            ? this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false)
-                            : Slide{};
+    const Slide slide = a.has_friction(law_) ? this->slide(step, x_n1, u, triangles, p,
+                                                           a.normal_force.value, kept, false)
+                                             : Slide{};
     const Energies e = energies(step, a, slide, kept);
     w.stored += area * e.stored;
     w.dissipated += area * (e.by_friction + e.by_pressure);
@@ -82,7 +82,8 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       t.gap = std::min(t.gap, a.gap_n1 + centre_ - cable_.radius);
     }
     if (a.acts) {
-      if (a.rubs(law_)) slide = this->slide(step, x_n1, u, triangles, p, a.push.value, kept, false);
+      if (a.has_friction(law_))
+        slide = this->slide(step, x_n1, u, triangles, p, a.normal_force.value, kept, false);
       h = slide.friction;
       with_gap(step, x_n1, u, p, a, [&](const auto& gap, const auto& /*at*/) {
         const auto f = gap.force(a.pressure.value);
@@ -91,9 +92,9 @@ void SolidContact::commit(const NodeStep& step, double* history, const double* /
       const Energies e = energies(step, a, slide, kept);
       t.friction_loss += point.area * e.by_friction;
       t.normal_loss += point.area * e.by_pressure;
-      if (step.x_n != step.x_n1) t.impulse += point.area * a.push.value * step.context.dt;
+      if (step.x_n != step.x_n1) t.impulse += point.area * a.normal_force.value * step.context.dt;
     }
-    const double pressure = a.acts ? a.push.value : 0.0;
+    const double pressure = a.acts ? a.normal_force.value : 0.0;
     if (pressure > 0.0) {
       t.normal_force += point.area * pressure;
       t.area += point.area;

@@ -8,7 +8,7 @@
 
 #include <polhode/geometry/broad_phase.hpp>
 #include <polhode/geometry/nearest.hpp>
-#include <polhode/surface_contact/free_way.hpp>
+#include <polhode/surface_contact/conservative_advancement.hpp>
 #include <polhode/surface_contact/solid_contact.hpp>
 #include <polhode/surface_contact/solid_contact_field.hpp>
 
@@ -148,7 +148,8 @@ void SolidContact::clearances(const NodeStep& step, const double* history,
   const Field x(surface_, step.x_n1);
   for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
     const Nearest n = nearest(x, found(s, p), p);
-    const double d = n.triangle < 0 ? kFar : room(n.four.distance) / (2.0 * law_.normal.tolerance);
+    const double d =
+        n.triangle < 0 ? kFar : clearance(n.four.distance) / (2.0 * law_.normal.tolerance);
     list.push_back(std::min(kFar, d));
   }
 }
@@ -186,7 +187,7 @@ struct SolidContact::Way {
   [[nodiscard]] bool comes_nearer(double least) const {
     if (length < least) return false;
     double part = 0.0;
-    for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
+    for (int k = 0; k < kMaxAdvances && part < 1.0; ++k) {
       const double left = distance(part) - least;
       if (left <= kLeave * least) return true;
       part += left / length;
@@ -217,10 +218,10 @@ double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
       if (beside && Way(*this, x_n, x_to, triangles, p).comes_nearer(through))
         most = std::min(most, kShorter);
     }
-    const double now = room(nearest(x, triangles, p).four.distance);
+    const double now = clearance(nearest(x, triangles, p).four.distance);
     if (now <= 0.0) continue;
-    most = free_way(most, now, kLeave * std::min(now, band), way.length,
-                    [&](double part) { return room(way.distance(part)); });
+    most = conservative_advancement(most, now, kLeave * std::min(now, band), way.length,
+                                    [&](double part) { return clearance(way.distance(part)); });
   }
   return most;
 }

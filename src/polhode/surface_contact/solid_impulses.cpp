@@ -69,7 +69,8 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
     if (triangles.empty() || PointPhase::of(kept + kPhase).is(contact::ContactPhase::rest))
       continue;
     const Action a = act(step, x_n, x_n1, triangles, p, kept);
-    if (!a.acts || !a.phase.in_impact() || !(a.push.value > 0.0) || !(a.at_n1.resultant > 0.0))
+    if (!a.acts || !a.phase.in_impact() || !(a.normal_force.value > 0.0) ||
+        !(a.at_n1.resultant > 0.0))
       continue;
     const double area = points_[static_cast<std::size_t>(p)].area;
     SurfaceImpact& impact = list.emplace_back();
@@ -78,7 +79,7 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
     impact.restitution = a.phase.restitution;
     impact.turned = a.phase.is(contact::ContactPhase::restitution);
     impact.mu = law_.mu;
-    impact.given = step.context.dt * area * a.push.value;
+    impact.given = step.context.dt * area * a.normal_force.value;
     const contact::NormalLaw law = a.phase.law(law_, with_band_lowered).normal;
     const double all = law.force(a.gap_n1);
     for (const MeshGap::Part& part : a.at_n1.parts) {
@@ -104,7 +105,7 @@ double SolidContact::turn(const SurfaceImpact& impact, double held, double* hist
   return energy;
 }
 
-void SolidContact::settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+void SolidContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                            double* history) const {
   SurfaceTotals::add_impulse(impact.normal, settled, dt,
                              history + nodes_.key_size() + kMemory * points_.size());

@@ -48,7 +48,7 @@ std::vector<double> SurfaceContact::gaps(const std::vector<Vec3>& X) const {
 }
 
 /// @eq{cable-gap}
-RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuestion& question) const {
+RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuery& question) const {
   if (is_far(y, question.at_most)) return {.value = question.at_most};
   return surface_.gap(y, {question.law, question.at_most, question.sided, radius()});
 }
@@ -166,7 +166,7 @@ struct SurfaceContact::Terms {
   V3<T> h, friction, bristle, slid;
   T lambda{}, pressure{};
 
-  Terms(const SurfaceLaw& law, const NodeStep& step, const Place& place,
+  Terms(const SurfaceLaw& law, const NodeStep& step, const SourceLocation& place,
         const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1, const double* memory,
         bool& slips) {
     const StepContext& context = step.context;
@@ -211,10 +211,10 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point, cons
   a.phase = phase_of(memory);
   SurfaceLaw law = law_of(memory);
   const double reach = law.normal.reach();
-  const Place place = this->place(step, point);
+  const SourceLocation place = this->place(step, point);
   const Vec3 way = place.at_n1 - place.at_n;
   // Of a gap that acts at the other end of the step only, the value matters as well.
-  const GapQuestion question{law.normal, law_.normal.reach() + way.norm(), sided(step)};
+  const GapQuery question{law.normal, law_.normal.reach() + way.norm(), sided(step)};
   const RigidSurface::Gap g_n1 = gap(place.at_n1, question);
   const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : gap(place.at_n, question);
   a.gap_n = g_n.value;
@@ -304,7 +304,7 @@ ElementReport SurfaceContact::evaluate(const NodeStep& step, const double* histo
                                        const ElementSink& sink) const {
   const bool tangent = sink.tangent != nullptr;
   const int width = 3 * (n_ + frame_);
-  constexpr std::size_t kWidth = 3 * (SurfacePoints::kMostNodes + 4);
+  constexpr std::size_t kWidth = 3 * (SurfacePoints::kMaxNodes + 4);
   std::array<double, kWidth> f;
   std::array<double, kWidth * kWidth> K;
   for (int i = 0; i < size(); ++i) {

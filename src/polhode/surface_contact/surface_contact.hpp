@@ -10,7 +10,7 @@
 #include <polhode/surface_contact/rigid_surface.hpp>
 #include <polhode/surface_contact/surface_points.hpp>
 #include <polhode/surface_contact/surface_totals.hpp>
-#include <polhode/system/barrier_points.hpp>
+#include <polhode/system/barrier_constraint.hpp>
 #include <polhode/system/element_group.hpp>
 #include <polhode/system/surface_impacts.hpp>
 
@@ -41,8 +41,8 @@ struct SurfacePlace {
 /// The history holds, for each point, bristle, slip and what acted in the last
 /// step, and then sums over the run: all that reports tell goes with the state.
 class SurfaceContact final : public ElementGroup,
-                             public BarrierPoints,
-                             public TouchingSurface,
+                             public BarrierConstraint,
+                             public SurfaceContactInterface,
                              public SurfaceImpacts {
  public:
   /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
@@ -60,7 +60,7 @@ class SurfaceContact final : public ElementGroup,
   }
   bool dissipates() const override { return law_.mu > 0.0 || law_.end_share > 0.0; }
   bool conservative() const override { return !dissipates(); }
-  const BarrierPoints* barrier_points() const override { return this; }
+  const BarrierConstraint* barrier_constraint() const override { return this; }
   const SurfaceImpacts* surface_impacts() const override { return this; }
   bool external() const override { return frame_ == 0; }
   std::size_t history_size() const override {
@@ -90,7 +90,7 @@ class SurfaceContact final : public ElementGroup,
   void impacts(const NodeStep& step, const double* history,
                std::vector<SurfaceImpact>& list) const override;
   double turn(const SurfaceImpact& impact, double held, double* history) const override;
-  void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+  void settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                double* history) const override;
 
  private:
@@ -99,7 +99,7 @@ class SurfaceContact final : public ElementGroup,
   static constexpr std::size_t kMemory = 14, kPhase = 11;
 
   /// The point in the surface's coordinates over the step.
-  struct Place {
+  struct SourceLocation {
     Vec3 at_n, at_n1;
   };
   /// What acts at a point over a step, conjugate to y, per unit of area.
@@ -124,7 +124,7 @@ class SurfaceContact final : public ElementGroup,
   struct Terms;
 
   /// Between what is round about a point and the surface.
-  [[nodiscard]] RigidSurface::Gap gap(const Vec3& y, const GapQuestion& question) const;
+  [[nodiscard]] RigidSurface::Gap gap(const Vec3& y, const GapQuery& question) const;
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;
@@ -138,10 +138,10 @@ class SurfaceContact final : public ElementGroup,
   [[nodiscard]] Vec3 foot(const double* x, int point) const;
   [[nodiscard]] Vec3 local(const double* x, int point) const;
   [[nodiscard]] Mat3 axes(const double* x) const;
-  [[nodiscard]] Place place(const NodeStep& step, int point) const {
+  [[nodiscard]] SourceLocation place(const NodeStep& step, int point) const {
     return {local(step.x_n, point), local(step.x_n1, point)};
   }
-  /// Whether points may get within surfaces, as iterates of statics do, see GapQuestion.
+  /// Whether points may get within surfaces, as iterates of statics do, see GapQuery.
   [[nodiscard]] bool sided(const NodeStep& step) const {
     return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
   }

@@ -53,7 +53,7 @@ double SurfaceContact::turn(const SurfaceImpact& impact, double held, double* hi
   return energy;
 }
 
-void SurfaceContact::settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+void SurfaceContact::settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                              double* history) const {
   SurfaceTotals::add_impulse(impact.normal, settled, dt, history + kMemory * points_.points.size());
 }

@@ -50,9 +50,9 @@ struct SurfaceOverlap {
 };
 
 /// The surface of a solid that touches something: what is told of it.
-class TouchingSurface {
+class SurfaceContactInterface {
  public:
-  virtual ~TouchingSurface() = default;
+  virtual ~SurfaceContactInterface() = default;
   [[nodiscard]] virtual const SurfaceLaw& law() const = 0;
   [[nodiscard]] virtual std::size_t places() const = 0;  ///< Points or edges that may touch.
   /// Begins anew where nodes stand at an instant before the first step, if that is not where they

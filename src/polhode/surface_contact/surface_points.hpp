@@ -12,10 +12,10 @@ namespace polhode {
 /// Where the surface of a solid, or a cable, is looked at: p = Σ N_a x_a, each point with its share
 /// of the reference area.
 struct SurfacePoints {
-  static constexpr int kMostNodes = 9;
+  static constexpr int kMaxNodes = 9;
   struct Point {
     double area = 0.0;  ///< [m²]
-    double N[kMostNodes]{};
+    double N[kMaxNodes]{};
     double span = 0.0;  ///< Of a cable: part of its piece that lies between it and the next point.
   };
   int nodes_per_point = 1;

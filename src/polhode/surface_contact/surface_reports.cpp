@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <polhode/surface_contact/free_way.hpp>
+#include <polhode/surface_contact/conservative_advancement.hpp>
 #include <polhode/surface_contact/line_stretch.hpp>
 #include <polhode/surface_contact/surface_contact.hpp>
 
@@ -48,10 +48,10 @@ bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
   const double length = way.norm();
   if (length < kThroughBeam * points_.through) return false;
   double part = 0.0;
-  for (int k = 0; k < kMostAdvances && part < 1.0; ++k) {
-    const double room = distance(from + part * way) + points_.through;
-    if (room <= kLeave * points_.through) return true;
-    part += room / length;
+  for (int k = 0; k < kMaxAdvances && part < 1.0; ++k) {
+    const double clearance = distance(from + part * way) + points_.through;
+    if (clearance <= kLeave * points_.through) return true;
+    part += clearance / length;
   }
   return false;
 }
@@ -71,11 +71,13 @@ double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
       for (int k = 0; beside && k < kHalvings && goes_through(y_n, start + most * way); ++k)
         most *= 0.5;
     }
-    const auto room_at = [&](const Vec3& y) { return distance(y, floor + length + band) - floor; };
-    const double room = room_at(start);
-    if (room <= 0.0) continue;
-    most = free_way(most, room, kLeave * std::min(room, band), length,
-                    [&](double part) { return room_at(start + part * way); });
+    const auto clearance_at = [&](const Vec3& y) {
+      return distance(y, floor + length + band) - floor;
+    };
+    const double clearance = clearance_at(start);
+    if (clearance <= 0.0) continue;
+    most = conservative_advancement(most, clearance, kLeave * std::min(clearance, band), length,
+                                    [&](double part) { return clearance_at(start + part * way); });
   }
   return most;
 }
@@ -90,7 +92,7 @@ std::optional<SurfaceOverlap> SurfaceContact::overlap(const NodeStep& instant) c
     deepest = i;
   }
   if (deepest < 0) return {};
-  const GapQuestion question{.law = law_.normal, .sided = true};
+  const GapQuery question{.law = law_.normal, .sided = true};
   const Vec3 normal = gap(local(instant.x_n1, deepest), question).normal;
   return SurfaceOverlap{-least, axes(instant.x_n1) * normal.normalized()};
 }

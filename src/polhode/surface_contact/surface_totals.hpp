@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include <polhode/surface_contact/surface_law.hpp>
-#include <polhode/system/moving_contacts.hpp>
+#include <polhode/system/body_contacts.hpp>
 
 namespace polhode {
 
@@ -38,7 +38,7 @@ struct SurfaceTotals {
     return r;
   }
   /// An impulse at the end of the last step counts as a force over it.
-  static void add_impulse(const Vec3& normal, const SettledImpact& settled, double dt,
+  static void add_impulse(const Vec3& normal, const ResolvedImpact& settled, double dt,
                           double* numbers) {
     SurfaceTotals t;
     std::copy_n(numbers, kCount, &t.impulse);

@@ -16,7 +16,7 @@ struct ContactSpring {
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass, world [m].
   Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
   /// Force on a by the displacement of a against b along the normal: rub (normal·u) [N/m].
-  Vec3 rub = Vec3::Zero(), normal = Vec3::Zero();
+  Vec3 friction_slope = Vec3::Zero(), normal = Vec3::Zero();
 };
 
 /// A point that acts.
@@ -27,7 +27,7 @@ struct ActingPoint {
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< [N m]
 };
 
-/// Contacts seen by iterative solvers of crowds: forces by body and springs by point.
+/// Contacts seen by iterative solvers: forces by body and springs by point.
 class PointwiseContacts {
  public:
   virtual ~PointwiseContacts() = default;

@@ -12,9 +12,9 @@
 
 namespace polhode {
 
-class BarrierPoints;
+class BarrierConstraint;
 class InternalUnknowns;
-class MovingPattern;
+class ChangingSparsity;
 class SurfaceImpacts;
 
 /// Where elements put the forces they exert on nodes, and the derivatives of these.
@@ -73,9 +73,9 @@ class ElementGroup {
   [[nodiscard]] virtual std::size_t scratch_size() const { return 0; }
 
   // What a group may be besides; null where it is not.
-  [[nodiscard]] virtual const BarrierPoints* barrier_points() const { return nullptr; }
+  [[nodiscard]] virtual const BarrierConstraint* barrier_constraint() const { return nullptr; }
   [[nodiscard]] virtual const InternalUnknowns* internal_unknowns() const { return nullptr; }
-  [[nodiscard]] virtual const MovingPattern* moving_pattern() const { return nullptr; }
+  [[nodiscard]] virtual const ChangingSparsity* changing_sparsity() const { return nullptr; }
   [[nodiscard]] virtual const SurfaceImpacts* surface_impacts() const { return nullptr; }
 
   /// Consistent mass of element, n × n numbers (per direction), row by row; returns false if this

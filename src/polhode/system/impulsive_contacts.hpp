@@ -52,7 +52,7 @@ class ImpulsiveContacts {
   /// Null: these contacts act by forces.
   [[nodiscard]] virtual const ImpulseOptions* impulses() const = 0;
   /// Whether everything that bodies may meet on their way through these steps is known; if not,
-  /// MovingContacts::cover() finds it, and points have other numbers then.
+  /// BodyContacts::cover() finds it, and points have other numbers then.
   [[nodiscard]] virtual bool covers(std::span<const BodyStep> steps) const = 0;
   /// Appends the points that are not listed yet and must act if bodies go as the steps say, those
   /// that acted in the last step among them. After begin_step(). @returns how many.
@@ -61,7 +61,7 @@ class ImpulsiveContacts {
   /// Renews normals and places: they are those of the middle of the steps.
   virtual void place_points(std::span<const BodyStep> steps,
                             std::span<ImpulsePoint> list) const = 0;
-  /// The step is accepted: as MovingContacts::commit().
+  /// The step is accepted: as BodyContacts::commit().
   virtual Work commit_impulses(State& state, std::span<const BodyStep> steps,
                                const StepContext& context, std::span<const ImpulsePoint> list,
                                std::span<const ImpulseLoss> losses,

@@ -59,7 +59,7 @@ class Group final : public InteractionGroup {
     t.works = t.rows == 0 || item.works();
     t.prescribes = item.prescribes();
     t.has_barrier = item.has_barrier();
-    t.always_asked = item.always_asked();
+    t.always_queried = item.always_queried();
     t.reversible = item.reversible();
     t.compliant = item.compliant();
     t.coupled_mass = item.coupled_mass();

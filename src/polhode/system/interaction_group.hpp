@@ -24,7 +24,7 @@ struct InteractionTraits {
   Switching switching = Switching::never;
   bool lazy_history = false, conservative = true, dissipates = false;
   bool works = false;  ///< work() is asked for.
-  bool prescribes = false, has_barrier = false, always_asked = false, reversible = false;
+  bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
   bool compliant = false;
   double coupled_mass = 0.0;  ///< [kg]
   double reach = 0.0;         ///< [m]

@@ -63,7 +63,7 @@ struct InteractionItem {
   /// Mirror images: does the accepted configuration still have the assembled orientation?
   [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
   /// acceptable() is asked after every step, not only where rows may have met a mirror image.
-  [[nodiscard]] bool always_asked() const { return false; }
+  [[nodiscard]] bool always_queried() const { return false; }
   /// What is wrong where acceptable() says no.
   [[nodiscard]] const char* refusal() const { return "reached the mirror image of a joint"; }
   /// Mixed-point iterations of statics: writes to the history the stress that the linear model at
@@ -141,8 +141,8 @@ struct OwnFunctions {
   static constexpr bool acceptable = !requires {
     requires std::same_as<decltype(&Item::acceptable), decltype(&Base::acceptable)>;
   };
-  static constexpr bool always_asked = !requires {
-    requires std::same_as<decltype(&Item::always_asked), decltype(&Base::always_asked)>;
+  static constexpr bool always_queried = !requires {
+    requires std::same_as<decltype(&Item::always_queried), decltype(&Base::always_queried)>;
   };
   static constexpr bool refusal = !requires {
     requires std::same_as<decltype(&Item::refusal), decltype(&Base::refusal)>;
@@ -197,7 +197,7 @@ concept Interaction = HasInteractionFunctions<Item> &&
                       (!OwnFunctions<Item>::time_order || OwnFunctions<Item>::time_functions) &&
                       OwnFunctions<Item>::has_barrier == OwnFunctions<Item>::clearance &&
                       (!OwnFunctions<Item>::impacts || OwnFunctions<Item>::has_barrier) &&
-                      (!(OwnFunctions<Item>::always_asked || OwnFunctions<Item>::refusal) ||
+                      (!(OwnFunctions<Item>::always_queried || OwnFunctions<Item>::refusal) ||
                        OwnFunctions<Item>::acceptable) &&
                       (!OwnFunctions<Item>::reverse || OwnFunctions<Item>::reversible);
 

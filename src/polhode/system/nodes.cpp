@@ -6,7 +6,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/system/moving_pattern.hpp>
+#include <polhode/system/changing_sparsity.hpp>
 #include <polhode/system/nodes.hpp>
 
 namespace polhode {
@@ -191,10 +191,10 @@ void Nodes::find_pieces() {
       }
     }
   // What may meet is of one piece.
-  std::vector<const MovingPattern*> moving;
+  std::vector<const ChangingSparsity*> moving;
   for (const auto& g : groups_)
-    if (const MovingPattern* pattern = g->moving_pattern()) moving.push_back(pattern);
-  for (const MovingPattern* pattern : moving) {
+    if (const ChangingSparsity* pattern = g->changing_sparsity()) moving.push_back(pattern);
+  for (const ChangingSparsity* pattern : moving) {
     int first = -1;
     for (int i : pattern->reach()) {
       if (bonded(i)) continue;
@@ -240,7 +240,7 @@ void Nodes::find_pieces() {
       bodies[piece].insert(touched.begin(), touched.end());
       piece_of_group_[k] = piece;
     }
-  for (const MovingPattern* pattern : moving) {
+  for (const ChangingSparsity* pattern : moving) {
     const auto& reach = pattern->reach();
     const auto free =
         std::find_if(reach.begin(), reach.end(), [&](int i) { return piece_[i] >= 0; });

@@ -29,7 +29,7 @@ struct PrescribedComponent {
 
 /// Free nodes that elements connect, with the bodies these elements reach. A body separates: what
 /// is bonded to its two ends are two pieces.
-struct NodePiece {
+struct ConnectedComponent {
   std::vector<int> nodes;   ///< Free ones; none if all nodes of an element are bonded.
   std::vector<int> bodies;  ///< In ascending order.
   bool turns = true;        ///< Its matrix may be turned with a body: no single component is fixed.
@@ -76,7 +76,7 @@ class Nodes {
   /// Sum of a node's row of the mass matrix [kg].
   [[nodiscard]] double node_mass(int node) const { return node_mass_[node]; }
 
-  [[nodiscard]] const std::vector<NodePiece>& pieces() const { return pieces_; }
+  [[nodiscard]] const std::vector<ConnectedComponent>& pieces() const { return pieces_; }
   [[nodiscard]] int piece(int node) const { return piece_[node]; }  ///< Of a free node; else -1.
   /// The piece whose bodies or nodes a group of elements belongs to.
   [[nodiscard]] int piece_of_group(int group) const { return piece_of_group_[group]; }
@@ -105,7 +105,7 @@ class Nodes {
   std::vector<int> row_start_, column_;
   std::vector<std::vector<int>> slots_;
   std::vector<double> mass_, node_mass_, no_displacement_;
-  std::vector<NodePiece> pieces_;
+  std::vector<ConnectedComponent> pieces_;
   std::vector<int> piece_, piece_of_group_;
   double element_size_ = 1.0;
 };

@@ -79,7 +79,7 @@ struct State {
   std::vector<double> node_past;   ///< Mean velocities of the last steps, ring [m/s].
   std::vector<double> node_rates;  ///< Of node_a like `rates`: numbers kept, then their changes.
   std::vector<double> element_history;  ///< Of groups of elements: enhanced strains, ...
-  std::vector<double> contacts;         ///< Of MovingContacts: where candidates were found, points.
+  std::vector<double> contacts;         ///< Of BodyContacts: where candidates were found, points.
   int past_count = 0;                   ///< Valid entries of the predictor's rings.
   int past_next = 0;                    ///< Ring position to be written next.
   std::array<double, kPast>

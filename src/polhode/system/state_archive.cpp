@@ -65,7 +65,7 @@ class Reader {
   void optional(std::vector<T>& list, std::size_t count) {
     int there = 0;
     (*this)(there);
-    if (there != 0 && there != 1) throw InputError(where_, "is no state", kMend);
+    if (there != 0 && there != 1) throw InputError(where_, "is no state", kHint);
     list.assign(there == 1 ? count : 0, T{});
     if constexpr (std::is_arithmetic_v<T>)
       if (!list.empty()) (*this)(list);
@@ -74,7 +74,7 @@ class Reader {
     std::int64_t count = 0;
     (*this)(count);
     if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() / sizeof(double))
-      throw InputError(where_, "ends in the middle of a list", kMend);
+      throw InputError(where_, "ends in the middle of a list", kHint);
     values.resize(static_cast<std::size_t>(count));
     take(values.data(), values.size() * sizeof(double));
   }
@@ -84,14 +84,14 @@ class Reader {
                        "Give the model that the state was written with");
   }
   void expect_end() const {
-    if (!bytes_.empty()) throw InputError(where_, "is longer than a state", kMend);
+    if (!bytes_.empty()) throw InputError(where_, "is longer than a state", kHint);
   }
 
  private:
-  static constexpr const char* kMend = "Take another checkpoint; this one is damaged";
+  static constexpr const char* kHint = "Take another checkpoint; this one is damaged";
 
   void take(void* target, std::size_t size) {
-    if (size > bytes_.size()) throw InputError(where_, "ends in the middle of a state", kMend);
+    if (size > bytes_.size()) throw InputError(where_, "ends in the middle of a state", kHint);
     std::copy_n(bytes_.data(), size, static_cast<char*>(target));  // memcpy may not have null
     bytes_.remove_prefix(size);
   }

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <polhode/system/moving_contacts.hpp>
+#include <polhode/system/body_contacts.hpp>
 #include <polhode/system/node_step.hpp>
 
 namespace polhode {
@@ -56,7 +56,7 @@ class SurfaceImpacts {
   /// @returns the energy that it stores no more [J].
   virtual double turn(const SurfaceImpact& impact, double held, double* history) const = 0;
   /// The impulse that it took at the end of the step, for its report.
-  virtual void settled(const SurfaceImpact& impact, const SettledImpact& settled, double dt,
+  virtual void settled(const SurfaceImpact& impact, const ResolvedImpact& settled, double dt,
                        double* history) const = 0;
 };
 

@@ -84,7 +84,7 @@ void System::finish() {
   }
   nodes_.finish(n);
   for (int g = 0; g < nodes_.group_count(); ++g)
-    stiff_ = stiff_ || nodes_.group(g).barrier_points();
+    stiff_ = stiff_ || nodes_.group(g).barrier_constraint();
   conservative_ = conservative_ && nodes_.conservative();
   dissipates_ = dissipates_ || nodes_.dissipates();
   for (int i = 0; i < nodes_.count(); ++i)

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <polhode/system/body_contacts.hpp>
 #include <polhode/system/interaction.hpp>
-#include <polhode/system/moving_contacts.hpp>
 #include <polhode/system/nodes.hpp>
 #include <polhode/system/spanning_tree.hpp>
 #include <polhode/system/state.hpp>
@@ -60,8 +60,8 @@ class System {
     return nodes_.add_elements(std::move(elements));
   }
   /// Contact between bodies, if any.
-  void set_contacts(std::shared_ptr<MovingContacts> contacts) { contacts_ = std::move(contacts); }
-  [[nodiscard]] const std::shared_ptr<MovingContacts>& contacts() const { return contacts_; }
+  void set_contacts(std::shared_ptr<BodyContacts> contacts) { contacts_ = std::move(contacts); }
+  [[nodiscard]] const std::shared_ptr<BodyContacts>& contacts() const { return contacts_; }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   /// Lets the item-th interaction of a kind be switched.
   /// @throws std::logic_error if there is none.
@@ -126,7 +126,7 @@ class System {
   std::vector<BodyMotion> start_;
   std::vector<std::unique_ptr<InteractionGroup>> groups_;
   std::vector<InteractionRef> refs_;
-  std::shared_ptr<MovingContacts> contacts_;
+  std::shared_ptr<BodyContacts> contacts_;
   Nodes nodes_;
   SpanningTree tree_;
   State initial_;

@@ -15,7 +15,7 @@ constexpr int kSamples = 16;
 /// Bending as part of the function's size that no step is shortened for.
 constexpr double kNothing = 1e-12;
 /// Steps are not shortened below this part of the run for the sake of samples.
-constexpr double kLeastPart = 1e-7;
+constexpr double kMinPart = 1e-7;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ TimeBreak TimeBreaks::next(double t) {
 }
 
 double TimeBreaks::sampled_length(double t, double h, double samples) const {
-  const double least = kLeastPart * until_;
+  const double least = kMinPart * until_;
   for (const Followed& f : followed_)
     while (h > least && !sampled(f, t, h, h / samples)) h = std::max(least, 0.7 * h);
   return h;

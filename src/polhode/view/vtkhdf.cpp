@@ -145,7 +145,7 @@ void add_body_surfaces(VtkHdfFile& file, const ResultsReader& results, const Mod
     if (at != names.end() && !picture.surface.points.empty())
       surfaces.emplace_back(at - names.begin(), std::move(picture.surface));
   }
-  if (surfaces.size() > static_cast<std::size_t>(results::kMostNamed)) {
+  if (surfaces.size() > static_cast<std::size_t>(results::kMaxNamed)) {
     add_surfaces(file, results, "bodies", surfaces, names.size());
     return;
   }

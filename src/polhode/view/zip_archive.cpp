@@ -64,16 +64,16 @@ void add_description(LittleEndian& out, const ZipEntry& entry, std::size_t packe
 }  // namespace
 
 std::string zip_archive(std::span<const ZipEntry> entries) {
-  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::size_t kMax = std::numeric_limits<std::uint32_t>::max();
   const char* too_large = "zip_archive: more than a plain archive can hold";
   if (entries.size() > std::numeric_limits<std::uint16_t>::max())
     throw std::runtime_error(too_large);
   LittleEndian archive, directory;
   for (const ZipEntry& entry : entries) {
-    if (entry.bytes.size() > kMost) throw std::runtime_error(too_large);
+    if (entry.bytes.size() > kMax) throw std::runtime_error(too_large);
     const std::string packed = deflated(entry.bytes);
     const std::size_t at = archive.size();
-    if (at + packed.size() > kMost) throw std::runtime_error(too_large);
+    if (at + packed.size() > kMax) throw std::runtime_error(too_large);
     archive.u32(0x04034b50);
     add_description(archive, entry, packed.size());
     archive.text(entry.name).text(packed);

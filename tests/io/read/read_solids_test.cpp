@@ -58,7 +58,7 @@ TEST(ReadSolids, KeepsBondsAndPrescribedNodesInTheOrderOfTheFile) {
   ASSERT_EQ(pad.bonded.size(), 2u);
   EXPECT_EQ(model.body_name(pad.bonded[0].body), "base");
   EXPECT_EQ(pad.bonded[0].nodes[0].kind, Selection::Kind::kPlane);
-  EXPECT_EQ(pad.bonded[0].nodes[0].level, Selection::Level::kLeast);
+  EXPECT_EQ(pad.bonded[0].nodes[0].level, Selection::Level::kMin);
   const SolidSpec& rod = model.solids[1];
   EXPECT_EQ(rod.bonded[0].body, kGround);
   EXPECT_EQ(rod.bonded[0].nodes[0].set, "start");

@@ -137,7 +137,7 @@ TEST_P(MeshFile, CutShortIsRefused) {
       ++whole;
     } catch (const InputError& e) {
       EXPECT_THAT(e.where(), testing::StartsWith(GetParam()));
-      EXPECT_FALSE(e.mend().empty());
+      EXPECT_FALSE(e.hint().empty());
     }
   }
   // Abaqus files have no end; the others miss theirs.

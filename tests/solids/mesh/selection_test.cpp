@@ -56,8 +56,8 @@ int faces(const Mesh& mesh, const std::vector<Selection>& s) {
 TEST(Selection, TakesNodes) {
   const Mesh mesh = cube();
   EXPECT_EQ(nodes(mesh, {}), 27U);
-  EXPECT_EQ(nodes(mesh, {plane(Vec3::UnitX(), Level::kLeast)}), 9U);
-  EXPECT_EQ(nodes(mesh, {plane(Vec3::Ones().normalized(), Level::kMost)}), 1U);
+  EXPECT_EQ(nodes(mesh, {plane(Vec3::UnitX(), Level::kMin)}), 9U);
+  EXPECT_EQ(nodes(mesh, {plane(Vec3::Ones().normalized(), Level::kMax)}), 1U);
   EXPECT_EQ(nodes(mesh, {plane(Vec3::UnitX(), Level::kValue, 0.0)}), 9U);
   EXPECT_EQ(nodes(mesh, {box({-1, -1, 0}, {1, 1, 1})}), 18U);
   EXPECT_EQ(nodes(mesh, {ball(1.0, false)}), 7U);
@@ -74,10 +74,10 @@ TEST(Selection, TakesFacesOfTheBoundaryThatFaceOutward) {
     const Mesh mesh = cube(type);
     EXPECT_EQ(faces(mesh, {}), 24);
     EXPECT_EQ(faces(mesh, {named("xmax")}), 4);
-    EXPECT_EQ(faces(mesh, {named("xmax"), plane(Vec3::UnitX(), Level::kMost)}), 4);
+    EXPECT_EQ(faces(mesh, {named("xmax"), plane(Vec3::UnitX(), Level::kMax)}), 4);
     EXPECT_EQ(faces(mesh, {named("xmax"), named("ymax")}), 8);
     EXPECT_EQ(faces(mesh, {box({0, -1, 1}, {1, 1, 1})}), 2);
-    const Surface top = select_faces("", mesh, {plane(Vec3::UnitZ(), Level::kMost)});
+    const Surface top = select_faces("", mesh, {plane(Vec3::UnitZ(), Level::kMax)});
     const FaceBlock& block = top.blocks[0];
     for (int f = 0; f < block.size(); ++f) {
       const int* face = &block.nodes[block.shape().nodes.size() * static_cast<std::size_t>(f)];

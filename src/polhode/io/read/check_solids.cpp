@@ -54,7 +54,8 @@ void check_probe(const ProbeSpec& probe, const std::string& where, const SolidPl
 
 }  // namespace
 
-Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path) {
+SourceLocation place_of_path(const ReadContext& context, const SourceNode& root,
+                             std::string_view path) {
   const std::vector<std::string> keys = parts_of(path);
   if (keys.size() > 1)
     for (const PartSource& part : context.parts) {
@@ -68,7 +69,7 @@ Place place_of_path(const ReadContext& context, const SourceNode& root, std::str
       return place_of_path(inside, *part.root, own);
     }
   const SourceNode* node = &root;
-  Place place = context.tree.place_of(root);
+  SourceLocation place = context.tree.place_of(root);
   for (const std::string& part : keys) {
     if (node->is_map()) {
       const auto key = std::find_if(node->keys.begin(), node->keys.end(),
@@ -113,7 +114,7 @@ void check_solids(ReadContext& context, const SourceNode& root) {
   }
   for (const InputError& e : faults)
     context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
-                            sentence(e.mend()));
+                            sentence(e.hint()));
 }
 
 }  // namespace polhode

@@ -43,7 +43,7 @@ void check_type(Section& section, const std::string& type) {
 
 }  // namespace
 
-void read_analysis(ReadContext& context, const SourceNode& node, const Place& place) {
+void read_analysis(ReadContext& context, const SourceNode& node, const SourceLocation& place) {
   AnalysisSpec& analysis = context.model.analysis;
   analysis.place = place;
   Section section(context, node, place, "analysis", analysis_fields());
@@ -100,7 +100,7 @@ const std::vector<std::string> kRecorded = {"body", "joint", "load",    "solid",
 
 }  // namespace
 
-void read_output(ReadContext& context, const SourceNode& node, const Place& place) {
+void read_output(ReadContext& context, const SourceNode& node, const SourceLocation& place) {
   OutputSpec& output = context.model.output;
   Section section(context, node, place, "output", output_fields());
   if (!node.is_map()) return;

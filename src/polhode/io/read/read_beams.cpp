@@ -60,7 +60,7 @@ class SectionReader {
       spec_.height = first;
       spec_.width = type_ == "rectangle" || type_ == "i" ? second : first;
     } catch (const InputError& e) {
-      section_.fault(e.what_is_wrong(), e.mend() + ".");
+      section_.fault(e.what_is_wrong(), e.hint() + ".");
     }
   }
 
@@ -83,7 +83,7 @@ class SectionReader {
                      "Name a material of type elastic.");
       return std::nullopt;
     }
-    const auto [lame, shear] = isotropic_moduli(spec.parameters);
+    const auto [slowly_contracting, shear] = isotropic_moduli(spec.parameters);
     if (!(spec.density > 0.0)) {
       section_.fault("material", format("{} has no density", quote(spec.name)),
                      "Give the material a density.");
@@ -94,8 +94,10 @@ class SectionReader {
                      "Give the viscosity of a beam's material by its relaxation_time.");
       return std::nullopt;
     }
-    return BeamMaterial{shear * (3.0 * lame + 2.0 * shear) / (lame + shear),
-                        0.5 * lame / (lame + shear), spec.density, spec.viscosity.relaxation_time};
+    return BeamMaterial{
+        shear * (3.0 * slowly_contracting + 2.0 * shear) / (slowly_contracting + shear),
+        0.5 * slowly_contracting / (slowly_contracting + shear), spec.density,
+        spec.viscosity.relaxation_time};
   }
 
   void read_general() {
@@ -164,9 +166,9 @@ class SectionReader {
 void tell(Section& section, const InputError& e) {
   const std::string key = e.where().substr(std::min(e.where().size(), section.path("").size()));
   if (section.has(key))
-    section.fault(key, e.what_is_wrong(), e.mend() + ".");
+    section.fault(key, e.what_is_wrong(), e.hint() + ".");
   else
-    section.fault(e.what_is_wrong(), e.mend() + ".");
+    section.fault(e.what_is_wrong(), e.hint() + ".");
 }
 
 /// Makes the names of bodies and joints known that came with a beam or cable.
@@ -316,7 +318,7 @@ class BeamReader {
   void stand_in() {
     const std::size_t bodies = context_.model.bodies.size();
     beam_.first_node = static_cast<int>(bodies);
-    beam_.mesh.resize(static_cast<std::size_t>(std::clamp(beam_.elements, 1, kMostStandIns)));
+    beam_.mesh.resize(static_cast<std::size_t>(std::clamp(beam_.elements, 1, kMaxStandIns)));
     for (int k = 0; k < beam_.node_count(); ++k) {
       context_.model.bodies.emplace_back();
       context_.model.bodies.back().name = format("{}.{}", beam_.name, k);
@@ -332,7 +334,7 @@ class BeamReader {
                             static_cast<int>(context_.model.bodies.size()) - 1);
   }
 
-  static constexpr int kMostStandIns = 1000;
+  static constexpr int kMaxStandIns = 1000;
   ReadContext& context_;
   BeamSpec& beam_;
   Section section_;
@@ -375,14 +377,14 @@ class CableReader {
 
   void read_through(const SourceNode& node) {
     const std::string path = section_.path("through");
-    const char* const mend = "Write [[plate, [0, 0, 0.1]], [mast, end]].";
+    const char* const hint = "Write [[plate, [0, 0, 0.1]], [mast, end]].";
     if (!node.is_list()) {
-      context_.fault(node, path, "expects a list of points, but is " + node.description(), mend);
+      context_.fault(node, path, "expects a list of points, but is " + node.description(), hint);
       return;
     }
     for (const SourceNode& entry : node.children) {
       if (!entry.is_list() || entry.children.empty() || entry.children.size() > 2) {
-        context_.fault(entry, path, "expects [body, point], but is " + entry.description(), mend);
+        context_.fault(entry, path, "expects [body, point], but is " + entry.description(), hint);
         continue;
       }
       read_attachment(entry, path);

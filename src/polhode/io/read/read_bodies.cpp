@@ -116,7 +116,7 @@ class BodyReader {
     try {
       check_mass_properties(section_.path(), body_.mass, body_.inertia);
     } catch (const InputError& error) {
-      section_.fault("inertia", error.what_is_wrong(), error.mend());
+      section_.fault("inertia", error.what_is_wrong(), error.hint());
     }
   }
 
@@ -155,7 +155,7 @@ class BodyReader {
       const bool of_mesh = error.where() != path;
       context_.diagnostics.add(shape.place, path,
                                (of_mesh ? error.where() + ": " : "") + error.what_is_wrong(),
-                               error.mend());
+                               error.hint());
       return std::nullopt;
     }
   }

@@ -32,7 +32,7 @@ std::optional<ReadChannel> read_channel(ReadContext& context, Section& section) 
     channel.dimension = read_unit(unit).unit.value_or(Unit{}).dimension;
   } catch (const InputError& e) {
     if (e.where() != where) return std::nullopt;  // of the joint, which is told there
-    section.fault("channel", e.what_is_wrong(), e.mend() + ".");
+    section.fault("channel", e.what_is_wrong(), e.hint() + ".");
     return std::nullopt;
   }
   return channel;

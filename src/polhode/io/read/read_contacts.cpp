@@ -19,7 +19,7 @@ void assign(T& target, const std::optional<T>& value) {
 }
 
 /// The smallest restitution that a damper can bring about.
-constexpr double kLeastDamped = 0.05;
+constexpr double kMinDamped = 0.05;
 
 /// Keys of forces, which impulses do not have.
 constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_stiffness",
@@ -63,9 +63,9 @@ void read_law(Section& section, ContactLawSpec& law) {
   if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
     section.fault("rebound", "damped stands beside the barrier law",
                   "Use law: linear or hertz with it, or leave it out.");
-  else if (law.rebound == "damped" && law.restitution < kLeastDamped)
+  else if (law.rebound == "damped" && law.restitution < kMinDamped)
     section.fault("restitution", format("a damper cannot bring about {}", shown(law.restitution)),
-                  format("Give at least {}, or leave out 'rebound'.", shown(kLeastDamped)));
+                  format("Give at least {}, or leave out 'rebound'.", shown(kMinDamped)));
   assign(law.friction, section.number("friction"));
   assign(law.static_friction, section.number("static_friction"));
   if (section.has("static_friction") && law.static_friction < law.friction)
@@ -305,7 +305,8 @@ class ContactsReader {
     return std::nullopt;
   }
 
-  void unknown_material(const Place& place, const std::string& path, const std::string& name) {
+  void unknown_material(const SourceLocation& place, const std::string& path,
+                        const std::string& name) {
     std::vector<std::string> names;
     for (const ContactMaterialSpec& m : contacts_.materials) names.push_back(m.name);
     context_.diagnostics.add(
@@ -460,7 +461,7 @@ void check_contacts(ReadContext& context, const SourceNode& root) {
   if (faults.empty()) static_cast<void>(plan_surface_contacts(model, &faults));
   for (const InputError& e : faults)
     context.diagnostics.add(place_of_path(context, root, e.where()), e.where(), e.what_is_wrong(),
-                            sentence(e.mend()));
+                            sentence(e.hint()));
 }
 
 }  // namespace polhode

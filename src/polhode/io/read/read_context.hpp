@@ -45,7 +45,7 @@ struct ReadContext {
   std::vector<std::string> files_above{};  ///< The file and those it is a part of, in full.
 
   /// Adds a fault of a value.
-  void fault(const SourceNode& node, const std::string& path, std::string what, std::string mend);
+  void fault(const SourceNode& node, const std::string& path, std::string what, std::string hint);
   [[nodiscard]] std::vector<std::string> body_names() const;  ///< With ground.
   [[nodiscard]] std::vector<std::string> joint_names() const;
   [[nodiscard]] std::vector<std::string> load_names() const;
@@ -128,7 +128,7 @@ class Section {
  public:
   /// Tells of unknown and missing keys, and of a value that is no map.
   /// @param place  Of the thing, where a missing key is told.
-  Section(ReadContext& context, const SourceNode& node, Place place, std::string path,
+  Section(ReadContext& context, const SourceNode& node, SourceLocation place, std::string path,
           const FieldTable& table);
 
   [[nodiscard]] const SourceNode* find(const std::string& name) const;
@@ -140,7 +140,7 @@ class Section {
     return path_.empty() ? name : path_ + "." + name;
   }
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] const Place& place() const { return place_; }
+  [[nodiscard]] const SourceLocation& place() const { return place_; }
 
   std::optional<double> number(const std::string& name);
   std::optional<std::vector<double>> number_list(const std::string& name);
@@ -161,16 +161,16 @@ class Section {
   std::optional<std::vector<std::string>> names(const std::string& name);
 
   /// A fault of one key, or of the whole thing where the key is absent.
-  void fault(const std::string& name, std::string what, std::string mend);
+  void fault(const std::string& name, std::string what, std::string hint);
   /// A fault of the whole thing.
-  void fault(std::string what, std::string mend);
+  void fault(std::string what, std::string hint);
   /// Tells that two keys exclude each other, if both are there.
-  bool refuse_both(const std::string& one, const std::string& other, const std::string& mend);
+  bool refuse_both(const std::string& one, const std::string& other, const std::string& hint);
 
  private:
   ReadContext& context_;
   const SourceNode& node_;
-  Place place_;
+  SourceLocation place_;
   std::string path_;
   const FieldTable& table_;
   bool has_unknown_key_ = false;
@@ -178,9 +178,10 @@ class Section {
 };
 
 /// The table of the kind that "type", or another key, names; null after a fault.
-const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const Place& place,
-                            const std::string& path, const std::vector<KindTable>& kinds,
-                            std::string& type, const char* key = "type");
+const FieldTable* read_kind(ReadContext& context, const SourceNode& node,
+                            const SourceLocation& place, const std::string& path,
+                            const std::vector<KindTable>& kinds, std::string& type,
+                            const char* key = "type");
 
 /// The shortest text of a number for messages.
 std::string shown(double value);
@@ -246,14 +247,15 @@ TimeFunctionPtr read_controlled_value(ReadContext& context, const SourceNode& no
                                       const std::string& path);
 /// Events switch joints and loads: read after these.
 void read_events(ReadContext& context, const SourceNode& node);
-void read_analysis(ReadContext& context, const SourceNode& node, const Place& place);
-void read_output(ReadContext& context, const SourceNode& node, const Place& place);
+void read_analysis(ReadContext& context, const SourceNode& node, const SourceLocation& place);
+void read_output(ReadContext& context, const SourceNode& node, const SourceLocation& place);
 /// What only the mesh of a solid shows: sets that match nothing, nodes held twice, and the like.
 void check_solids(ReadContext& context, const SourceNode& root);
 /// What only the shapes show: hulls without volume, open meshes, names of materials.
 void check_contacts(ReadContext& context, const SourceNode& root);
 /// The place of the deepest value of a path such as solids.pad.mesh.elements[3] that the file has.
-Place place_of_path(const ReadContext& context, const SourceNode& root, std::string_view path);
+SourceLocation place_of_path(const ReadContext& context, const SourceNode& root,
+                             std::string_view path);
 /// What only the whole model shows: orders against loads, and the like.
 void check_model(ReadContext& context, const SourceNode& root);
 

@@ -74,7 +74,7 @@ bool is_controlled(const TimeFunctionPtr& f) { return f && f->controller() >= 0;
 
 /// Positions and speeds that are prescribed may not jump, as what a controller sets does.
 void refuse_controlled_motion(ReadContext& context) {
-  const auto refuse = [&](const Place& place, const std::string& path) {
+  const auto refuse = [&](const SourceLocation& place, const std::string& path) {
     context.diagnostics.add(place, path, "is prescribed, but what a controller sets may jump",
                             "Let the controller set a force or moment.");
   };

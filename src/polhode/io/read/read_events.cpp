@@ -60,7 +60,7 @@ void read_targets(ReadContext& context, Section& section, const char* key,
         return;
       }
     } catch (const InputError& e) {
-      section.fault(key, e.what_is_wrong(), e.mend() + ".");
+      section.fault(key, e.what_is_wrong(), e.hint() + ".");
       return;
     }
   }

@@ -364,7 +364,7 @@ class JointReader {
                             .parts);
     } catch (const InputError& error) {
       const bool is_key = table_.find(error.where()) != nullptr;
-      section_.fault(is_key ? error.where() : "type", error.what_is_wrong(), error.mend());
+      section_.fault(is_key ? error.where() : "type", error.what_is_wrong(), error.hint());
     }
   }
 

@@ -63,7 +63,7 @@ TimeFunctionPtr read_law(ReadContext& context, const SourceNode& node, const std
   const auto expression = Expression::parse(node.text, context.variables, context.units,
                                             field.variable, context.units.factor(field.of), fault);
   if (!expression) {
-    context.fault(node, path, fault.what, fault.mend);
+    context.fault(node, path, fault.what, fault.hint);
     return nullptr;
   }
   const std::optional<double> factor = expression->factor_to_si(field.dimension, context.units);

@@ -18,7 +18,7 @@ void read_units(ReadContext& context, const SourceNode& node) {
     if (!text) return;
     const UnitReading reading = read_unit(*text);
     if (!reading.unit) {
-      section.fault(name, reading.what, reading.mend);
+      section.fault(name, reading.what, reading.hint);
       return;
     }
     const Dimension& wanted = table.at(name).dimension;
@@ -57,7 +57,7 @@ void read_variables(ReadContext& context, const SourceNode& node) {
   const std::vector<std::string> reserved = reserved_names();
   for (std::size_t k = 0; k < node.keys.size(); ++k) {
     const std::string& name = node.keys[k].name;
-    const Place place = context.tree.place_of(node.keys[k], node.children[k]);
+    const SourceLocation place = context.tree.place_of(node.keys[k], node.children[k]);
     const auto is_word = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_'); };
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ||
         !std::all_of(name.begin(), name.end(), is_word)) {
@@ -95,7 +95,7 @@ const SourceNode* named_things(ReadContext& context, const SourceNode& root,
 }
 
 void read_root(ReadContext& context, const SourceNode& root) {
-  const Place start{context.tree.source().name(), 1, 1};
+  const SourceLocation start{context.tree.source().name(), 1, 1};
   if (root.kind == SourceNode::Kind::kEmpty) {
     context.diagnostics.add({start.file, 0, 0}, "", "the file is empty",
                             "A model starts with 'format: 1'.");
@@ -138,10 +138,10 @@ void apply_overrides(SourceTree& tree, const Overrides& overrides, Diagnostics& 
 }  // namespace
 
 void read_things(ReadContext& context, const SourceNode& root, const std::string& path) {
-  Section section(
-      context, root,
-      path.empty() ? Place{context.tree.source().name(), 1, 1} : context.tree.place_of(root), path,
-      model_fields());
+  Section section(context, root,
+                  path.empty() ? SourceLocation{context.tree.source().name(), 1, 1}
+                               : context.tree.place_of(root),
+                  path, model_fields());
   if (!root.is_map()) return;
   Model& model = context.model;
   section.integer("format");

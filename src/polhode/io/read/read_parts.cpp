@@ -15,7 +15,7 @@ namespace {
 /// Reads one part and adds it to the model; faults go to the context.
 class PartReader {
  public:
-  PartReader(ReadContext& context, const SourceNode& node, const Place& place,
+  PartReader(ReadContext& context, const SourceNode& node, const SourceLocation& place,
              const std::string& name)
       : context_(context),
         node_(node),
@@ -80,7 +80,7 @@ class PartReader {
       place_part(part.model, placement);
     } catch (const InputError& error) {
       part.diagnostics.add(place_of_path(part, root, error.where()), error.where(),
-                           error.what_is_wrong(), sentence(error.mend()));
+                           error.what_is_wrong(), sentence(error.hint()));
       return;
     }
     add(std::move(part), root, prefix.value_or(name_ + "_"));

@@ -9,7 +9,7 @@ namespace polhode {
 
 bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                 const std::string& collection) {
-  const Place place = context.tree.place_of(key, value);
+  const SourceLocation place = context.tree.place_of(key, value);
   const std::string path = collection.empty() ? key.name : collection + "." + key.name;
   if (key.name == "ground") {
     context.diagnostics.add(place, path, "the name 'ground' is taken", "Choose another name.");
@@ -25,9 +25,10 @@ bool check_name(ReadContext& context, const SourceNode::Key& key, const SourceNo
   return sound;
 }
 
-const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const Place& place,
-                            const std::string& path, const std::vector<KindTable>& kinds,
-                            std::string& type, const char* key) {
+const FieldTable* read_kind(ReadContext& context, const SourceNode& node,
+                            const SourceLocation& place, const std::string& path,
+                            const std::vector<KindTable>& kinds, std::string& type,
+                            const char* key) {
   std::vector<std::string> names;
   names.reserve(kinds.size());
   for (const KindTable& kind : kinds) names.push_back(kind.name);
@@ -50,8 +51,8 @@ const FieldTable* read_kind(ReadContext& context, const SourceNode& node, const 
   return nullptr;
 }
 
-Section::Section(ReadContext& context, const SourceNode& node, Place place, std::string path,
-                 const FieldTable& table)
+Section::Section(ReadContext& context, const SourceNode& node, SourceLocation place,
+                 std::string path, const FieldTable& table)
     : context_(context),
       node_(node),
       place_(std::move(place)),
@@ -65,7 +66,7 @@ Section::Section(ReadContext& context, const SourceNode& node, Place place, std:
   for (std::size_t k = 0; k < node.keys.size(); ++k) {
     const SourceNode::Key& key = node.keys[k];
     const std::string key_path = path_.empty() ? key.name : path_ + "." + key.name;
-    const Place key_place = context.tree.place_of(key, node.children[k]);
+    const SourceLocation key_place = context.tree.place_of(key, node.children[k]);
     if (table.find(key.name)) continue;
     has_unknown_key_ = true;
     likely_meant_.push_back(closest(key.name, table.names()));
@@ -88,22 +89,22 @@ bool Section::misses(const std::string& name) const {
          std::find(likely_meant_.begin(), likely_meant_.end(), name) == likely_meant_.end();
 }
 
-void Section::fault(const std::string& name, std::string what, std::string mend) {
+void Section::fault(const std::string& name, std::string what, std::string hint) {
   if (const SourceNode* node = node_.find(name)) {
-    context_.fault(*node, path(name), std::move(what), std::move(mend));
+    context_.fault(*node, path(name), std::move(what), std::move(hint));
   } else {
-    fault(std::move(what), std::move(mend));
+    fault(std::move(what), std::move(hint));
   }
 }
 
-void Section::fault(std::string what, std::string mend) {
-  context_.diagnostics.add(place_, path_, std::move(what), std::move(mend));
+void Section::fault(std::string what, std::string hint) {
+  context_.diagnostics.add(place_, path_, std::move(what), std::move(hint));
 }
 
 bool Section::refuse_both(const std::string& one, const std::string& other,
-                          const std::string& mend) {
+                          const std::string& hint) {
   if (!has(one) || !has(other)) return false;
-  fault(other, format("stands beside '{}'", one), mend);
+  fault(other, format("stands beside '{}'", one), hint);
   return true;
 }
 

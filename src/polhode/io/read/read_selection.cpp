@@ -17,7 +17,7 @@ bool read_plane(ReadContext& context, const SourceNode& node, const std::string&
   if (!normal || !at) return false;
   selection.normal = *normal;
   if (at->is_text() && (at->text == "min" || at->text == "max")) {
-    selection.level = at->text == "min" ? Selection::Level::kLeast : Selection::Level::kMost;
+    selection.level = at->text == "min" ? Selection::Level::kMin : Selection::Level::kMax;
     return true;
   }
   if (const std::string guess =

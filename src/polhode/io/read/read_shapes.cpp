@@ -56,7 +56,7 @@ std::optional<std::vector<double>> read_sizes(ReadContext& context, const Source
   try {
     check_shape_sizes(path, kind, sizes);
   } catch (const InputError& error) {
-    context.fault(node, path, error.what_is_wrong(), error.mend());
+    context.fault(node, path, error.what_is_wrong(), error.hint());
     return std::nullopt;
   }
   return sizes;
@@ -121,16 +121,16 @@ bool read_height_field(ReadContext& context, const SourceNode& node, const std::
   const SourceNode* rows = section.find("heights");
   if (!rows) return false;
   const std::string where = section.path("heights");
-  const char* mend = "Write [[0, 0.1, 0], [0, 0.2, 0]], for example.";
+  const char* hint = "Write [[0, 0.1, 0], [0, 0.2, 0]], for example.";
   if (!rows->is_list() || rows->children.size() < 2) {
     context.fault(*rows, where,
-                  "expects a list of at least two rows, but is " + rows->description(), mend);
+                  "expects a list of at least two rows, but is " + rows->description(), hint);
     return false;
   }
   for (const SourceNode& row : rows->children) {
     if (!row.is_list() || row.children.size() < 2) {
       context.fault(row, where,
-                    "expects rows of at least two heights, but has " + row.description(), mend);
+                    "expects rows of at least two heights, but has " + row.description(), hint);
       return false;
     }
     if (row.children.size() != rows->children.front().children.size()) {

@@ -9,7 +9,7 @@
 namespace polhode {
 namespace {
 
-constexpr std::size_t kMostSuggestions = 1000;
+constexpr std::size_t kMaxSuggestions = 1000;
 
 std::string expected(const Field& field) {
   std::string unit = field.dimension.si_unit();
@@ -17,8 +17,9 @@ std::string expected(const Field& field) {
 }
 
 /// Place of a part of a text value, where the file shows it as it is.
-Place place_within(const ReadContext& context, const SourceNode& node, std::size_t offset) {
-  Place place = context.tree.place_of(node);
+SourceLocation place_within(const ReadContext& context, const SourceNode& node,
+                            std::size_t offset) {
+  SourceLocation place = context.tree.place_of(node);
   if (place.line == 0) return place;
   const std::string_view line = context.tree.source().line(node.line);
   std::size_t at = static_cast<std::size_t>(node.column) - 1;
@@ -48,25 +49,25 @@ bool check_range(ReadContext& context, const SourceNode& node, const std::string
   } else {
     must = format("must be at most {}{}", shown(r.most), with);
   }
-  std::string mend = field.meaning;
+  std::string hint = field.meaning;
   if (r.least == 0.0 && !std::isfinite(r.most))
-    mend = r.above_least ? "Give a value above 0." : "Give 0 or more.";
-  context.fault(node, path, format("{}, but is {}{}", must, shown(value), with), mend);
+    hint = r.above_least ? "Give a value above 0." : "Give 0 or more.";
+  context.fault(node, path, format("{}, but is {}{}", must, shown(value), with), hint);
   return false;
 }
 
 /// Says of which dimension the value is and which one is expected.
 void wrong_dimension(ReadContext& context, const SourceNode& node, const std::string& path,
                      const Field& field, const Expression& expression) {
-  std::string mend = "Give it in a unit of that dimension.";
+  std::string hint = "Give it in a unit of that dimension.";
   if (field.dimension.matches(dimensions::kAcceleration) &&
       expression.dimension().matches(dimensions::kMass))
-    mend = "The unit g is the gram; standard gravity is g0.";
-  if (field.dimension.is_none()) mend = "Give it without a unit.";
+    hint = "The unit g is the gram; standard gravity is g0.";
+  if (field.dimension.is_none()) hint = "Give it without a unit.";
   context.fault(node, path,
                 format("expects {}, but {} is {}", expected(field), quote(node.text),
                        expression.dimension().name()),
-                mend);
+                hint);
 }
 
 /// Factor to SI, or a fault.
@@ -85,12 +86,12 @@ std::optional<double> si_factor(ReadContext& context, const SourceNode& node,
 }
 
 bool check_list(ReadContext& context, const SourceNode& node, const std::string& path,
-                std::size_t count, const std::string& wanted, const std::string& mend) {
+                std::size_t count, const std::string& wanted, const std::string& hint) {
   if (node.is_list() && (count == 0 || node.children.size() == count)) return true;
   const std::string found = node.is_list() && !node.children.empty()
                                 ? format("a list of {}", node.children.size())
                                 : node.description();
-  context.fault(node, path, format("expects {}, but is {}", wanted, found), mend);
+  context.fault(node, path, format("expects {}, but is {}", wanted, found), hint);
   return false;
 }
 
@@ -99,8 +100,8 @@ bool check_list(ReadContext& context, const SourceNode& node, const std::string&
 std::string shown(double value) { return format("{:.6g}", value); }
 
 void ReadContext::fault(const SourceNode& node, const std::string& path, std::string what,
-                        std::string mend) {
-  diagnostics.add(tree.place_of(node), path, std::move(what), std::move(mend));
+                        std::string hint) {
+  diagnostics.add(tree.place_of(node), path, std::move(what), std::move(hint));
 }
 
 std::vector<std::string> ReadContext::body_names() const {
@@ -155,7 +156,7 @@ std::shared_ptr<const Expression> read_expression(ReadContext& context, const So
   auto expression =
       Expression::parse(node.text, context.variables, context.units, allow_time, fault);
   if (!expression) {
-    context.diagnostics.add(place_within(context, node, fault.offset), path, fault.what, fault.mend,
+    context.diagnostics.add(place_within(context, node, fault.offset), path, fault.what, fault.hint,
                             static_cast<int>(fault.length));
     return nullptr;
   }
@@ -421,12 +422,12 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node,
   const auto found = context.bodies.find(node.text);
   if (found != context.bodies.end()) return found->second;
   // With very many faults the search for what was meant would take minutes.
-  std::string mend = "Give the name of a body.";
-  if (context.diagnostics.size() < kMostSuggestions) {
+  std::string hint = "Give the name of a body.";
+  if (context.diagnostics.size() < kMaxSuggestions) {
     const std::vector<std::string> names = context.body_names();
-    mend = did_you_mean(node.text, names) + "Bodies: " + name_list(names) + ".";
+    hint = did_you_mean(node.text, names) + "Bodies: " + name_list(names) + ".";
   }
-  context.fault(node, path, "unknown body " + quote(node.text), mend);
+  context.fault(node, path, "unknown body " + quote(node.text), hint);
   return std::nullopt;
 }
 

@@ -27,7 +27,7 @@ inline constexpr const char* kJoints = "/joints";
 inline constexpr const char* kLoads = "/loads";
 /// Models with more bodies, joints and loads than this have only the packed form: each takes a
 /// fifth of a millisecond when the file is made.
-inline constexpr int kMostNamed = 200;
+inline constexpr int kMaxNamed = 200;
 
 /// Deformable solids by name: solids/<name>/nodes/displacement is (frames, nodes, 3),
 /// solids/<name>/elements/von_mises (frames, elements),

@@ -97,7 +97,7 @@ void plan_contacts(const ResultsLayout& layout, FilePlan& p) {
   if (pairs == 0) return;
   const auto add = [&](const StoredQuantity& q, std::vector<std::size_t> dims, bool integer) {
     p.add(r::kPackedContacts, q, std::move(dims), integer);
-    for (std::size_t i = 0; i < pairs && pairs <= static_cast<std::size_t>(r::kMostNamed); ++i)
+    for (std::size_t i = 0; i < pairs && pairs <= static_cast<std::size_t>(r::kMaxNamed); ++i)
       p.view(r::kContacts, layout.contacts[i], q, i, 1, true);
   };
   for (const StoredQuantity& q : kContactNumbers) add(q, {pairs}, false);
@@ -172,7 +172,7 @@ FilePlan plan_results(const ResultsLayout& layout) {
   const std::size_t joints = layout.joints.size();
   std::size_t own_views = joints + layout.loads.size();
   for (std::size_t i = 0; i < bodies; ++i) own_views += layout.is_node(i) ? 0 : 1;
-  const bool named = own_views <= r::kMostNamed;
+  const bool named = own_views <= r::kMaxNamed;
   p.channels.push_back({r::kTime, {}, "s", false});
   for (const StoredQuantity& q : kBodyQuantities) {
     if (bodies == 0) break;

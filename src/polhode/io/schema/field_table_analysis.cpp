@@ -72,9 +72,11 @@ const FieldTable& analysis_fields() {
            .standard = "true"},
           {.name = "newton_tolerance",
            .kind = kNumber,
-           .meaning = "Largest scaled increment that counts as converged; of crowds that contacts "
-                      "alone couple the largest force that may be left, over the weight of a body.",
-           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids and in crowds; "
+           .meaning =
+               "Largest scaled increment that counts as converged; of many bodies that contacts "
+               "alone couple the largest force that may be left, over the weight of a body.",
+           .standard = "1e-5; 1e-7 at orders 6 and 8; 1e-6 with solids and of 50 bodies or more "
+                       "that contacts couple; "
                        "1e-12 with other contacts",
            .range = {0.0, 1e-2, true}},
           {.name = "max_iterations",

@@ -27,7 +27,7 @@ std::vector<Field> law_fields() {
        .meaning = "Potential of the normal force: a barrier on a thin band around the surface, "
                   "which no load breaks through, or a force linear in the overlap, or that of "
                   "Hertz, with overlap to the power 3/2. nonsmooth: no forces but impulses, for "
-                  "crowds of bodies without joints; in default only.",
+                  "many bodies without joints; in default only.",
        .standard = "barrier",
        .choices = {"barrier", "linear", "hertz", "nonsmooth"}},
       {.name = "gap_tolerance",

@@ -61,10 +61,10 @@ Field parameter_field(const Parameter& p) {
   if (unit.unit) field.dimension = unit.unit->dimension;
   if (p.standard) field.standard = format("{:g}", *p.standard);
   // The smallest positive number stands for "above zero", the largest for "any".
-  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kMax = std::numeric_limits<double>::max();
   const bool positive = p.least == std::numeric_limits<double>::min();
-  if (p.least != -kMost) field.range.least = positive ? 0.0 : p.least;
-  if (p.most != kMost) field.range.most = p.most;
+  if (p.least != -kMax) field.range.least = positive ? 0.0 : p.least;
+  if (p.most != kMax) field.range.most = p.most;
   field.range.above_least = positive;
   return field;
 }

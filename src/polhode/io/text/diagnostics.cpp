@@ -11,17 +11,17 @@
 namespace polhode {
 namespace {
 
-constexpr std::size_t kMostDiagnostics = 200;
+constexpr std::size_t kMaxDiagnostics = 200;
 constexpr std::size_t kLongestExcerpt = 160;
 
 std::string joined_text(const std::vector<Diagnostic>& diagnostics) {
   std::string text;
-  for (std::size_t k = 0; k < diagnostics.size() && k < kMostDiagnostics; ++k) {
+  for (std::size_t k = 0; k < diagnostics.size() && k < kMaxDiagnostics; ++k) {
     if (k > 0) text += '\n';
     text += diagnostics[k].text();
   }
-  if (diagnostics.size() > kMostDiagnostics)
-    text += format("\n... and {} more faults", diagnostics.size() - kMostDiagnostics);
+  if (diagnostics.size() > kMaxDiagnostics)
+    text += format("\n... and {} more faults", diagnostics.size() - kMaxDiagnostics);
   return text;
 }
 
@@ -71,7 +71,7 @@ std::string Diagnostic::text() const {
   std::string message = head + ": error: ";
   if (!path.empty()) message += path + ": ";
   message += what + ".";
-  if (!mend.empty()) message += " " + mend;
+  if (!hint.empty()) message += " " + hint;
   if (!excerpt.empty()) message += "\n" + excerpt;
   return message;
 }
@@ -133,10 +133,10 @@ std::string SourceText::excerpt(int line_number, int column, int length) const {
                 std::string(wide > 0 ? wide - 1 : 0, '~'));
 }
 
-void Diagnostics::add(const Place& place, std::string path, std::string what, std::string mend,
-                      int length) {
-  if (!mend.empty() && mend.back() != '.') mend += '.';
-  Diagnostic d{place, std::move(path), std::move(what), std::move(mend), ""};
+void Diagnostics::add(const SourceLocation& place, std::string path, std::string what,
+                      std::string hint, int length) {
+  if (!hint.empty() && hint.back() != '.') hint += '.';
+  Diagnostic d{place, std::move(path), std::move(what), std::move(hint), ""};
   const std::size_t file = file_number(place.file);
   const SourceText& source = file == 0 || file > of_parts_.size() ? *source_ : *of_parts_[file - 1];
   if (place.line > 0) d.excerpt = source.excerpt(place.line, place.column, length);

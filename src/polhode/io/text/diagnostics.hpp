@@ -14,10 +14,10 @@ namespace polhode {
 
 /// One fault of a model file.
 struct Diagnostic {
-  Place place;       ///< file:line:column; line 0: the place has no line (an override).
-  std::string path;  ///< Where in the model, e.g. joints.B.bodies; may be empty.
-  std::string what;  ///< With the value given; no full stop at the end.
-  std::string mend;  ///< What to do; whole sentences, may be empty.
+  SourceLocation place;  ///< file:line:column; line 0: the place has no line (an override).
+  std::string path;      ///< Where in the model, e.g. joints.B.bodies; may be empty.
+  std::string what;      ///< With the value given; no full stop at the end.
+  std::string hint;      ///< What to do; whole sentences, may be empty.
   std::string
       excerpt;  ///< The source line with the faulty part underlined, two lines; may be empty.
 
@@ -68,7 +68,7 @@ class Diagnostics {
   void know(std::shared_ptr<const SourceText> source) { of_parts_.push_back(std::move(source)); }
 
   /// @param length  Bytes to underline; 0: as far as the value reaches on its line.
-  void add(const Place& place, std::string path, std::string what, std::string mend,
+  void add(const SourceLocation& place, std::string path, std::string what, std::string hint,
            int length = 0);
   /// Adds faults as they are.
   void take(const std::vector<Diagnostic>& faults);

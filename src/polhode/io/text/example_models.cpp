@@ -15,10 +15,10 @@ namespace {
 
 using Values = std::map<std::string, std::string>;
 
-constexpr int kMostBodies = 10'000'000;
+constexpr int kMaxBodies = 10'000'000;
 
 /// The count of that name. @throws InputError unless it is a whole number from 1 on.
-int count(const Values& values, const std::string& name, int most = kMostBodies) {
+int count(const Values& values, const std::string& name, int most = kMaxBodies) {
   const std::string& text = values.at(name);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

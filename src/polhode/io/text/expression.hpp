@@ -37,7 +37,7 @@ using Variables = std::map<std::string, Quantity, std::less<>>;
 /// A fault in an expression.
 struct ExpressionFault {
   std::size_t offset = 0, length = 0;  ///< In the text [bytes].
-  std::string what, mend;
+  std::string what, hint;
 };
 
 /// A checked expression of time, ready to be evaluated by any number of threads.

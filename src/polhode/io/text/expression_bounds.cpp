@@ -312,13 +312,13 @@ class BreakSearch {
 
   TimeBreak first() {
     std::optional<TimeBreak> found = search(0.0, root_);
-    if (!found && visits_ >= kMost) found = by_samples();
+    if (!found && visits_ >= kMax) found = by_samples();
     return found.value_or(TimeBreak{});
   }
 
  private:
   /// Spans looked at, after which samples have to do: an expression may be undecided everywhere.
-  static constexpr int kMost = 20000;
+  static constexpr int kMax = 20000;
   static constexpr int kSamples = 4096;
   /// Branches are compared so many least spans before and after a place.
   static constexpr double kBeside = 8.0;
@@ -332,7 +332,7 @@ class BreakSearch {
 
   std::optional<TimeBreak> search(double from, double width) {
     const double to = from + width;
-    if (to <= after_ * (1.0 + kSameBreak) + least_ || from > until_ || visits_ >= kMost)
+    if (to <= after_ * (1.0 + kSameBreak) + least_ || from > until_ || visits_ >= kMax)
       return std::nullopt;
     ++visits_;
     Branches branches;

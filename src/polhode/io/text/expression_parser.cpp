@@ -57,8 +57,8 @@ class ExpressionParser {
   };
 
   [[noreturn]] static void stop(std::size_t offset, std::size_t length, std::string what,
-                                std::string mend) {
-    throw ExpressionFault{offset, length, std::move(what), std::move(mend)};
+                                std::string hint) {
+    throw ExpressionFault{offset, length, std::move(what), std::move(hint)};
   }
 
   // --- Reading -------------------------------------------------------------------------------
@@ -119,7 +119,7 @@ class ExpressionParser {
            format("Write '{} {}'.", text_.substr(0, at_), written));
     }
     const UnitReading reading = read_unit(written);
-    if (!reading.unit) stop(at_, written.size(), reading.what, reading.mend);
+    if (!reading.unit) stop(at_, written.size(), reading.what, reading.hint);
     if (whole.type.certainty == Certainty::kKnown)
       stop(at_, written.size(),
            format("the unit '{}' follows an expression that is {} already", written,

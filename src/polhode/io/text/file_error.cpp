@@ -15,15 +15,15 @@
 
 namespace polhode {
 
-FileError::FileError(std::string_view file, std::string_view what, std::string_view mend)
-    : std::runtime_error(format("{}: {}. {}.", file, what, mend)) {}
+FileError::FileError(std::string_view file, std::string_view what, std::string_view hint)
+    : std::runtime_error(format("{}: {}. {}.", file, what, hint)) {}
 
 FileError FileError::from_errno(std::string_view file, std::string_view what) {
   const int code = errno;
-  const char* mend = code == ENOSPC || code == EDQUOT ? "Free some space, or name another folder"
+  const char* hint = code == ENOSPC || code == EDQUOT ? "Free some space, or name another folder"
                      : code == ENOENT                 ? "Name a file or folder that exists"
                                       : "Check its permissions, or name another place";
-  return {file, format("{} ({})", what, std::strerror(code)), mend};
+  return {file, format("{} ({})", what, std::strerror(code)), hint};
 }
 
 std::string read_file(const std::string& path) {

@@ -10,7 +10,7 @@ namespace polhode {
 /// A file could not be read or written: full disk, missing folder, no permission.
 class FileError : public std::runtime_error {
  public:
-  FileError(std::string_view file, std::string_view what, std::string_view mend);
+  FileError(std::string_view file, std::string_view what, std::string_view hint);
   /// With the reason the system gives for errno.
   [[nodiscard]] static FileError from_errno(std::string_view file, std::string_view what);
 };

@@ -20,7 +20,7 @@ constexpr const char* kWriteOut = "Write the value out, or use a variable.";
 /// Stops the parser at the first thing that cannot be read on from.
 struct SourceStop {
   int line, column;
-  std::string what, mend;
+  std::string what, hint;
 };
 
 /// Builds our tree from the parser's events.
@@ -75,8 +75,8 @@ class TreeBuilder : public YAML::EventHandler {
     bool has_key = false;
   };
 
-  [[noreturn]] static void refuse(const YAML::Mark& mark, std::string what, std::string mend) {
-    throw SourceStop{mark.line + 1, mark.column + 1, std::move(what), std::move(mend)};
+  [[noreturn]] static void refuse(const YAML::Mark& mark, std::string what, std::string hint) {
+    throw SourceStop{mark.line + 1, mark.column + 1, std::move(what), std::move(hint)};
   }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
@@ -150,8 +150,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   static void add_key(Level& level, const SourceNode& node) {
-    const auto stop = [&](std::string what, std::string mend) {
-      throw SourceStop{node.line, node.column, std::move(what), std::move(mend)};
+    const auto stop = [&](std::string what, std::string hint) {
+      throw SourceStop{node.line, node.column, std::move(what), std::move(hint)};
     };
     if (node.kind != SourceNode::Kind::kText)
       stop("a key must be a name, but is " + node.description(), "Write 'name: value'.");
@@ -268,10 +268,10 @@ std::string SourceNode::description() const {
 
 SourceTree SourceTree::parse(std::string text, std::string filename, const SourceLimits& limits) {
   SourceTree tree;
-  const auto refuse = [&](int line, int column, std::string what, std::string mend) {
+  const auto refuse = [&](int line, int column, std::string what, std::string hint) {
     Diagnostics diagnostics(*tree.source_);
-    const Place place{tree.source_->name(), line, column};
-    diagnostics.add(place, "", std::move(what), std::move(mend));
+    const SourceLocation place{tree.source_->name(), line, column};
+    diagnostics.add(place, "", std::move(what), std::move(hint));
     diagnostics.throw_if_any();
   };
   const std::size_t size = text.size();
@@ -283,17 +283,17 @@ SourceTree SourceTree::parse(std::string text, std::string filename, const Sourc
   try {
     parse_into(*tree.source_, limits, tree.root_);
   } catch (const SourceStop& stop) {
-    refuse(stop.line, stop.column, stop.what, stop.mend);
+    refuse(stop.line, stop.column, stop.what, stop.hint);
   }
   return tree;
 }
 
-Place SourceTree::place_of(const SourceNode& node) const {
+SourceLocation SourceTree::place_of(const SourceNode& node) const {
   if (node.origin > 0) return {overrides_[static_cast<std::size_t>(node.origin) - 1], 0, 0};
   return {source_->name(), node.line, node.column};
 }
 
-Place SourceTree::place_of(const SourceNode::Key& key, const SourceNode& value) const {
+SourceLocation SourceTree::place_of(const SourceNode::Key& key, const SourceNode& value) const {
   if (key.line == 0) return place_of(value);
   return {source_->name(), key.line, key.column};
 }
@@ -331,13 +331,13 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
                                 Diagnostics& diagnostics) {
   overrides_.push_back("--set " + path + "=" + value);
   const int origin = static_cast<int>(overrides_.size());
-  const Place place{overrides_.back(), 0, 0};
+  const SourceLocation place{overrides_.back(), 0, 0};
   SourceNode replacement;
   try {
     const SourceText text("", value);
     parse_into(text, {}, replacement);
   } catch (const SourceStop& stop) {
-    diagnostics.add(place, path, stop.what, stop.mend);
+    diagnostics.add(place, path, stop.what, stop.hint);
     return;
   }
   mark_origin(replacement, origin);

@@ -66,8 +66,8 @@ class SourceTree {
   void apply_override(const std::string& path, const std::string& value, Diagnostics& diagnostics);
 
   /// Place of a node: in the file, or "--set path=value".
-  [[nodiscard]] Place place_of(const SourceNode& node) const;
-  [[nodiscard]] Place place_of(const SourceNode::Key& key, const SourceNode& value) const;
+  [[nodiscard]] SourceLocation place_of(const SourceNode& node) const;
+  [[nodiscard]] SourceLocation place_of(const SourceNode::Key& key, const SourceNode& value) const;
 
  private:
   std::shared_ptr<const SourceText> source_;

@@ -91,7 +91,7 @@ class UnitParser {
     if (product(unit, 0) && at_ != text_.size()) fail("unexpected " + quote(text_.substr(at_)));
     if (!what_.empty()) {
       reading.what = what_;
-      reading.mend = mend_;
+      reading.hint = hint_;
     } else {
       reading.unit = unit;
     }
@@ -101,10 +101,10 @@ class UnitParser {
  private:
   static constexpr int kDeepest = 8;
 
-  bool fail(std::string what, std::string mend = "Write a unit such as N/mm or kg m^2.") {
+  bool fail(std::string what, std::string hint = "Write a unit such as N/mm or kg m^2.") {
     if (what_.empty()) {
       what_ = format("the unit {} cannot be read: ", quote(text_)) + std::move(what);
-      mend_ = std::move(mend);
+      hint_ = std::move(hint);
     }
     return false;
   }
@@ -170,7 +170,7 @@ class UnitParser {
     const std::string_view word = text_.substr(start, at_ - start);
     if (what_.empty() && (word.starts_with('+') || word.starts_with('-'))) {
       what_ = "a unit ends an expression, but " + quote(word.substr(0, 1)) + " follows";
-      mend_ = "Give the number with its unit a name in 'variables', and use that.";
+      hint_ = "Give the number with its unit a name in 'variables', and use that.";
       return false;
     }
     const std::optional<Unit> unit = named_unit(word);
@@ -180,7 +180,7 @@ class UnitParser {
         std::vector<std::string> names = unit_names();
         for (const char* usual : {"mm", "cm", "km", "kg", "ms", "kN", "MPa", "GPa", "kHz"})
           names.emplace_back(usual);
-        mend_ = did_you_mean(word, names) + "Units: " + name_list(unit_names(), 100) +
+        hint_ = did_you_mean(word, names) + "Units: " + name_list(unit_names(), 100) +
                 ", with the usual prefixes.";
       }
       return false;
@@ -215,7 +215,7 @@ class UnitParser {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  std::string what_, mend_;
+  std::string what_, hint_;
 };
 
 struct NamedDimension {

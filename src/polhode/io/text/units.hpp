@@ -61,7 +61,7 @@ struct Unit {
 /// What a unit text turned out to be.
 struct UnitReading {
   std::optional<Unit> unit;
-  std::string what, mend;  ///< Of the fault, if there is no unit.
+  std::string what, hint;  ///< Of the fault, if there is no unit.
 };
 
 /// Reads a unit: names with SI prefixes, joined by blanks, *, / and ^, e.g. "kg m^2/s".

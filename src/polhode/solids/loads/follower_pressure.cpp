@@ -72,7 +72,7 @@ ElementReport FollowerPressure::evaluate(const NodeStep& step, const double* /*h
   const double p = pressure(step);
   for (int face = 0; face < size(); ++face) {
     Forces f = Forces::Zero();
-    double K[9 * kMostNodes * kMostNodes];
+    double K[9 * kMaxNodes * kMaxNodes];
     if (sink.tangent) std::fill_n(K, 9 * n_ * n_, 0.0);
     add_step(step, face, p, f, sink.tangent ? K : nullptr);
     sink.add_force(nodes(face), f.data());

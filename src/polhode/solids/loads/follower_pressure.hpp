@@ -31,13 +31,13 @@ class FollowerPressure final : public ElementGroup {
   Work work(const NodeStep& step, const double* history, const double* scratch) const override;
 
  private:
-  static constexpr int kMostNodes = 9;
-  using Forces = Eigen::Matrix<double, 3, kMostNodes>;
+  static constexpr int kMaxNodes = 9;
+  using Forces = Eigen::Matrix<double, 3, kMaxNodes>;
 
   /// A point of the face: weight, shape functions and their derivatives.
   struct Point {
     double weight;
-    double N[kMostNodes], N_xi[kMostNodes], N_eta[kMostNodes];
+    double N[kMaxNodes], N_xi[kMaxNodes], N_eta[kMaxNodes];
   };
 
   [[nodiscard]] double pressure(const NodeStep& step) const;

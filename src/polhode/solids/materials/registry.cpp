@@ -42,7 +42,7 @@ void told_at(std::string_view where, const Do& act) {
     act();
   } catch (const InputError& e) {
     if (e.where() != "moduli") throw;
-    throw InputError(where, e.what_is_wrong(), e.mend());
+    throw InputError(where, e.what_is_wrong(), e.hint());
   }
 }
 
@@ -88,20 +88,20 @@ struct MaterialMaker {
     const std::string place = format("{}.viscosity", where);
     const double tau = description.relaxation_time;
     const LinearModuli own = description.viscous;
-    const auto check = [&](const char* name, double value, bool good, const char* mend) {
+    const auto check = [&](const char* name, double value, bool good, const char* hint) {
       if (!std::isfinite(value) || !good)
-        throw InputError(place, format("'{}' is {:g}", name, value), mend);
+        throw InputError(place, format("'{}' is {:g}", name, value), hint);
     };
     check("relaxation_time", tau, tau >= 0.0, "Give a time that is not negative");
     check("shear", own.shear, own.shear >= 0.0, "Give a viscosity that is not negative");
-    check("lame", own.lame, own.lame >= -2.0 / 3.0 * own.shear,
+    check("lame", own.slowly_contracting, own.slowly_contracting >= -2.0 / 3.0 * own.shear,
           "Give at least -2/3 of 'shear': less would create energy");
     if (tau == 0.0) return own;
-    if (own.lame != 0.0 || own.shear != 0.0)
+    if (own.slowly_contracting != 0.0 || own.shear != 0.0)
       throw InputError(place, "'relaxation_time' and viscous moduli are both given",
                        "Give one or the other");
     const double shear = tau * m.linear().shear;
-    return {m.uncoupled() ? -2.0 / 3.0 * shear : tau * m.linear().lame, shear};
+    return {m.uncoupled() ? -2.0 / 3.0 * shear : tau * m.linear().slowly_contracting, shear};
   }
 };
 
@@ -133,8 +133,8 @@ namespace {
 /// n scalars in every lane.
 template <int n>
 struct alignas(64) Lanes {
-  static constexpr int kMost = 8;
-  double value[n * kMost];
+  static constexpr int kMax = 8;
+  double value[n * kMax];
 
   Lanes() = default;
   Lanes(const Eigen::Matrix<double, n, 1>& v, int width) {

@@ -16,11 +16,11 @@ constexpr double kCoincident = 1e-9;  // of the mesh's extent
 
 /// "a, b, c and 12 more"
 std::string numbers(const std::vector<std::int64_t>& all) {
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   std::string text;
-  for (std::size_t i = 0; i < std::min(all.size(), kMost); ++i)
+  for (std::size_t i = 0; i < std::min(all.size(), kMax); ++i)
     text += (i > 0 ? ", " : "") + std::to_string(all[i]);
-  if (all.size() > kMost) text += format(" and {} more", all.size() - kMost);
+  if (all.size() > kMax) text += format(" and {} more", all.size() - kMax);
   return text;
 }
 
@@ -150,8 +150,8 @@ std::vector<MeshFault> mesh_faults(const Mesh& mesh) {
 std::vector<std::string> check_mesh(const Mesh& mesh) {
   std::vector<std::string> notes;
   for (const MeshFault& fault : mesh_faults(mesh)) {
-    if (fault.fatal) throw InputError(mesh.name, fault.what, fault.mend);
-    notes.push_back(format("{}. {}.", fault.what, fault.mend));
+    if (fault.fatal) throw InputError(mesh.name, fault.what, fault.hint);
+    notes.push_back(format("{}. {}.", fault.what, fault.hint));
   }
   return notes;
 }

@@ -15,7 +15,7 @@ struct MeshFault {
   Kind kind;
   bool fatal;        ///< No solid can be made of it. Otherwise it deserves a note.
   std::string what;  ///< With the numbers of nodes or elements that the user knows.
-  std::string mend;
+  std::string hint;
 };
 
 /// Inverted or collapsed elements, nodes that coincide (within a 1e-9 of the mesh's extent) without

@@ -17,7 +17,7 @@ constexpr double kQuarter = std::numbers::pi / 4.0;
 /// far its sides bulge: angles at its corners stay away from 90 and 180 degrees.
 constexpr double kCore = 0.45;
 constexpr double kBulge = 0.15;
-constexpr double kMostNodes = 2e7;
+constexpr double kMaxNodes = 2e7;
 
 using ParameterKind = MeshParameter::Kind;
 const std::vector<std::string> kSolids = {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6"};
@@ -228,7 +228,7 @@ void check_values(std::string_view where, const MeshParameter& parameter,
     if (!(value > 0.0))
       throw InputError(path, format("{} is not positive", value), "Give a positive number");
     if (parameter.kind == ParameterKind::kCount &&
-        (value != std::floor(value) || value > kMostNodes))
+        (value != std::floor(value) || value > kMaxNodes))
       throw InputError(path, format("{} is not a count of cells", value),
                        "Give a whole number of reasonable size");
     if (parameter.kind == ParameterKind::kRatio && (value < 1e-4 || value > 1e4))
@@ -345,7 +345,7 @@ Mesh make_mesh(std::string_view where, std::string_view generator, const MeshPar
     if (parameter.name == "cells")
       for (double n : entry->second) cells *= n;
   }
-  if (cells > kMostNodes / 27.0)
+  if (cells > kMaxNodes / 27.0)
     throw InputError(where, format("{} cells are too many for one mesh", cells), "Use fewer");
   const std::string wanted(type.empty() ? std::string_view(found->elements[0]) : type);
   if (std::find(found->elements.begin(), found->elements.end(), wanted) == found->elements.end())
@@ -357,7 +357,7 @@ Mesh make_mesh(std::string_view where, std::string_view generator, const MeshPar
     mesh.name = where;
     return mesh;
   } catch (const InputError& e) {
-    throw InputError(where, e.what_is_wrong(), e.mend());
+    throw InputError(where, e.what_is_wrong(), e.hint());
   }
 }
 

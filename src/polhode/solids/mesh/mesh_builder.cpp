@@ -27,8 +27,8 @@ std::size_t hash_of(std::vector<int> nodes) {
 
 }  // namespace
 
-void MeshBuilder::refuse(std::size_t at, const std::string& what, const std::string& mend) const {
-  throw InputError(binary_ ? cursor_.binary_place(at) : cursor_.text_place(at), what, mend);
+void MeshBuilder::refuse(std::size_t at, const std::string& what, const std::string& hint) const {
+  throw InputError(binary_ ? cursor_.binary_place(at) : cursor_.text_place(at), what, hint);
 }
 
 void MeshBuilder::add_node(std::int64_t label, const Vec3& X, std::size_t at) {

@@ -69,7 +69,7 @@ class MeshBuilder {
     std::vector<int> corners;  ///< Local.
   };
 
-  [[noreturn]] void refuse(std::size_t at, const std::string& what, const std::string& mend) const;
+  [[noreturn]] void refuse(std::size_t at, const std::string& what, const std::string& hint) const;
   [[nodiscard]] int node_index(std::int64_t label, std::size_t at, std::string_view user) const;
   [[nodiscard]] std::vector<int> resolved(const Cell& cell) const;
   void make_elements(Mesh& mesh, bool solids);

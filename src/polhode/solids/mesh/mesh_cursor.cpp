@@ -87,8 +87,8 @@ std::string MeshCursor::binary_place(std::size_t at) const {
   return format("{}: byte {}", name_, at);
 }
 
-void MeshCursor::refuse(const std::string& what, const std::string& mend, bool in_binary) const {
-  throw InputError(in_binary ? binary_place(token_) : text_place(token_), what, mend);
+void MeshCursor::refuse(const std::string& what, const std::string& hint, bool in_binary) const {
+  throw InputError(in_binary ? binary_place(token_) : text_place(token_), what, hint);
 }
 
 void MeshCursor::refuse_end(std::string_view expected, bool in_binary) const {

@@ -60,7 +60,7 @@ class MeshCursor {
   [[nodiscard]] std::string binary_place(std::size_t at) const;
 
   /// Refuses what was read last.
-  [[noreturn]] void refuse(const std::string& what, const std::string& mend,
+  [[noreturn]] void refuse(const std::string& what, const std::string& hint,
                            bool in_binary = false) const;
   [[noreturn]] void refuse_end(std::string_view expected, bool in_binary) const;
   /// Where the last word or number begins.

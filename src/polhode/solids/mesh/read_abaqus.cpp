@@ -101,8 +101,8 @@ class AbaqusReader {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& what, const std::string& mend) const {
-    throw InputError(in_.text_place(line_at_), what, mend);
+  [[noreturn]] void refuse(const std::string& what, const std::string& hint) const {
+    throw InputError(in_.text_place(line_at_), what, hint);
   }
 
   /// Moves to the next line that is neither empty nor a comment.
@@ -383,8 +383,8 @@ class AbaqusReader {
            did_you_mean(name, names) +
                (names.empty() ? "There are none" : "Sets: " + name_list(names)));
   }
-  [[noreturn]] void refuse_keyword(const std::string& what, const std::string& mend) const {
-    throw InputError(in_.text_place(keyword_at_), what, mend);
+  [[noreturn]] void refuse_keyword(const std::string& what, const std::string& hint) const {
+    throw InputError(in_.text_place(keyword_at_), what, hint);
   }
 
   void read_surface_lines() {

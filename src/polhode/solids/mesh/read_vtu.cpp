@@ -15,9 +15,9 @@
 namespace polhode {
 namespace {
 
-constexpr std::int64_t kMostThings = 2'000'000'000;
+constexpr std::int64_t kMaxThings = 2'000'000'000;
 /// An array of integers with more values than this is no division into sets.
-constexpr std::size_t kMostSets = 1000;
+constexpr std::size_t kMaxSets = 1000;
 
 constexpr int kVoxel = 11;
 constexpr int kPixel = 8;
@@ -69,8 +69,8 @@ class VtuReader {
   }
 
  private:
-  [[noreturn]] void refuse(const XmlTag& tag, const std::string& what, const std::string& mend) {
-    throw InputError(in_.text_place(tag.at), what, mend);
+  [[noreturn]] void refuse(const XmlTag& tag, const std::string& what, const std::string& hint) {
+    throw InputError(in_.text_place(tag.at), what, hint);
   }
 
   void read_header() {
@@ -103,7 +103,7 @@ class VtuReader {
 
   std::int64_t count_of(const XmlTag& tag, const char* attribute) {
     std::int64_t count = 0;
-    if (!parse_integer(tag[attribute], count) || count < 0 || count > kMostThings)
+    if (!parse_integer(tag[attribute], count) || count < 0 || count > kMaxThings)
       refuse(tag, format("{} is {}, but a count is expected", attribute, quote(tag[attribute])),
              kExportMeshAgain);
     return count;
@@ -244,7 +244,7 @@ class VtuReader {
     const VtkArray values = array(data, static_cast<std::size_t>(count));
     const std::set<std::int64_t> all(values.integers.begin(), values.integers.end());
     const bool flags = !all.empty() && *all.begin() >= 0 && *all.rbegin() <= 1;
-    if (!flags && all.size() > kMostSets) {
+    if (!flags && all.size() > kMaxSets) {
       mesh_.note(
           format("array '{}' has {} values, so no sets are made of it", values.name, all.size()));
       return;

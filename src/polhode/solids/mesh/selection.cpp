@@ -36,7 +36,7 @@ std::string description(const Selection& s) {
       return s.level == Level::kValue
                  ? format("the plane with normal {} at {:.6g} m", point_text(s.normal), s.value)
                  : format("the plane with normal {} at the {}", point_text(s.normal),
-                          s.level == Level::kLeast ? "least extent" : "largest extent");
+                          s.level == Level::kMin ? "least extent" : "largest extent");
     case Kind::kBox:
       return format("the box from {} to {} m", point_text(s.least), point_text(s.most));
     case Kind::kSphere:
@@ -96,7 +96,7 @@ std::vector<char> nodes_at_plane(std::string_view where, const Mesh& mesh, const
                      "Give a vector that is not zero");
   double level = s.value;
   if (s.level != Level::kValue) {
-    const bool least = s.level == Level::kLeast;
+    const bool least = s.level == Level::kMin;
     level = std::numeric_limits<double>::infinity() * (least ? 1.0 : -1.0);
     for (const ElementBlock& block : mesh.blocks)
       for (int node : block.nodes) {

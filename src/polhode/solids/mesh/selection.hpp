@@ -12,7 +12,7 @@ namespace polhode {
 /// Which nodes or faces of a mesh are meant, in the mesh's own coordinates [m].
 struct Selection {
   enum class Kind : unsigned char { kAll, kSet, kPlane, kBox, kSphere, kNodes };
-  enum class Level : unsigned char { kLeast, kMost, kValue };
+  enum class Level : unsigned char { kMin, kMax, kValue };
 
   Kind kind = Kind::kAll;
   std::string set;              ///< kSet: a set of nodes, a surface, or a set of elements.

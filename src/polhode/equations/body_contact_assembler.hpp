@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <polhode/equations/newton_system.hpp>
+#include <polhode/system/body_contacts.hpp>
+
+namespace polhode {
+
+/// Contacts between bodies as a Newton engine with a matrix has them: the pairs of bodies they
+/// couple, their terms, and how far increments may go.
+class BodyContactAssembler {
+ public:
+  /// @throws InputError if the system has no contacts.
+  explicit BodyContactAssembler(const System& system);
+
+  /// Pairs of which both bodies move, for NewtonSystem::couple(). They may change in begin_step()
+  /// and in cover().
+  [[nodiscard]] const std::vector<KktPair>& pairs() const { return couplings_; }
+  /// Finds what is near. @returns whether the pairs are still the same.
+  bool begin_step(const State& state, const Trial& trial);
+  /// The part of the predicted motion that lets nothing pass through; after begin_step().
+  [[nodiscard]] double free_part();
+  /// Makes sure that bodies can move by the increments x from where they are in the trial.
+  /// @returns whether the pairs are still the same.
+  bool cover(const Trial& trial, const Vec& x);
+  /// The part of the increments that lets nothing pass through; after cover().
+  [[nodiscard]] double filter() { return contacts_->filter(steps_, increments_); }
+  /// Terms of all pairs at the trial.
+  void evaluate(const State& state, const Trial& trial, bool tangents);
+  /// Adds the wrenches, times `scale`, to the bodies' right-hand side.
+  void add_wrenches(double scale, Vec& rhs) const;
+  /// Adds the tangents to the bodies' blocks and to those of pairs().
+  void add_tangents(double scale, KktValues& values, std::span<KktValues::Pair> pairs) const;
+
+  /// The trial has converged: what the ground feels.
+  void end_step(const State& state, const Trial& trial);
+  void add_ground_wrench(double* force, double* moment) const;
+  [[nodiscard]] double stored(const State& state) const;
+  Work commit(State& state, const Trial& trial);
+  [[nodiscard]] BodyContacts* contacts() const { return contacts_; }
+
+ private:
+  void take_steps(const State& state, const Trial& trial);
+  /// @returns whether the pairs are still the same.
+  bool take_pairs();
+
+  const System* system_;
+  BodyContacts* contacts_;
+  std::vector<Participants> known_;  ///< Pairs that the couplings are of.
+  std::vector<int> place_;  ///< By contact pair: its coupling, or −1 (one side stands still).
+  std::vector<KktPair> couplings_;
+  std::vector<BodyStep> steps_, start_;  ///< By body, the ground last.
+  std::vector<PairTerms> terms_;
+  std::vector<Vec6> increments_;
+  Vec3 ground_force_ = Vec3::Zero(), ground_moment_ = Vec3::Zero();
+};
+
+}  // namespace polhode

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <polhode/contact/contact_set.hpp>
+#include <polhode/simulation/contact_statistics.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Totals: what impacts and friction took, the smallest gap and impacts that steps do not resolve
+/// before those of pairs, and for each
+/// pair: impulse, energy lost, whether its sensor overlaps. With impulses, last: sweeps, and steps
+/// that did not converge.
+constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kMinGap = 2, kUnresolvedTime = 3;
+/// No gap was small yet: totals are compared, which NaN would not stand.
+constexpr double kNoGap = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::size_t ContactStatistics::total_count() const {
+  return kHead + kPerPair * map_->pairs.size() + (contacts_->impulses() ? kImpulses : 0);
+}
+
+void ContactStatistics::begin(State& state) {
+  if (!contacts_) return;
+  totals_.assign(total_count(), 0.0);
+  totals_[kMinGap] = kNoGap;
+  see(state);
+  summed_ = true;  // no step was taken
+  totals_[kMinGap] = seen_.least_gap;
+  note_sensors(state);
+  contacts_->keep_totals(state, totals_);
+}
+
+void ContactStatistics::resume(const State& state) {
+  if (!contacts_) return;
+  totals_ = contact::ContactSet::totals_in(state);
+  const std::size_t wanted = total_count();
+  const ImpulseFigures search = impulse_figures();
+  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap, 0.0};
+  if (totals_.size() != wanted) totals_.resize(kHead);  // other pairs are kept now
+  totals_.resize(wanted, 0.0);
+  if (!contacts_->impulses()) return;
+  totals_[wanted - 2] = search.sweeps;
+  totals_[wanted - 1] = search.unconverged;
+}
+
+void ContactStatistics::see(const State& state) {
+  if (!contacts_) return;
+  std::map<std::pair<int, int>, std::size_t> place;
+  for (std::size_t k = 0; k < map_->pairs.size(); ++k)
+    place[std::minmax(map_->pairs[k].a, map_->pairs[k].b)] = k;
+  ContactReport none;
+  none.gap = std::numeric_limits<double>::quiet_NaN();
+  ContactsSeen& seen = seen_;
+  seen.points = contacts_->touching();
+  seen.wrenches = contacts_->wrenches();
+  seen.reports.assign(map_->pairs.size(), none);
+  seen.touching = 0;
+  seen.least_gap = kNoGap;
+  seen.impact_loss = seen.friction_loss = seen.unresolved = 0.0;
+  for (const contact::ShapePairReport& r : contacts_->reports()) {
+    if (r.points > 0) ++seen.touching;
+    const int a = map_->body[static_cast<std::size_t>(r.a)];
+    const int b = map_->body[static_cast<std::size_t>(r.b)];
+    if (!contacts_->law(r.a, r.b).sensor) seen.least_gap = std::fmin(seen.least_gap, r.gap);
+    seen.impact_loss += r.impact_loss;
+    seen.friction_loss += r.dissipated - r.impact_loss;
+    seen.unresolved += r.unresolved;
+    const auto found = place.find(std::minmax(a, b));
+    if (found == place.end()) continue;
+    const double sign = a == map_->pairs[found->second].a ? 1.0 : -1.0;
+    ContactReport& report = seen.reports[found->second];
+    report.gap = std::fmin(report.gap, r.gap);
+    report.normal_force += r.normal_force;
+    report.force += sign * r.force;
+    report.friction += sign * r.friction;
+    report.point += r.normal_force * r.point;
+    report.points += r.points;
+    report.status = std::max(report.status, static_cast<int>(r.status));
+    report.impulse += r.normal_force * state.dt_last;
+    report.energy_lost += r.dissipated;
+  }
+  for (std::size_t k = 0; k < seen.reports.size(); ++k) {
+    ContactReport& report = seen.reports[k];
+    if (report.normal_force > 0.0) report.point /= report.normal_force;
+    if (!map_->pairs[k].sensor.empty()) report.status = report.gap < 0.0 ? 1 : 0;
+  }
+  if (contacts_->impulses())
+    seen.search = {static_cast<double>(contacts_->last_search().sweeps),
+                   contacts_->last_search().converged ? 0.0 : 1.0};
+  summed_ = false;
+}
+
+void ContactStatistics::after_step(State& state) {
+  if (!contacts_) return;
+  double* totals = totals_.data();
+  totals[0] += seen_.impact_loss;
+  totals[1] += seen_.friction_loss;
+  totals[kUnresolvedTime] += seen_.unresolved;
+  totals[kMinGap] = std::fmin(totals[kMinGap], seen_.least_gap);
+  for (std::size_t k = 0; k < seen_.reports.size(); ++k) {
+    totals[kHead + kPerPair * k] += seen_.reports[k].impulse;
+    totals[kHead + kPerPair * k + 1] += seen_.reports[k].energy_lost;
+  }
+  if (contacts_->impulses()) {
+    totals[totals_.size() - 2] += seen_.search.sweeps;
+    totals[totals_.size() - 1] += seen_.search.unconverged;
+  }
+  summed_ = true;
+  note_sensors(state);
+  contacts_->keep_totals(state, totals_);
+}
+
+void ContactStatistics::note_sensors(State& state) {
+  for (std::size_t k = 0; k < seen_.reports.size(); ++k) {
+    const std::string& sensor = map_->pairs[k].sensor;
+    if (sensor.empty()) continue;
+    double& overlaps = totals_[kHead + kPerPair * k + 2];
+    const int status = seen_.reports[k].status;
+    if ((overlaps != 0.0) == (status != 0)) continue;
+    overlaps = status;
+    events_.push_back({state.t, sensor, status != 0});
+  }
+}
+
+ContactReport ContactStatistics::report(int pair) const {
+  const auto k = static_cast<std::size_t>(pair);
+  ContactReport report;
+  report.gap = std::numeric_limits<double>::quiet_NaN();
+  if (k < seen_.reports.size()) report = seen_.reports[k];
+  if (summed_) report.impulse = report.energy_lost = 0.0;
+  if (totals_.size() < kHead + kPerPair * (k + 1)) return report;
+  report.impulse += totals_[kHead + kPerPair * k];
+  report.energy_lost += totals_[kHead + kPerPair * k + 1];
+  return report;
+}
+
+double ContactStatistics::unresolved() const {
+  return totals_.size() > kUnresolvedTime ? totals_[kUnresolvedTime] : 0.0;
+}
+
+ImpulseFigures ContactStatistics::impulse_figures() const {
+  if (!contacts_ || !contacts_->impulses() || totals_.size() < kHead + kImpulses) return {};
+  return {totals_[totals_.size() - 2], totals_[totals_.size() - 1]};
+}
+
+double ContactStatistics::least_gap() const {
+  const bool known = totals_.size() >= kHead && totals_[kMinGap] < kNoGap;
+  return known ? totals_[kMinGap] : std::numeric_limits<double>::quiet_NaN();
+}
+
+ContactLosses ContactStatistics::losses() const {
+  if (totals_.size() < kHead) return {};
+  return {totals_[0], totals_[1]};
+}
+
+}  // namespace polhode

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include <polhode/equations/node_motion.hpp>
+#include <polhode/stepping/impact_rows.hpp>
+#include <polhode/stepping/single_impact.hpp>
+
+namespace polhode {
+
+namespace {
+
+/// Sweeps over the rows of an island end when no impulse changes by more than this part of the
+/// largest one, or after so many.
+constexpr double kConverged = 1e-13;
+constexpr int kMaxSweeps = 500;
+/// Lasting contacts that impulses press on join the rows in at most so many rounds.
+constexpr int kMaxCarried = 30;
+/// A row that its own impulse moves by less than this part of what the most mobile one does, does
+/// not move.
+constexpr double kHeld = 1e-13;
+/// A speed that is wanted to change by less than this part is left as it is.
+constexpr double kSameSpeed = 1e-12;
+
+}  // namespace
+
+ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
+  const auto n = static_cast<std::size_t>(system.body_count());
+  // Behind the bodies the pieces of solids.
+  tie_.resize(n + system.nodes().pieces().size());
+  std::iota(tie_.begin(), tie_.end(), 0);
+  tied_.assign(n, false);
+  place_.assign(n, -1);
+  const auto tie = [&](int a, int b) {
+    if (a != kGround) tied_[a] = true;
+    if (b != kGround) tied_[b] = true;
+    if (a != kGround && b != kGround) impact_rows::join(tie_, a, b);
+  };
+  for (const InteractionRef& ref : system.interactions())
+    if (ref.rows > 0 || system.traits(ref).coupled_mass != 0.0) tie(ref.a, ref.b);
+  const Nodes& nodes = system.nodes();
+  for (int i = 0; i < nodes.count(); ++i)
+    if (nodes[i].body >= 0) tied_[nodes[i].body] = true;
+  for (const ConnectedComponent& piece : nodes.pieces())
+    for (int body : piece.bodies) tie(piece.bodies.front(), body);
+  for (std::size_t p = 0; p < nodes.pieces().size(); ++p)
+    if (const ConnectedComponent& piece = nodes.pieces()[p]; !piece.bodies.empty())
+      impact_rows::join(tie_, piece.bodies.front(), static_cast<int>(n + p));
+  for (int g = 0; g < nodes.group_count(); ++g)
+    if (const SurfaceImpacts* group = nodes.group(g).surface_impacts())
+      groups_.emplace_back(g, group);
+}
+
+void ImpactResolver::find(const State& state, const Trial& trial) {
+  rows_.clear();
+  surfaces_.clear();
+  contacts_ = nullptr;
+  dt_ = trial.context.dt;
+  if (!groups_.empty()) {
+    const NodeStep step = node_step(state, trial);
+    std::vector<SurfaceImpact> hit;
+    for (const auto& [g, group] : groups_) {
+      hit.clear();
+      group->impacts(step, state.element_history.data() + system_->nodes().first_history(g), hit);
+      for (SurfaceImpact& impact : hit) {
+        for (const auto& [node, J] : impact.nodes)
+          impact.before += impact.normal.dot(J * velocity_of_node(state, node));
+        surfaces_.push_back({g, group, std::move(impact)});
+      }
+    }
+  }
+  std::vector<Impact> impacts;
+  for (int i : system_->barriers()) {
+    const InteractionRef& ref = system_->interactions()[i];
+    impacts.clear();
+    const PairView view = pair_view(*system_, state, trial, ref);
+    system_->group(ref.group).impacts(ref.item, view.step(), impacts);
+    for (const Impact& impact : impacts) rows_.push_back({{ref.a, ref.b}, impact, {}});
+  }
+  of_joints_ = before_contacts_ = rows_.size();
+}
+
+Work ImpactResolver::find(State& state, BodyContacts& contacts) {
+  contacts_ = &contacts;
+  return contacts.impacts(state, rows_);
+}
+
+bool ImpactResolver::any() const {
+  return std::any_of(rows_.begin(), rows_.end(),
+                     [](const PairImpact& row) { return !std::isnan(row.impact.wanted); });
+}
+
+Vec6 ImpactResolver::velocity(const State& state, int body) const {
+  const BodyMotion m = system_->motion(state, body);
+  Vec6 v;
+  v << m.v, m.omega();
+  return v;
+}
+
+std::vector<Vec6> ImpactResolver::velocities(const State& state, const Island& island) const {
+  std::vector<Vec6> v;
+  for (int body : island.bodies) v.push_back(velocity(state, body));
+  for (int node : island.nodes) {
+    v.push_back(Vec6::Zero());
+    v.back().head<3>() = at_node(state.node_v, node);
+  }
+  return v;
+}
+
+/// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
+/// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
+Work ImpactResolver::settle(State& state) {
+  settled_.assign(rows_.size(), {});
+  jumped_.clear();
+  resting_.clear();
+  numbers_.resize(rows_.size() - before_contacts_);
+  std::iota(numbers_.begin(), numbers_.end(), static_cast<int>(before_contacts_));
+  std::vector<Vec6> before;
+  if (contacts_)
+    for (int body = 0; body < system_->body_count(); ++body)
+      before.push_back(velocity(state, body));
+  for (PairImpact& row : rows_)
+    if (std::isnan(row.impact.wanted)) row.impact.wanted = speed(state, row);
+  settle_from(state, 0);
+  tell_surfaces(state);
+  const Work work = turn_surfaces(state);
+  if (!contacts_) return work;
+  for (int round = 0; round < kMaxCarried; ++round) {
+    const std::size_t first = rows_.size();
+    press_on(state, before);
+    if (rows_.size() == first) break;
+    settle_from(state, first);
+  }
+  std::vector<ResolvedImpact> of_contacts;
+  for (int k : numbers_) of_contacts.push_back(k < 0 ? ResolvedImpact{} : settled_[k]);
+  contacts_->settled(of_contacts);
+  return work;
+}
+
+double ImpactResolver::speed(const State& state, const PairImpact& row) const {
+  double sum = 0.0;
+  if (row.bodies.a != kGround) sum += row.impact.on_a.dot(velocity(state, row.bodies.a));
+  if (row.bodies.b != kGround) sum += row.impact.on_b.dot(velocity(state, row.bodies.b));
+  return sum;
+}
+
+void ImpactResolver::press_on(const State& state, const std::vector<Vec6>& before) {
+  std::sort(jumped_.begin(), jumped_.end());
+  jumped_.erase(std::unique(jumped_.begin(), jumped_.end()), jumped_.end());
+  const std::size_t known = resting_.size();
+  contacts_->resting(state, jumped_, resting_);
+  for (std::size_t i = known; i < resting_.size(); ++i) {
+    auto& [bodies, impact, course, slow] = resting_[i];
+    impact.wanted = 0.0;
+    if (bodies.a != kGround) impact.wanted += impact.on_a.dot(before[bodies.a]);
+    if (bodies.b != kGround) impact.wanted += impact.on_b.dot(before[bodies.b]);
+    numbers_.push_back(-1);
+  }
+  const std::size_t others = numbers_.size() - resting_.size();
+  for (std::size_t i = 0; i < resting_.size(); ++i) {
+    const PairImpact& row = resting_[i];
+    int& number = numbers_[others + i];
+    const double now = speed(state, row), wanted = row.impact.wanted;
+    const bool pressed = now < wanted - row.slow;
+    const bool thrown = row.impact.given > 0.0 && now > std::max(0.0, wanted) + row.slow;
+    if (number >= 0 || !(pressed || thrown)) continue;
+    number = static_cast<int>(rows_.size());
+    rows_.push_back(row);
+    if (thrown) rows_.back().impact.wanted = std::max(0.0, wanted);
+    settled_.emplace_back();
+  }
+}
+
+void ImpactResolver::settle_from(State& state, std::size_t first) {
+  std::vector<Island> all = islands();
+  std::erase_if(all, [&](const Island& island) {
+    return static_cast<std::size_t>(island.rows.back()) < first;
+  });
+  const auto inert = [&](int k) {
+    const Impact& impact = rows_[k].impact;
+    if (impact.mu > 0.0) return false;
+    const double now = speed(state, k);
+    return std::abs(impact.wanted - now) <= kSameSpeed * std::abs(now);
+  };
+  const auto still = std::stable_partition(all.begin(), all.end(), [&](const Island& island) {
+    return !std::all_of(island.rows.begin(), island.rows.end(), inert);
+  });
+  std::vector<Island> pressed(std::make_move_iterator(still), std::make_move_iterator(all.end()));
+  all.erase(still, all.end());
+  std::erase_if(pressed, [&](const Island& island) {
+    return std::none_of(island.rows.begin(), island.rows.end(), [&](int k) {
+      const SurfaceImpact* hit = surface(k);
+      return hit && !hit->turned;
+    });
+  });
+  const auto is_tied = [](const Island& i) { return i.tied; };
+  const bool tied = std::any_of(all.begin(), all.end(), is_tied) ||
+                    std::any_of(pressed.begin(), pressed.end(), is_tied);
+  std::vector<Vec6> to_admissible;
+  if (tied) {
+    if (!solver_) solver_ = std::make_unique<InstantSolver>(*system_);
+    if (!solver_->take_impulses(state)) return;
+    to_admissible = solver_->jumps_to_admissible(state);
+  }
+  const auto number = [&](const Island& island) {
+    for (std::size_t i = 0; i < island.bodies.size(); ++i)
+      place_[island.bodies[i]] = static_cast<int>(i);
+  };
+  for (const Island& island : pressed) {
+    number(island);
+    find_held(rows_of(state, island), velocities(state, island));
+  }
+  for (const Island& island : all) {
+    number(island);
+    if (island.tied && system_->rows() > 0) {
+      std::vector<Vec6> jumps;
+      for (int body : island.bodies) jumps.push_back(to_admissible[body]);
+      jump(state, island, jumps);
+    }
+    settle(state, island);
+    jumped_.insert(jumped_.end(), island.bodies.begin(), island.bodies.end());
+  }
+}
+
+namespace {
+
+/// The nearest point of the friction cone, an ellipse with these half axes, along the ray to p.
+Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
+  if (!(along > 0.0 && across > 0.0)) return Eigen::Vector2d::Zero();
+  const double size = std::hypot(p.x() / along, p.y() / across);
+  return size > 1.0 ? Eigen::Vector2d(p / size) : p;
+}
+
+}  // namespace
+
+/// Nearer to the impulses of friction that end a slip, as far as the cone allows: a step by the
+/// larger mobility of the two tangents. @eq{impact-friction}
+double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
+                                      std::vector<Vec6>& v) const {
+  const Impact& impact = rows_[along.impact].impact;
+  const Eigen::Vector2d slip(along.speed(v), across.speed(v)),
+      friction_impulse(impact.along.dot(impact.friction_impulse),
+                       impact.across.dot(impact.friction_impulse)),
+      before(along.impulse, across.impulse),
+      after = in_cone(friction_impulse + before - slip / std::max(along.mobility, across.mobility),
+                      impact.mu * normal, impact.mu_across * normal) -
+              friction_impulse;
+  along.apply(after.x() - before.x(), v);
+  across.apply(after.y() - before.y(), v);
+  return (after - before).lpNorm<Eigen::Infinity>();
+}
+
+/// Projected Gauss-Seidel over all impulses of an island: normals go to the speeds they want, as
+/// far as they take back no more than the step gave, friction ends the slip as far as its cone
+/// allows. @eq{impact-friction}
+void ImpactResolver::sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    double change = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      Row& row = rows[i];
+      const Impact& impact = rows_[row.impact].impact;
+      if (row.mobility > kHeld * most) {
+        double p = (impact.wanted - row.speed(v)) / row.mobility;
+        p = std::max(p, -impact.given - row.impulse);
+        if (p != 0.0) row.apply(p, v);
+        change = std::max(change, std::abs(p));
+      }
+      const double normal = std::max(0.0, impact.given + row.impulse);
+      largest = std::max(largest, normal);
+      if (i + 1 == rows.size() || !rows[i + 1].has_friction) continue;
+      Row &along = rows[i + 1], &across = rows[i + 2];
+      i += 2;
+      if (!(along.mobility + across.mobility > kHeld * most)) continue;
+      change = std::max(change, apply_friction(along, across, normal, v));
+    }
+    if (!(change > kConverged * largest)) break;
+  }
+}
+
+/// An impact that shares its bodies with no other one, along Routh's course from the energy that it
+/// stored at t_n to the one at t_{n+1}. Without restitution a step takes energy itself: friction
+/// alone then acts until the normal velocity turns. @eq{routh}
+void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
+  if (!course->turns && course->restitution == 0.0) {
+    if (!(rows[1].mobility + rows[2].mobility > kHeld * rows[0].mobility)) return;
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep)
+      if (!(apply_friction(rows[1], rows[2], impact.given, v) > kConverged * impact.given)) return;
+    return;
+  }
+  SingleImpact single;
+  single.mu = impact.mu;
+  single.mu_across = impact.mu_across;
+  single.restitution = course->restitution;
+  Vec3 now;
+  for (int i = 0; i < 3; ++i) {
+    now[i] = rows[i].speed(v);
+    for (int j = 0; j < 3; ++j) single.mobility(i, j) = rows[i].speed_by(rows[j]);
+  }
+  const Mat3& K = single.mobility;
+  if (!(K(0, 0) > 0.0)) return;
+  single.velocity = now - impact.given * K.col(0);
+  if (single.restitution > 0.0) {
+    // A step without friction changes the normal velocity by what is stored and by the fall.
+    const double square =
+        now[0] * now[0] + course->fallen + 2.0 * K(0, 0) * (course->stored_n1 - course->stored_n);
+    single.velocity[0] = std::copysign(std::sqrt(std::max(0.0, square)), single.velocity[0]);
+    single.stored = course->stored_n;
+    if (course->turns)
+      single.kept = single.restitution * single.restitution * course->stored_n1;
+    else
+      single.until = course->stored_n1;
+  }
+  const SingleImpactEnd end = end_of(single);
+  const double square = end.velocity[0] * end.velocity[0] - course->fallen;
+  const double wanted = std::copysign(std::sqrt(std::max(0.0, square)), end.velocity[0]);
+  const Vec3 friction(0.0, end.impulse[1], end.impulse[2]);
+  const double normal = (wanted - now[0] - K.row(0).dot(friction)) / K(0, 0);
+  rows[0].apply(std::max(normal, -impact.given), v);
+  rows[1].apply(friction[1], v);
+  rows[2].apply(friction[2], v);
+}
+
+/// Impulses that would give energy are scaled back to where they do not. @eq{turn-law}
+void ImpactResolver::settle(State& state, const Island& island) {
+  std::vector<Vec6> v = velocities(state, island);
+  const std::vector<Vec6> start = v;
+  std::vector<Row> rows = rows_of(state, island);
+  find_held(rows, v);
+  double most = 0.0;
+  for (Row& row : rows) {
+    row.before = row.speed(v);
+    most = std::max(most, row.mobility);
+  }
+  if (!(most > 0.0)) return;
+  if (PairImpact& only = rows_[island.rows.front()];
+      island.rows.size() == 1 && rows.size() == 3 && only.course) {
+    follow(rows, v);
+    if (only.course->turns || only.course->restitution > 0.0) only.impact.wanted = rows[0].speed(v);
+  } else {
+    sweep(rows, most, v);
+  }
+  // ΔT = Σ p (J v before + J v after)/2: along the jump a parabola.
+  double first = 0.0, second = 0.0;
+  for (const Row& row : rows) {
+    first += row.impulse * row.before;
+    second += row.impulse * (row.speed(v) - row.before);
+  }
+  const double part = first + 0.5 * second <= 0.0 || !(second > 0.0)
+                          ? 1.0
+                          : std::clamp(-2.0 * first / second, 0.0, 1.0);
+  std::vector<Vec6> jumps(island.bodies.size());
+  for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
+  if (!island.nodes.empty()) solver_->press_nodes(on_nodes(island, rows, part));
+  const double more = jump(state, island, jumps);
+  if (!island.nodes.empty()) solver_->press_nodes({});
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    ResolvedImpact& s = settled_[row.impact];
+    Impact& impact = rows_[row.impact].impact;
+    const double p = part * row.impulse,
+                 lost = -p * (row.before + 0.5 * part * (row.speed(v) - row.before));
+    if (i > 0 && rows[i - 1].has_friction) {
+      s.friction += p * impact.across;
+      impact.friction_impulse += p * impact.across;
+      s.friction_loss += lost;
+    } else if (row.has_friction) {
+      s.friction += p * impact.along;
+      impact.friction_impulse += p * impact.along;
+      s.friction_loss += lost;
+    } else {
+      s.normal += p;
+      impact.given += p;
+      s.normal_loss += lost + more / static_cast<double>(island.rows.size());
+    }
+  }
+}
+
+double ImpactResolver::jump(State& state, const Island& island, const std::vector<Vec6>& jumps) {
+  const Nodes& nodes = system_->nodes();
+  double lost = 0.0;
+  if (island.tied && !nodes.empty()) {
+    std::vector<Vec6> by_body(static_cast<std::size_t>(system_->body_count()), Vec6::Zero());
+    for (std::size_t i = 0; i < jumps.size(); ++i) by_body[island.bodies[i]] = jumps[i];
+    const std::vector<double> dv = solver_->node_jumps(by_body);
+    const auto at = [](const std::vector<double>& x, int i) {
+      return Eigen::Map<const Vec3>(x.data() + 3 * static_cast<std::ptrdiff_t>(i));
+    };
+    // Newmark velocities of bonded nodes are not quite those of their bodies.
+    for (int i = 0; i < nodes.count(); ++i) {
+      if (nodes[i].body < 0) continue;
+      const BodyMotion m = system_->motion(state, nodes[i].body);
+      const Vec3 lag = at(state.node_v, i) - m.v - m.omega().cross(m.q * nodes[i].Z);
+      for (int b = nodes.row_start()[i]; b < nodes.row_start()[i + 1]; ++b)
+        lost -= nodes.mass()[b] * lag.dot(at(dv, nodes.column()[b]));
+    }
+    for (std::size_t k = 0; k < dv.size(); ++k) state.node_v[k] += dv[k];
+  }
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    const int slot = system_->slot(island.bodies[i]), lane = slot % kLanes;
+    const Vec3 dW = system_->motion(state, island.bodies[i]).q.conjugate() * jumps[i].tail<3>();
+    BodyBlock& block = state.blocks[slot / kLanes];
+    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
+      block.v[c][lane] += jumps[i][c];
+      block.W[c][lane] += dW[c];
+    }
+  }
+  return lost;
+}
+
+}  // namespace polhode
