@@ -168,7 +168,7 @@ TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
     EXPECT_EQ(part[k].moment_a, all[k].moment_a);
     EXPECT_EQ(part[k].moment_b, all[k].moment_b);
     // The share of a slide goes by the evaluations before.
-    const bool slides = !all[k].spring.rub.isZero(0.0);
+    const bool slides = !all[k].spring.friction_slope.isZero(0.0);
     EXPECT_TRUE(slides || part[k].spring.C == all[k].spring.C);
     const auto was = std::find_if(before.begin(), before.end(),
                                   [&](const ActingPoint& p) { return p.point == all[k].point; });

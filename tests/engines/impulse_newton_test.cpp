@@ -38,10 +38,10 @@ ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
 TEST(ImpulseNewton, CarriesATonOnAGram) {
   ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
-  EXPECT_LT(s.points[1].push, 1e-3);  // of 9.81 N s
+  EXPECT_LT(s.points[1].normal_impulse, 1e-3);  // of 9.81 N s
   ASSERT_TRUE(solve_impulses(s, 1e-6 * kFall));
-  EXPECT_NEAR(s.points[1].push, 1e3 * kFall, 3e-3);
-  EXPECT_NEAR(s.points[0].push - s.points[1].push, 1e-3 * kFall, 1e-8);
+  EXPECT_NEAR(s.points[1].normal_impulse, 1e3 * kFall, 3e-3);
+  EXPECT_NEAR(s.points[0].normal_impulse - s.points[1].normal_impulse, 1e-3 * kFall, 1e-8);
   for (int b = 0; b < 2; ++b) EXPECT_NEAR(s.bodies[b].v.z(), 0.0, 3e-4 * kFall);
 }
 
@@ -54,8 +54,10 @@ TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
     for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
     ASSERT_TRUE(solve_impulses(found, 1e-7 * kFall)) << along;
     for (std::size_t k = 0; k < found.points.size(); ++k) {
-      EXPECT_NEAR(found.points[k].push, swept.points[k].push, 1e-7) << along << ' ' << k;
-      EXPECT_LT((found.points[k].rub - swept.points[k].rub).norm(), 1e-6) << along << ' ' << k;
+      EXPECT_NEAR(found.points[k].normal_impulse, swept.points[k].normal_impulse, 1e-7)
+          << along << ' ' << k;
+      EXPECT_LT((found.points[k].friction_impulse - swept.points[k].friction_impulse).norm(), 1e-6)
+          << along << ' ' << k;
     }
     for (int b = 0; b < 4; ++b)
       EXPECT_LT((found.bodies[b].v - swept.bodies[b].v).norm(), 1e-6) << along << ' ' << b;

@@ -66,7 +66,7 @@ Eigen::MatrixXd assembled(const ManyBodies& c) {
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(3, n);  // displacement of a's point from b's
     if (s.a != kGround) P.middleCols<6>(6 * s.a) << Mat3::Identity(), -hat(s.arm_a);
     if (s.b != kGround) P.middleCols<6>(6 * s.b) << -Mat3::Identity(), hat(s.arm_b);
-    A += P.transpose() * (s.C - s.rub * s.normal.transpose()) * P;
+    A += P.transpose() * (s.C - s.friction_slope * s.normal.transpose()) * P;
   }
   return A;
 }
@@ -106,7 +106,7 @@ TEST(BlockCg, FollowsNormalForcesWithFriction) {
     s.normal = Vec3(number(), number(), number()).normalized();
     const Vec3 along = s.normal.cross(Vec3(number(), number(), number())).normalized();
     s.C = 100.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
-    s.rub = 0.5 * 100.0 * along;
+    s.friction_slope = 0.5 * 100.0 * along;
   }
   BlockCg cg;
   set(cg, c);
@@ -131,7 +131,7 @@ TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
     if (rubbing)
       for (ContactSpring& s : c.springs) {
         s.normal = Vec3(number(), number(), number()).normalized();
-        s.rub = 3.0 * s.normal.cross(Vec3(number(), number(), number())).normalized();
+        s.friction_slope = 3.0 * s.normal.cross(Vec3(number(), number(), number())).normalized();
         s.C = 20.0 * (s.normal * s.normal.transpose() + 0.01 * Mat3::Identity());
       }
     std::vector<BlockCg::Tie> ties;

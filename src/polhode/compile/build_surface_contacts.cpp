@@ -44,7 +44,7 @@ double modulus(const Model& model, const SolidSpec& solid) {
       model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
   const LinearModuli m =
       make_material(format("materials.{}", spec.name), material_description(spec))->linear();
-  return m.shear * (3.0 * m.slowly_contracting + 2.0 * m.shear) / (m.slowly_contracting + m.shear);
+  return m.shear * (3.0 * m.lame + 2.0 * m.shear) / (m.lame + m.shear);
 }
 
 class SurfacesBuilder {

@@ -13,7 +13,7 @@ MaterialDescription material_description(const MaterialSpec& material) {
     d.fibre_values = material.fibre->parameters;
   }
   d.relaxation_time = material.viscosity.relaxation_time;
-  d.viscous = {material.viscosity.slowly_contracting, material.viscosity.shear};
+  d.viscous = {material.viscosity.lame, material.viscosity.shear};
   return d;
 }
 

@@ -63,7 +63,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
     p.data.history = {};
     p.data.history.stiffness = p.data.normal.stiffness;
     p.data.history.bristle_stiffness = p.data.friction.stiffness;
-    p.may_be_plain = has_closed_form(p.data);
+    p.may_be_closed_form = is_closed_form_point(p.data);
     points.push_back(p);
   }
 }

@@ -32,7 +32,7 @@ V3<double> in_disc(const V3<double>& s, double radius) {
 
 }  // namespace
 
-bool has_closed_form(const PointData& data) {
+bool is_closed_form_point(const PointData& data) {
   const FrictionLaw& f = data.friction;
   return has_closed_form(data) && data.pair.fade == Fade::none && f.rolling == 0.0 &&
          f.torsion == 0.0 && (f.mu_across <= 0.0 || f.mu_across == f.mu);

@@ -33,7 +33,7 @@ struct SpherePairCache {
 
 /// Closed forms of the frequent points: a point of a against a ball or a half space, friction by a
 /// round cone, ρ∞ = 1. They give what the general formulas give, in a fraction of the time.
-[[nodiscard]] bool has_closed_form(const PointData& data);
+[[nodiscard]] bool is_closed_form_point(const PointData& data);
 
 /// How a plain point of two bodies' steps starts: of no use where `holds` is false.
 [[nodiscard]] SpherePairCache sphere_pair_cache(const PointData& data, const BodyStep& a,

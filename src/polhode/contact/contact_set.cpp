@@ -202,7 +202,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.restitution = law.restitution;
   p.damped = law.damped;
   p.damping_number = law.damped ? damping_number(law.restitution) : 0.0;
-  p.may_be_plain = d.a && has_closed_form(d);
+  p.may_be_closed_form = d.a && is_closed_form_point(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
   const PointHistory& h = d.history;
@@ -237,7 +237,7 @@ void ContactSet::open_or_close(std::span<const BodyStep> steps, const StepContex
 void ContactSet::open_or_close(Point& p, SpherePairCache& balls, std::span<const BodyStep> steps,
                                const StepContext& context) const {
   PointHistory& h = p.data.history;
-  p.plain = p.may_be_plain && context.ga.alpha_f == 0.5;
+  p.plain = p.may_be_closed_form && context.ga.alpha_f == 0.5;
   const auto index = [&](int shape) {
     const int body = shapes_[shape].body;
     return body == kGround ? static_cast<int>(steps.size()) - 1 : body;

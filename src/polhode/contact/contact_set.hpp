@@ -157,10 +157,10 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
     std::array<std::uint64_t, 2> key{};
     PointData data;
     double restitution = 0.0;
-    double least_gap = 0.0;       ///< No step may go below [m].
-    bool damped = false;          ///< Rebounds by a damper.
-    double damping_number = 0.0;  ///< c |w_pre| of a damped rebound [-].
-    bool may_be_plain = false;    ///< Closed forms hold at ρ∞ = 1.
+    double least_gap = 0.0;           ///< No step may go below [m].
+    bool damped = false;              ///< Rebounds by a damper.
+    double damping_number = 0.0;      ///< c |w_pre| of a damped rebound [-].
+    bool may_be_closed_form = false;  ///< Closed forms hold at ρ∞ = 1.
     bool sensor = false;
     bool plain = false;              ///< They hold in this step.
     double law_dt = 0.0;             ///< Step the constants of the law were chosen for [s].

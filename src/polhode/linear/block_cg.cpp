@@ -130,9 +130,9 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
     if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
     springs_.push_back(s);
-    if (!from.friction.isZero(0.0))
+    if (!from.friction_slope.isZero(0.0))
       friction_.push_back(
-          {four(from.friction, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
+          {four(from.friction_slope, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
   }
   // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
   for (int k = 0; k < count; ++k)

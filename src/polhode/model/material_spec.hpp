@@ -13,13 +13,11 @@ namespace polhode {
 /// Kelvin-Voigt viscosity: either a relaxation time, which multiplies the elastic moduli of the
 /// undeformed material, or viscous moduli of their own. All zero: none.
 struct ViscositySpec {
-  double relaxation_time = 0.0;     ///< [s]
-  double slowly_contracting = 0.0;  ///< λ_v of λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
-  double shear = 0.0;               ///< μ_v [Pa s].
+  double relaxation_time = 0.0;  ///< [s]
+  double lame = 0.0;             ///< λ_v of λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
+  double shear = 0.0;            ///< μ_v [Pa s].
 
-  [[nodiscard]] bool any() const {
-    return relaxation_time > 0.0 || slowly_contracting > 0.0 || shear > 0.0;
-  }
+  [[nodiscard]] bool any() const { return relaxation_time > 0.0 || lame > 0.0 || shear > 0.0; }
 };
 
 /// Fibres in a material: they resist stretch only.

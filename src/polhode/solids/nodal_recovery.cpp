@@ -62,7 +62,7 @@ struct NodalRecovery::Impl {
   std::optional<StressPatches> patches;
 
   Impl(const Mesh& m, LinearModuli moduli)
-      : mesh(m), shear(moduli.shear), bulk(moduli.slowly_contracting + 2.0 / 3.0 * moduli.shear) {
+      : mesh(m), shear(moduli.shear), bulk(moduli.lame + 2.0 / 3.0 * moduli.shear) {
     for (const ElementBlock& block : mesh.blocks) products.push_back(mean_products(block.shape()));
     if (StressPatches::suit(mesh)) patches.emplace(mesh);
   }

@@ -27,7 +27,7 @@ Vec3 stretches(const double* C) {
 }
 
 double poisson_ratio(LinearModuli moduli) {
-  return 0.5 * moduli.slowly_contracting / (moduli.slowly_contracting + moduli.shear);
+  return 0.5 * moduli.lame / (moduli.lame + moduli.shear);
 }
 
 class SolidGroup final : public SolidElements {
@@ -68,7 +68,7 @@ class SolidGroup final : public SolidElements {
     data_.bulk = material_->bulk_modulus();
     data_.conserving = d.conserving;
     data_.viscous = material_->viscous();
-    data_.viscous_lame = material_->viscous_moduli().slowly_contracting;
+    data_.viscous_lame = material_->viscous_moduli().lame;
     data_.viscous_shear = material_->viscous_moduli().shear;
   }
 

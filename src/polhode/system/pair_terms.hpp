@@ -70,8 +70,7 @@ struct Impact {
   double mu = 0.0;         ///< Coefficient of friction, along `along` if it depends on direction.
   double mu_across = 0.0;  ///< Across `along` [-].
   Vec3 along = Vec3::Zero(), across = Vec3::Zero();  ///< Tangents, unit; zero without friction.
-  Vec3 friction_impulse =
-      Vec3::Zero();  ///< Impulse of friction on a in the step, part of what mu bounds [N s].
+  Vec3 friction_impulse = Vec3::Zero();  ///< On a in the step, part of what mu bounds [N s].
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass [m].
 };
 

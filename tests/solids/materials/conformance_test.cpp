@@ -45,7 +45,7 @@ TEST_P(EveryMaterial, HasTheModuliAtRestThatItTells) {
   if (material_->has_fibres()) GTEST_SKIP() << "fibres resist in tension only";
   const LinearModuli m = material_->linear();
   Mat6 D = Mat6::Zero();
-  D.topLeftCorner<3, 3>().setConstant(m.slowly_contracting);
+  D.topLeftCorner<3, 3>().setConstant(m.lame);
   D.diagonal().array() += m.shear;
   D.diagonal().head<3>().array() += m.shear;
   // The derivative by one of two equal ends is half of the derivative.

@@ -27,7 +27,7 @@ TEST(MaterialRegistry, TakesYoungsModulusOrOtherPairs) {
   const auto b =
       make_material("m", {.kind = "st_venant_kirchhoff",
                           .values = {{"bulk_modulus", 175e9}, {"shear_modulus", 210e9 / 2.6}}});
-  EXPECT_NEAR(a->linear().slowly_contracting, b->linear().slowly_contracting, 1e-4);
+  EXPECT_NEAR(a->linear().lame, b->linear().lame, 1e-4);
   EXPECT_NEAR(a->linear().shear, b->linear().shear, 1e-4);
 }
 
@@ -71,12 +71,11 @@ TEST(MaterialRegistry, TakesViscosityAsATimeOrAsModuli) {
   const auto m =
       make_material("m", {.kind = "neo_hookean", .values = values, .relaxation_time = 2.0});
   EXPECT_DOUBLE_EQ(m->viscous_moduli().shear, 2.0 * m->linear().shear);
-  EXPECT_DOUBLE_EQ(m->viscous_moduli().slowly_contracting, 2.0 * m->linear().slowly_contracting);
+  EXPECT_DOUBLE_EQ(m->viscous_moduli().lame, 2.0 * m->linear().lame);
   const auto u = make_material("m", {.kind = "mooney_rivlin_uncoupled",
                                      .values = {{"c1", 1.0}, {"bulk_modulus", 1e4}},
                                      .relaxation_time = 0.1});
-  EXPECT_NEAR(u->viscous_moduli().slowly_contracting + 2.0 / 3.0 * u->viscous_moduli().shear, 0.0,
-              1e-16);
+  EXPECT_NEAR(u->viscous_moduli().lame + 2.0 / 3.0 * u->viscous_moduli().shear, 0.0, 1e-16);
   EXPECT_THAT(make({.kind = "neo_hookean", .values = values, .relaxation_time = -1.0}),
               refused("relaxation_time"));
   EXPECT_THAT(make({.kind = "neo_hookean", .values = values, .viscous = {-1.0, 1.0}}),

@@ -83,7 +83,7 @@ class SectionReader {
                      "Name a material of type elastic.");
       return std::nullopt;
     }
-    const auto [slowly_contracting, shear] = isotropic_moduli(spec.parameters);
+    const auto [lame, shear] = isotropic_moduli(spec.parameters);
     if (!(spec.density > 0.0)) {
       section_.fault("material", format("{} has no density", quote(spec.name)),
                      "Give the material a density.");
@@ -94,10 +94,8 @@ class SectionReader {
                      "Give the viscosity of a beam's material by its relaxation_time.");
       return std::nullopt;
     }
-    return BeamMaterial{
-        shear * (3.0 * slowly_contracting + 2.0 * shear) / (slowly_contracting + shear),
-        0.5 * slowly_contracting / (slowly_contracting + shear), spec.density,
-        spec.viscosity.relaxation_time};
+    return BeamMaterial{shear * (3.0 * lame + 2.0 * shear) / (lame + shear),
+                        0.5 * lame / (lame + shear), spec.density, spec.viscosity.relaxation_time};
   }
 
   void read_general() {

@@ -46,7 +46,7 @@ class MaterialReader {
       section.fault("'shear' is missing", "Give relaxation_time, or shear and lame.");
     v.relaxation_time = section.number("relaxation_time").value_or(0.0);
     v.shear = section.number("shear").value_or(0.0);
-    v.slowly_contracting = section.number("lame").value_or(0.0);
+    v.lame = section.number("lame").value_or(0.0);
   }
 
   void read_fibre(const SourceNode& node) {

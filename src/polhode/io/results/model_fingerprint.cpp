@@ -137,7 +137,7 @@ class Fingerprint {
     // What code gives shows in nothing but its presence.
     if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()));
   }
-  void one(const ViscositySpec& v) { add(v.relaxation_time, v.slowly_contracting, v.shear); }
+  void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }
   void one(const MaterialSpec& m) {
     add(m.name, m.type, m.parameters, m.density, m.viscosity, m.fibre);

@@ -32,13 +32,11 @@ class Material {
   [[nodiscard]] const MaterialKind& kind() const { return *kind_; }
   [[nodiscard]] bool uncoupled() const { return kind_->uncoupled; }
   [[nodiscard]] bool has_fibres() const { return fibre_index_ >= 0; }
-  [[nodiscard]] bool viscous() const {
-    return viscous_.slowly_contracting != 0.0 || viscous_.shear != 0.0;
-  }
+  [[nodiscard]] bool viscous() const { return viscous_.lame != 0.0 || viscous_.shear != 0.0; }
   [[nodiscard]] LinearModuli linear() const { return linear_; }           ///< At rest [Pa].
   [[nodiscard]] LinearModuli viscous_moduli() const { return viscous_; }  ///< [Pa s]
   [[nodiscard]] double bulk_modulus() const {                             ///< At rest [Pa].
-    return linear_.slowly_contracting + 2.0 / 3.0 * linear_.shear;
+    return linear_.lame + 2.0 / 3.0 * linear_.shear;
   }
 
   // For the kernels.

@@ -123,15 +123,15 @@ LinearModuli isotropic_moduli(const ParameterValues& values) {
     return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))};
   }
   const double shear = get("shear_modulus");
-  const double slowly_contracting =
+  const double lame =
       values.count("lame") > 0 ? get("lame") : get("bulk_modulus") - 2.0 / 3.0 * shear;
-  if (!(slowly_contracting + 2.0 / 3.0 * shear > 0.0))
+  if (!(lame + 2.0 / 3.0 * shear > 0.0))
     throw InputError("moduli",
                      format("'lame' {:g} Pa with 'shear_modulus' {:g} Pa makes a bulk modulus of "
                             "{:g} Pa, which is not positive",
-                            slowly_contracting, shear, slowly_contracting + 2.0 / 3.0 * shear),
+                            lame, shear, lame + 2.0 / 3.0 * shear),
                      "Give a first Lamé constant above -2/3 of the shear modulus");
-  return {slowly_contracting, shear};
+  return {lame, shear};
 }
 
 }  // namespace polhode

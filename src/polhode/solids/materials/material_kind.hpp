@@ -27,8 +27,8 @@ struct MaterialKind {
 
 /// Moduli of an isotropic material at small strains: S = λ tr E I + 2 μ E.
 struct LinearModuli {
-  double slowly_contracting = 0.0;  ///< λ [Pa].
-  double shear = 0.0;               ///< μ [Pa].
+  double lame = 0.0;   ///< λ [Pa].
+  double shear = 0.0;  ///< μ [Pa].
 };
 
 /// λ and μ from whichever of the alternatives of isotropic_alternatives() was given.

@@ -39,16 +39,16 @@ struct MooneyRivlin {
     if (!(shear > 0.0))
       throw InputError("moduli", format("the shear modulus 2 (c1 + c2) is {:g} Pa", shear),
                        "Give c1 and c2 with a positive sum");
-    const double slowly_contracting =
+    const double lame =
         v.count("lame") > 0 ? v.at("lame") : v.at("bulk_modulus") - 2.0 / 3.0 * shear;
-    if (slowly_contracting < 4.0 * c2 || !(slowly_contracting + 2.0 / 3.0 * shear > 0.0))
+    if (lame < 4.0 * c2 || !(lame + 2.0 / 3.0 * shear > 0.0))
       throw InputError(
           "moduli",
           format("the first Lamé constant is {:g} Pa; below 4 c2 = {:g} Pa the material would "
                  "collapse when compressed",
-                 slowly_contracting, 4.0 * c2),
+                 lame, 4.0 * c2),
           format("Give a bulk modulus of at least {:g} Pa", 4.0 * c2 + 2.0 / 3.0 * shear));
-    return {c1, c2, slowly_contracting - 4.0 * c2};
+    return {c1, c2, lame - 4.0 * c2};
   }
   [[nodiscard]] LinearModuli linear() const { return {log_lame + 4.0 * c2, 2.0 * (c1 + c2)}; }
 

@@ -29,17 +29,17 @@ struct NeoHookean {
   template <class P>
   [[nodiscard]] P energy(const Strain<P>& e) const {
     const P L = log1p(e.s);
-    return moduli.shear * e.t_less_log() + 0.125 * moduli.slowly_contracting * L * L;
+    return moduli.shear * e.t_less_log() + 0.125 * moduli.lame * L * L;
   }
   template <class P>
   [[nodiscard]] Coefficients<P> stress(const StrainPair<P>& e) const {
     const LogDifference<P> l(e.at_n.s, e.at_n1.s);
-    const P f = 0.125 * moduli.slowly_contracting * (l.log_0 + l.log_1);
+    const P f = 0.125 * moduli.lame * (l.log_0 + l.log_1);
     Coefficients<P> a;
     a.p = f * l.value - 0.5 * moduli.shear * l.minus_one;
     a.q = (f - 0.5 * moduli.shear) * l.value;
-    a.dq.c = 0.125 * moduli.slowly_contracting * l.value / (1.0 + e.at_n1.s) +
-             (f - 0.5 * moduli.shear) * l.derivative;
+    a.dq.c =
+        0.125 * moduli.lame * l.value / (1.0 + e.at_n1.s) + (f - 0.5 * moduli.shear) * l.derivative;
     return a;
   }
 };

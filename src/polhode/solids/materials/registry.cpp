@@ -94,14 +94,14 @@ struct MaterialMaker {
     };
     check("relaxation_time", tau, tau >= 0.0, "Give a time that is not negative");
     check("shear", own.shear, own.shear >= 0.0, "Give a viscosity that is not negative");
-    check("lame", own.slowly_contracting, own.slowly_contracting >= -2.0 / 3.0 * own.shear,
+    check("lame", own.lame, own.lame >= -2.0 / 3.0 * own.shear,
           "Give at least -2/3 of 'shear': less would create energy");
     if (tau == 0.0) return own;
-    if (own.slowly_contracting != 0.0 || own.shear != 0.0)
+    if (own.lame != 0.0 || own.shear != 0.0)
       throw InputError(place, "'relaxation_time' and viscous moduli are both given",
                        "Give one or the other");
     const double shear = tau * m.linear().shear;
-    return {m.uncoupled() ? -2.0 / 3.0 * shear : tau * m.linear().slowly_contracting, shear};
+    return {m.uncoupled() ? -2.0 / 3.0 * shear : tau * m.linear().lame, shear};
   }
 };
 

@@ -30,11 +30,11 @@ struct StVenantKirchhoff {
 
   template <class P>
   [[nodiscard]] P energy(const Strain<P>& e) const {
-    return (0.5 * moduli.slowly_contracting + moduli.shear) * e.t * e.t - 2.0 * moduli.shear * e.II;
+    return (0.5 * moduli.lame + moduli.shear) * e.t * e.t - 2.0 * moduli.shear * e.II;
   }
   template <class P>
   [[nodiscard]] Coefficients<P> stress(const StrainPair<P>& e) const {
-    const double M = moduli.slowly_contracting + 2.0 * moduli.shear;
+    const double M = moduli.lame + 2.0 * moduli.shear;
     Coefficients<P> a;
     a.p = 0.5 * M * e.t;
     a.w2 = P{} - 0.5 * moduli.shear;

@@ -7,7 +7,7 @@
 
 #include "support/random_steps.hpp"
 
-namespace polhode::plain_point_tests {
+namespace polhode::closed_form_point_tests {
 namespace {
 
 using namespace contact;
@@ -48,11 +48,11 @@ struct Case {
   }
 };
 
-TEST(PlainPoint, GivesWhatTheGeneralFormulasGive) {
+TEST(ClosedFormPoint, GivesWhatTheGeneralFormulasGive) {
   for (unsigned seed = 1; seed <= 40; ++seed)
     for (const bool plane_below : {false, true}) {
       Case c(seed, plane_below);
-      ASSERT_TRUE(has_closed_form(c.data));
+      ASSERT_TRUE(is_closed_form_point(c.data));
       const auto distance = [&](const Vec3& r_a, const Mat3& L_a, const Vec3& r_b,
                                 const Mat3& L_b) {
         return gap(c.data.pair, *c.data.a, *c.data.b, Placement<double>(r_a, L_a, 0),
@@ -87,7 +87,7 @@ TEST(PlainPoint, GivesWhatTheGeneralFormulasGive) {
 
 /// Motions far below what positions in the world can tell apart still change the gap by what they
 /// are along the normal. @tests{contact-gap-change}
-TEST(PlainPoint, GapsFollowMotionsThatPositionsCannotHold) {
+TEST(ClosedFormPoint, GapsFollowMotionsThatPositionsCannotHold) {
   const Shape ball = sphere("ball", 0.4), other = sphere("other", 0.6), floor = plane();
   const Shape block = box("block", {0.2, 0.3, 0.4}), table = box("table", {2.0, 2.0, 0.4});
   struct Scene {
@@ -123,7 +123,7 @@ TEST(PlainPoint, GapsFollowMotionsThatPositionsCannotHold) {
 
 /// The spring is the tangent but for μ t dλ and for what turns with the bodies: both are small
 /// where nothing slides and little turns. @tests{contact-spring}
-TEST(PlainPoint, SpringIsLikeTheTangentOfAStickingContact) {
+TEST(ClosedFormPoint, SpringIsLikeTheTangentOfAStickingContact) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Case c(seed, seed % 2 == 0);
     c.data.friction.mu = 1e3;
@@ -140,4 +140,4 @@ TEST(PlainPoint, SpringIsLikeTheTangentOfAStickingContact) {
 }
 
 }  // namespace
-}  // namespace polhode::plain_point_tests
+}  // namespace polhode::closed_form_point_tests
