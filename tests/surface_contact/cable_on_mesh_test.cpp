@@ -71,16 +71,16 @@ SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
           std::move(line)};
 }
 
-struct SourceLocation {
+struct Place {
   double depth, height;
 };
 /// Over a ridge, over what is nearly flat, in a shallow and in a steep valley, where both slopes
 /// push.
-const SourceLocation kPlaces[] = {{-0.5, 0.55}, {0.02, 0.55}, {0.1, 0.6}, {0.6, 0.75}};
+const Place kPlaces[] = {{-0.5, 0.55}, {0.02, 0.55}, {0.1, 0.6}, {0.6, 0.75}};
 
 // @tests{cable-on-mesh} @tests{cable-mesh-friction}
 TEST(CableOnMesh, HasTheTangentOfItsForces) {
-  for (const SourceLocation& place : kPlaces)
+  for (const Place& place : kPlaces)
     for (const double rho_inf : {1.0, 0.5})
       for (const double mu : {0.0, 0.05, 5.0})
         for (const unsigned seed : {1U, 2U, 3U}) {
@@ -105,7 +105,7 @@ TEST(CableOnMesh, HasTheTangentOfItsForces) {
 // @tests{cable-on-mesh} @tests{cable-mesh-friction}
 TEST(CableOnMesh, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
   int valleys = 0;
-  for (const SourceLocation& place : kPlaces)
+  for (const Place& place : kPlaces)
     for (const double way : {0.02, 0.1, 0.3})
       for (const double mu : {0.0, 0.05, 5.0})
         for (const unsigned seed : {1U, 2U, 3U, 4U}) {

@@ -16,7 +16,7 @@ constexpr double kTolerance = 0.2;
 
 SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
 
-enum class SourceLocation { crossing, end_over_edge, ends, nearly_parallel };
+enum class Place { crossing, end_over_edge, ends, nearly_parallel };
 
 struct Scene {
   FourMoves moves;
@@ -33,14 +33,13 @@ struct Scene {
   }
 };
 
-Scene scene(SourceLocation place, unsigned seed, double way, double alpha = 0.5) {
+Scene scene(Place place, unsigned seed, double way, double alpha = 0.5) {
   Random random(seed);
   Scene s;
   s.alpha = alpha;
-  const double angle = place == SourceLocation::nearly_parallel ? 0.11 : 1.2;
-  const double along =
-      place == SourceLocation::crossing || place == SourceLocation::nearly_parallel ? 0.4 : 1.05;
-  const double across = place == SourceLocation::ends ? 1.04 : 0.5;
+  const double angle = place == Place::nearly_parallel ? 0.11 : 1.2;
+  const double along = place == Place::crossing || place == Place::nearly_parallel ? 0.4 : 1.05;
+  const double across = place == Place::ends ? 1.04 : 0.5;
   const Vec3 e(1.0, 0.0, 0.0), f(std::cos(angle), std::sin(angle), 0.0);
   const Vec3 from_e = -along * e + Vec3(0.0, 0.0, 0.22), from_f = -across * f;
   const Vec3 x[4] = {from_e, from_e + e, from_f, from_f + f};
@@ -48,7 +47,7 @@ Scene scene(SourceLocation place, unsigned seed, double way, double alpha = 0.5)
   const Vec3 shift = random.vector(3.0);
   for (int k = 0; k < 4; ++k) {
     s.moves.u[k] = random.vector(way);
-    const double rough = place == SourceLocation::nearly_parallel ? 0.01 : 0.05;
+    const double rough = place == Place::nearly_parallel ? 0.01 : 0.05;
     s.moves.x_n1[k] = turn * (x[k] + random.vector(rough)) + shift + s.moves.u[k];
   }
   const double shared[4] = {0.0, 0.5, 0.5, 2.0 / 3.0};
@@ -67,12 +66,12 @@ double at_instant(const Scene& s, const SurfaceLaw& law, bool end) {
   return EdgePair(still.moves, s.data, law, 1.0, true).stored();
 }
 
-const SourceLocation kPlaces[] = {SourceLocation::crossing, SourceLocation::end_over_edge,
-                                  SourceLocation::ends, SourceLocation::nearly_parallel};
+const Place kPlaces[] = {Place::crossing, Place::end_over_edge, Place::ends,
+                         Place::nearly_parallel};
 
 // @tests{edge-potential}
 TEST(EdgePair, HasTheTangentOfItsForces) {
-  for (const SourceLocation place : kPlaces)
+  for (const Place place : kPlaces)
     for (const double alpha : {0.5, 0.66})
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << alpha << " " << seed);
@@ -97,7 +96,7 @@ TEST(EdgePair, HasTheTangentOfItsForces) {
 }
 
 TEST(EdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
-  for (const SourceLocation place : kPlaces)
+  for (const Place place : kPlaces)
     for (const double way : {0.02, 0.1, 0.4})
       for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << way << " " << seed);
@@ -126,8 +125,7 @@ TEST(EdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
 
 // @tests{edge-friction}
 TEST(EdgePair, RubsWithoutSumOrMomentAndTakesTheEnergyOfItsSlide) {
-  for (const SourceLocation place :
-       {SourceLocation::crossing, SourceLocation::end_over_edge, SourceLocation::ends})
+  for (const Place place : {Place::crossing, Place::end_over_edge, Place::ends})
     for (const double mu : {0.05, 50.0})
       for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << mu << " " << seed);
@@ -163,7 +161,7 @@ TEST(EdgePair, RubsWithoutSumOrMomentAndTakesTheEnergyOfItsSlide) {
 }
 
 TEST(EdgePair, DoesNotSlideWhenItTurnsAsAWhole) {
-  Scene s = scene(SourceLocation::crossing, 3, 0.0);
+  Scene s = scene(Place::crossing, 3, 0.0);
   const Quat half = quaternion_from_rotation_vector(Vec3(2e-4, -1e-4, 3e-4));
   Vec3 middle[4];
   s.moves.at(0.0, middle);

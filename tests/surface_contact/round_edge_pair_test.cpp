@@ -16,10 +16,9 @@ constexpr double kRadii = 0.2, kTolerance = 0.04;
 
 SurfaceLaw law(double mu, double end_share = 0.0) { return soft_law(kTolerance, mu, end_share); }
 
-enum class SourceLocation { crossing, between, along, against, end_over_edge };
-const SourceLocation kPlaces[] = {SourceLocation::crossing, SourceLocation::between,
-                                  SourceLocation::along, SourceLocation::against,
-                                  SourceLocation::end_over_edge};
+enum class Place { crossing, between, along, against, end_over_edge };
+const Place kPlaces[] = {Place::crossing, Place::between, Place::along, Place::against,
+                         Place::end_over_edge};
 
 struct Scene {
   FourMoves moves;
@@ -48,22 +47,18 @@ EdgePairData data() {
   return d;
 }
 
-Scene scene(SourceLocation place, unsigned seed, double way, double alpha = 0.5) {
+Scene scene(Place place, unsigned seed, double way, double alpha = 0.5) {
   Random random(seed);
   Scene s;
   s.alpha = alpha;
   s.data = data();
-  const double angle = place == SourceLocation::between ? 0.15
-                       : place == SourceLocation::along ? 0.02
-                                                        : 1.2;
-  const double height = place == SourceLocation::between ? 0.155 : 0.13;
-  const double shift_e = place == SourceLocation::end_over_edge ? 1.02 : 0.4;
+  const double angle = place == Place::between ? 0.15 : place == Place::along ? 0.02 : 1.2;
+  const double height = place == Place::between ? 0.155 : 0.13;
+  const double shift_e = place == Place::end_over_edge ? 1.02 : 0.4;
   const Vec3 e(1.0, 0.0, 0.0);
   Vec3 f(std::cos(angle), std::sin(angle), 0.0);
-  if (place == SourceLocation::against) f = Vec3(-std::cos(0.02), std::sin(0.02), 0.0);
-  const Vec3 up(
-      0.0, 0.0,
-      place == SourceLocation::crossing || place == SourceLocation::end_over_edge ? 0.2 : height);
+  if (place == Place::against) f = Vec3(-std::cos(0.02), std::sin(0.02), 0.0);
+  const Vec3 up(0.0, 0.0, place == Place::crossing || place == Place::end_over_edge ? 0.2 : height);
   const Vec3 from_e = -shift_e * e + up, from_f = -0.5 * f;
   const Vec3 x[4] = {from_e, from_e + e, from_f, from_f + f};
   const Quat turn = random.orientation();
@@ -101,7 +96,7 @@ struct Resultant {
 
 // @tests{cable-pair}
 TEST(RoundEdgePair, HasTheTangentOfItsForces) {
-  for (const SourceLocation place : kPlaces)
+  for (const Place place : kPlaces)
     for (const double alpha : {0.5, 0.66})
       for (const unsigned seed : {1U, 2U, 3U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << alpha << " " << seed);
@@ -128,7 +123,7 @@ TEST(RoundEdgePair, HasTheTangentOfItsForces) {
 
 TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
   int count = 0;
-  for (const SourceLocation place : kPlaces)
+  for (const Place place : kPlaces)
     for (const double way : {0.005, 0.02, 0.2})
       for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << way << " " << seed);
@@ -153,9 +148,8 @@ TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
 TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
   const SurfaceLaw l = law(0.0);
   const auto along = [&](const EdgePair& p) { return p.pressure() - p.pressure_across(); };
-  const Scene cross = scene(SourceLocation::crossing, 1, 0.0),
-              lies = scene(SourceLocation::along, 1, 0.0),
-              between = scene(SourceLocation::between, 1, 0.0);
+  const Scene cross = scene(Place::crossing, 1, 0.0), lies = scene(Place::along, 1, 0.0),
+              between = scene(Place::between, 1, 0.0);
   EXPECT_GT(cross.pair(l).pressure_across(), 0.1);
   EXPECT_EQ(along(cross.pair(l)), 0.0);
   EXPECT_EQ(lies.pair(l).pressure_across(), 0.0);
@@ -169,7 +163,7 @@ TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
 TEST(RoundEdgePair, StoresWithoutJumpsAsItTurns) {
   const SurfaceLaw l = law(0.0);
   const auto energy = [&](double angle) {
-    Scene s = scene(SourceLocation::crossing, 1, 0.0);
+    Scene s = scene(Place::crossing, 1, 0.0);
     const Vec3 f(std::cos(angle), std::sin(angle), 0.0);
     const Vec3 x[4] = {{-0.4, 0.0, 0.165}, {0.6, 0.0, 0.165}, -0.5 * f, 0.5 * f};
     std::copy_n(x, 4, s.moves.x_n1);
@@ -210,8 +204,7 @@ TEST(RoundEdgePair, MeetsAPointOnceAlongAStraightLineOfEdges) {
 
 // @tests{cable-along}
 TEST(RoundEdgePair, RubsLengthwiseWithoutSumOrMoment) {
-  for (const SourceLocation place :
-       {SourceLocation::between, SourceLocation::along, SourceLocation::against})
+  for (const Place place : {Place::between, Place::along, Place::against})
     for (const double mu : {0.002, 50.0})
       for (const unsigned seed : {1U, 2U, 3U}) {
         SCOPED_TRACE(testing::Message() << static_cast<int>(place) << " " << mu << " " << seed);
@@ -279,7 +272,7 @@ TEST(RoundEdgePair, RubsWhereItCrossesWithoutSumOrMoment) {
 /// One edge is drawn along itself: that far it slides, whichever way the other one points. Rolled
 /// around it, it does not.
 TEST(RoundEdgePair, SlidesByWhatIsDrawnAlongAndRollsFreely) {
-  for (const SourceLocation place : {SourceLocation::along, SourceLocation::against}) {
+  for (const Place place : {Place::along, Place::against}) {
     Scene s = scene(place, 4, 0.0);
     const SurfaceLaw l = law(50.0);
     const Vec3 t = (s.moves.x_n1[1] - s.moves.x_n1[0]).normalized();

@@ -15,8 +15,8 @@ namespace {
 
 /// A block of hexahedra as nodes and elements of a model file.
 /// @param place  From (i, j, k) / cells to a node.
-template <class SourceLocation>
-std::string inline_block(const std::array<int, 3>& cells, SourceLocation&& place) {
+template <class Place>
+std::string inline_block(const std::array<int, 3>& cells, Place&& place) {
   std::string nodes, elements;
   const auto [nx, ny, nz] = cells;
   for (int k = 0; k <= nz; ++k)

@@ -29,9 +29,9 @@ struct Block {
   std::unique_ptr<Stepper> stepper;
 
   /// @param place  Where a node of the block centred at the origin starts, and its velocity.
-  template <class SourceLocation>
+  template <class Place>
   Block(const std::vector<double>& size, const std::vector<double>& cells,
-        const std::vector<double>& grading, SourceLocation&& place) {
+        const std::vector<double>& grading, Place&& place) {
     mesh = make_mesh("block", "block", {{"size", size}, {"cells", cells}, {"grading", grading}},
                      "hex8");
     for (const Vec3& own : mesh.nodes) {

@@ -166,7 +166,7 @@ struct SurfaceContact::Terms {
   V3<T> h, friction, bristle, slid;
   T lambda{}, pressure{};
 
-  Terms(const SurfaceLaw& law, const NodeStep& step, const SourceLocation& place,
+  Terms(const SurfaceLaw& law, const NodeStep& step, const LocalMotion& place,
         const RigidSurface::Gap& g_n, const RigidSurface::Gap& g_n1, const double* memory,
         bool& slips) {
     const StepContext& context = step.context;
@@ -211,7 +211,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point, cons
   a.phase = phase_of(memory);
   SurfaceLaw law = law_of(memory);
   const double reach = law.normal.reach();
-  const SourceLocation place = this->place(step, point);
+  const LocalMotion place = this->place(step, point);
   const Vec3 way = place.at_n1 - place.at_n;
   // Of a gap that acts at the other end of the step only, the value matters as well.
   const GapQuery question{law.normal, law_.normal.reach() + way.norm(), sided(step)};

@@ -99,7 +99,7 @@ class SurfaceContact final : public ElementGroup,
   static constexpr std::size_t kMemory = 14, kPhase = 11;
 
   /// The point in the surface's coordinates over the step.
-  struct SourceLocation {
+  struct LocalMotion {
     Vec3 at_n, at_n1;
   };
   /// What acts at a point over a step, conjugate to y, per unit of area.
@@ -138,7 +138,7 @@ class SurfaceContact final : public ElementGroup,
   [[nodiscard]] Vec3 foot(const double* x, int point) const;
   [[nodiscard]] Vec3 local(const double* x, int point) const;
   [[nodiscard]] Mat3 axes(const double* x) const;
-  [[nodiscard]] SourceLocation place(const NodeStep& step, int point) const {
+  [[nodiscard]] LocalMotion place(const NodeStep& step, int point) const {
     return {local(step.x_n, point), local(step.x_n1, point)};
   }
   /// Whether points may get within surfaces, as iterates of statics do, see GapQuery.
