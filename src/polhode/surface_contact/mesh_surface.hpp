@@ -43,7 +43,6 @@ struct MeshSurface {
 /// a tenth of its own size away, the overlap of the two is used instead. Each triangle of the
 /// overlap has points at its corners and in its middle (weights 1/12 and 3/4, exact for quadratic
 /// functions): a uniform pressure then loads both meshes exactly, whatever their sizes.
-/// sizes.
 /// @param X  Positions at the start by number [m].
 [[nodiscard]] std::vector<MeshPoint> contact_points(const std::string& where,
                                                     const std::vector<LoadedFaces>& faces,
