@@ -11,16 +11,16 @@ using contact::ContactPhase;
 
 namespace {
 
-/// Share of the force of lasting contact that is that of the end of the step.
+/// Share of the force of resting contact that is evaluated at the end of the step.
 constexpr double kRestShare = 0.5;
-/// An impact is faster than what the acceleration adds in so many steps.
+/// Number of steps of acceleration whose speed increment is the smallest impact speed.
 constexpr double kSlowSteps = 2.0;
-/// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
+/// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// Least part of the tolerance between a gap and the floor of its barrier.
+/// Smallest distance between a gap and the floor of its barrier, as a part of the tolerance.
 constexpr double kMinBand = 0.1;
 
-/// Places of the numbers in the memory of a stop.
+/// Offsets of the numbers in the memory of a stop.
 enum Memory { kAcceleration, kPhase, kRestitution, kStiffness, kReach, kFloor, kSide };
 
 }  // namespace
@@ -52,7 +52,7 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
     law_.lower = memory[kFloor];
     const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
     if (limits.inertia > 0.0) {
-      // Pressed into its band from rest, the coordinate gets as fast as its depth under load tells.
+      // Speed of the coordinate when pressed into its band from rest, from its depth under load.
       const double a = std::abs(acceleration_);
       const double depth = std::sqrt(limits.inertia * a * tolerance / limits.law.stiffness);
       slow = std::max(slow, kSlowSteps * std::sqrt(a * depth));
@@ -74,7 +74,7 @@ Stop::Stop(const JointLimits& limits, const double* memory, const CoordinateStep
     law_.stiffness = impact_stiffness();
   }
   if (!(gap_n_ < 0.0)) return;
-  // Within the band although nothing stopped it on its way there: nothing is stored.
+  // Within the band although no force acted on the path there: no energy is stored.
   closed_ = true;
   law_.lower = std::min(-tolerance, gap_n_ - kMinBand * tolerance);
   law_.stiffness *= tolerance / std::min(tolerance, gap_n_ - *law_.lower);
