@@ -28,8 +28,8 @@ class CableFriction {
     Mat by_ratio;  ///< By ln(ratio) of each point [N].
     bool slips = false;
   };
-  /// @param trial Tensions without slip [N].
-  /// @param ratio Smaller over larger tension at which each point slips, e^{−μβ} [-].
+  /// @param trial  Tensions without slip [N].
+  /// @param ratio  Smaller over larger tension at which each point slips, e^{−μβ} [-].
   [[nodiscard]] Held hold(const Vec& trial, const Vec& ratio) const;
   /// Tensions if slip occurs at this difference of the tensions of both sides [N].
   [[nodiscard]] Vec hold_differences(const Vec& trial, const Vec& most) const;

@@ -50,7 +50,7 @@ inline constexpr int kMaxContactPairs = 100;
 void check_contact_shapes(const Model& model, std::vector<InputError>& faults);
 
 /// Builds the contacts of a model.
-/// @param bodies By Model::bodies: index into System::bodies(), kGround if fixed.
+/// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
 /// @returns null if the model has no contacts, or if no two bodies may be in contact. @throws
 /// InputError, see check_contact_shapes().
 [[nodiscard]] std::shared_ptr<contact::ContactSet> build_contacts(const Model& model,

@@ -24,7 +24,7 @@ struct SolidMap {
 };
 
 /// Adds the nodes and elements of a solid.
-/// @param body By Model::bodies: index in the System, kGround if fixed.
+/// @param body  By Model::bodies: index in the System, kGround if fixed.
 /// @throws InputError for everything that plan_solid() rejects, and for a wrong material.
 [[nodiscard]] SolidMap add_solid(System& system, const Model& model, int solid,
                                  const std::vector<int>& body);

@@ -380,8 +380,8 @@ class SurfacesBuilder {
   /// Position of the band in which surfaces act: below those of rigid shapes, which have an inside.
   enum class Band { below, about };
 
-  /// @param edge Of the mesh, or the diameter of a cable [m].
-  /// @param smallest Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
+  /// @param edge  Of the mesh, or the diameter of a cable [m].
+  /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
   [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const SurfaceMaterial& material,
                                   double edge, double smallest, Band place) const {
     SurfaceLaw law;

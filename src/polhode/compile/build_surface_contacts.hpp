@@ -20,14 +20,14 @@ struct SurfacePair {
 };
 
 /// Pairs of surfaces of solids with shapes and with each other, and their laws.
-/// @param faults Receives unsupported shapes and laws; null: the first is thrown.
+/// @param faults  Receives unsupported shapes and laws; null: the first is thrown.
 [[nodiscard]] std::vector<SurfacePair> plan_surface_contacts(
     const Model& model, std::vector<InputError>* faults = nullptr);
 
 /// Adds the contacts of surfaces of solids with shapes of bodies and with each other, after solids
 /// and bodies.
-/// @param bodies By Model::bodies: index into System::bodies(), kGround if fixed.
-/// @param map Receives pairs and surfaces.
+/// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
+/// @param map  Receives pairs and surfaces.
 void add_surface_contacts(System& system, const Model& model, const std::vector<int>& bodies,
                           const std::vector<SolidMap>& solids, ContactMap& map);
 

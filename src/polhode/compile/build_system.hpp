@@ -57,7 +57,7 @@ struct SystemMap {
 /// Fixed bodies become the ground, with their points and axes in world coordinates. A point mass
 /// gets an inertia that has no effect.
 ///
-/// @param map Filled if given.
+/// @param map  Filled if given.
 /// @throws InputError if a type is unknown, if a joint or load connects only fixed bodies or would
 /// rotate a point mass, or if a torsional spring's joint has no axis.
 [[nodiscard]] System build_system(const Model& model, SystemMap* map = nullptr);

@@ -21,7 +21,7 @@ struct CableLine {
 };
 
 /// Adds the nodes of a cable with contact to the System.
-/// @param bodies By Model::bodies: index into System::bodies(), kGround if fixed.
+/// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
 [[nodiscard]] CableLine add_cable_line(System& system, const Model& model,
                                        const CableLineSpec& cable, const std::vector<int>& bodies);
 
@@ -41,8 +41,8 @@ struct CablePoints {
 /// Removes contact points near attachments to a body: from each attachment, points nearer along the
 /// cable than half a turn about a bar of its own radius, and points that leave the body from the
 /// inside.
-/// @param hangs_on Whether an attachment belongs to this body.
-/// @param inside Whether a point, by its number, is in the body at the start.
+/// @param hangs_on  Whether an attachment belongs to this body.
+/// @param inside  Whether a point, by its number, is in the body at the start.
 void leave_out_attachments(CablePoints& points, const CableLineSpec& cable, const CableLine& line,
                            const std::function<bool(const AttachmentSpec&)>& hangs_on,
                            const std::function<bool(int)>& inside);

@@ -18,8 +18,8 @@ struct CableSide {
 /// cable that are nearer to each other along it than half a turn about a bar of its own radius, and
 /// segments of two cables near attachments to one body; both extended along the cables as long as
 /// these overlap at the start.
-/// @param X Positions at the start by the system's node numbers [m].
-/// @param tolerance Of the gap between crossing edges [m].
+/// @param X  Positions at the start by the system's node numbers [m].
+/// @param tolerance  Of the gap between crossing edges [m].
 [[nodiscard]] EdgeContact::Sides cable_sides(const Model& model, const CableSide& a,
                                              const CableSide& b, const std::vector<Vec3>& X,
                                              double tolerance);

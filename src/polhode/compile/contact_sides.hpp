@@ -70,7 +70,7 @@ struct StatedLaw {
                                     const ContactLawKey& y);
 
 /// Friction and restitution of a pair of materials by the combination rules.
-/// @param a, b Indices into ContactsSpec::materials; −1: the default law.
+/// @param a, b  Indices into ContactsSpec::materials; −1: the default law.
 [[nodiscard]] ContactMaterialSpec combined_surface(const ContactsSpec& contacts, int a, int b);
 
 }  // namespace polhode

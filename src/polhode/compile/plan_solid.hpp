@@ -27,7 +27,7 @@ struct SolidPlan {
 };
 
 /// Resolves a solid.
-/// @param faults Receives all errors, with paths such as solids.pad.bonded. Null: the first error
+/// @param faults  Receives all errors, with paths such as solids.pad.bonded. Null: the first error
 /// is thrown.
 /// @throws InputError
 [[nodiscard]] SolidPlan plan_solid(const Model& model, int solid,

@@ -17,7 +17,7 @@ namespace polhode {
 
 /// Largest tolerance that does not extend through the triangles of a shape [m]; others have no
 /// limit.
-/// @param radius Of a cable, which is kept away in addition [m].
+/// @param radius  Of a cable, which is kept away in addition [m].
 [[nodiscard]] double widest_tolerance(const ShapeSpec& shape, double radius = 0.0);
 
 /// Largest tolerance of a cable of this radius against surfaces without an inside [m].

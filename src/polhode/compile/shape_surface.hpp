@@ -11,7 +11,7 @@ namespace polhode {
 /// Surface of a shape in its own coordinates, for mass properties and drawing: closed and outward
 /// except for a height field. Round shapes have `segments` triangles around; an unbounded plane has
 /// none.
-/// @param where Path of the shape in the user's model, first part of messages.
+/// @param where  Path of the shape in the user's model, first part of messages.
 /// @throws InputError if a file cannot be read, a mesh is not closed, or a hull has no volume.
 [[nodiscard]] TriangleSurface shape_surface(std::string_view where, const ShapeSpec& shape,
                                             int segments);

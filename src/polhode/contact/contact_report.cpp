@@ -61,8 +61,8 @@ namespace {
 using Overlaps = std::map<std::pair<int, int>, ShapeOverlap>;
 
 /// Shapes that are fully enclosed by surfaces of triangles without being near any triangle.
-/// @param touch (shape, shape) → whether contact between them is allowed.
-/// @param at (shape) → its placement.
+/// @param touch  (shape, shape) → whether contact between them is allowed.
+/// @param at  (shape) → its placement.
 template <class Touch, class At>
 void add_fully_enclosed(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at,
                         Overlaps& deepest) {

@@ -199,8 +199,8 @@ class Finder {
   }
   /// Adds feature i of a against triangles, minus the edges shared by two of them, plus the corners
   /// common to those.
-  /// @param kinds Against a triangle, an edge, a corner.
-  /// @param x, radius Ball around the feature, in body coordinates of b; radius 0: a point.
+  /// @param kinds  Against a triangle, an edge, a corner.
+  /// @param x, radius  Ball around the feature, in body coordinates of b; radius 0: a point.
   void over_surface(const std::array<GapKind, 3>& kinds, int i, const Vec3& x, double radius) {
     const double r = reach() + radius;
     const auto take = [&](const Vec3& nearest, int kind, int j, double weight) {

@@ -41,13 +41,13 @@ template <class T>
 template <class T>
 [[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
                                   const Placement<T>& at_a);
-/// @param part See part_of(); moves with a.
-/// @param reach See surface_reach().
+/// @param part  See part_of(); moves with a.
+/// @param reach  See surface_reach().
 template <class T>
 [[nodiscard]] Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair,
                               const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b);
 /// Gap of a ball of radius rho around the point x against the whole surface of b.
-/// @param reach Features with larger gaps than this do not count besides a nearer one [m].
+/// @param reach  Features with larger gaps than this do not count besides a nearer one [m].
 template <class T>
 [[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
                                         const Placement<T>& at_b);

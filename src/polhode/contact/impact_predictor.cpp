@@ -32,7 +32,7 @@ struct Meeting {
 
 /// Gap at the end of the step if only this contact acts additionally: the root of K(g − free) =
 /// λ(g_0, g) − held, whose sides increase and decrease with g.
-/// @param free Gap without this contact's impulse [m]. @param K Of both masses [N/m].
+/// @param free  Gap without this contact's impulse [m]. @param K  Of both masses [N/m].
 double gap_with(const Meeting& m, double free, double K, double dt) {
   const double reach = m.balls->reach, least = m.balls->least_gap, gap_n = m.balls->gap_n;
   const double apart = free - m.held / K;

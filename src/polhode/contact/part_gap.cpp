@@ -40,7 +40,7 @@ class SeenPart {
 
   /// Nearest point of a plane if it lies in its triangle; where the part penetrates the plane, the
   /// middle of the section.
-  /// @param sides 2: a two-sided triangle.
+  /// @param sides  2: a two-sided triangle.
   /// @returns the signed distance of the part from the plane.
   double face(const Shape& b, int triangle, int sides, Nearest& best) const {
     const auto& c = b.triangles[triangle];

@@ -150,8 +150,8 @@ struct Separation {
                       ///< tangential increments of n.
 };
 
-/// @param between From the centre of b to that of a.
-/// @param start Initial direction, of any length.
+/// @param between  From the centre of b to that of a.
+/// @param start  Initial direction, of any length.
 Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
                     const Vec3& between, const Vec3& start) {
   Separation s;
@@ -191,8 +191,8 @@ Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Ma
   return s;
 }
 
-/// @param start Approximate direction from b to a.
-/// @param rounding Of b, beyond its own.
+/// @param start  Approximate direction from b to a.
+/// @param rounding  Of b, beyond its own.
 template <class T>
 Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
                   const Placement<T>& at_b, const Vec3& start, double rounding = 0.0) {

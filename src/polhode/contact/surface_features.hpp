@@ -41,8 +41,8 @@ struct SurfaceSearch {
 /// thus cancel exactly, so that over a flat region one face is left. In order of their gaps the
 /// multiplicities sum to at least one, as over a pit narrower than a ball. @eq{contact-one-gap}
 ///
-/// @param search Its triangles are those that may be near; receives the places.
-/// @param seen triangle(t), edge(e), corner(k) → SurfacePlace.
+/// @param search  Its triangles are those that may be near; receives the places.
+/// @param seen  triangle(t), edge(e), corner(k) → SurfacePlace.
 template <class Seen>
 void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
   std::vector<SurfacePlace>& list = search.places;

@@ -10,8 +10,8 @@ namespace polhode::contact {
 /// A hollow round bar along z of the placement: a surface of triangles to shapes with edges or
 /// faces, with exact round faces to rounded points and to half spaces.
 ///
-/// @param outer, inner Diameters [m].
-/// @param polygon Closed polyhedral approximation; the corners of its rims lie on their circles.
+/// @param outer, inner  Diameters [m].
+/// @param polygon  Closed polyhedral approximation; the corners of its rims lie on their circles.
 /// @throws InputError as mesh() does.
 [[nodiscard]] Shape tube(std::string_view where, double outer, double inner, double length,
                          const TriangleSurface& polygon, const ShapePlace& place = {},

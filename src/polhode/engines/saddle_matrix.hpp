@@ -47,9 +47,9 @@ class SaddleMatrix {
   }
   /// A + factor·B, of the same system and pattern.
   void combine(const SaddleMatrix& A, double factor, const SaddleMatrix& B);
-  /// @param bodies Values and rows of bodies and joints, already scaled by s.
-  /// @param blocks 3×3 blocks of the graph of nodes, row by row, then those outside it, or none.
-  /// @param forces Residual of the nodes [N], whose lever arms rotate; null: none.
+  /// @param bodies  Values and rows of bodies and joints, already scaled by s.
+  /// @param blocks  3×3 blocks of the graph of nodes, row by row, then those outside it, or none.
+  /// @param forces  Residual of the nodes [N], whose lever arms rotate; null: none.
   void set(const KktValues& bodies, const std::vector<double>& blocks, const double* forces,
            double s);
   /// Adds stiffness against rotations of point masses, which have none of their own.

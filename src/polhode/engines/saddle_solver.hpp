@@ -14,7 +14,7 @@ namespace polhode {
 /// analysis of each is done at its first use.
 class SaddleSolver {
  public:
-  /// @param diagonal Added to the matrix, by movable unknown; empty: nothing.
+  /// @param diagonal  Added to the matrix, by movable unknown; empty: nothing.
   /// @returns false if the matrix is singular.
   [[nodiscard]] bool factor(SaddleMatrix& matrix, bool symmetric,
                             const std::vector<double>& diagonal = {});
@@ -33,7 +33,7 @@ class SaddleSolver {
 
 /// Motions without stiffness: x with K x = 0 and G x = 0 to round-off, each with largest component
 /// one, at most `most` of them. Rotations are scaled by ℓ.
-/// @param known Known free motions, which come first; others are searched in addition.
+/// @param known  Known free motions, which come first; others are searched in addition.
 [[nodiscard]] std::vector<Vec> free_motions(SaddleMatrix& matrix, double length, int most,
                                             const std::vector<Vec>& known = {});
 

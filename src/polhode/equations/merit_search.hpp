@@ -10,7 +10,7 @@ namespace polhode {
 
 /// Merit R·M⁻¹R of the bodies, plus g² of rows at the mean mass: a Newton increment is a descent
 /// direction.
-/// @param rhs Scaled residuals: bodies (6 each), then rows.
+/// @param rhs  Scaled residuals: bodies (6 each), then rows.
 [[nodiscard]] inline double merit_of_bodies(const System& system, const Vec& rhs) {
   double sum = 0.0;
   for (int b = 0; b < system.body_count(); ++b) {

@@ -32,9 +32,9 @@ class InteractionSweep {
   InteractionSweep(const System& system, std::vector<int> interactions);
 
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
-  /// @param steps By body, the ground last.
-  /// @param visit visit(int interaction, const PairStep&, const PairTerms&).
-  /// @param rows_only Skip batches without multiplier rows.
+  /// @param steps  By body, the ground last.
+  /// @param visit  visit(int interaction, const PairStep&, const PairTerms&).
+  /// @param rows_only  Skip batches without multiplier rows.
   template <class Visit>
   void run(std::span<const BodyStep> steps, const StepContext& context, const double* lambda,
            const double* history, Visit&& visit, bool rows_only = false) {

@@ -41,8 +41,8 @@ class NodeCondensation {
     /// The matrix of the free unknowns was factored before; only bodies have moved.
     bool same_matrix = false;
   };
-  /// @param K 3×3 blocks of the graph of nodes, row by row.
-  /// @param F Residual, three per node.
+  /// @param K  3×3 blocks of the graph of nodes, row by row.
+  /// @param F  Residual, three per node.
   /// @returns false if the nodes' matrix is singular.
   [[nodiscard]] bool factor(const std::vector<double>& K, const std::vector<double>& F,
                             const Trial& trial, const FactorOptions& options);

@@ -20,7 +20,7 @@ class NodeInertia {
   [[nodiscard]] bool take(const State& state);
   /// Assembles masses only, without forces and rotation: for impulses instead of forces, and jumps
   /// of velocities instead of accelerations.
-  /// @param given Jumps of prescribed components, three per node, zero elsewhere; may be empty.
+  /// @param given  Jumps of prescribed components, three per node, zero elsewhere; may be empty.
   [[nodiscard]] bool take_masses(const State& state, std::span<const double> given = {});
   /// Adds the condensed mass and, to `force` by body, the forces of the nodes, all times `scale`.
   void put(double scale, std::vector<Vec6>& force, std::vector<Mat6>& diagonal,

@@ -20,8 +20,8 @@ class NodeSystem {
 
   /// Selects statics: no inertia and no velocities. Before assembling.
   void set_static(bool yes, bool mixed_point = false) { static_ = yes, mixed_point_ = mixed_point; }
-  /// @param tangent Computes tangent() as well.
-  /// @param turns By connected component of the nodes: rotation since the internal unknowns of its
+  /// @param tangent  Computes tangent() as well.
+  /// @param turns  By connected component of the nodes: rotation since the internal unknowns of its
   /// elements were last condensed; used if !tangent.
   ElementReport assemble(const State& state, Trial& trial, bool tangent,
                          const std::vector<Mat3>& turns);

@@ -11,7 +11,7 @@ namespace polhode {
 /// One locked rotation keeps two axes orthogonal (rz locked: x of a and y of b, and so on in
 /// cyclic order), two keep the third axis parallel, three keep all axes parallel.
 ///
-/// @param p free: the free ones.
+/// @param p  free: the free ones.
 /// @throws InputError if a freedom is unknown, given twice, or all six are free.
 [[nodiscard]] JointRecipe generic_joint(const JointFrames& f, const JointParameters& p);
 

@@ -65,7 +65,7 @@ class Joint : public InteractionItem {
   [[nodiscard]] double drive_power(const PairStep& step) const;
 
   /// Enforces the rows by a stiffness, before the system is finished.
-  /// @param stiffest Largest stiffness of all augmented joints [N/m or N m/rad].
+  /// @param stiffest  Largest stiffness of all augmented joints [N/m or N m/rad].
   /// @throws InputError if it has no rows, or a required stiffness is not positive.
   void set_enforcement(const JointEnforcement& enforcement, double stiffest);
   /// Whether springs replace its rows.
@@ -128,7 +128,7 @@ class Joint : public InteractionItem {
   /// Constraint values, rows() of them [m or -].
   [[nodiscard]] Vec6 residual(const PairStep& step) const;
   /// Wrench of a on b by the multipliers of `step`, at its joint point on b.
-  /// @param joint_axes Components along the axes of a's joint frame; else of the world.
+  /// @param joint_axes  Components along the axes of a's joint frame; else of the world.
   [[nodiscard]] Reaction reaction(const PairStep& step, bool joint_axes) const;
 
  private:

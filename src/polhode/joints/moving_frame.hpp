@@ -13,7 +13,7 @@ namespace polhode {
                                     const BodyStep& a, const StepContext& context);
 
 /// Sides of a joint with a moving frame on a, from the sides with the frame at rest.
-/// @param q_alpha, q_n1 At t_{n+αf} and t_{n+1}; the frame's point and axes are replaced.
+/// @param q_alpha, q_n1  At t_{n+αf} and t_{n+1}; the frame's point and axes are replaced.
 /// @eq{moving-frame}
 void move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
                 Configuration& q_alpha, Configuration& q_n1);

@@ -30,8 +30,8 @@ struct RodCoordinates {
     return {};
   }
 
-  /// @param u In the joint axes of a [m].
-  /// @param u_dot Its derivative relative to a [m/s].
+  /// @param u  In the joint axes of a [m].
+  /// @param u_dot  Its derivative relative to a [m/s].
   RodCoordinates(RodKind kind, const Vec3& u, const Vec3& u_dot) {
     const double in_plane = u.y() * u.y() + u.z() * u.z(), across = std::sqrt(in_plane);
     switch (kind) {

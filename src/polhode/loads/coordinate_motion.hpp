@@ -28,7 +28,7 @@ struct CoordinateMotion {
 };
 
 /// Coordinate over a step with its tangents. @eq{free-angle-gradient} @eq{joint-plane}
-/// @param at_n Angle at t_n with counted turns; not used for a displacement.
+/// @param at_n  Angle at t_n with counted turns; not used for a displacement.
 [[nodiscard]] CoordinateMotion coordinate_motion(const JointCoordinate& coordinate,
                                                  const BodyStep& a, const BodyStep& b, double at_n,
                                                  bool conserving);

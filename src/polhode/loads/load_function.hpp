@@ -68,7 +68,7 @@ struct PartAxes {
   /// These axes, placed once more by `outer`.
   [[nodiscard]] PartAxes within(const PartAxes& outer) const;
   /// Map of a vector of the part, in its axes or in those of a body, to one of the whole.
-  /// @param axial A moment: its mirror image is reversed.
+  /// @param axial  A moment: its mirror image is reversed.
   [[nodiscard]] Mat3 vector_map(bool body_fixed, bool axial) const;
 };
 

@@ -17,10 +17,10 @@ class PlanarCurve {
   using Mat2 = Eigen::Matrix2d;
 
   PlanarCurve() = default;
-  /// @param x, y Coordinates over s [m].
-  /// @param length Largest s, or the period of a closed curve.
-  /// @param ends An open curve: it continues straight beyond its ends.
-  /// @param side +1: distances are positive to the right of its direction, −1: to the left.
+  /// @param x, y  Coordinates over s [m].
+  /// @param length  Largest s, or the period of a closed curve.
+  /// @param ends  An open curve: it continues straight beyond its ends.
+  /// @param side  +1: distances are positive to the right of its direction, −1: to the left.
   PlanarCurve(TimeFunctionPtr x, TimeFunctionPtr y, double length, bool ends, double side);
 
   /// A point of the curve.
@@ -60,7 +60,7 @@ class PlanarCurve {
 struct LoadDescription;
 
 /// Curve from a load's laws curve_x and curve_y, values period and open; not known if it has none.
-/// @param prefix Of these words: "", or "other_" for a second curve.
+/// @param prefix  Of these words: "", or "other_" for a second curve.
 [[nodiscard]] PlanarCurve planar_curve(const LoadDescription& load, const std::string& prefix,
                                        double side);
 

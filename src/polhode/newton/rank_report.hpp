@@ -23,7 +23,7 @@ struct RankReport {
 
 /// Rank of G: joint by joint along branches, by elimination of bodies in loops, see loop_rank().
 /// Lengths are measured in ℓ, so that forces and moments are comparable.
-/// @param tolerance Relative size of a row's part normal to the others below which it is redundant
+/// @param tolerance  Relative size of a row's part normal to the others below which it is redundant
 /// [-].
 [[nodiscard]] RankReport rank_report(const System& system, const State& state,
                                      double tolerance = 1e-9);

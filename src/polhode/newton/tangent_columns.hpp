@@ -21,7 +21,7 @@ class TangentColumns {
   /// Compares a column with differences of decreasing displacement until they agree: stiff forces
   /// such as contacts and friction are differentiable only over tiny displacements. Where one-sided
   /// differences disagree and the column is that of one side, it counts as right, at a kink.
-  /// @param residual Residual after the displacement h of this column's unknown.
+  /// @param residual  Residual after the displacement h of this column's unknown.
   template <class Residual>
   void compare(int column, const Vec& analytic, Residual&& residual) {
     Entry best;

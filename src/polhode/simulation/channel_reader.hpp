@@ -15,7 +15,7 @@ class Simulation;
 class ChannelReader {
  public:
   ChannelReader() = default;  ///< Reads nothing.
-  /// @param where Path of the channel's owner, for messages.
+  /// @param where  Path of the channel's owner, for messages.
   /// @throws InputError if there is no such channel.
   ChannelReader(const Simulation& simulation, const SystemMap& map, const ChannelSpec& spec,
                 const std::string& where);

@@ -26,7 +26,7 @@ using ControllerOutputs = std::vector<std::shared_ptr<ControllerOutput>>;
 /// rule. Their memory is part of the State. @eq{controller} @eq{controller-steps}
 class Controllers {
  public:
-  /// @param order Of the method.
+  /// @param order  Of the method.
   /// @throws InputError if a channel does not exist, or a controller is continuous at order 4 or
   /// above or on a mean over the step.
   Controllers(const Simulation& simulation, const SystemMap& map, ControllerOutputs outputs,

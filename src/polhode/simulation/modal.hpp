@@ -30,7 +30,7 @@ class ModalAnalysis {
   [[nodiscard]] const ModesReport& report() const { return report_; }
   /// Motion of a body of the model in a mode: displacement of its centre of mass and small
   /// rotation, world, of the mass-normalised shape; zero for fixed bodies.
-  /// @param imaginary Of the imaginary part of the shape.
+  /// @param imaginary  Of the imaginary part of the shape.
   [[nodiscard]] Vec6 body_shape(int mode, int body, bool imaginary = false) const;
   /// Displacements of the nodes of solids, three each, likewise.
   [[nodiscard]] std::vector<double> node_shapes(int mode, bool imaginary = false) const;

@@ -20,7 +20,7 @@ struct ProbeTarget {
   std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
 };
 
-/// @param where Path of the request, for messages; "": the probe of that name.
+/// @param where  Path of the request, for messages; "": the probe of that name.
 /// @throws InputError if the model has no such object.
 [[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec,
                                        const std::string& where = "");
@@ -32,7 +32,7 @@ class ProbeClock {
   ProbeClock(const ProbeSpec& spec, const OutputSpec& output,
              std::optional<double> last = std::nullopt);
   /// Whether there is a row at the end of this step; if so, advances to the next one.
-  /// @param last The run ends here early: there is a row.
+  /// @param last  The run ends here early: there is a row.
   [[nodiscard]] bool strikes(double t, bool last = false);
 
  private:

@@ -20,7 +20,7 @@ struct ProbeNumber {
 };
 /// Columns, followed by the magnitudes speed, force and moment of vectors.
 [[nodiscard]] std::vector<ProbeNumber> channel_columns(const Model& model, const ProbeSpec& spec);
-/// @param where Path of its name, for messages.
+/// @param where  Path of its name, for messages.
 /// @throws InputError if the model has no such object, or it has no such channel.
 [[nodiscard]] ProbeNumber find_channel(const Model& model, const ChannelSpec& channel,
                                        const std::string& where);

@@ -37,7 +37,7 @@ class Parts {
 
   /// Separates two groups by a distance along the unit vector of the first one's motion, if one of
   /// them is movable.
-  /// @param direction Zero: not known.
+  /// @param direction  Zero: not known.
   bool push(int a, int b, double way, const Vec3& direction, State& state) {
     const double sum = mobility(a) + mobility(b);
     if (sum == 0.0 || direction.isZero() || (a >= 0 && b >= 0 && part(a) == part(b))) return false;

@@ -170,7 +170,7 @@ struct Simulation::Impl {
     forget_reports();
   }
   /// Returns to the time of an event in the step just taken, if there is one.
-  /// @param before Start of the step. @param margin EventWatch::margin() there.
+  /// @param before  Start of the step. @param margin  EventWatch::margin() there.
   void find_event(const Simulation& simulation, const Reached& before, double margin, double limit,
                   StepReport& report);
   /// Evaluates the controllers; the report tells if one cannot act.

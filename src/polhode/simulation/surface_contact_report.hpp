@@ -7,7 +7,7 @@
 namespace polhode {
 
 /// Contact between the surfaces of a pair of sides, at a state.
-/// @param pair Of ContactMap::pairs, one of its sides a solid or a cable.
+/// @param pair  Of ContactMap::pairs, one of its sides a solid or a cable.
 [[nodiscard]] ContactReport surface_report(const System& system, const State& state,
                                            const ContactMap& map, const ContactMap::Pair& pair);
 /// Losses of all surface contacts since the start.

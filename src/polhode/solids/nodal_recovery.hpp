@@ -24,8 +24,8 @@ namespace polhode {
 /// Other elements: values of the elements around a node, averaged by volume. @eq{nodal-stress}
 class NodalRecovery {
  public:
-  /// @param mesh Must outlive this.
-  /// @param moduli Of the material at rest [Pa], for energies; the bulk modulus is positive.
+  /// @param mesh  Must outlive this.
+  /// @param moduli  Of the material at rest [Pa], for energies; the bulk modulus is positive.
   NodalRecovery(const Mesh& mesh, LinearModuli moduli);
   ~NodalRecovery();
   NodalRecovery(NodalRecovery&&) noexcept;

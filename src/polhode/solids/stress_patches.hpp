@@ -24,8 +24,8 @@ class CloudFit {
  public:
   using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, kRecovered>;
 
-  /// @param order Of complete polynomials: 1 or 2.
-  /// @param directions Columns, of any length, not coplanar; null: complete polynomials.
+  /// @param order  Of complete polynomials: 1 or 2.
+  /// @param directions  Columns, of any length, not coplanar; null: complete polynomials.
   CloudFit(std::span<const Vec3> points, int order, const Mat3* directions = nullptr);
 
   /// Monomials at a position: polynomials are sums of them times coefficients.
@@ -53,7 +53,7 @@ class StressPatches {
   /// @param mesh  Must outlive this and satisfy suit().
   explicit StressPatches(const Mesh& mesh);
 
-  /// @param at_corners By element and corner of it: values of the element's own polynomial.
+  /// @param at_corners  By element and corner of it: values of the element's own polynomial.
   /// @returns By node of the mesh.
   [[nodiscard]] RecoveredValues at_nodes(const RecoveredValues& at_corners) const;
 

@@ -93,8 +93,8 @@ class ModalMatrices {
 
 /// Eigenvalues closest to zero of a model with unsymmetric matrices or damping; of conjugate pairs
 /// the one with Im λ ≥ 0. Free motions first, then by |λ|.
-/// @param wanted Smallest number of eigenvalues, if there are as many.
-/// @param freedoms Set to their number where matrices are dense; otherwise unchanged.
+/// @param wanted  Smallest number of eigenvalues, if there are as many.
+/// @param freedoms  Set to their number where matrices are dense; otherwise unchanged.
 [[nodiscard]] std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms);
 
 /// Basis, as orthonormal columns, of the motions admitted by the exact constraints, without

@@ -73,7 +73,7 @@ struct ModesReport {
 /// K is the tangent of statics with its geometric terms and those of the multipliers. Few unknowns
 /// are solved densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted saddle
 /// matrix.
-/// @param equilibrium Velocities are ignored, except for options.spin.
+/// @param equilibrium  Velocities are ignored, except for options.spin.
 [[nodiscard]] ModesReport find_modes(const System& system, const State& equilibrium,
                                      const ModeOptions& options = {});
 

@@ -18,7 +18,7 @@ struct LoadInterval {
 
 /// Load at which stability changes between two equilibria: by bisection, and by linear
 /// interpolation of the vanishing stiffness.
-/// @param first, after Numbers of unstable directions of the one below and the one above.
+/// @param first, after  Numbers of unstable directions of the one below and the one above.
 /// @returns nothing if the equilibrium above lies on another branch.
 [[nodiscard]] std::optional<LimitPoint> locate_stability_change(const System& system,
                                                                 const StaticOptions& options,

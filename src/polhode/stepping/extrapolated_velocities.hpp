@@ -18,7 +18,7 @@ namespace polhode {
 
 /// Extrapolation weights for the mean rates of the last steps, the last one first, to the end of
 /// the last step. @eq{settled-weights}
-/// @param dt Lengths of the last three or four steps, the last one first [s].
+/// @param dt  Lengths of the last three or four steps, the last one first [s].
 /// @returns none if the lengths differ so much that errors would grow.
 [[nodiscard]] std::vector<double> extrapolation_weights(const std::vector<double>& dt);
 

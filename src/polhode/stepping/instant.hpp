@@ -61,12 +61,12 @@ class InstantSolver {
   void set_load_factor(double factor);
   /// Moves bodies onto g = 0 by the smallest mass-weighted displacement (Gauss-Newton). Does
   /// nothing if g is at round-off. Velocities keep their components (v world, W body).
-  /// @param tolerance |g| that counts as assembled if rounding allows no less [m or -].
+  /// @param tolerance  |g| that counts as assembled if rounding allows no less [m or -].
   PositionReport assemble_positions(State& state, double tolerance = 1e-10);
   /// Projects velocities onto G v = 0 by the smallest mass-weighted change.
   VelocityReport project_velocities(State& state);
   /// Accelerations and multipliers at a state.
-  /// @param more Further wrenches by body, such as contacts'; may be empty. World, about the
+  /// @param more  Further wrenches by body, such as contacts'; may be empty. World, about the
   /// centres of mass [N, N m].
   [[nodiscard]] InstantSolution accelerations(const State& state, std::span<const Vec6> more = {});
   /// Prepares velocity jumps at this instant. Solids take part: impulses act on bodies only, and
@@ -82,20 +82,20 @@ class InstantSolver {
   /// Smallest change that takes the velocities onto G v = 0.
   [[nodiscard]] std::vector<Vec6> jumps_to_admissible(const State& state);
   /// Jumps of all velocities at this instant for given jumps of drives.
-  /// @param given Of prescribed components, three per node, zero elsewhere [m/s]; may be empty.
-  /// @param rows Of G v, by row; may be empty.
-  /// @param bodies Out: by body (linear, angular), world.
-  /// @param nodes Out: three per node, including the given ones [m/s].
+  /// @param given  Of prescribed components, three per node, zero elsewhere [m/s]; may be empty.
+  /// @param rows  Of G v, by row; may be empty.
+  /// @param bodies  Out: by body (linear, angular), world.
+  /// @param nodes  Out: three per node, including the given ones [m/s].
   /// @returns false if a matrix is singular.
   [[nodiscard]] bool jumps_by_kinks(const State& state, std::span<const double> given,
                                     std::span<const double> rows, std::vector<Vec6>& bodies,
                                     std::vector<double>& nodes);
   /// Smallest mass-weighted jumps of all velocities at this instant that bring some rows onto G v =
   /// ċ, while others keep their G v.
-  /// @param rows By row: 1 for those.
-  /// @param bodies Out: by body (linear, angular), world.
-  /// @param nodes Out: three per node [m/s].
-  /// @param impulses Out: of the rows [N s or N m s].
+  /// @param rows  By row: 1 for those.
+  /// @param bodies  Out: by body (linear, angular), world.
+  /// @param nodes  Out: three per node [m/s].
+  /// @param impulses  Out: of the rows [N s or N m s].
   /// @returns the kinetic energy of the jumps, which is the loss by the impulses [J]; nothing if a
   /// matrix is singular.
   [[nodiscard]] std::optional<double> jumps_onto(const State& state, std::span<const char> rows,

@@ -40,9 +40,9 @@ class EnergyLedger {
   /// Adds a switch of interactions. Energy lost by impulses is dissipated, a remaining gain is work
   /// of drives; potential energy that disappears is dissipated, new potential energy is input.
   /// @eq{switch-loss}
-  /// @param before Sums before.
-  /// @param lost By impulses [J].
-  /// @param potential Change of potential energy [J].
+  /// @param before  Sums before.
+  /// @param lost  By impulses [J].
+  /// @param potential  Change of potential energy [J].
   void add_switch(State& state, const BodySums& before, double lost, double potential);
   [[nodiscard]] BodySums sums(const State& state) const;
   /// Energy stored by interactions, solids and contacts [J].

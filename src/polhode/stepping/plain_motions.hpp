@@ -17,8 +17,8 @@ struct PlainMotion {
 /// Another basis of a space of free motions, simple ones first: for each connected component the
 /// translations along axes and rotations about axes that are in the space, then the rest. Rotations
 /// are about the centre of mass if a part may also translate.
-/// @param state Positions of bodies and nodes.
-/// @param motions Independent, in the unknowns of bodies and nodes; the entries behind these are
+/// @param state  Positions of bodies and nodes.
+/// @param motions  Independent, in the unknowns of bodies and nodes; the entries behind these are
 /// ignored.
 [[nodiscard]] std::vector<PlainMotion> plain_motions(const System& system, const State& state,
                                                      const SaddleMatrix& matrix,

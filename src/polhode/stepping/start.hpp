@@ -36,7 +36,7 @@ bool start_accelerations(const System& system, State& state, const GeneralizedAl
 
 /// Replaces a, A, ḣ at ρ∞ < 1 after a time at which forces jump: they become those by the forces
 /// just after it. Velocities are unchanged. Without contacts between bodies.
-/// @param t Just after the jump [s].
+/// @param t  Just after the jump [s].
 void restart_accelerations(const System& system, State& state, const GeneralizedAlpha& ga,
                            double t);
 

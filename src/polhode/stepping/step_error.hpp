@@ -9,7 +9,7 @@ namespace polhode {
 /// ℓ, orientations in radians, internal unknowns of elements as they are. With a span H, velocities
 /// times H are included: a step that is too long may end at the right position with velocities that
 /// change the rest of the run.
-/// @param H [s]; 0: without velocities.
+/// @param H  [s]; 0: without velocities.
 [[nodiscard]] double state_difference(const System& system, const State& x, const State& y,
                                       double H);
 

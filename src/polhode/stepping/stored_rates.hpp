@@ -12,7 +12,7 @@ namespace polhode {
 // are not used, State::rates is empty and these functions do nothing. @eq{stored-rates}
 
 /// Allocates the rates; they are those given with set_stored_rate(), else zero.
-/// @param dt Step for which the state's a, A, ḣ hold [s]; 0 if they are those of t_n itself.
+/// @param dt  Step for which the state's a, A, ḣ hold [s]; 0 if they are those of t_n itself.
 void begin_stored_rates(State& state, const GeneralizedAlpha& ga, double dt);
 /// Rate of change of a body's a [m/s³], A [rad/s³], ḣ [N m/s].
 void set_stored_rate(State& state, int slot, const Vec3& a, const Vec3& A, const Vec3& h_dot);

@@ -23,7 +23,7 @@ struct SwitchReport {
 /// Switches interactions at the instant of a state. Positions are unchanged, and velocities too,
 /// unless rows become active: then they jump onto G v = ċ of these by the smallest mass-weighted
 /// amount, with the impulses of all active rows. @eq{switch-impulse} @eq{switch-loss}
-/// @param on, off Indices into System::interactions(); those already in that state are ignored.
+/// @param on, off  Indices into System::interactions(); those already in that state are ignored.
 /// @returns the result; with `worst` or not `solved` the state is unchanged.
 SwitchReport switch_interactions(const System& system, State& state, std::span<const int> on,
                                  std::span<const int> off, EnergyLedger& ledger);

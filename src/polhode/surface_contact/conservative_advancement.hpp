@@ -12,8 +12,8 @@ inline constexpr int kMaxAdvances = 200;
 
 /// Largest part of a displacement, at most `most`, on which features do not come nearer than
 /// `least`, by conservative advancement.
-/// @param distance At the start of the displacement [m].
-/// @param length Upper bound of the approach on all of it [m]. @param clearance (part of the
+/// @param distance  At the start of the displacement [m].
+/// @param length  Upper bound of the approach on all of it [m]. @param clearance  (part of the
 /// displacement) → distance there.
 template <class Clearance>
 [[nodiscard]] double conservative_advancement(double most, double distance, double least,

@@ -44,9 +44,9 @@ struct TriangleAt {
   Vec3 x[4];
 };
 
-/// @param near All triangles within `centre` and the activation distance of the law, at least one:
+/// @param near  All triangles within `centre` and the activation distance of the law, at least one:
 /// the nearest one alone if none is.
-/// @param centre Distance at which the gap is zero [m].
+/// @param centre  Distance at which the gap is zero [m].
 [[nodiscard]] MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& law,
                                double centre);
 
@@ -57,7 +57,7 @@ struct MeshGapStep {
 
   /// Adds the features at both ends. Those beyond kMaxTriangles triangles do not contribute to the
   /// direction of the force; its work is exact all the same.
-  /// @param moves (triangle) → FourMoves.
+  /// @param moves  (triangle) → FourMoves.
   template <class Moves>
   MeshGapStep(const MeshGap& at_n, const MeshGap& at_n1, Moves&& moves) {
     for (const MeshGap* gap : {&at_n1, &at_n})

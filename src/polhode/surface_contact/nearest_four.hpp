@@ -38,7 +38,7 @@ struct NearestFour {
 [[nodiscard]] NearestFour nearest_of_corner(const Vec3 (&x)[4], int a);
 
 /// Nearest points of the edges x_0 x_1 and x_2 x_3, or of given points on them.
-/// @param e_place, f_place From 0 to 1: only this point of the first, the second edge; −1: all.
+/// @param e_place, f_place  From 0 to 1: only this point of the first, the second edge; −1: all.
 [[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place = -1.0,
                                            double f_place = -1.0);
 

@@ -22,7 +22,7 @@ namespace polhode {
 using LoweredLaw = SurfaceLaw (*)(const SurfaceLaw& law, double by);
 /// Distance by which the band starts lower so that it stores this energy at the given gaps, per
 /// area [m].
-/// @param least Smallest value: that of the present law [m]. @eq{surface-turn}
+/// @param least  Smallest value: that of the present law [m]. @eq{surface-turn}
 [[nodiscard]] double lowered_to_store(const SurfaceLaw& law, std::span<const GapTerm> terms,
                                       double energy, double least, LoweredLaw own);
 /// Distance by which the band starts lower so that it exerts this pressure at the given gaps [m];
@@ -63,8 +63,8 @@ struct PointPhase {
   [[nodiscard]] PointPhase at_end(const SurfaceLaw& law, double gap) const;
   /// Turn of an impact: the part e² of the energy remains stored, or as much as balances the
   /// pressure on the point; then it separates, or rests.
-  /// @param terms Terms of its potential at the end of the step.
-  /// @param held Pressure on it by others [Pa]. @returns the released energy per area.
+  /// @param terms  Terms of its potential at the end of the step.
+  /// @param held  Pressure on it by others [Pa]. @returns the released energy per area.
   double turn(const SurfaceLaw& law, std::span<const GapTerm> terms, double held,
               LoweredLaw own = beginning_later);
   /// Turn at a single gap.

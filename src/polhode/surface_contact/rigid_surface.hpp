@@ -33,7 +33,7 @@ struct RigidSurface {
   using Gap = SurfaceGap;
   [[nodiscard]] Gap gap(const Vec3& y, const GapQuery& question) const;
   /// Distance to the surface: the gap, of several features the smallest one.
-  /// @param at_most As in GapQuery, like `sided`.
+  /// @param at_most  As in GapQuery, like `sided`.
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;

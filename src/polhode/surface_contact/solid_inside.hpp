@@ -12,13 +12,13 @@ namespace polhode {
 /// Interior of a solid at an instant, at any distance from its surface.
 class SolidInside {
  public:
-  /// @param boundary The whole boundary, closed.
-  /// @param x Positions of nodes.
+  /// @param boundary  The whole boundary, closed.
+  /// @param x  Positions of nodes.
   SolidInside(const MeshSurface& boundary, const double* x);
 
   /// Overlap of a ball with the solid. Penetration of a face by less than a tenth of the face's
   /// size is ignored: triangles and contact points are no closer to curved faces than that.
-  /// @param radius [m]; 0: a point.
+  /// @param radius  [m]; 0: a point.
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const Vec3& centre, double radius) const;
 
   /// Overlap of the deepest face that lies in another part of the solid, if any does; see

@@ -32,7 +32,7 @@ struct SurfacePoints {
 /// The nodes of faces with straight edges, with their tributary areas, and Gauss points of curved
 /// faces. Both integrate a uniform pressure exactly.
 /// @param X         Reference positions by number [m].
-/// @param left_out Ascending numbers of nodes that are no points; a curved face is left out if all
+/// @param left_out  Ascending numbers of nodes that are no points; a curved face is left out if all
 /// its nodes are among them.
 /// @throws InputError if no point remains.
 [[nodiscard]] SurfacePoints surface_points(const std::string& where, const LoadedFaces& faces,

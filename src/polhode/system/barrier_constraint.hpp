@@ -14,7 +14,7 @@ class BarrierConstraint {
   virtual ~BarrierConstraint() = default;
   /// Appends the clearances of the points at t_{n+1}: 0 at such a configuration, 1 where the
   /// barrier becomes active.
-  /// @param history Of the group, at t_n.
+  /// @param history  Of the group, at t_n.
   virtual void clearances(const NodeStep& step, const double* history,
                           std::vector<double>& list) const = 0;
   /// Largest part, at most 1, of the straight displacement from x_n1 of one step to that of the

@@ -26,7 +26,7 @@ class ChangingSparsity {
   [[nodiscard]] virtual const NodeBlocks& blocks(const double* history) const = 0;
   /// Renews the neighbour list if nodes have moved far since the last search: at the end of a step,
   /// in statics after every iteration.
-  /// @param step From the positions before the last displacement to the present ones.
+  /// @param step  From the positions before the last displacement to the present ones.
   virtual void renew(const NodeStep& step, double* history) const = 0;
 };
 

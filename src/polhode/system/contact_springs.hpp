@@ -33,14 +33,14 @@ class PointwiseContacts {
  public:
   virtual ~PointwiseContacts() = default;
   /// Active points, valid until the next call.
-  /// @param moved By body, the ground last: which bodies have moved since the last call of this
+  /// @param moved  By body, the ground last: which bodies have moved since the last call of this
   /// step; empty for all. Forces between others are those of that call.
   virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
                                                           const StepContext& context,
                                                           std::span<const char> moved) = 0;
   /// Limits predicted increments, pair by pair, near the positions at which impacts in the step
   /// will stop them.
-  /// @param steps Without any motion yet.
+  /// @param steps  Without any motion yet.
   virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
                              std::span<Vec6> increments) const = 0;
 };

@@ -43,9 +43,9 @@ struct SpanningTree {
 /// Code of a joint's shape: equal codes use the same kernel. Free roots have their own.
 [[nodiscard]] int shape_code(const std::optional<MotionBasis>& basis);
 
-/// @param bodies Number of bodies.
-/// @param candidates Joints that may be part of the tree, in the user's order.
-/// @param shapes By interaction: shape code of its motion basis.
+/// @param bodies  Number of bodies.
+/// @param candidates  Joints that may be part of the tree, in the user's order.
+/// @param shapes  By interaction: shape code of its motion basis.
 [[nodiscard]] SpanningTree build_spanning_tree(int bodies, int interactions,
                                                std::span<const TreeCandidate> candidates,
                                                std::span<const int> shapes);

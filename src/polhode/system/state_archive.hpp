@@ -13,7 +13,7 @@ namespace polhode {
 [[nodiscard]] std::string state_bytes(const System& system, const State& state);
 
 /// State restored from these bytes, with bodies in the slots of this system.
-/// @param where First part of the message, e.g. the name of the file.
+/// @param where  First part of the message, e.g. the name of the file.
 /// @throws InputError if the bytes belong to a system of other size or end too early.
 [[nodiscard]] State state_from_bytes(const System& system, std::string_view bytes,
                                      std::string_view where);

@@ -48,11 +48,11 @@ class SurfaceImpacts {
  public:
   virtual ~SurfaceImpacts() = default;
   /// Appends the points in an impact in an accepted step.
-  /// @param history At t_n.
+  /// @param history  At t_n.
   virtual void impacts(const NodeStep& step, const double* history,
                        std::vector<SurfaceImpact>& list) const = 0;
   /// Updates the history, at t_{n+1}, of a point after its turn.
-  /// @param held Force of others on it [N].
+  /// @param held  Force of others on it [N].
   /// @returns the released energy [J].
   virtual double turn(const SurfaceImpact& impact, double held, double* history) const = 0;
   /// Receives the impulse at the end of the step, for its report.

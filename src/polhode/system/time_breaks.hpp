@@ -14,8 +14,8 @@ namespace polhode {
 /// It caches the next breaks only: results depend on the functions alone.
 class TimeBreaks {
  public:
-  /// @param until End of the run [s].
-  /// @param most_derivative Breaks of higher derivatives of the motion are ignored.
+  /// @param until  End of the run [s].
+  /// @param most_derivative  Breaks of higher derivatives of the motion are ignored.
   TimeBreaks(const System& system, double until, int most_derivative = 5);
 
   /// First break after t, up to the end of the run or beyond if t is; of simultaneous breaks the
@@ -25,7 +25,7 @@ class TimeBreaks {
   /// Length of at most h from t, without breaks, over which every function is sampled well: the
   /// effect of the second derivative is below a third of the change over four such lengths, or
   /// negligible. A sine is sampled seven times a period. @eq{sampled-loads}
-  /// @param samples Independent samples in a step of this length.
+  /// @param samples  Independent samples in a step of this length.
   [[nodiscard]] double sampled_length(double t, double h, double samples) const;
 
   [[nodiscard]] bool empty() const { return followed_.empty(); }

@@ -37,7 +37,7 @@ struct ReferenceData {
   AlignedNumbers X, points, volumes, fibres;
   double volume = 0.0;
 
-  /// @param fibres None, one for all, or one per element.
+  /// @param fibres  None, one for all, or one per element.
   /// @throws InputError if an element is inverted or flat.
   ReferenceData(const std::string& where, const ElementKind& kind, std::span<const int> nodes,
                 std::span<const Vec3> X, std::span<const Vec3> fibres, int width);

@@ -35,9 +35,9 @@ struct ElementKind {
 
 /// Element for cells of a shape: "hex8" means hex8_eas9, or hex8_q1p0 for uncoupled materials; a
 /// kind's own name means itself; "" chooses by the shape of the cells.
-/// @param where Path of the solid in the user's model.
-/// @param wanted Name given by the user, may be empty.
-/// @param shape Shape of the cells.
+/// @param where  Path of the solid in the user's model.
+/// @param wanted  Name given by the user, may be empty.
+/// @param shape  Shape of the cells.
 /// @throws InputError if there is none, or it does not support shape or material.
 [[nodiscard]] const ElementKind& choose_element(std::string_view where, std::string_view wanted,
                                                 std::string_view shape, bool uncoupled);

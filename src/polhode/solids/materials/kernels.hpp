@@ -11,7 +11,7 @@ namespace polhode {
 struct LawKernel {
   /// Discrete stress between E_0 and E_1 (the stress itself if they are equal), and its derivative
   /// by E_1 if D is not null.
-  /// @param whole False: of an uncoupled material without its volumetric part.
+  /// @param whole  False: of an uncoupled material without its volumetric part.
   void (*stress)(const void* law, bool whole, const double* E_0, const double* E_1, double* S,
                  double* D);
   /// Strain energy per reference volume.

@@ -60,9 +60,9 @@ struct MaterialPoint {
 };
 
 /// Discrete stress at a single point, for tests, plots and fits. Elements use the kernels.
-/// @param E_0, E_1 Green's strain, order 11 22 33 12 23 31, no factors of two.
-/// @param A Direction of fibres, unit length; not used without fibres.
-/// @param whole False: of an uncoupled material without its volumetric part.
+/// @param E_0, E_1  Green's strain, order 11 22 33 12 23 31, no factors of two.
+/// @param A  Direction of fibres, unit length; not used without fibres.
+/// @param whole  False: of an uncoupled material without its volumetric part.
 [[nodiscard]] MaterialPoint discrete_stress(const Material& material, const Vec6& E_0,
                                             const Vec6& E_1, const Vec3& A = Vec3::UnitX(),
                                             bool whole = true);

@@ -38,7 +38,7 @@ struct LinearModuli {
 [[nodiscard]] std::vector<std::vector<std::string>> isotropic_alternatives();
 
 /// Parameters with defaults, checked for unknown, missing and invalid ones.
-/// @param where Path of the material in the user's model.
+/// @param where  Path of the material in the user's model.
 /// @throws InputError
 [[nodiscard]] ParameterValues checked_values(std::string_view where, const MaterialKind& kind,
                                              const ParameterValues& given);

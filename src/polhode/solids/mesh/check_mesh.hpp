@@ -28,7 +28,7 @@ struct MeshFault {
 std::vector<std::string> check_mesh(const Mesh& mesh);
 
 /// Merges nodes that coincide within a distance; the first of them stays, unused nodes are removed.
-/// @param distance [m]; 0: 1e-9 of the mesh's extent. @returns the number of removed nodes.
+/// @param distance  [m]; 0: 1e-9 of the mesh's extent. @returns the number of removed nodes.
 /// @throws InputError if an element would have the same node twice.
 int merge_duplicate_nodes(Mesh& mesh, double distance = 0.0);
 

@@ -41,18 +41,18 @@ struct MeshGenerator {
 
 /// Generates a mesh, in its own coordinates: centred at the origin, round shapes about z. Place it
 /// with move().
-/// @param where First part of messages, and the mesh's name.
-/// @param parameters By name, lengths in metres; those with a default may be left out.
-/// @param type Type of its elements; empty: the generator's default.
+/// @param where  First part of messages, and the mesh's name.
+/// @param parameters  By name, lengths in metres; those with a default may be left out.
+/// @param type  Type of its elements; empty: the generator's default.
 /// @throws InputError for an unknown generator, parameter or type, a number that is missing, not
 /// positive or not an integer, more than 2e7 nodes, and inverted cells.
 [[nodiscard]] Mesh make_mesh(std::string_view where, std::string_view generator,
                              const MeshParameters& parameters, std::string_view type = {});
 
 /// Mesh from given numbers.
-/// @param elements Indices of nodes, the first node is 0; empty type: by their count (hex8, hex20,
+/// @param elements  Indices of nodes, the first node is 0; empty type: by their count (hex8, hex20,
 /// hex27, tet4, tet10, wedge6, line2, line3).
-/// @param sets Sets of nodes by name.
+/// @param sets  Sets of nodes by name.
 /// @throws InputError for nodes that do not exist, lists of the wrong length, and repeated nodes.
 [[nodiscard]] Mesh inline_mesh(std::string_view where, const std::vector<Vec3>& nodes,
                                const std::vector<std::vector<int>>& elements,

@@ -20,8 +20,8 @@ class FaceIndex;
 /// contents are rejected with their position in the file.
 class MeshBuilder {
  public:
-  /// @param cursor Must outlive the builder; provides positions.
-  /// @param binary Positions are given in bytes, not in lines.
+  /// @param cursor  Must outlive the builder; provides positions.
+  /// @param binary  Positions are given in bytes, not in lines.
   MeshBuilder(const MeshCursor& cursor, bool binary) : cursor_(cursor), binary_(binary) {}
 
   /// Adds a node. @throws InputError for a repeated number, and unreasonable coordinates.

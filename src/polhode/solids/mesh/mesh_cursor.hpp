@@ -51,7 +51,7 @@ class MeshCursor {
   bool swap = false;
 
   /// Rejects an impossible count: each object takes some bytes of the remaining file.
-  /// @param things "nodes", for the message.
+  /// @param things  "nodes", for the message.
   std::size_t count(std::int64_t announced, std::size_t bytes_each, std::string_view things,
                     bool in_binary) const;
 

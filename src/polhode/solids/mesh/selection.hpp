@@ -30,7 +30,7 @@ struct Selection {
 };
 
 /// Union of the nodes of the selections; without selections, all. Ascending, no duplicates.
-/// @param where First part of messages.
+/// @param where  First part of messages.
 /// @throws InputError for an empty selection, with the extent of the mesh; for a nonexistent set,
 /// with the existing names.
 [[nodiscard]] std::vector<int> select_nodes(std::string_view where, const Mesh& mesh,

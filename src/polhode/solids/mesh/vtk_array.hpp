@@ -31,7 +31,7 @@ struct VtkArray {
 };
 
 /// Reads the array of a DataArray tag that has just been read, up to its closing tag.
-/// @param count Required number of values.
+/// @param count  Required number of values.
 /// @throws InputError for another number of values, unknown types, and data that cannot be decoded.
 [[nodiscard]] VtkArray read_vtk_array(MeshCursor& in, XmlTags& xml, const XmlTag& tag,
                                       const VtkEncoding& encoding, std::size_t count);
