@@ -368,7 +368,7 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     settling_.push_back(i);
     PairImpact& r = list.emplace_back(row_at(p, state));
     r.slow = kPressed * slow_speed(p, p.force_n, step_length_);
-    // By the midpoint rule it returns what an impact in the step has pressed into it.
+    // By the midpoint rule it returns the energy that an impact in the step has stored in it.
     r.impact.given = step_length_ * p.report.normal_force;
     r.impact.friction_impulse = step_length_ * p.report.friction_force;
   }

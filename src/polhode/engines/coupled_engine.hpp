@@ -76,7 +76,7 @@ class CoupledEngine final : public NewtonEngine {
   NodeCondensation condensation_;
   NodeSystem nodes_;
   NewtonSystem newton_;
-  std::optional<BodyContactAssembler> touching_;  ///< If bodies may touch.
+  std::optional<BodyContactAssembler> touching_;  ///< If bodies may be in contact.
   bool searches_ = false;                         ///< Line search on the merit, see MeritSearch.
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Vec6> shares_;

@@ -63,7 +63,7 @@ class MeritSearch {
 
   double before_, part_;
   double stands_ = 0.0,
-         too_much_ = 0.0;  ///< The largest part that may stand, the least that may not.
+         too_much_ = 0.0;  ///< Largest accepted part, smallest rejected one.
   int tries_ = 0;
   bool found_ = false;
 };

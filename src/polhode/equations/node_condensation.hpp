@@ -46,8 +46,8 @@ class NodeCondensation {
   /// @returns false if the nodes' matrix is singular.
   [[nodiscard]] bool factor(const std::vector<double>& K, const std::vector<double>& F,
                             const Trial& trial, const FactorOptions& options);
-  /// The same with the blocks outside the graph; if their pattern changes, the matrix is analysed
-  /// again.
+  /// Factors the matrix with the blocks outside the graph; if their pattern changes, the matrix is
+  /// analysed again.
   [[nodiscard]] bool factor(const NodeSystem& nodes, const Trial& trial);
   [[nodiscard]] bool factored() const { return factored_; }
   /// Rotation of each connected component since the factorisation.

@@ -17,7 +17,7 @@ namespace polhode {
 /// truncated, has a coordinate that is no finite number, or has no triangles.
 [[nodiscard]] TriangleSurface read_surface(const std::string& path);
 
-/// As read_surface(), from the bytes of a file already in memory.
+/// Reads a triangle surface like read_surface(), from the bytes of a file in memory.
 /// @param name  First part of messages; its ending chooses the format.
 [[nodiscard]] TriangleSurface parse_surface(const std::string& name, std::string_view bytes);
 

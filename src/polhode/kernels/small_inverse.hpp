@@ -49,7 +49,7 @@ POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
   return true;
 }
 
-/// The same in closed form.
+/// Inverse in closed form.
 template <>
 POLHODE_INLINE bool invert<2>(const double (*D)[8], double (*inverse)[8]) {
   const double det = D[0][0] * D[1][1] - D[0][1] * D[1][0];

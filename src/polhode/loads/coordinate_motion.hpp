@@ -20,7 +20,7 @@ struct CoordinateMotion {
   Vec6 at_n1_a, at_n1_b;        ///< D of at_n1.
   Mat6 D_aa, D_ab, D_ba, D_bb;  ///< D_ij: of mu_i by the increment of j.
 
-  /// The same with the roles of the bodies exchanged.
+  /// The coordinate motion with exchanged roles of the bodies.
   [[nodiscard]] CoordinateMotion exchanged() const {
     return {at_n,    at_alpha, at_n1, mu_b, mu_a, alpha_b, alpha_a,
             at_n1_b, at_n1_a,  D_bb,  D_ba, D_ab, D_aa};

@@ -28,7 +28,7 @@ namespace polhode {
 /// @returns       χ = 2 tan(angle/2) n [-].
 [[nodiscard]] std::optional<Vec3> try_cayley_vector(const Mat3& Lambda);
 
-/// As try_cayley_vector().
+/// Cayley vector of a rotation, see try_cayley_vector().
 /// @throws InputError if the angle is π to rounding (χ would be infinite).
 [[nodiscard]] Vec3 cayley_vector(const Mat3& Lambda);
 

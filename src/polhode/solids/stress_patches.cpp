@@ -159,7 +159,7 @@ void StressPatches::place_points() {
   }
 }
 
-/// By node: number of independent directions normal to the boundary faces at it: 0 inside, 1 on a
+/// Number of independent normals of the boundary faces at each node: 0 inside, 1 on a
 /// face, 2 on an edge, 3 at a corner.
 std::vector<int> StressPatches::boundary_ranks() const {
   std::vector<std::vector<Vec3>> kept(mesh_.nodes.size());  // orthonormal directions

@@ -18,7 +18,7 @@ struct StaticStep {
   bool relaxed = false;  ///< Found by relaxation.
   std::string reason;    ///< If not converged: "diverges" ...
   std::string worst;     ///< Largest increment or residual: "body 'forearm'".
-  std::vector<std::string> free_motions;  ///< Motions without stiffness on the way.
+  std::vector<std::string> free_motions;  ///< Motions without stiffness, found in the search.
 };
 
 /// A load at which the stability of the equilibrium changes: a limit point or a branch.

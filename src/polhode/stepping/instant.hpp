@@ -47,8 +47,7 @@ struct InstantSolution {
 /// The linear system of one instant,
 ///
 ///   [ M  −Gᵀ ] [ x ]   [ f    ]
-///   [ G   ε  ] [ λ ] = [ −γ   ]      with proximal iterations, so that G x = −γ holds to
-///   round-off,
+///   [ G   ε  ] [ λ ] = [ −γ   ]      with proximal iterations: G x = −γ to round-off,
 ///
 /// and its uses: assembling positions, projecting velocities, accelerations. The matrix is
 /// allocated at its first use. Compliant rows are forces here, not constraints.
@@ -120,9 +119,9 @@ class InstantSolver {
 void add_jumps(const System& system, std::span<const Vec6> bodies, std::span<const double> nodes,
                State& state);
 
-/// As InstantSolver::assemble_positions().
+/// Assembles positions, see InstantSolver::assemble_positions().
 PositionReport assemble_positions(const System& system, State& state, double tolerance = 1e-10);
-/// As InstantSolver::project_velocities().
+/// Projects velocities, see InstantSolver::project_velocities().
 VelocityReport project_velocities(const System& system, State& state);
 /// Accelerations and multipliers at t_n for output. Velocities are first projected on a copy, as
 /// those of the step have a constraint-normal error of the order of the method.

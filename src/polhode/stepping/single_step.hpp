@@ -56,7 +56,8 @@ class SingleStep {
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
-  std::vector<int> eager_, lazy_;    ///< Interactions with a history of either sort.
+  std::vector<int> eager_,
+      lazy_;  ///< Interactions whose history is committed in every step, or later.
   std::vector<int> always_queried_;  ///< Interactions whose acceptance is always queried.
   double error_ = 0.0;
   bool jumped_ = false, stopped_ = false;

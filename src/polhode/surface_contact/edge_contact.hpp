@@ -33,7 +33,7 @@ class EdgeContact final : public ElementGroup,
     /// Sum of the radii of the edges; 0: sharp edges, separated by the tolerance [m].
     double radius = 0.0;
     double retreat = 0.0, behind = 0.0;  ///< Of round edges, as of EdgePairData.
-    /// Of round edges, by edge of the first lines: excluded ranges of edges of the second, first
+    /// For round edges, by edge of the first lines: excluded ranges of edges of the second, first
     /// and last.
     std::vector<std::vector<std::array<int, 2>>> left_out = {};
   };

@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// The same value at all times.
+/// A constant function of time.
 class ConstantFunction final : public TimeFunction {
  public:
   explicit ConstantFunction(double value) : value_(value) {}

@@ -21,7 +21,7 @@ inline constexpr const char* kPackedJoints = "/packed/joints";
 /// of its type in order.
 inline constexpr const char* kPackedLoads = "/packed/loads";
 
-/// The same under the names of bodies, joints, loads: bodies/<name>/position is (frames, 3).
+/// Named views of bodies, joints, loads: bodies/<name>/position is (frames, 3).
 inline constexpr const char* kBodies = "/bodies";
 inline constexpr const char* kJoints = "/joints";
 inline constexpr const char* kLoads = "/loads";

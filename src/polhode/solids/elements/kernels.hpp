@@ -110,7 +110,8 @@ struct ElementKernels {
   const ElementKernel* kinds;
 };
 
-/// As material_kernels(). @throws InputError if the machine or the build lacks it.
+/// Kernels of an instruction set, see material_kernels(). @throws InputError if the machine or the
+/// build lacks it.
 [[nodiscard]] const ElementKernels& element_kernels(const std::string& isa);
 
 }  // namespace polhode

@@ -21,7 +21,7 @@ namespace polhode {
 ///         twice, counts that do not match.
 [[nodiscard]] Mesh read_mesh(const std::string& path, double scale = 1.0);
 
-/// As read_mesh(), from the bytes of a file already in memory.
+/// Reads a mesh like read_mesh(), from the bytes of a file in memory.
 /// @param name  First part of messages; its ending chooses the format.
 [[nodiscard]] Mesh parse_mesh(const std::string& name, std::string_view bytes, double scale = 1.0);
 
