@@ -56,8 +56,8 @@ class SingleStep {
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
-  std::vector<int> eager_,
-      lazy_;  ///< Interactions whose history is committed in every step, or later.
+  /// Interactions whose history is committed in every step, and those that only count turns.
+  std::vector<int> eager_, lazy_;
   std::vector<int> always_queried_;  ///< Interactions whose acceptance is always queried.
   double error_ = 0.0;
   bool jumped_ = false, stopped_ = false;
