@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Times for which certificate.json tells orders and bars; tables have all.
+/// Number of times with orders and bars in certificate.json; tables have all.
 constexpr std::size_t kToldTimes = 20;
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
@@ -31,7 +31,7 @@ Json row_of(const Mat& m, Eigen::Index row) {
   return list;
 }
 
-/// "1.25 ms", or "1e-08" of a tolerance.
+/// Text of a setting: "1.25 ms", or "1e-08" for a tolerance.
 std::string setting(const Certificate& c, std::size_t run) {
   return c.automatic ? format("{:.3g}", c.runs[run].setting) : seconds(c.runs[run].setting);
 }
@@ -85,7 +85,7 @@ Json quantity_json(const CertifiedQuantity& q) {
           {"in_time", {{"t", times}, {"error_bar", bars}, {"order", orders}}}};
 }
 
-/// A table of a quantity over time: values of the finest run, extrapolated ones, bar, order.
+/// Writes a table of a quantity over time: values of the finest run, extrapolated ones, bar, order.
 void write_table(const std::string& path, const CertifiedQuantity& q) {
   std::vector<std::string> header{"t [s]"};
   for (const char* what : {"", " extrapolated"})
@@ -105,14 +105,14 @@ void write_table(const std::string& path, const CertifiedQuantity& q) {
   table.flush();
 }
 
-/// "tip_x_y_z.csv".
+/// File name of a table: "tip_x_y_z.csv".
 std::string table_name(const CertifiedQuantity& q) {
   std::string name = q.name();
   std::replace(name.begin(), name.end(), ' ', '_');
   return name + ".csv";
 }
 
-/// Quantities whose bar is more than that part of their size, or that do not converge.
+/// Quantities with a bar of more than that part of their size, or that do not converge.
 std::vector<std::string> too_wide(const Certificate& c, double within) {
   std::vector<std::string> names;
   for (const CertifiedQuantity& q : c.quantities)
@@ -174,7 +174,7 @@ void write_files(const Certificate& c, const std::string& folder, const Json& js
     write_table(folder + "/certificate/" + table_name(q), q);
 }
 
-/// "0.5, -1.25, 0".
+/// Text of values: "0.5, -1.25, 0".
 std::string values_text(const Mat& m, Eigen::Index row) {
   std::string text;
   for (const double x : m.row(row)) text += format("{}{:.7g}", text.empty() ? "" : ", ", x);

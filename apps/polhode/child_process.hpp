@@ -8,21 +8,21 @@
 
 namespace polhode::cli {
 
-/// Path of the first of these programs that there is, by $PATH or as it stands; empty: none.
+/// Path of the first existing one of these programs, by $PATH or as given; empty: none.
 [[nodiscard]] std::string find_program(const std::vector<std::string>& names);
 
-/// Another program that runs, with its own children, and is ended when this goes.
+/// A running program with its children, terminated with this object.
 class ChildProcess {
  public:
-  /// @param input    Where it reads from; -1: nothing.
-  /// @param log      File that takes what it says.
+  /// @param input  Its standard input; -1: none.
+  /// @param log  File of its output.
   /// @throws FileError if it cannot be started.
   ChildProcess(const std::vector<std::string>& words, const std::string& log, int input = -1);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
-  /// Waits for its end. @returns its exit status; 128 if a signal ended it.
+  /// Waits until it ends. @returns its exit status; 128 if a signal ended it.
   int wait();
-  /// Whether it still runs.
+  /// Whether it is still running.
   [[nodiscard]] bool runs();
 
  private:

@@ -10,7 +10,7 @@
 
 namespace polhode::cli {
 
-/// What the program ends with; documented in docs/reference/cli.md.
+/// Exit codes of the program, documented in docs/reference/cli.md.
 enum ExitCode : int {
   kOk = 0,
   kInternalError = 1,  ///< A fault of Polhode.
@@ -18,12 +18,12 @@ enum ExitCode : int {
   kModelInvalid = 3,   ///< The model is wrong.
   kNotConverged = 4,   ///< A step did not converge; the last state was written.
   kInputOutput = 5,    ///< A file could not be read or written.
-  kCheckFailed = 6,    ///< `check` or `doctor` found something.
+  kCheckFailed = 6,    ///< `check` or `doctor` found an error.
   kLimit = 75,         ///< Stopped at --wall-limit, with a checkpoint.
   kInterrupted = 130,  ///< Stopped by Ctrl-C, with a checkpoint.
 };
 
-/// Does the work of a command and returns the exit code.
+/// Function that executes a command and returns the exit code.
 using Action = std::function<int()>;
 
 /// A command of the program.
@@ -33,22 +33,22 @@ struct Command {
   Action (*add_options)(CLI::App& command);
 };
 
-/// Every command, in the order of the help text.
+/// All commands, in the order of the help text.
 [[nodiscard]] const std::vector<Command>& commands();
 
 struct ModelArguments;
-/// --set PATH=VALUE of the commands that read a model.
+/// Adds --set PATH=VALUE to commands that read a model.
 void add_set_option(CLI::App& command, ModelArguments& arguments);
 
-/// --isa SET of the commands that run a model.
+/// Adds --isa SET to commands that run a model.
 void add_isa_option(CLI::App& command, std::string& isa);
-/// --wall-limit SECONDS. @param how  How the command stops, a part of a sentence.
+/// Adds --wall-limit SECONDS. @param how  Way in which the command stops, a part of a sentence.
 void add_wall_limit(CLI::App& command, std::optional<double>& limit, const char* how);
 struct CertifyRequest;
-/// --within PART of the commands that certify.
+/// Adds --within PART to commands that certify.
 void add_within_option(CLI::App& command, CertifyRequest& request);
 
-// One file of commands/ each.
+// Each in one file of commands/.
 Action add_run(CLI::App& command);
 Action add_certify(CLI::App& command);
 Action add_modes(CLI::App& command);

@@ -17,7 +17,7 @@
 namespace polhode::cli {
 
 Model load_model(const ModelArguments& arguments) {
-  (void)read_file(arguments.file);  // A missing file is a matter of input, not of the model.
+  (void)read_file(arguments.file);  // A missing file is an error of input, not of the model.
   return read_model(arguments.file, arguments.overrides);
 }
 
@@ -30,7 +30,8 @@ void print(const std::string& text) {
 
 namespace {
 
-/// A number, alone or with a unit: "12", "-1.5e-3", "3.2 ms"; but no version and no sentence.
+/// Whether a cell is a number, with or without a unit: "12", "-1.5e-3", "3.2 ms"; but not a version
+/// or a sentence.
 bool is_number(const std::string& cell) {
   char* end = nullptr;
   std::strtod(cell.c_str(), &end);
@@ -43,7 +44,7 @@ bool is_number(const std::string& cell) {
 std::string table(const std::vector<std::vector<std::string>>& rows, const std::string& indent,
                   bool numbers_right) {
   std::vector<std::size_t> widths;
-  // Letters beyond ASCII take several bytes, and one place.
+  // Letters beyond ASCII have several bytes, but one column.
   const auto width = [](const std::string& cell) {
     return static_cast<std::size_t>(
         std::count_if(cell.begin(), cell.end(), [](char c) { return (c & 0xC0) != 0x80; }));

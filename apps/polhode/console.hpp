@@ -11,7 +11,7 @@
 
 namespace polhode::cli {
 
-/// A model file as a command names it, with its --set values.
+/// A model file given to a command, with its --set values.
 struct ModelArguments {
   std::string file;
   std::vector<std::string> overrides;
@@ -20,20 +20,20 @@ struct ModelArguments {
 /// Reads the model. @throws FileError if there is no such file; ModelErrors if it is wrong.
 [[nodiscard]] Model load_model(const ModelArguments& arguments);
 
-/// Narration: one line on stderr.
+/// Prints a line on stderr.
 void say(const std::string& line);
-/// Text on stdout, as it is. @throws FileError if stdout takes no more.
+/// Prints text on stdout, unchanged. @throws FileError if stdout cannot be written.
 void print(const std::string& text);
 
-/// Columns side by side, each as wide as its widest cell; numbers, with a unit or without, to the
-/// right.
+/// Table with columns of the width of their widest cell; numbers, with or without a unit, are
+/// aligned right.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows,
                                 const std::string& indent = "  ", bool numbers_right = true);
 
-/// 3 significant figures and a unit that suits: 1.23 s, 45 ms.
+/// Time with 3 significant figures and a suitable unit: 1.23 s, 45 ms.
 [[nodiscard]] std::string seconds(double value);
 
-/// A line on stderr that is written over and over while a run goes on; only on a terminal.
+/// A progress line on stderr that is overwritten during a run; only on a terminal.
 class Progress {
  public:
   Progress(bool wanted, double duration);
@@ -49,7 +49,7 @@ class Progress {
   double first_t_ = -1.0;
 };
 
-/// Seconds of a clock that never jumps.
+/// Monotonic time [s].
 [[nodiscard]] double wall_clock();
 
 }  // namespace polhode::cli

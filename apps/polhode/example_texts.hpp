@@ -6,7 +6,7 @@
 
 namespace polhode::cli {
 
-/// A model of examples/, as it stood when the program was built.
+/// A model of examples/, as of the build of the program.
 struct ExampleText {
   std::string name;  ///< Of its folder.
   std::string text;

@@ -51,7 +51,7 @@ nlohmann::json how_of(const FilmRequest& request, const std::string& kind) {
   return how;
 }
 
-/// Messages of the page up to the one that ends the film or reports a failure.
+/// Receiver of the page's messages up to the one that ends the film or reports a failure.
 class Receiver {
  public:
   Receiver(const FilmRequest& request, const std::string& kind, std::string folder)
@@ -85,8 +85,8 @@ class Receiver {
   std::string how_, output_, folder_, error_;
 };
 
-/// Pictures in a folder as a film that any player takes: even numbers of pixels, 4:2:0, colours of
-/// BT.709, which it names, and its index at the front, so that a browser plays it while it loads.
+/// Encodes pictures in a folder as a widely playable film: even numbers of pixels, 4:2:0, declared
+/// BT.709 colours, and its index at the front, so that a browser plays it while it loads.
 void encode(const std::string& ffmpeg, const std::string& folder, double rate,
             const std::string& output) {
   const std::string log = folder + "/log";
@@ -120,7 +120,7 @@ void encode(const std::string& ffmpeg, const std::string& folder, double rate,
   throw FileError(output, "cannot be written by ffmpeg: " + said, "Name a .gif file");
 }
 
-/// Sets `stop` when a condition holds, looked at from a thread of its own, which ends with this.
+/// Thread that sets `stop` when a condition is true; it ends with this object.
 class Watch {
  public:
   Watch(std::function<bool()> over, std::atomic<bool>& stop)
@@ -169,7 +169,7 @@ void write_film(const FilmRequest& request) {
                                     "--enable-unsafe-swiftshader",
                                     "--hide-scrollbars"};
   if (::geteuid() == 0)
-    words.emplace_back("--no-sandbox");  // Chromium refuses to run as root else.
+    words.emplace_back("--no-sandbox");  // Chromium refuses to run as root otherwise.
   words.push_back(format("http://127.0.0.1:{}/?film", server.port()));
   ChildProcess child(words, folder.path() + "/browser.log");
   std::atomic<bool> stop{false};

@@ -20,11 +20,11 @@ namespace polhode::cli {
 namespace {
 
 constexpr std::size_t kLongestRequest = 16384;
-constexpr int kPatience = 5000;  ///< For a slow request [ms].
+constexpr int kPatience = 5000;  ///< Timeout of a slow request [ms].
 
 constexpr std::size_t kLargestBody = std::size_t{1} << 30;
 
-/// Adds what comes next. @returns whether anything came.
+/// Appends received text. @returns whether there was any.
 bool receive(int connection, std::string& text) {
   std::array<char, 65536> part{};
   pollfd waiting{connection, POLLIN, 0};
@@ -34,7 +34,7 @@ bool receive(int connection, std::string& text) {
   return got > 0;
 }
 
-/// The head of a request and what came behind it; empty if the head does not come to its end.
+/// Header of a request and the text received after it; empty if the header is incomplete.
 std::string read_head(int connection) {
   std::string head;
   while (head.find("\r\n\r\n") == std::string::npos)
@@ -51,7 +51,7 @@ void send_all(int connection, const std::string& bytes) {
   }
 }
 
-/// Value of a line of the head; `name` has small letters.
+/// Value of a header line; `name` is in lower case.
 std::string value_of(const std::string& head, const std::string& name) {
   const std::size_t end = head.find("\r\n\r\n");
   for (std::size_t at = head.find("\r\n"); at < end; at = head.find("\r\n", at + 2)) {

@@ -14,24 +14,24 @@ struct WebAnswer {
   std::string body{};
 };
 
-/// Request of a page.
+/// A request of a page.
 struct WebRequest {
   std::string path;
   bool sent = false;   ///< POST.
-  std::string body{};  ///< What was sent.
+  std::string body{};  ///< Received data.
 };
 
-/// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one connection at a time. Requests whose Host
-/// is not the loopback address are refused, so that no web site can read results by a name that it
-/// lets point here. POST is answered where it is wanted, and only to pages of this server.
+/// Minimal HTTP/1.0 server on 127.0.0.1: answers GET, one connection at a time. Requests with a
+/// Host other than the loopback address are rejected, so that no web site can read results through
+/// a name that resolves to it. POST is accepted if enabled, and only from pages of this server.
 class LoopbackServer {
  public:
-  /// @param port  0: any that is free. @throws FileError if the port cannot be taken.
+  /// @param port  0: any free one. @throws FileError if the port is not available.
   explicit LoopbackServer(int port);
   ~LoopbackServer();
   LoopbackServer(const LoopbackServer&) = delete;
   [[nodiscard]] int port() const { return port_; }
-  /// Answers requests until `stop` is set. @param takes  POST, too.
+  /// Answers requests until `stop` is set. @param takes  Accept POST too.
   void run(const std::function<WebAnswer(const WebRequest& request)>& answer,
            const std::atomic<bool>& stop, bool takes = false) const;
 

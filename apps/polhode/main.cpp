@@ -16,7 +16,7 @@
 namespace polhode::cli {
 namespace {
 
-/// Words a user may have meant: commands, or the options of a command.
+/// Suggestions for a misspelt word: commands, or the options of a command.
 std::string suggestion(const CLI::App& app, const std::string& word) {
   std::vector<std::string> options;
   for (const CLI::Option* option : app.get_options())
@@ -36,7 +36,7 @@ int unknown_command(const std::string& word) {
                                  did_you_mean(word, names), name_list(names)));
 }
 
-/// What CLI11 says, as a sentence.
+/// Message of CLI11 as a sentence.
 std::string sentence(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   return text + ".";

@@ -9,7 +9,7 @@
 
 namespace polhode::cli {
 
-/// Natural frequencies of a model: writes them, prints them, returns the exit code.
+/// Computes the natural frequencies of a model, writes and prints them, and returns the exit code.
 int run_modes(Model model, const ModelArguments& arguments, std::string folder, bool json,
               bool quiet);
 

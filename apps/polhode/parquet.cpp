@@ -23,9 +23,9 @@ namespace polhode::cli {
 
 namespace {
 
-constexpr int kNoLibrary = 64;  ///< What the script ends with where pyarrow is missing.
+constexpr int kNoLibrary = 64;  ///< Exit code of the script if pyarrow is missing.
 
-/// Reads a line of JSON and then the columns, eight bytes each number, and writes them.
+/// Script that reads a line of JSON and then the columns, eight bytes per number, and writes them.
 constexpr const char* kScript = R"(
 import json, sys
 try:

@@ -8,9 +8,9 @@
 
 namespace polhode::cli {
 
-/// Writes channels as a Parquet file, a column for each number and "t" first, with units as
-/// metadata of the columns. Python's pyarrow does it, as a library for C++ brings some hundred
-/// megabytes along: $POLHODE_PYTHON names the Python, else it is python3.
+/// Writes channels as a Parquet file, with a column for each number and "t" first, and units as
+/// metadata of the columns. Python's pyarrow is used, as a C++ library would add some hundred
+/// megabytes: $POLHODE_PYTHON names the Python, else it is python3.
 /// @param names  As for channels_csv(). @throws FileError, InputError if there is no pyarrow.
 void write_parquet(const ResultsReader& results, const std::vector<std::string>& names,
                    const std::string& file);

@@ -46,7 +46,7 @@ std::string summary_json(const RunSummary& s, int exit_code, const std::string& 
       s, {.end = end_name(exit_code), .exit_code = exit_code, .folder = folder, .frames = frames});
 }
 
-/// Rows about the stress in solids: how well their meshes show it.
+/// Adds rows about the quality of the stress in solids on their meshes.
 void add_stress_rows(std::vector<std::vector<std::string>>& rows, const RunSummary& s) {
   for (const RunSummary::SolidStress& solid : s.solids)
     rows.push_back(
@@ -92,7 +92,7 @@ std::string statics_table(const RunSummary& s) {
   return text;
 }
 
-/// "5 shapes", "5 shapes and 2 surfaces".
+/// Number of shapes and surfaces: "5 shapes", "5 shapes and 2 surfaces".
 std::string parties_text(const RunSummary::Contacts& c) {
   std::string surfaces = counted(static_cast<std::size_t>(c.surfaces), "surface", "surfaces");
   if (c.shapes == 0) return surfaces;

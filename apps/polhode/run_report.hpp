@@ -10,22 +10,22 @@
 
 namespace polhode::cli {
 
-/// "finished", "not_converged", "interrupted" or "limit", by the exit code.
+/// Name of an end by the exit code: "finished", "not_converged", "interrupted" or "limit".
 [[nodiscard]] std::string end_name(int exit_code);
 
 /// The figures of a run as one JSON object.
 [[nodiscard]] std::string summary_json(const RunSummary& summary, int exit_code,
                                        const std::string& folder, std::size_t frames);
 
-/// The ledger for people: energy, momenta, constraints, iterations, time by phase.
-/// The same of a static analysis.
+/// Summary of a static analysis, and of a run: ledger of energy and momenta, constraints,
+/// iterations, time by phase, as text.
 [[nodiscard]] std::string statics_table(const RunSummary& summary);
 [[nodiscard]] std::string summary_table(const RunSummary& summary);
 
 /// Provenance of the results of a run of this model. @throws FileError
 [[nodiscard]] Provenance provenance_of(const ModelArguments& model, const RunSummary& summary);
 
-/// "1 body", "3 bodies".
+/// A count with its noun: "1 body", "3 bodies".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& one,
                                   const std::string& many);
 

@@ -10,8 +10,8 @@ namespace polhode::cli {
 
 int serve_view(const ViewRequest& request, int port, bool open) {
   ServedScene scene(request);
-  // Results that cannot be read end the command; a model that is wrong is shown as such, since its
-  // file can be saved again.
+  // Unreadable results end the command; an erroneous model is shown as such, since its file can be
+  // saved again.
   if (!scene.error().empty() && is_results(request.input.file)) {
     say(scene.error());
     return kInputOutput;

@@ -31,7 +31,7 @@ WebAnswer ServedScene::answer(const std::string& path) {
   return {404, "text/plain", "There is no such page.\n"};
 }
 
-/// Changes when a file is saved.
+/// Stamp that changes when a file is saved.
 std::string ServedScene::stamp() const {
   std::string text;
   for (const std::string& file : {request_.input.file, request_.compared}) {

@@ -8,12 +8,12 @@
 
 namespace polhode::cli {
 
-/// The scene of a file as a page asks for it, made anew when the file has changed.
+/// Scene of a file for a page, rebuilt when the file has changed.
 class ServedScene {
  public:
   explicit ServedScene(const ViewRequest& request) : request_(request) { load(); }
   [[nodiscard]] WebAnswer answer(const std::string& path);
-  /// Why there is no scene; empty if there is one.
+  /// Reason why there is no scene; empty if there is one.
   [[nodiscard]] const std::string& error() const { return error_; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace polhode::cli {
 
-/// A folder of its own that is removed, with what is in it, at the end.
+/// A temporary folder that is removed with its contents at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder();  ///< @throws FileError

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Remarks of `polhode check` that a picture of the start can show.
+/// Adds remarks of `polhode check` that a picture of the start can show.
 void add_remarks(const Simulation& simulation, SceneOptions& options) {
   const RankReport rank = rank_report(simulation.system(), simulation.state());
   options.notes.push_back(format("Before the run: mobility {}, {} constraint rows, {} redundant.",
@@ -48,8 +48,8 @@ void add_remarks(const Simulation& simulation, SceneOptions& options) {
                          solid.plan.warnings.end());
 }
 
-/// The start of a model. What overlaps there is refused by a run, but can be shown: it is noted,
-/// its bodies are marked, and nothing touches.
+/// Start of a model. Overlaps, which a run rejects, can be shown: they are noted, the bodies are
+/// marked, and contact is disabled.
 Simulation start_of(Model model, SceneOptions& options) {
   try {
     return Simulation(Model(model));

@@ -16,31 +16,31 @@ const char* viewer_text();
 struct ViewRequest {
   ModelArguments input;
   std::string compared;    ///< A second one, shown as a ghost; empty: none.
-  std::size_t frames = 0;  ///< At most; 0: what fits into SceneOptions::max_bytes.
+  std::size_t frames = 0;  ///< Largest number; 0: as many as fit into SceneOptions::max_bytes.
 };
 
 [[nodiscard]] bool is_results(const std::string& path);
-/// Path of the results file: a folder stands for the results.h5 in it.
+/// Path of the results file; for a folder its results.h5.
 [[nodiscard]] std::string results_path(const std::string& path);
 
 /// Scene of results, or of a model at its assembled start with its mobility and redundant joints.
 /// @throws FileError, ModelErrors, InputError
 [[nodiscard]] SceneData scene_of(const ViewRequest& request);
-/// Scene of what the request compares with. @throws FileError, ModelErrors, InputError
+/// Scene of the results to compare with. @throws FileError, ModelErrors, InputError
 [[nodiscard]] SceneData compared_scene_of(const ViewRequest& request);
 
-/// Writes an archive of the pages of several results, which share one player, and says so unless
+/// Writes an archive of the pages of several results, which share one player, and reports it unless
 /// `quiet`. @throws FileError, InputError if two have the same name
 void write_view_zip(const ViewRequest& request, const std::vector<std::string>& inputs,
                     const std::string& file, bool quiet);
 
-/// Writes the page of results into one file, and says so unless `quiet`. @throws FileError
+/// Writes the page of results into one file, and reports it unless `quiet`. @throws FileError
 void write_view(const ViewRequest& request, const std::string& file, bool quiet);
 
-/// Opens a file or an address in a browser where there is a desktop. @returns whether it tried.
+/// Opens a file or an address in a browser on a desktop. @returns whether it tried.
 bool open_browser(const std::string& address);
 
-/// Serves the page on the loopback address until Ctrl-C. @param port  0: any that is free.
+/// Serves the page on the loopback address until Ctrl-C. @param port  0: any free one.
 int serve_view(const ViewRequest& request, int port, bool open);
 
 }  // namespace polhode::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that a program needs that uses Polhode: describe a model or read one, run it, look at it.
+// Public interface of Polhode: to describe or read a model, run it, and evaluate the results.
 //
 //   polhode::Simulation simulation(polhode::read_model("pendulum.yaml"));
 //   while (simulation.time() < 1.0) simulation.step(1.0);

@@ -30,7 +30,7 @@ int certify_file(Options& options) {
   request.folder =
       keep ? options.folder
            : std::filesystem::path(options.model.file).replace_extension(".certificate").string();
-  // With -o the results of the finest run are kept as `run` would write them.
+  // With -o the results of the finest run are stored as by `run`.
   std::optional<Recorder> recorder;
   if (keep) {
     request.begin = [&](Simulation& s) {

@@ -20,7 +20,7 @@ namespace {
 struct Options {
   ModelArguments model;
   bool tangents = false, json = false;
-  double at = 0.0;  ///< When tangents are compared [s].
+  double at = 0.0;  ///< Time at which tangents are compared [s].
 };
 
 /// Joints, motors and bodies whose motion follows a function of time.
@@ -33,7 +33,7 @@ std::vector<std::string> drives(const Simulation& simulation) {
   return names;
 }
 
-/// What deserves a look though the model can be run.
+/// Conspicuous findings in a model that can be run.
 std::vector<std::string> warnings(const Simulation& simulation, const RankReport& rank) {
   std::vector<std::string> list;
   const StartReport& start = simulation.start_report();
@@ -68,7 +68,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RankReport
   return list;
 }
 
-/// "base (25 nodes), plate (25 nodes)".
+/// Description of interfaces: "base (25 nodes), plate (25 nodes)".
 std::string interfaces_text(const Simulation& simulation, std::size_t solid) {
   const SolidPlan& plan = simulation.solids()[solid].plan;
   const std::vector<std::string> names = simulation.interfaces(static_cast<int>(solid));
@@ -137,7 +137,7 @@ void add_line_rows(const Model& model, std::vector<std::vector<std::string>>& ro
                     format("{:.6g} m free length, {:.6g} kg", cable.length(), cable.mass())});
 }
 
-/// A surface of a solid, or a cable, against a shape or against another one.
+/// Contact of a surface of a solid, or of a cable, with a shape or another surface.
 struct TouchingGroup {
   std::string name;
   const SurfaceLaw& law;
@@ -151,7 +151,7 @@ TouchingGroup touching_group(const Simulation& simulation, const ContactMap::Sur
           group.kind() == EdgeContact::kKind};
 }
 
-/// What surfaces of solids and cables meet, and how.
+/// Contacts of surfaces of solids and cables, and their laws.
 nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const Model& model = simulation.model();
@@ -186,7 +186,7 @@ nlohmann::ordered_json contacts_json(const Simulation& simulation) {
           {"every_pair_kept", simulation.contact_map().all_pairs}};
 }
 
-/// Compares tangents at a time, as far as the model can be run until then.
+/// Compares tangents at a time, or as late as the model can be run.
 TangentReport tangents_of(Simulation& simulation, double at) {
   while (simulation.time() < at) simulation.step(at);
   const AnalysisSpec& analysis = simulation.model().analysis;
@@ -200,7 +200,7 @@ TangentReport tangents_of(Simulation& simulation, double at) {
   return report;
 }
 
-/// Rows of a table: the largest error of each part, and what was not compared.
+/// Adds rows of a table: the largest error of each part, and parts that were not compared.
 void add_tangent_rows(const TangentReport& report, std::vector<std::vector<std::string>>& rows) {
   const bool failed = !(report.error() <= kTangentTolerance);
   rows.push_back({"tangents", format("{:.1e}", report.error()),
@@ -231,7 +231,8 @@ int check(const Options& options) {
   Simulation simulation(load_model(options.model));
   RankReport rank = rank_report(simulation.system(), simulation.state());
   for (const BodySpec& body : simulation.model().bodies)
-    if (body.point_mass && !body.fixed) rank.mobility -= 3;  // turns of a point are no motions
+    // rotations of a point mass are no motions
+    if (body.point_mass && !body.fixed) rank.mobility -= 3;
   const std::vector<std::string> notes = warnings(simulation, rank);
   const StartReport& start = simulation.start_report();
   bool failed = false;
@@ -299,7 +300,7 @@ int check(const Options& options) {
       rows.push_back({"contact", counted(simulation.contact_map().body.size(), "shape", "shapes"),
                       format("no overlaps at the start; results of {} are recorded",
                              counted(simulation.contact_map().pairs.size(), "pair", "pairs"))});
-    if (options.tangents) {  // last: the model may be run for it
+    if (options.tangents) {  // last: the model may have to be run for it
       const TangentReport tangents = tangents_of(simulation, options.at);
       failed = !(tangents.error() <= kTangentTolerance);
       add_tangent_rows(tangents, rows);

@@ -20,7 +20,7 @@ namespace polhode::cli {
 namespace {
 
 struct Options {
-  FilmRequest film;  ///< With the names of both files.
+  FilmRequest film;  ///< Including the names of both files.
   std::vector<std::string> channels;
   std::string size;
 };
@@ -46,7 +46,7 @@ void write_grids(const Options& options) {
   write_vtkhdf(results, model ? &*model : nullptr, options.film.output);
 }
 
-/// "640x400". @returns whether it is one
+/// Reads a size "640x400". @returns whether it is one
 bool read_size(const std::string& text, FilmRequest& film) {
   char behind = 0;
   return text.empty() ||

@@ -19,7 +19,7 @@ namespace polhode::cli {
 
 namespace {
 
-/// One examination: what it looked at and what it found.
+/// Result of one examination.
 struct Finding {
   std::string what, result;
   bool passed = true;
@@ -28,7 +28,7 @@ struct Finding {
 constexpr double kAxial = 2.0, kAcross = 1.0;  // kg m²
 constexpr double kSpin = 3.0, kWobble = 0.5;   // rad/s
 
-/// A symmetric top on which nothing acts.
+/// A free symmetric top.
 Model free_top() {
   Model model;
   model.title = "Free top";
@@ -43,16 +43,16 @@ Model free_top() {
   return model;
 }
 
-/// A free symmetric top: the material angular velocity turns about the axis of symmetry at the
-/// rate (I − I_a)/I W_z (Goldstein, Classical Mechanics, section 5.6), here with I_a the moment
-/// about the axis.
+/// Precession of a free symmetric top: the material angular velocity rotates about the axis of
+/// symmetry at the rate (I − I_a)/I W_z (Goldstein, Classical Mechanics, section 5.6), here with
+/// I_a the moment about the axis.
 Finding known_solution() {
   Simulation simulation(free_top());
   const RunSummary summary = simulation.run();
   const double angle = (kAxial - kAcross) / kAcross * kSpin * simulation.time();
   const Vec3 exact(kWobble * std::cos(angle), kWobble * std::sin(angle), kSpin);
   const double error = (simulation.body(0).W - exact).norm() / exact.norm();
-  // Second order: about (rate · step)²/12 of the turned part, below 1e-6; taken with a margin.
+  // Second order: about (rate · step)²/12 of the angle, below 1e-6; the limit has a margin.
   const bool passed = summary.end == RunEnd::finished && error < 1e-5 &&
                       summary.energy_drift < 1e-12 && summary.angular_momentum_drift < 1e-12;
   return {"known solution",

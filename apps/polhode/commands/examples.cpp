@@ -22,7 +22,7 @@ struct Options {
   std::vector<std::string> sets;
 };
 
-/// The title in a model's text, or "".
+/// Title in a model's text, or "".
 std::string title_of(const std::string& text) {
   constexpr std::string_view kKey = "\ntitle:";
   const std::size_t at = ("\n" + text).find(kKey);
@@ -34,7 +34,8 @@ std::string title_of(const std::string& text) {
   return text.substr(begin + quoted, end - begin - quoted);
 }
 
-/// A generator goes before a folder of its name, which holds one of its sizes.
+/// Whether an example is generated; a generator takes precedence over a folder of its name, which
+/// contains one of its sizes.
 bool is_generated(const std::string& name) {
   const auto& generators = model_generators();
   return std::any_of(generators.begin(), generators.end(),
@@ -108,7 +109,7 @@ Action add_examples(CLI::App& command) {
       else
         write_file_atomically(options->output, text);
       return kOk;
-    } catch (const InputError& error) {  // Arguments are wrong, not a model.
+    } catch (const InputError& error) {  // Wrong arguments, not a wrong model.
       say(error.what());
       return kUsage;
     }

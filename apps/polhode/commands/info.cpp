@@ -23,7 +23,7 @@ namespace polhode::cli {
 
 namespace {
 
-/// Tables of a large model stop after this many lines.
+/// Largest number of lines in tables of a large model.
 constexpr std::size_t kMaxLines = 40;
 
 struct Options {
@@ -32,7 +32,7 @@ struct Options {
   bool json = false;
 };
 
-/// A kind of joint, load or shape as the listing shows it.
+/// A kind of joint, load or shape in the listing.
 struct KindLine {
   std::string name, meaning, more;
   std::vector<std::string> takes;

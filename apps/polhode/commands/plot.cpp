@@ -23,7 +23,7 @@ std::string time_label(const ResultsReader& results, const std::string& path) {
   try {
     const auto folder = std::filesystem::absolute(path).parent_path().string();
     if (model_of_results(results, folder).analysis.type == "statics") return "load factor [-]";
-  } catch (const std::exception&) {  // A model that is lost leaves the time.
+  } catch (const std::exception&) {  // Without the model only the time is left.
   }
   return "t [s]";
 }

@@ -81,7 +81,7 @@ int exit_code(const RunSummary& summary, bool limit_reached) {
   return limit_reached ? kLimit : kInterrupted;
 }
 
-/// Writes the page of the results into their folder, and opens it where there is a desktop.
+/// Writes the page of the results into their folder, and opens it on a desktop.
 void show_results(const std::string& folder, bool quiet) {
   ViewRequest request;
   request.input.file = folder;
@@ -132,7 +132,7 @@ int run(const Options& options) {
                      &stop_wanted);
   progress.clear();
 
-  // The last state belongs to the results of a run that has come to its end or to a halt.
+  // The last state is part of the results of a finished or failed run.
   if (summary.end == RunEnd::finished || summary.end == RunEnd::not_converged)
     recorder.frame(simulation);
   recorder.close();

@@ -16,8 +16,8 @@ using Mat9 = Eigen::Matrix<double, 9, 9>;
 using Mat15x9 = Eigen::Matrix<double, 15, 9>;
 using HistoryVec = Eigen::Map<const Vec6>;
 
-/// Σ w Δι² below which Δe would be lost in round-off: the gradient is then averaged along Δι by
-/// Gauss's rule, whose defect, of the fifth order in Δι, is below it.
+/// Σ w Δι² below which Δe would be lost in round-off. The gradient is then averaged along Δι by
+/// Gauss's rule, whose error, of the fifth order in Δι, is smaller.
 constexpr double kLittleChange = 1e-8;
 constexpr std::array<double, 2> kGaussPoints{0.21132486540518711775, 0.78867513459481288225};
 constexpr std::array<double, 2> kMiddle{0.5, 0.5};
@@ -31,7 +31,7 @@ Vec3 averaged(double alpha, const Vec3& n, const Vec3& n1) {
 
 /// Ends of the element over the step.
 struct Ends {
-  Carried z_1, z_2;  ///< Arms of the end points.
+  Carried z_1, z_2;  ///< Lever arms of the end points.
   BeamFrames n, alpha, n1;
 
   Ends(const BeamEnd& end_1, const BeamEnd& end_2, const PairStep& step) {
@@ -64,7 +64,8 @@ Mat15x9 invariants_by_motion(const BeamFrames& at, const BeamFrames& of) {
   return D;
 }
 
-/// Derivative of invariants_by_motion(alpha, alpha)ᵀ p by the motion, p held: geometric stiffness.
+/// Derivative of invariants_by_motion(alpha, alpha)ᵀ p by the motion at constant p: geometric
+/// stiffness.
 Mat9 frames_turned(const BeamFrames& alpha, const BeamFrames& n1, const Vec15& p) {
   const Vec3 p_a = p.segment<3>(0), p_b = p.segment<3>(3);
   const Eigen::Map<const Mat3> P(p.data() + 6);
@@ -89,7 +90,7 @@ Mat9 frames_turned(const BeamFrames& alpha, const BeamFrames& n1, const Vec15& p
   return K;
 }
 
-/// Weights that make all invariants lengths over L.
+/// Weights that turn all invariants into lengths over L.
 Vec15 metric(double L) {
   Vec15 w = Vec15::Ones();
   w.head<6>().setConstant(1.0 / (L * L));
@@ -114,12 +115,12 @@ void put_tangents(const Mat9& K, const Ends& ends, double alpha_f, const Vec3& f
   on_1(by_2, t.D_ab);
   on_2(by_1, t.D_ba);
   on_2(by_2, t.D_bb);
-  // The arms turn: @eq{ga-moment-tangent}
+  // The lever arms rotate: @eq{ga-moment-tangent}
   t.D_aa.bottomRightCorner<3, 3>() += alpha_f * hat_hat(f_2, ends.z_1.at_n1);
   t.D_bb.bottomRightCorner<3, 3>() -= alpha_f * hat_hat(f_2, ends.z_2.at_n1);
 }
 
-/// δ(Δp, θ_1, θ_2) of increments (Δr, Δθ) of both bodies.
+/// δ(Δp, θ_1, θ_2) for increments (Δr, Δθ) of both bodies.
 Vec9 relative_motion(const Vec6& of_1, const Vec6& of_2, const Vec3& z_1, const Vec3& z_2) {
   Vec9 y;
   y << of_2.head<3>() + of_2.tail<3>().cross(z_2) - of_1.head<3>() - of_1.tail<3>().cross(z_1),
@@ -196,7 +197,7 @@ Vec6 BeamElement::strains(const PairStep& step) const {
   return beam_strain_values(invariants_n1(step), L_) - e_ref_;
 }
 
-/// ė at t_{n+1} as the bodies move.
+/// ė at t_{n+1} from the bodies' velocities.
 Vec6 BeamElement::strain_rate_now(const PairStep& step) const {
   const BodyStep &a = step.a, &b = step.b;
   const Ends ends(end_1_, end_2_, step);
@@ -208,7 +209,8 @@ Vec6 BeamElement::strain_rate_now(const PairStep& step) const {
           relative_motion(of_1, of_2, ends.z_1.at_n1, ends.z_2.at_n1));
 }
 
-/// Newmark in the strains: second order for every ρ∞, and Δe/Δt at ρ∞ = 1. @eq{beam-strain-rate}
+/// Strain rate by Newmark's formulas: second order for every ρ∞, and Δe/Δt at ρ∞ = 1.
+/// @eq{beam-strain-rate}
 Vec6 BeamElement::strain_rate(const PairStep& step, const Vec6& De) const {
   const StepContext& c = step.context;
   if (c.dt == 0.0) return strain_rate_now(step);
@@ -218,11 +220,12 @@ Vec6 BeamElement::strain_rate(const PairStep& step, const Vec6& De) const {
   return (1.0 - c.ga.alpha_f) * rate_n + c.ga.alpha_f * rate_n1;
 }
 
-/// The force of an element on its invariants, and what the tangent needs.
+/// Force of an element conjugate to its invariants, and the data of its tangent.
 struct BeamElement::Forces {
-  Vec15 p;                ///< Work-conjugate to Δι [N or N m].
-  Vec15 p_geo;            ///< What the frames' turning acts on: p, but in mixed-point iterations.
-  Mat15 by_alpha, by_n1;  ///< ∂p by ι_{n+αf} and by ι_{n+1}; by_alpha counts if not conserving.
+  Vec15 p;  ///< Work-conjugate to Δι [N or N m].
+  /// Part on which the rotation of the frames acts: p, except in mixed-point iterations.
+  Vec15 p_geo;
+  Mat15 by_alpha, by_n1;  ///< ∂p by ι_{n+αf} and by ι_{n+1}; by_alpha only if not conserving.
   bool has_n1 = false;
 };
 
@@ -285,7 +288,7 @@ void BeamElement::plain_forces(const PairStep& step, const Vec15& iota_n, const 
               (((stiffening(c) - c.ga.alpha_f) * L_) * (C_ * beam_strains(iota_n1, L_).by_iota));
 }
 
-/// What σ/(C L) gains with a strain at t_{n+1}.
+/// Derivative of σ/(C L) by a strain at t_{n+1}.
 double BeamElement::stiffening(const StepContext& c) const {
   const double rate = viscous() && c.dt != 0.0 ? tau_ * c.ga.c / c.dt : 0.0;
   return c.ga.alpha_f * (1.0 + rate);
@@ -304,7 +307,7 @@ void BeamElement::evaluate(const PairStep& step, PairTerms& t) const {
     plain_forces(step, iota_n, iota_n1, beam_invariants(ends.alpha), f);
 
   const Mat15x9 by_motion = invariants_by_motion(ends.alpha, ends.alpha);
-  const Vec9 F = by_motion.transpose() * f.p;  // (f_2, m_1, m_2): what deforms the element
+  const Vec9 F = by_motion.transpose() * f.p;  // (f_2, m_1, m_2): forces that deform the element
   const Vec3 f_2 = F.head<3>();
   const Vec3 &z_1 = ends.z_1.at_alpha, &z_2 = ends.z_2.at_alpha;
   t.wrench_a << f_2, z_1.cross(f_2) - F.segment<3>(3);

@@ -10,13 +10,13 @@ namespace polhode {
 /// Largest angle between the ends of one element [rad]: near π its strains are not defined.
 inline constexpr double kLargestBeamAngle = 2.5;
 
-/// Where one end of an element sits in its body.
+/// Position of one end of an element in its body.
 struct BeamEnd {
   Vec3 Z = Vec3::Zero();      ///< From the centre of mass, body axes [m]; ground: world.
   Mat3 Q = Mat3::Identity();  ///< Section frame, body components (ground: world), x along the beam.
 };
 
-/// What makes a beam element. Its elastic energy is ½ L (e − e_ref)ᵀ C (e − e_ref).
+/// Description of a beam element. Its elastic energy is ½ L (e − e_ref)ᵀ C (e − e_ref).
 struct BeamElementSpec {
   std::string name;
   Participants bodies;  ///< Ends 1 and 2.
@@ -24,27 +24,28 @@ struct BeamElementSpec {
   Mat6 stiffness = Mat6::Zero();  ///< C: (N, V_y, V_z, M_x, M_y, M_z) by strain, section axes.
   double length = 0.0;            ///< L, reference [m].
   Vec6 reference_strain = Vec6::Unit(0);
-  /// Adds the bending that linearly varying moments cause within the element to its shear
-  /// flexibility: end loads then bend a straight element exactly. C as given, otherwise.
+  /// Adds the bending due to linearly varying moments within the element to its shear flexibility:
+  /// end loads then bend a straight element exactly. Otherwise C is used as given.
   bool residual_bending_flexibility = true;
   /// m_12 of the translational mass; the row sums belong to the bodies. Needs Z = 0. [kg]
   double coupled_mass = 0.0;
-  double relaxation_time = 0.0;  ///< Kelvin-Voigt: viscous section forces are this times C ė [s].
+  double relaxation_time = 0.0;  ///< Kelvin-Voigt: viscous section forces are C ė times this [s].
 };
 
-/// Length and reference strains of an element that is free of stress where its ends are now. The
-/// length is that of the arc of constant curvature and twist between the ends.
+/// Sets length and reference strains so that the element is free of stress with its ends at their
+/// present positions. The length is that of the arc of constant curvature and twist between the
+/// ends.
 /// @throws InputError if the ends coincide, or include more than kLargestBeamAngle.
 void set_reference(BeamElementSpec& spec, const BodyStep& body_1, const BodyStep& body_2);
 
-/// C with the residual bending flexibility of an element of length L: the flexibility C⁻¹ gains
-/// L²/12 times the bending flexibility on its shears. (For the shear-deformable beam with one
+/// C with the residual bending flexibility of an element of length L: L²/12 times the bending
+/// flexibility is added to the shear terms of C⁻¹. (For the shear-deformable beam with one
 /// integration point: MacNeal, Computers & Structures 8 (1978) 175-183.)
 [[nodiscard]] Mat6 with_residual_flexibility(const Mat6& C, double L);
 
 /// A two-node, geometrically exact beam element between bodies. In conserving form the force is a
-/// discrete gradient of the energy, so at ρ∞ = 1 it gives back exactly what it stored, whatever the
-/// step, and leaves both momenta alone. Derivation: docs/theory/beams.md.
+/// discrete gradient of the energy, so at ρ∞ = 1 energy is conserved exactly for any step, and so
+/// are both momenta. Derivation: docs/theory/beams.md.
 class BeamElement : public InteractionItem {
  public:
   static constexpr const char* kKind = "beam";
@@ -70,7 +71,7 @@ class BeamElement : public InteractionItem {
 
   /// (N, V_y, V_z, M_x, M_y, M_z) of the elastic strains at t_{n+1}, section axes [N, N m].
   [[nodiscard]] Vec6 section_forces(const PairStep& step) const;
-  /// (Γ, K) less those free of stress, at t_{n+1} [-, 1/m].
+  /// Strains (Γ, K) minus those free of stress, at t_{n+1} [-, 1/m].
   [[nodiscard]] Vec6 strains(const PairStep& step) const;
   [[nodiscard]] double length() const { return L_; }
 

@@ -14,7 +14,7 @@ using Mat3x9 = Eigen::Matrix<double, 3, 9>;
 using Mat4x9 = Eigen::Matrix<double, 4, 9>;
 
 /// φ = f(|v|², c) v for v = axial vector of R and c = ½(tr R − 1), f = atan2(s, c)/s with s = |v|;
-/// s² and c count as independent, as R may be an average of rotations.
+/// s² and c are treated as independent, as R may be an average of rotations.
 struct Logarithm {
   Vec3 v, phi;
   double c = 0.0, s2 = 0.0, r2 = 0.0;
@@ -97,8 +97,8 @@ Vec15 beam_invariants(const BeamFrames& frames) {
   return iota;
 }
 
-/// From the partial fractions of the cotangent, η = Σ_n 2/(4π²n² − x): the first term, and the
-/// rest as a power series whose coefficients fall by 1/4 of (x/4π²).
+/// η by the partial fractions of the cotangent, η = Σ_n 2/(4π²n² − x): the first term, and the rest
+/// as a power series whose coefficients decrease by 1/4 of (x/4π²).
 Eta beam_eta(double x) {
   constexpr int kTerms = 14;
   static const std::array<double, kTerms> rest = [] {  // ζ(2k) − 1

@@ -14,7 +14,7 @@ namespace {
 using Row12 = Eigen::Matrix<double, 1, 12>;  ///< Derivative by (Δr_a, Δθ_a, Δr_b, Δθ_b).
 using Mat3x12 = Eigen::Matrix<double, 3, 12>;
 
-/// Below this part of the free length the points coincide and give no direction.
+/// Part of the free length below which the points coincide and define no direction.
 constexpr double kNoLength = 1e-14;
 
 Vec3 point_velocity(const BodyStep& body, const Carried& z) {
@@ -81,7 +81,7 @@ Cable::Stretch Cable::stretch(const PairStep& step) const {
     x.l_alpha = (1.0 - af) * l_n + af * x.l_n1;
     x.taut = (1.0 - af) * taut(s_n) + af * taut(s_n1);
     x.D_taut = is_taut(s_n1) ? af : 0.0;
-    if (is_taut(s_n) != is_taut(s_n1)) {  // the switch lies within the step
+    if (is_taut(s_n) != is_taut(s_n1)) {  // the transition lies within the step
       x.ratio = (taut(s_n1) - taut(s_n)) / (s_n1 - s_n);
       x.D_ratio = ((is_taut(s_n1) ? 1.0 : 0.0) - x.ratio) / (s_n1 - s_n);
     } else {
@@ -120,7 +120,7 @@ void Cable::evaluate(const PairStep& step, PairTerms& t) const {
     D_u_n1 << -Mat3::Identity(), hat(x.z_a.at_n1), Mat3::Identity(), -hat(x.z_b.at_n1);
     const Mat3x12 D_u = af * D_u_n1;
     const auto per = [&](double length) { return length > 0.0 ? 1.0 / length : 0.0; };
-    // The length that s, and with the engineering strain also ϱ, is a function of.
+    // The length of which s, and with the engineering strain also ϱ, is a function.
     const Row12 D_l = conserving ? Row12(per(x.l_n1) * x.u_n1.transpose() * D_u_n1)
                                  : Row12(per(x.l_alpha) * x.u_alpha.transpose() * D_u);
     const double l = conserving ? x.l_n1 : x.l_alpha;

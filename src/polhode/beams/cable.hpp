@@ -6,7 +6,8 @@
 
 namespace polhode {
 
-/// What makes a straight elastic bar or a piece of cable between a point of a and a point of b.
+/// Description of a straight elastic bar or a segment of cable between a point of a and a point of
+/// b.
 struct CableSpec {
   std::string name;
   Participants bodies;
@@ -19,7 +20,7 @@ struct CableSpec {
   double coupled_mass = 0.0;  ///< m_ab; needs Z = 0. The row sums belong to the bodies. [kg]
 };
 
-/// A straight piece of cable, a truss member.
+/// A straight segment of cable, or a truss member.
 ///
 /// With a measure s(l), s = l or l²/(2L), the energy is ½ (EA/L) (y − s_0)², s_0 = s(L), y = s or,
 /// of a cable, max(s, s_0). As u·u is quadratic, Δs = u_α·Δu/ϱ with ϱ = l_α or L, and the force
@@ -27,8 +28,8 @@ struct CableSpec {
 ///   F = −N u_α/ϱ,  N = r [EA/L (y_α − s_0) + c r ṡ_α],  r = Δy/Δs,  ṡ_α = u_α·u̇_α/ϱ
 ///   @eq{cable-gradient}
 ///
-/// on b gives back what was stored exactly, also in a step in which the cable becomes taut or
-/// slack. The damper of a cable works on its elongation while taut.
+/// on b conserves the energy exactly, also in a step in which the cable becomes taut or slack. The
+/// damper of a cable acts on its elongation while taut.
 class Cable : public InteractionItem {
  public:
   static constexpr const char* kKind = "cable";

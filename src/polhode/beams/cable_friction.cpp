@@ -10,9 +10,9 @@ namespace polhode {
 
 namespace {
 
-/// Sweeps over the points after which the direction of slip is taken as found.
+/// Largest number of Gauss-Seidel sweeps over the points in the search for the slip directions.
 constexpr int kMaxGripSweeps = 5000;
-/// A sweep that changes no tension by more than this part of the largest one is the last.
+/// Change of tension in a sweep, as a part of the largest one, at which the sweeps end.
 constexpr double kGripFound = 1e-14;
 
 }  // namespace
@@ -31,7 +31,8 @@ Vec CableFriction::by_slip(Eigen::Index point) const {
   return change;
 }
 
-/// Gauss-Seidel: each point slips until it just holds. The matrix is diagonally dominant.
+/// Slip by Gauss-Seidel iteration: each point slips until it just sticks. The matrix is diagonally
+/// dominant.
 CableFriction::Slip CableFriction::search(Vec N, const Vec& a, const Vec& b) const {
   const Eigen::Index points = k_.size() - 1;
   Slip slip{Vec::Zero(points), std::vector<int>(static_cast<std::size_t>(points), 0)};
@@ -62,7 +63,7 @@ CableFriction::Slip CableFriction::search(Vec N, const Vec& a, const Vec& b) con
 CableFriction::Held CableFriction::hold(const Vec& trial, const Vec& ratio) const {
   const Eigen::Index pieces = k_.size(), points = pieces - 1;
   Held held{trial, Mat::Identity(pieces, pieces), Mat::Zero(pieces, points), false};
-  // Σ N_k/k_k is what slip does not change: a cable that is slack on the whole is so everywhere.
+  // Σ N_k/k_k is invariant under slip: a cable that is slack on the whole is slack everywhere.
   const Vec share = k_.cwiseInverse() / k_.cwiseInverse().sum();
   const double mean = share.dot(trial);
   if (mean <= 0.0) {
@@ -77,7 +78,7 @@ CableFriction::Held CableFriction::hold(const Vec& trial, const Vec& ratio) cons
     if (slip.sign[static_cast<std::size_t>(j)] != 0) active.push_back(j);
   if (active.empty()) return held;
   held.slips = true;
-  // With the directions known the slips are those of linear equations, rows·(N + ways·q) = 0.
+  // With known directions the slips solve linear equations, rows·(N + ways·q) = 0.
   const auto count = static_cast<Eigen::Index>(active.size());
   Mat rows = Mat::Zero(count, pieces), ways(pieces, count);
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -12,13 +12,13 @@ namespace polhode {
 
 namespace {
 
-/// Below this part of a metre two points coincide and give no direction.
+/// Part of a metre below which two points coincide and define no direction.
 constexpr double kNoSpan = 1e-14;
-/// Changes of the length below this part of it have no difference quotient worth the name.
+/// Relative change of the length below which difference quotients are inaccurate.
 constexpr double kShortWay = 1e-4;
-/// α_f of a step whose mean velocities are differences.
+/// α_f for which mean velocities of the step are difference quotients.
 constexpr double kMidpoint = 0.5;
-/// Fibres are never shorter than this part of their optimal length.
+/// Smallest fibre length, as a part of the optimal length.
 constexpr double kShortestFibre = 1e-2;
 
 }  // namespace
@@ -118,7 +118,7 @@ RunningCable::Tension RunningCable::tension(const NodeStep& step, const Course& 
   const double af = step.alpha_f, shift = 2.0 * af - 1.0;
   const double low = c.n1 - (1.0 - shift) * c.change, way = c.n1 - low;
   const Law end = elastic(c.n1);
-  // The mean from low to L_{n+1}: at ρ∞ = 1 the change of the energy over that of the length.
+  // Mean from low to L_{n+1}: at ρ∞ = 1 the change of the energy over that of the length.
   double taut_part = taut(c.n1) ? 1.0 : 0.0;
   if (!step.context.conserving || way == 0.0) {
     const Law law = elastic((1.0 - af) * c.n + af * c.n1);

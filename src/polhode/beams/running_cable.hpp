@@ -14,7 +14,7 @@
 
 namespace polhode {
 
-/// What makes a cable that runs over its points.
+/// Description of a cable that runs over its points.
 struct RunningCableSpec {
   std::string name;
   std::vector<int> nodes;    ///< Of the System, bonded to bodies, from end to end.
@@ -22,23 +22,24 @@ struct RunningCableSpec {
   double free_length = 0.0;  ///< [m]
   double damping = 0.0;      ///< Force per rate of elongation, while taut [N s/m].
   bool tension_only = true;  ///< Slack when shorter than its free length.
-  TimeFunctionPtr tension;   ///< Beside that; null: none [N].
+  TimeFunctionPtr tension;   ///< Additional tension; null: none [N].
   std::optional<HillMuscle> muscle;
-  double friction = 0.0;        ///< On each point between the ends: coefficient μ [-].
-  std::vector<double> wrapped;  ///< Angles about these points beside the cable's turn [rad].
-  std::vector<double> pieces;   ///< With friction: free lengths from point to point [m].
+  double friction = 0.0;  ///< On each point between the ends: coefficient μ [-].
+  /// Wrap angles about these points in addition to the cable's change of direction [rad].
+  std::vector<double> wrapped;
+  std::vector<double> pieces;  ///< With friction: free lengths from point to point [m].
 };
 
-/// A cable without mass that slides over points of any number of bodies: one tension N in all its
-/// spans, a function of its whole length L = Σ l_i, its rate and time. With friction it is the mean
-/// of the spans' tensions, see CableFriction.
+/// A massless cable that runs over points of any number of bodies: one tension N in all its spans,
+/// a function of its total length L = Σ l_i, its rate and time. With friction N is the mean of the
+/// spans' tensions, see CableFriction.
 ///
-/// On a point between two spans acts N (n_i − n_{i−1}), n_i = u_{i,α}/l_{i,α}, with discrete
-/// gradients of the lengths of the spans: ΔL = Σ n_i·Δu_i. With the mean of its elastic tension
-/// over the step a cable gives back what it stored exactly at ρ∞ = 1. @eq{running-cable}
+/// The force on a point between two spans is N (n_i − n_{i−1}), n_i = u_{i,α}/l_{i,α}, with
+/// discrete gradients of the lengths of the spans: ΔL = Σ n_i·Δu_i. With the mean of its elastic
+/// tension over the step a cable conserves its energy exactly at ρ∞ = 1. @eq{running-cable}
 class RunningCable : public ElementGroup {
  public:
-  /// @throws InputError if a number makes no sense.
+  /// @throws InputError for invalid numbers.
   explicit RunningCable(RunningCableSpec spec);
 
   [[nodiscard]] std::string kind() const override { return "running cable"; }
@@ -55,7 +56,7 @@ class RunningCable : public ElementGroup {
     return spec_.damping > 0.0 || spec_.muscle || friction_;
   }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const override;
-  /// With friction, of each span the part of its tension that the mean does not say [N].
+  /// With friction: deviation of each span's tension from the mean [N].
   [[nodiscard]] std::size_t history_size() const override {
     return friction_ ? spec_.nodes.size() - 1 : 0;
   }
@@ -90,12 +91,13 @@ class RunningCable : public ElementGroup {
   /// Tensions of the spans with friction.
   struct Grip {
     CableFriction::Held held;
-    Mat by_change;                  ///< Of the trial, by the changes of the spans' lengths [N/m].
-    Vec parts;                      ///< At t_{n+1}, beside the mean [N].
-    std::vector<Vec3> turn_first;   ///< At each point: derivative of the turn by the motion of its
-    std::vector<Vec3> turn_second;  ///< first span's end against its start; of its second [1/m].
+    Mat by_change;  ///< Of the trial, by the changes of the spans' lengths [N/m].
+    Vec parts;      ///< At t_{n+1}, in addition to the mean [N].
+    /// By point: derivative of the turning angle by the first span vector [1/m].
+    std::vector<Vec3> turn_first;
+    std::vector<Vec3> turn_second;  ///< Likewise, by the second span vector.
   };
-  /// A force of the length: value and slope.
+  /// A force as a function of the length: value and slope.
   struct Law {
     double value = 0.0, slope = 0.0;
   };
@@ -111,7 +113,7 @@ class RunningCable : public ElementGroup {
     return Eigen::Map<const Vec>(history, static_cast<Eigen::Index>(history_size()));
   }
   void add_friction();
-  /// Elastic force at a length, muscle's passive one included.
+  /// Elastic force at a length, including the passive one of a muscle.
   [[nodiscard]] Law elastic(double length) const;
   [[nodiscard]] double energy(double length) const;
   [[nodiscard]] bool taut(double length) const {

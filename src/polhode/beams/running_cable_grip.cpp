@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction of a running cable: from its course to the tensions of its spans and back.
+// Friction of a running cable: from its lengths to the tensions of its spans and back.
 #include <cmath>
 
 #include <polhode/beams/running_cable.hpp>
@@ -49,7 +49,7 @@ RunningCable::Grip RunningCable::grip(const NodeStep& step, const Course& c, dou
     ratio[static_cast<Eigen::Index>(j)] = std::exp(-spec_.friction * turn);
     g.turn_first.push_back(Vec3::Zero());
     g.turn_second.push_back(Vec3::Zero());
-    if (!(sine > 0.0)) continue;  // straight: it turns any way, at first by nothing
+    if (!(sine > 0.0)) continue;  // straight: the turning angle has no first derivative
     const Vec3 axis = step.alpha_f / sine * across;
     g.turn_first.back() = -first.per_length / first.n.squaredNorm() * axis.cross(first.n);
     g.turn_second.back() = second.per_length / second.n.squaredNorm() * axis.cross(second.n);

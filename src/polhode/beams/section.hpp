@@ -29,12 +29,12 @@ struct ISectionSizes {
   double web;     ///< Thickness of the web [m].
   double flange;  ///< Thickness of a flange [m].
 };
-/// Areas and second moments are exact, fillets left out; torsion and shear along y are those of
-/// thin walls (Σ b t³/3; Cowper), shear along z that of two rectangles, the flanges. Warping is
-/// free.
+/// Areas and second moments are exact without fillets; torsion and shear along y are those of thin
+/// walls (Σ b t³/3; Cowper), shear along z that of two rectangles, the flanges. Warping is
+/// unconstrained.
 [[nodiscard]] SectionShape i_section(const ISectionSizes& sizes, double nu);
 
-/// What a beam needs of its section.
+/// Properties of a section for beam elements.
 struct BeamSection {
   Mat6 stiffness = Mat6::Zero();           ///< (N, V_y, V_z, M_x, M_y, M_z) by (Γ, K).
   double mass_per_length = 0.0;            ///< [kg/m]

@@ -10,9 +10,9 @@ namespace polhode {
 
 namespace {
 
-/// Frames turned against each other by less than this carry one straight bar [rad].
+/// Relative rotation of frames below which a bar is straight [rad].
 constexpr double kStraight = 1e-6;
-/// Parts of a beam that are nearer than so many radii along it do not meet: half a turn around a
+/// Distance along the beam, in radii, within which parts of it are not paired: half a turn around a
 /// bar of the same radius brings them together without contact.
 constexpr double kNearAlongBeam = std::numbers::pi;
 
@@ -24,7 +24,7 @@ double radius_of(const BeamSpec& beam) {
                    "Give contact: {radius: ...}");
 }
 
-/// A round bar from one point of the centre line to another, in coordinates of the node.
+/// A round bar between two points of the centre line, in coordinates of the node.
 ShapeSpec bar(const Vec3& from, const Vec3& to, const Vec3& along, double radius) {
   ShapeSpec shape;
   shape.type = "capsule";
@@ -34,7 +34,7 @@ ShapeSpec bar(const Vec3& from, const Vec3& to, const Vec3& along, double radius
   return shape;
 }
 
-/// Distances of the nodes from the start, along the beam [m].
+/// Arc lengths of the nodes from the start of the beam [m].
 std::vector<double> arc_lengths(const BeamSpec& beam) {
   std::vector<double> s{0.0};
   for (const BeamSpec::Element& element : beam.mesh) s.push_back(s.back() + element.length);

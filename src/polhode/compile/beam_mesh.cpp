@@ -15,10 +15,10 @@ namespace polhode {
 
 namespace {
 
-/// Points of a polyline are apart by more than this part of its length.
+/// Smallest distance of points of a polyline, as a part of its length.
 constexpr double kApart = 1e-9;
 
-/// Elements of each piece: in proportion to the lengths, at least one each.
+/// Numbers of elements of the segments: in proportion to the lengths, at least one each.
 std::vector<int> shared_out(int elements, const std::vector<double>& lengths) {
   const double whole = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   std::vector<int> counts;
@@ -34,7 +34,7 @@ std::vector<int> shared_out(int elements, const std::vector<double>& lengths) {
   return counts;
 }
 
-/// x along t, y as near to `up` as it can be.
+/// Frame with x along t and y as near as possible to `up`.
 Mat3 section_frame(const Vec3& t, const Vec3& up) {
   Mat3 D;
   D.col(0) = t;
@@ -93,7 +93,7 @@ class BeamMesher {
     }
   }
 
-  /// The section keeps its angle to the plane of the circle.
+  /// Meshes an arc; the section keeps its angle to the plane of the circle.
   void mesh_arc() {
     const std::vector<Vec3>& p = beam_.points;
     if (p.size() != 3)
@@ -131,7 +131,7 @@ class BeamMesher {
   std::string where_;
 };
 
-/// Half of an element's mass and rotary inertia, onto a node.
+/// Adds half of an element's mass and rotary inertia to a node.
 void add_half(BodySpec& node, const BeamSection& section, double length, const Quat& frame) {
   const Mat3 Q = (node.orientation.conjugate() * frame).toRotationMatrix();
   node.mass += 0.5 * length * section.mass_per_length;
@@ -302,7 +302,7 @@ std::vector<bool> are_nodes(const Model& model) {
     for (int k = 0; k < beam.node_count(); ++k) nodes.at(beam.first_node + k) = true;
   for (const CableLineSpec& cable : model.cables)
     for (const CableLineSpec::Piece& piece : cable.pieces)
-      if (piece.mass > 0.0)  // else its ends are bodies of others
+      if (piece.mass > 0.0)  // otherwise its ends are other bodies
         for (const int body : {piece.a.body, piece.b.body})
           nodes.at(static_cast<std::size_t>(body)) = true;
   return nodes;

@@ -60,7 +60,7 @@ class ContactsBuilder {
     shapes_of_.resize(model_.bodies.size());
     for (int i = 0; i < static_cast<int>(map_.body.size()); ++i)
       shapes_of_[static_cast<std::size_t>(map_.body[static_cast<std::size_t>(i)])].push_back(i);
-    if (has_surfaces() && !any_may_meet()) {  // surfaces touch alone
+    if (has_surfaces() && !any_may_meet()) {  // only surfaces of solids are in contact
       map_.body.clear();
       return nullptr;
     }
@@ -104,7 +104,7 @@ class ContactsBuilder {
     }
   }
 
-  /// Number of the shape's class.
+  /// Index of the shape's surface class.
   int surface(const ContactSide& side, int body) {
     ContactLawKey key{.material = material_of(spec_, side)};
     if (std::any_of(named_.begin(), named_.end(),
@@ -137,7 +137,7 @@ class ContactsBuilder {
         if (joint.a != kGround && joint.b != kGround)
           excluded_.insert(std::minmax(joint.a, joint.b));
     for (const auto& [a, b] : beam_neighbours(model_)) excluded_.insert(std::minmax(a, b));
-    // A pair that is named is meant.
+    // Pairs that are named are always included.
     for (const ContactPairSpec& pair : spec_.pairs)
       if (of_bodies(pair)) excluded_.erase(std::minmax(pair.a, pair.b));
     for (const auto& [a, b] : spec_.excluded) excluded_.insert(std::minmax(a, b));
@@ -178,7 +178,7 @@ class ContactsBuilder {
     map_.all_pairs = true;
   }
 
-  /// Lets what events switch be switched; those at the start tell what is off there.
+  /// Adds the switches of events; events at the start define the initial state.
   void add_switches() {
     std::map<std::array<int, 2>, bool> off;  // by sides, at the start
     const auto look = [&](const EventSpec& event, const std::vector<std::string>& names,
@@ -221,7 +221,7 @@ void check_material(const Model& model, const ContactSide& side, std::vector<Inp
                       : did_you_mean(*side.material, names) + "Materials: " + name_list(names));
 }
 
-/// What needs no shape to be made.
+/// Checks that do not need the shapes to be built.
 void check_sides(const Model& model, std::vector<InputError>& faults) {
   std::set<std::string> told;
   bool any = false;

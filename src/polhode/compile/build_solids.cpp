@@ -13,14 +13,14 @@ namespace polhode {
 
 namespace {
 
-/// How something moves rigidly at the start.
+/// A rigid-body motion at the start.
 struct RigidMotion {
   Vec3 point = Vec3::Zero(), velocity = Vec3::Zero(), omega = Vec3::Zero();
 
   [[nodiscard]] Vec3 at(const Vec3& x) const { return velocity + omega.cross(x - point); }
 };
 
-/// Reference positions by the system's numbers, as elements know nodes.
+/// Reference positions by the system's node numbers, for elements.
 std::vector<Vec3> positions(const SolidPlan& plan, int first_node) {
   std::vector<Vec3> X(static_cast<std::size_t>(first_node), Vec3::Zero());
   X.insert(X.end(), plan.start.begin(), plan.start.end());
@@ -73,7 +73,7 @@ class SolidBuilder {
     }
   }
 
-  /// Mass and its centre, by the rows of the consistent mass: ∫ρ N_i.
+  /// Computes mass and its centre by the rows of the consistent mass matrix: ∫ρ N_i.
   void weigh() {
     std::vector<double> M;
     Vec3 moment = Vec3::Zero();
@@ -97,7 +97,7 @@ class SolidBuilder {
     return map_.plan.start[static_cast<std::size_t>(node)];
   }
 
-  /// As given, or with the first body it is bonded to, or at rest.
+  /// Initial motion: as given, or that of the first body it is bonded to, or at rest.
   [[nodiscard]] RigidMotion initial_motion() const {
     if (solid_.velocity || solid_.angular_velocity)
       return {map_.centre, solid_.velocity.value_or(Vec3::Zero()),

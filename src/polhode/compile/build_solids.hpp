@@ -16,7 +16,7 @@ struct SolidMap {
   SolidPlan plan;
   int first_node = 0;                          ///< Its node k is the System's first_node + k.
   std::vector<int> groups;                     ///< Of elements, by block of the mesh.
-  std::vector<const SolidElements*> elements;  ///< Of these groups; the System keeps them.
+  std::vector<const SolidElements*> elements;  ///< Of these groups; owned by the System.
   double mass = 0.0;                           ///< [kg]
   Vec3 centre = Vec3::Zero();                  ///< Of mass at the start, world [m].
 
@@ -25,13 +25,13 @@ struct SolidMap {
 
 /// Adds the nodes and elements of a solid.
 /// @param body  By Model::bodies: index in the System, kGround if fixed.
-/// @throws InputError for whatever plan_solid() refuses, and for a wrong material.
+/// @throws InputError for everything that plan_solid() rejects, and for a wrong material.
 [[nodiscard]] SolidMap add_solid(System& system, const Model& model, int solid,
                                  const std::vector<int>& body);
 
 /// Adds a load on a solid, a LoadSpec whose `solid` is set.
 /// @returns the groups of elements that apply it, one for each shape of face.
-/// @throws InputError if its selection holds nothing.
+/// @throws InputError if its selection is empty.
 std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid);
 
 }  // namespace polhode

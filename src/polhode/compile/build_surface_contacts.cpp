@@ -25,20 +25,20 @@ namespace polhode {
 
 namespace {
 
-/// Part of the smaller of edge and shape that the tolerance of the gap is.
+/// Tolerance of the gap, as a part of the smaller of edge and shape.
 constexpr double kTolerance = 1e-3;
-/// Part of a cable's radius that it is against a solid, which gives way much farther.
+/// Tolerance of a cable against a solid, which deforms much more, as a part of its radius.
 constexpr double kOnSolid = 1e-2;
-/// Part of Young's modulus that a pressure at gap zero is, at least.
+/// Smallest pressure at gap zero, as a part of Young's modulus.
 constexpr double kPressure = 0.02;
-/// The same of a cable's: what a strain of a hundredth presses on a drum of fifteen times the
+/// The same for a cable: the pressure of a one per cent strain on a drum of fifteen times the
 /// cable's radius.
 constexpr double kCablePressure = 1e-3;
-/// Of the band of faces, that of edges: faces that lie on each other keep their edges farther apart
-/// than that, so that these add nothing to a pressure, also those whose band ends where they start.
+/// Band of edges as a part of that of faces: faces in contact keep their edges farther apart than
+/// that, so that edges add nothing to the pressure, even if their band ends at the initial gap.
 constexpr double kEdgeBand = 0.1;
 
-/// Young's modulus of small strains [Pa].
+/// Young's modulus at small strains [Pa].
 double modulus(const Model& model, const SolidSpec& solid) {
   const MaterialSpec& spec =
       model.materials[static_cast<std::size_t>(model.material_index(solid.material))];
@@ -71,7 +71,7 @@ class SurfacesBuilder {
   }
 
  private:
-  /// Adds elements to the system, and what they are of to the map.
+  /// Adds elements to the system, and their owners to the map.
   template <class Elements>
   void add_elements(const SurfacePair& pair, std::unique_ptr<Elements> elements) {
     ContactMap::Surface surface{pair.own, pair.side, is_surface_side(pair.side) ? 0 : pair.shape};
@@ -88,7 +88,7 @@ class SurfacesBuilder {
     const ShapeSpec& shape = body.shapes[pair.shape];
     const int carrier = bodies_[static_cast<std::size_t>(pair.side)];
     const std::vector<LoadedFaces> faces = faces_of(solid);
-    // What is bonded to a body does not touch its shapes.
+    // Nodes bonded to a body are not in contact with its shapes.
     std::vector<int> left_out;
     for (int k = 0; k < solid.node_count(); ++k)
       if (system_.nodes()[solid.first_node + k].body == carrier)
@@ -104,7 +104,7 @@ class SurfacesBuilder {
       try {
         points = surface_points(where, block, X, left_out);
       } catch (const InputError&) {
-        continue;  // everything there is bonded to the body
+        continue;  // all of it is bonded to the body
       }
       add_elements(pair, std::make_unique<SurfaceContact>(
                              where, std::move(points), X,
@@ -112,7 +112,7 @@ class SurfacesBuilder {
     }
   }
 
-  /// "rope on post".
+  /// Name of a pair: "rope on post".
   [[nodiscard]] std::string name_of(const SurfacePair& pair) const {
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
     return format("{} on {}", model_.side_name(pair.own),
@@ -128,7 +128,7 @@ class SurfacesBuilder {
     return model_.cables[static_cast<std::size_t>(cable_of_side(side))];
   }
 
-  /// Two cables, or one and itself.
+  /// Adds two cables, or one with itself.
   void add_cables(const SurfacePair& pair) {
     const CableSide a{cable_of(pair.own), line_of(pair.own)},
         b{cable_of(pair.side), line_of(pair.side)};
@@ -149,7 +149,7 @@ class SurfacesBuilder {
                            cable_sides(model_, a, b, X, law.normal.tolerance), law, start));
   }
 
-  /// The centre line of a cable, all of it at its radius from what it meets.
+  /// Adds the centre line of a cable, which stays at its radius from the other surface.
   void add_cable(const SurfacePair& pair) {
     const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
@@ -177,7 +177,7 @@ class SurfacesBuilder {
                                                         place, law));
   }
 
-  /// The centre line of a cable on the triangles of a solid.
+  /// Adds the centre line of a cable against the triangles of a solid.
   void add_cable_on_solid(const SurfacePair& pair) {
     const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
     const int s = solid_of_side(pair.side);
@@ -235,8 +235,8 @@ class SurfacesBuilder {
     return edge;
   }
 
-  /// How far apart points of a cable may be. Over a plane the straight pieces are highest and
-  /// lowest at nodes; elsewhere what bends around the shape must not be missed.
+  /// Largest distance of points of a cable. Over a plane the straight segments are highest and
+  /// lowest at nodes; elsewhere bends around the shape must be resolved.
   [[nodiscard]] static double spacing(const ShapeSpec& shape, double radius) {
     if (shape.type == "plane") return std::numeric_limits<double>::infinity();
     const bool round = shape.type == "sphere" || shape.type == "capsule";
@@ -247,7 +247,7 @@ class SurfacesBuilder {
     return system_faces(solid, solid.plan.touching);
   }
 
-  /// Points of each of both surfaces on the triangles of the other, at half their area.
+  /// Adds points of each of both surfaces against the triangles of the other, at half their area.
   void add_solids(const SurfacePair& pair) {
     const int own = solid_of_side(pair.own), partner = solid_of_side(pair.side);
     const bool self = partner == own;
@@ -290,7 +290,7 @@ class SurfacesBuilder {
     add_edges(pair, surfaces, X, law, start);
   }
 
-  /// The sharp edges of both surfaces on each other.
+  /// Adds the sharp edges of both surfaces against each other.
   void add_edges(const SurfacePair& pair, const MeshSurface (&surfaces)[2],
                  const std::vector<Vec3>& X, SurfaceLaw law, const SolidContactStart& start) {
     EdgeContact::Sides sides{sharp_edges(surfaces[0], X), sharp_edges(surfaces[1], X),
@@ -313,7 +313,7 @@ class SurfacesBuilder {
     return list;
   }
 
-  /// How far nodes go against each other in the first step [m].
+  /// Relative displacement of nodes in the first step [m].
   [[nodiscard]] double way_of_step(const std::vector<int>& nodes) const {
     Vec3 mean = Vec3::Zero();
     for (const int i : nodes) mean += system_.nodes()[i].velocity;
@@ -323,7 +323,7 @@ class SurfacesBuilder {
     return most * model_.analysis.step.value_or(0.0);
   }
 
-  /// On the ground, or carried by four nodes that are bonded to the body.
+  /// Placement on the ground, or carried by four nodes bonded to the body.
   SurfacePlace place_of(const BodySpec& body, const ShapeSpec& shape, int carrier) {
     const contact::ShapePlace own = shape_place(body, shape);
     SurfacePlace place;
@@ -345,7 +345,7 @@ class SurfacesBuilder {
     return place;
   }
 
-  /// At the start, by the system's numbers.
+  /// Positions at the start, by the system's numbers.
   [[nodiscard]] std::vector<Vec3> positions() const {
     std::vector<Vec3> X;
     X.reserve(system_.nodes().count());
@@ -353,12 +353,12 @@ class SurfacesBuilder {
     return X;
   }
 
-  /// What decides how stiff a surface is.
+  /// Properties that determine the stiffness of a surface.
   struct SurfaceMaterial {
     double E = std::numeric_limits<double>::infinity();  ///< Young's modulus [Pa].
-    double pressure = E;                                 ///< At gap zero, at least [Pa].
+    double pressure = E;                                 ///< Smallest pressure at gap zero [Pa].
   };
-  /// The softest of several solids.
+  /// Material of the softest of several solids.
   [[nodiscard]] SurfaceMaterial material_of(const std::vector<int>& solids) const {
     SurfaceMaterial material;
     for (const int s : solids) {
@@ -371,16 +371,16 @@ class SurfacesBuilder {
   [[nodiscard]] static SurfaceMaterial lesser(const SurfaceMaterial& a, const SurfaceMaterial& b) {
     return {std::min(a.E, b.E), std::min(a.pressure, b.pressure)};
   }
-  /// A cable counts as a full round bar, which is not flattened. @eq{cable-stiffness}
+  /// Material of a cable as a solid round bar that is not flattened. @eq{cable-stiffness}
   [[nodiscard]] static SurfaceMaterial material_of(const CableLineSpec& cable) {
     const double area = std::numbers::pi * cable.contact->radius * cable.contact->radius;
     return {0.0, kCablePressure * cable.stiffness / area};
   }
 
-  /// Place of the band in which surfaces act: below those of rigid shapes, which have an inside.
+  /// Position of the band in which surfaces act: below those of rigid shapes, which have an inside.
   enum class Band { below, about };
 
-  /// @param edge      Of the mesh, or the diameter of a cable [m].
+  /// @param edge  Of the mesh, or the diameter of a cable [m].
   /// @param smallest  Of edges, radii and half sizes of the shape [m]. @eq{surface-stiffness}
   [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const SurfaceMaterial& material,
                                   double edge, double smallest, Band place) const {
@@ -399,7 +399,7 @@ class SurfacesBuilder {
     return law;
   }
 
-  /// Pairs that are named come first; all others follow, unless few are wanted.
+  /// Records pairs: named ones first, then all others unless there are too many.
   void keep(const std::vector<SurfacePair>& pairs) {
     std::set<std::pair<int, int>> kept;
     const auto keep = [&](int a, int b) {

@@ -11,23 +11,23 @@
 
 namespace polhode {
 
-/// The surface of a solid or a cable and a shape of a body, or two surfaces, that may meet.
+/// A surface of a solid or a cable and a shape of a body, or two surfaces, that may be in contact.
 struct SurfacePair {
   int own = 0;            ///< Side of a solid or of a cable, see contact_spec.hpp.
-  int side = 0;           ///< What it meets: a body, another one of these or itself.
+  int side = 0;           ///< Opposite side: a body, another one of these or itself.
   std::size_t shape = 0;  ///< Of a body.
   ContactLawSpec law;
 };
 
-/// Which surfaces of solids may meet which shapes and which of one another, and by which law.
-/// @param faults  Told of shapes and laws that surfaces do not know; null: the first is thrown.
+/// Pairs of surfaces of solids with shapes and with each other, and their laws.
+/// @param faults  Receives unsupported shapes and laws; null: the first is thrown.
 [[nodiscard]] std::vector<SurfacePair> plan_surface_contacts(
     const Model& model, std::vector<InputError>* faults = nullptr);
 
-/// Adds the contact of surfaces of solids with shapes of bodies and with one another, after solids
+/// Adds the contacts of surfaces of solids with shapes of bodies and with each other, after solids
 /// and bodies.
 /// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
-/// @param map     Gains pairs and surfaces.
+/// @param map  Receives pairs and surfaces.
 void add_surface_contacts(System& system, const Model& model, const std::vector<int>& bodies,
                           const std::vector<SolidMap>& solids, ContactMap& map);
 

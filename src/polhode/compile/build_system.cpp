@@ -49,8 +49,8 @@ class Builder {
   }
 
  private:
-  /// Radius of gyration for point masses: of the size of the other bodies, so that scales of
-  /// lengths are not spoilt; it has no effect on motion.
+  /// Radius of gyration for point masses: of the size of the other bodies, so that length scales
+  /// are not distorted; it has no effect on the motion.
   [[nodiscard]] double dummy_reach() const {
     double sum = 0.0, farthest = 0.0;
     int count = 0;
@@ -91,7 +91,7 @@ class Builder {
     const BodySpec* s = spec(body);
     return s && s->point_mass && !s->fixed;
   }
-  /// A point given in a fixed body's coordinates, in those of the world.
+  /// World coordinates of a point given in a fixed body's coordinates.
   [[nodiscard]] Vec3 point(int body, const Vec3& Z) const {
     const BodySpec* s = spec(body);
     return s && s->fixed ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
@@ -100,7 +100,7 @@ class Builder {
     const BodySpec* s = spec(body);
     return s && s->fixed ? Mat3(s->orientation.normalized().toRotationMatrix() * R) : R;
   }
-  /// Where a point of any body is at the start [m].
+  /// Initial position of a point of any body [m].
   [[nodiscard]] Vec3 start_position(int body, const Vec3& Z) const {
     const BodySpec* s = spec(body);
     return s ? Vec3(s->position + s->orientation.normalized() * Z) : Z;
@@ -152,7 +152,7 @@ class Builder {
     check_movable(where, joint.a, joint.b);
     const JointRecipe r = recipe(where, joint);
     const JointParts& parts = r.parts;
-    // Pairs of axes turn both bodies; planes turn a, on which their normals are.
+    // Pairs of axes rotate both bodies; planes rotate a, to which their normals are fixed.
     if (is_point_mass(joint.a) && (parts.axes > 0 || parts.planes > 0 || !joint.Z_a.isZero(0.0)))
       refuse_turning(where, joint.a);
     if (is_point_mass(joint.b) && (parts.axes > 0 || !joint.Z_b.isZero(0.0)))
@@ -170,7 +170,7 @@ class Builder {
     }
   }
 
-  /// A load along a coordinate that its joint does not leave free.
+  /// Rejects a load along a coordinate that its joint does not leave free.
   [[noreturn]] static void refuse_coordinate(const std::string& where, const LoadSpec& load,
                                              const JointSpec& joint, const Joint& item,
                                              bool turns) {
@@ -273,7 +273,7 @@ class Builder {
     kind.add(system_, d);
   }
 
-  /// What code gives of a load on bodies.
+  /// Adds the function of a load on bodies that is given in code.
   static void add_function(const std::string& where, const LoadSpec& load, const LoadKind& kind,
                            LoadDescription& d) {
     const std::string key = kind.function_key();
@@ -336,7 +336,7 @@ class Builder {
     }
   }
 
-  /// A node on a body, or on the ground.
+  /// Adds a node bonded to a body, or to the ground.
   int add_bonded_node(const AttachmentSpec& at) {
     NodeData node{.position = start_position(at.body, at.Z)};
     node.body = system_body(at.body);
@@ -401,7 +401,7 @@ class Builder {
                                 Vec3::Zero(), Vec3::Zero());
   }
 
-  /// Lets what events switch be switched; those at the start tell what is off there.
+  /// Makes the interactions of events switchable; events at the start define the initial state.
   void add_switching() {
     map_.events = all_events(model_);
     int memory = EventMemory::kSize * static_cast<int>(map_.events.size());
@@ -443,7 +443,8 @@ class Builder {
     }
   }
 
-  /// Items keep the user's order within their group; loads are found by kind and count.
+  /// Fills the map. Items keep the user's order within their group; loads are found by kind and
+  /// count.
   void fill(SystemMap& map) {
     std::map<std::string, std::vector<int>> interactions;
     for (int i = 0; i < static_cast<int>(system_.interactions().size()); ++i)

@@ -13,16 +13,16 @@
 
 namespace polhode {
 
-/// What the state remembers of each event, see System::memory(): how often it came, when last [s],
-/// whether it came while its condition still holds, and of the last time energy lost [J] and the
+/// Layout of each event's numbers in the state, see System::memory(): number of occurrences, time
+/// of the last one [s], whether its condition still holds, and of the last one energy loss [J] and
 /// largest impulse [N s or N m s].
 struct EventMemory {
   enum Entry : int { kCount, kTime, kSpent, kLost, kImpulse, kSize };
 };
 
-/// Likewise of each controller, behind those of events: how often it acted, when last [s], what it
-/// set then and its slope [1/s], the error and its rate, its integral [s], the rate behind the lag
-/// of its filter; and behind these the states of its transfer function.
+/// Layout of each controller's numbers, behind those of events: number of evaluations, time of the
+/// last one [s], its output and its slope [1/s], the error and its rate, its integral [s], the
+/// filtered rate; then the states of its transfer function.
 struct ControllerMemory {
   enum Entry : int { kCount, kTime, kValue, kSlope, kError, kRate, kIntegral, kLag, kSize };
   [[nodiscard]] static int size(const ControllerSpec& spec) {
@@ -32,37 +32,37 @@ struct ControllerMemory {
 
 class RunningCable;
 
-/// Where the things of a Model went in its System.
+/// Positions of the objects of a Model in its System.
 struct SystemMap {
   std::vector<int> body;   ///< By Model::bodies: index into System::bodies(), kGround if fixed.
   std::vector<int> joint;  ///< By Model::joints: index into System::interactions().
-  /// By Model::loads: likewise; of a load on a solid -1.
+  /// By Model::loads: likewise; -1 for a load on a solid.
   std::vector<int> load;
   std::vector<SolidMap> solids;         ///< By Model::solids.
   std::vector<std::vector<int>> beam;   ///< By Model::beams and element: likewise.
-  std::vector<std::vector<int>> cable;  ///< By Model::cables and piece: likewise.
-  /// A cable that slides through its points.
+  std::vector<std::vector<int>> cable;  ///< By Model::cables and segment: likewise.
+  /// A cable that runs through its points.
   struct Running {
-    int group = -1;                       ///< Of elements; −1: the cable does not slide.
-    const RunningCable* cable = nullptr;  ///< That group; the System keeps it.
+    int group = -1;                       ///< Of elements; −1: not a running cable.
+    const RunningCable* cable = nullptr;  ///< That group; owned by the System.
   };
   std::vector<Running> running_cable;             ///< By Model::cables.
-  std::vector<EventSpec> events;                  ///< With those of joints that break.
-  std::shared_ptr<contact::ContactSet> contacts;  ///< Null if nothing touches.
+  std::vector<EventSpec> events;                  ///< Including those of joints that break.
+  std::shared_ptr<contact::ContactSet> contacts;  ///< Null without contact.
   ContactMap contact;
 };
 
 /// Compiles a model: numbers its bodies, joints and loads and chooses the tree.
 ///
-/// Fixed bodies become the ground, their points and axes moved to world coordinates. A point mass
-/// gets an inertia that nothing ever turns.
+/// Fixed bodies become the ground, with their points and axes in world coordinates. A point mass
+/// gets an inertia that has no effect.
 ///
-/// @param map  Filled in if given.
-/// @throws InputError if a type is unknown, if a joint or load connects nothing that moves or
-///         would turn a point mass, or if a torsional spring's joint has no axis.
+/// @param map  Filled if given.
+/// @throws InputError if a type is unknown, if a joint or load connects only fixed bodies or would
+/// rotate a point mass, or if a torsional spring's joint has no axis.
 [[nodiscard]] System build_system(const Model& model, SystemMap* map = nullptr);
 
-/// The joint behind an interaction of a built system. @throws std::logic_error if it is none.
+/// Joint of an interaction of a built system. @throws std::logic_error if it is none.
 [[nodiscard]] const Joint& joint_at(const System& system, int interaction);
 
 }  // namespace polhode

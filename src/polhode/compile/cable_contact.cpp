@@ -9,12 +9,13 @@ namespace polhode {
 
 namespace {
 
-/// What is nearer to an attachment than so many radii along the cable does not meet what holds it.
+/// Distance from an attachment along the cable, in radii, within which there is no contact with the
+/// attached body.
 constexpr double kNear = std::numbers::pi;
-/// Parts of a spacing that are rounding.
+/// Part of a spacing that is rounding.
 constexpr double kRoundedPart = 1e-9;
-/// Points may come apart to so many times the spacing that is asked for: below four nothing passes,
-/// as every place is then nearer to one of them than what they keep away.
+/// Largest distance of points in units of the requested spacing: below four nothing passes between
+/// them, as every position is then nearer to one of them than the distance they maintain.
 constexpr double kMaxStretch = 3.2;
 
 }  // namespace
@@ -59,7 +60,7 @@ CablePoints cable_points(const CableLine& line, double spacing) {
     all.points.nodes.insert(all.points.nodes.end(), {line.nodes[piece], line.nodes[piece + 1]});
     all.arc.push_back((1.0 - part) * line.arc[piece] + part * line.arc[piece + 1]);
   };
-  double before = 0.0;  // half of the distance to the point before
+  double before = 0.0;  // half of the distance to the previous point
   for (std::size_t k = 0; k + 1 < line.nodes.size(); ++k) {
     const double length = line.arc[k + 1] - line.arc[k];
     const int parts = std::max(1, static_cast<int>(std::ceil(length / spacing - kRoundedPart)));

@@ -12,41 +12,42 @@
 
 namespace polhode {
 
-/// The centre line of a cable that touches: straight from node to node.
+/// Centre line of a cable with contact: straight from node to node.
 struct CableLine {
-  std::vector<int> nodes;   ///< Of the System, bonded to what the cable's pieces hang on.
-  std::vector<double> arc;  ///< Of the nodes, along the cable without force [m].
+  /// Of the System, bonded to the bodies to which the cable's segments are attached.
+  std::vector<int> nodes;
+  std::vector<double> arc;  ///< Arc lengths of the nodes along the unstressed cable [m].
   double radius = 0.0;      ///< [m]
 };
 
-/// Adds the nodes of a cable that touches to the System.
+/// Adds the nodes of a cable with contact to the System.
 /// @param bodies  By Model::bodies: index into System::bodies(), kGround if fixed.
 [[nodiscard]] CableLine add_cable_line(System& system, const Model& model,
                                        const CableLineSpec& cable, const std::vector<int>& bodies);
 
-/// Where a cable is looked at, and how far along it each of these points is.
+/// Contact points of a cable, and their arc lengths.
 struct CablePoints {
-  SurfacePoints points;     ///< Each with its share of the length times the diameter.
+  SurfacePoints points;     ///< Each with its part of the length times the diameter.
   std::vector<double> arc;  ///< Ascending [m].
 };
-/// Its nodes, and points between them that are no farther apart than `spacing`, half of what they
-/// keep away from the core of the shape.
+/// Contact points: nodes, and points between them at distances of at most `spacing`, half of the
+/// distance they maintain from the core of the shape.
 [[nodiscard]] CablePoints cable_points(const CableLine& line, double spacing);
 
-/// The points as those of a mesh, and what is round about them.
+/// Contact points as points of a mesh with a round section.
 [[nodiscard]] std::vector<MeshPoint> mesh_points(const SurfacePoints& points);
 [[nodiscard]] RoundLine round_line(const SurfacePoints& points);
 
-/// Takes out what does not meet a body that the cable hangs on: from each place at which it does,
-/// what is nearer along the cable than half a turn about a bar of its own radius, and what leaves
-/// the body from the inside.
-/// @param hangs_on  Whether an attachment is one to this body.
-/// @param inside    Whether a point, by its number, is in the body at the start.
+/// Removes contact points near attachments to a body: from each attachment, points nearer along the
+/// cable than half a turn about a bar of its own radius, and points that leave the body from the
+/// inside.
+/// @param hangs_on  Whether an attachment belongs to this body.
+/// @param inside  Whether a point, by its number, is in the body at the start.
 void leave_out_attachments(CablePoints& points, const CableLineSpec& cable, const CableLine& line,
                            const std::function<bool(const AttachmentSpec&)>& hangs_on,
                            const std::function<bool(int)>& inside);
 
-/// Whether a cable with contact is fastened to a body, or to another node of the beam that the body
+/// Whether a cable with contact is attached to a body, or to another node of the beam that the body
 /// is a node of.
 [[nodiscard]] bool is_fastened_to(const Model& model, const AttachmentSpec& at, int body);
 

@@ -9,15 +9,15 @@ namespace polhode {
 
 namespace {
 
-/// What is nearer along a cable than so many radii is its own bend.
+/// Distance along a cable, in radii, within which its parts belong to one bend and are not paired.
 constexpr double kNearOnItself = std::numbers::pi;
-/// In tolerances: how far behind the points are, so that edges that cross do not feel them, and how
-/// far edges retreat that lie along each other, so that these do not feel one another: points end
-/// three tolerances below the sum of the radii, and straight pieces sag between them by one.
+/// Retractions in tolerances: of the points, so that they are inactive at crossing edges, and of
+/// parallel edges, so that these are inactive. Points end three tolerances below the sum of the
+/// radii, and straight segments sag between them by one.
 constexpr double kBehind = 2.0, kRetreat = 6.0;
-/// Sine of the angle up to which only points meet.
+/// Sine of the angle up to which only points are in contact.
 constexpr double kAlong = 0.0523;
-/// Less deep than this part of the tolerance pieces do not overlap.
+/// Depth, as a part of the tolerance, below which segments do not overlap.
 constexpr double kOverlap = 0.5;
 
 using Range = std::array<int, 2>;
@@ -55,8 +55,8 @@ class Sides {
     return static_cast<int>(line.nodes.size()) - 1;
   }
 
-  /// Points as far apart as makes pieces sag between them by a tolerance, where they begin to
-  /// cross.
+  /// Edges of a cable with points at such distances that segments sag between them by a tolerance
+  /// at the smallest crossing angle.
   [[nodiscard]] EdgeLines edges(const CableLine& line) const {
     const double both = a_.line.radius + b_.line.radius;
     const double spacing = 2.0 * std::sqrt(2.0 * both * tolerance_) / kAlong;
@@ -70,7 +70,7 @@ class Sides {
       const double length = line.arc[at + 1] - line.arc[at];
       const int parts = std::max(1, static_cast<int>(std::ceil(length / spacing)));
       lines.edges.push_back({k, k + 1});
-      // Points of both cables share the area.
+      // The points of both cables share the area.
       lines.points.push_back({parts, 0.5 * 2.0 * radius_ * length / parts});
     }
     return lines;
@@ -101,7 +101,7 @@ class Sides {
     }
   }
 
-  /// Pieces that begin nearer to a node of the line than half a turn.
+  /// Segments that begin nearer to a node of the line than half a turn.
   [[nodiscard]] static Range around(const CableLine& line, std::size_t node) {
     Range r{static_cast<int>(node), static_cast<int>(node) - 1};
     const double near = kNearOnItself * line.radius, at = line.arc[node];
@@ -121,7 +121,7 @@ class Sides {
           leave_out(around(a_.line, place(a_, i)), around(b_.line, place(b_, j)));
   }
 
-  /// Both ranges grow as long as what comes next overlaps the other one.
+  /// Excludes pairs of ranges, which grow as long as the next segment overlaps the other range.
   void leave_out(Range of_a, Range of_b) {
     const auto meets_b = [&](int e) {
       if (e < 0 || e >= pieces(a_.line) || (self() && e >= of_b[0] && e <= of_b[1])) return false;

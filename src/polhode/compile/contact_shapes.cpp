@@ -19,7 +19,7 @@ contact::Shape contact_shape(const std::string& where, contact::ShapePlace place
   if (type == "ellipsoid") return contact::ellipsoid(where, {size[0], size[1], size[2]}, place);
   if (type == "cylinder") return contact::cylinder(where, size[0], size[1], place);
   if (type == "cone") {
-    // The model file counts from the centroid, a quarter of the length above the base.
+    // The model file refers to the centroid, a quarter of the length above the base.
     place.origin += 0.25 * size[1] * place.axes.col(2);
     return contact::cone(where, size[0], size[1], place, rounding);
   }

@@ -8,14 +8,13 @@
 
 namespace polhode {
 
-/// Sides of a tube to what its round faces do not meet.
+/// Number of sides of a tube's polygon, for shapes without contact with its round faces.
 inline constexpr int kTubeSegments = 48;
 
-/// A shape of the model file as contact knows it.
+/// Contact shape of a shape of the model file.
 /// @param place  Of the shape, see shape_place().
-/// @param rounding  Of edges and corners of boxes, cones, hulls and triangles [m]; 0: contact's
-/// own.
-/// @throws InputError if contact refuses it.
+/// @param rounding  Of edges and corners of boxes, cones, hulls and triangles [m]; 0: the default.
+/// @throws InputError if the shape is rejected.
 [[nodiscard]] contact::Shape contact_shape(const std::string& where, contact::ShapePlace place,
                                            const ShapeSpec& shape, double rounding = 0.0);
 

@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// Groups are bits.
+/// Largest number of groups, which are bits.
 constexpr std::size_t kMaxGroups = 32;
 
 double combine(Combination way, double a, double b) {
@@ -35,7 +35,7 @@ const T* pointer(const std::optional<T>& value) {
   return value ? &*value : nullptr;
 }
 
-/// A node has its beam's name and a number.
+/// Path of the owner: a node has its beam's name and a number.
 std::string owner_path(const BodySpec& body) {
   const std::size_t dot = body.name.find('.');
   return dot == std::string::npos ? "bodies." + body.name : "beams." + body.name.substr(0, dot);
@@ -49,7 +49,7 @@ void for_sides(const Model& model, Visit&& visit) {
   for (const CableLineSpec& cable : model.cables) visit(contact_side(cable));
 }
 
-/// Of what touches as a whole.
+/// Side of an object with a single shape.
 ContactSide side_of(const ContactSideSpec& spec, const std::string& path) {
   return {.touches = spec.touches.value_or(true),
           .material = pointer(spec.material),

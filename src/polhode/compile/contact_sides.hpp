@@ -12,8 +12,8 @@
 
 namespace polhode {
 
-/// What is stated of a shape of a body, of the surface of a solid or of a cable, that may touch;
-/// null where nothing is. Paths are those of the keys, or of where they would stand.
+/// Contact settings of a shape of a body, of the surface of a solid or of a cable; null where
+/// nothing is given. Paths are those of the keys, or of their position.
 struct ContactSide {
   bool touches = true;
   const std::string* material = nullptr;
@@ -22,25 +22,25 @@ struct ContactSide {
   std::string material_path, groups_path, meets_path;
 };
 
-/// bodies.crate.shape, with several shapes bodies.crate.shape.1.
+/// Path of a shape: bodies.crate.shape, with several shapes bodies.crate.shape.1.
 [[nodiscard]] std::string shape_path(const BodySpec& body, std::size_t shape);
-/// Where a shape stands in the coordinates of contact: from the centre of mass in body axes, or the
-/// world's for what stands still. The normal of a plane is its z.
+/// Placement of a shape in contact coordinates: from the centre of mass in body axes, or in the
+/// world for fixed bodies. The normal of a plane is its z.
 [[nodiscard]] contact::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape);
-/// A key of the shape goes before that of its body.
+/// Settings of a shape; its keys override those of its body.
 [[nodiscard]] ContactSide contact_side(const BodySpec& body, std::size_t shape);
 [[nodiscard]] ContactSide contact_side(const SolidSpec& solid);
-/// A cable whose contact nothing is said of does not touch.
+/// Settings of a cable; without any it has no contact.
 [[nodiscard]] ContactSide contact_side(const CableLineSpec& cable);
 [[nodiscard]] bool has_touching_cables(const Model& model);
-/// Index into ContactsSpec::materials, −1 if none is stated or it is unknown.
+/// Index into ContactsSpec::materials, −1 if none is given or it is unknown.
 [[nodiscard]] int material_of(const ContactsSpec& contacts, const ContactSide& side);
 
-/// Groups of contact as bits; 'default' is the first.
+/// Collision groups as bits; 'default' is the first.
 class ContactGroups {
  public:
-  /// @param faults  Told of groups that are too many, and of groups that are met but that nothing
-  ///                belongs to, a slip of the pen; may be null.
+  /// @param faults  Receives errors for too many groups, and for groups that are met but have no
+  /// members, which is probably a misspelling; may be null.
   explicit ContactGroups(const Model& model, std::vector<InputError>* faults = nullptr);
   [[nodiscard]] std::uint32_t of(const ContactSide& side) const { return mask(side.groups, 1U); }
   [[nodiscard]] std::uint32_t met_by(const ContactSide& side) const {
@@ -53,23 +53,23 @@ class ContactGroups {
   std::map<std::string, std::uint32_t> bits_{{"default", 1U}};
 };
 
-/// What decides the law of one side of a contact.
+/// Key of the law of one side of a contact.
 struct ContactLawKey {
   int material = -1;   ///< Index into ContactsSpec::materials, or −1.
   int side = kGround;  ///< See contact_spec.hpp; kGround: no pair names it.
   auto operator<=>(const ContactLawKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// What holds between two sides: a pair of sides goes before a pair of materials, that before the
+/// Law between two sides: a pair of sides overrides a pair of materials, which overrides the
 /// combination of the materials.
 struct StatedLaw {
   ContactLawSpec law;
-  const ContactPairSpec* pair = nullptr;  ///< That states it; null: combined.
+  const ContactPairSpec* pair = nullptr;  ///< Pair with a given law; null: combined.
 };
 [[nodiscard]] StatedLaw law_between(const ContactsSpec& contacts, const ContactLawKey& x,
                                     const ContactLawKey& y);
 
-/// Friction and restitution of a pair of materials by the rules of combination.
+/// Friction and restitution of a pair of materials by the combination rules.
 /// @param a, b  Indices into ContactsSpec::materials; −1: the default law.
 [[nodiscard]] ContactMaterialSpec combined_surface(const ContactsSpec& contacts, int a, int b);
 

@@ -10,19 +10,19 @@ namespace polhode {
 
 namespace {
 
-/// A bristle gives way by this at the weight of the joint's bodies [rad, or part of a length].
+/// Deflection of a bristle under the weight of the joint's bodies [rad, or part of a length].
 constexpr double kPresliding = 1e-5;
-/// Of critical damping, for the bristle.
+/// Damping ratio of the bristle.
 constexpr double kBristleDamping = 0.7;
 /// Width of a stop's barrier [rad, or part of a length].
 constexpr double kBand = 1e-3;
-/// k d̂ over the reference load, of a barrier that carries it at a twentieth of its band; and
-/// k Δt² over the inertia, so that lasting contact settles within a few steps.
+/// k d̂ over the reference load, for a barrier that carries it at a twentieth of its band; and k
+/// Δt² over the inertia, so that resting contact settles within a few steps.
 constexpr double kBarrier = 373.0, kBarrierByStep = 10.0;
-/// Where a model has no gravity, loads are taken to be like weights on earth [m/s²].
+/// Gravity for reference loads of models without gravity [m/s²].
 constexpr double kEarth = 9.81;
 
-/// What loads and inertias the joint meets.
+/// Typical loads and inertias of the joint.
 struct Scales {
   double mass = 0.0, inertia = 0.0;  ///< Reduced, of the joint's bodies; about the joint.
   double weight = 0.0;               ///< Of the heavier body [N].

@@ -6,8 +6,8 @@
 
 namespace polhode {
 
-/// Friction and stops of a joint with all their numbers: stiffnesses, dampings and bands that the
-/// user left out follow from masses and arms of the joint's bodies, from gravity and the step.
+/// Friction and stops of a joint with default values: stiffnesses, dampings and bands that are not
+/// given follow from masses and lever arms of the joint's bodies, from gravity and the step.
 [[nodiscard]] JointResistance joint_resistance(const Model& model, const JointSpec& joint);
 
 }  // namespace polhode

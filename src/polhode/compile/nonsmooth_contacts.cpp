@@ -31,7 +31,7 @@ void check_nonsmooth(const Model& model, std::vector<InputError>& faults) {
     holds("joints", model.joints.front().name, "is a joint");
   }
   const AnalysisSpec& a = model.analysis;
-  if (a.type != "dynamics") return;  // no body may touch another there
+  if (a.type != "dynamics") return;  // bodies have no contact there
   if (!a.step)
     refuse("analysis.step", "is automatic, but the non-smooth law has no error estimate",
            "give a step");

@@ -9,11 +9,12 @@
 
 namespace polhode {
 
-/// Options of the non-smooth law, defaults filled in.
+/// Options of the non-smooth law, including defaults.
 [[nodiscard]] ImpulseOptions impulse_options(const ContactsSpec& contacts);
 
-/// What a model with the non-smooth law has that does not go with it: joints, solids, beams,
-/// cables, automatic steps, numerical damping. What no contact goes with is told elsewhere.
+/// Checks that a model with the non-smooth law has no unsupported objects: joints, solids, beams,
+/// cables, automatic steps, numerical damping. Objects unsupported by all contacts are checked
+/// elsewhere.
 void check_nonsmooth(const Model& model, std::vector<InputError>& faults);
 
 }  // namespace polhode

@@ -16,7 +16,7 @@ namespace polhode {
 
 namespace {
 
-/// A node that no selection holds so far.
+/// A node in no selection so far.
 constexpr int kNobody = -1;
 
 class SolidPlanner {
@@ -77,7 +77,7 @@ class SolidPlanner {
     return mesh;
   }
 
-  /// Whether there are solid cells, and all are sound and of the kind wanted.
+  /// Whether there are solid cells, all valid and of the required kind.
   bool check_cells() {
     const Mesh& mesh = plan_.mesh;
     bool sound = true;
@@ -144,7 +144,7 @@ class SolidPlanner {
                  where_));
   }
 
-  /// Every node lies on the boundary: somewhere there is one layer of cells only.
+  /// Whether there is a single layer of cells: every node lies on the boundary.
   [[nodiscard]] bool one_layer() const {
     return boundary(plan_.mesh).nodes().size() == plan_.mesh.nodes.size();
   }
@@ -215,7 +215,7 @@ class SolidPlanner {
     }
   }
 
-  /// "node 3 at (0, 0, 1) and 7 others are", "node 3 at (0, 0, 1) is".
+  /// Description of nodes: "node 3 at (0, 0, 1) and 7 others are", "node 3 at (0, 0, 1) is".
   [[nodiscard]] std::string nodes_text(const std::vector<int>& nodes) const {
     const Vec3& X = plan_.mesh.nodes[static_cast<std::size_t>(nodes.front())];
     std::string text =

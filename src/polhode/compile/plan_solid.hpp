@@ -10,8 +10,8 @@
 
 namespace polhode {
 
-/// A deformable solid with its mesh read, its sets worked out and its elements chosen: what
-/// build_system() makes nodes and elements of, and what 'polhode check' tells.
+/// A deformable solid with its mesh, sets and elements resolved, for build_system() and 'polhode
+/// check'.
 struct SolidPlan {
   Mesh mesh;                                 ///< In its own coordinates [m].
   std::vector<Vec3> start;                   ///< Its nodes in the world [m].
@@ -19,16 +19,16 @@ struct SolidPlan {
   double density = 0.0;                      ///< [kg/m³]
   std::vector<std::vector<int>> bonded;      ///< Nodes by SolidSpec::bonded, ascending.
   std::vector<std::vector<int>> prescribed;  ///< Nodes by SolidSpec::prescribed, ascending.
-  Surface touching;     ///< Faces that may touch, if the model has contacts and the solid touches.
+  Surface touching;     ///< Contact faces, if the model has contacts and the solid takes part.
   double volume = 0.0;  ///< [m³]
   double least_jacobian = 0.0;  ///< Smallest det ∂X/∂ξ at a node or middle of an element [m³].
-  int least_element = 0;        ///< Where.
-  std::vector<std::string> warnings;  ///< What deserves a look.
+  int least_element = 0;        ///< Its element.
+  std::vector<std::string> warnings;  ///< Conspicuous findings.
 };
 
-/// Works a solid out.
-/// @param faults  Gathers everything that is wrong with it, with paths such as solids.pad.bonded.
-///                Null: the first fault is thrown.
+/// Resolves a solid.
+/// @param faults  Receives all errors, with paths such as solids.pad.bonded. Null: the first error
+/// is thrown.
 /// @throws InputError
 [[nodiscard]] SolidPlan plan_solid(const Model& model, int solid,
                                    std::vector<InputError>* faults = nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which surfaces may meet what, and by which law.
+// Pairs of surfaces in contact, and their laws.
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -13,8 +13,8 @@ namespace polhode {
 
 namespace {
 
-/// What a law asks for that surfaces of solids cannot do; empty if nothing. Constants of the force
-/// of a point, which surfaces choose for themselves, do not matter.
+/// First key of a law that surfaces of solids do not support; empty if none. Constants of the force
+/// of a point, which surfaces choose themselves, are ignored.
 std::string strange_key(const ContactLawSpec& law) {
   if (law.static_friction > law.friction) return "static_friction";
   if (law.friction_across > 0.0 && law.friction_across != law.friction) return "friction_across";
@@ -57,8 +57,9 @@ class SurfacePlanner {
     return (groups_.of(a) & groups_.met_by(b)) && (groups_.of(b) & groups_.met_by(a));
   }
 
-  /// Neither excluded nor bonded; a pair that is named is meant. A cable meets the bodies that it
-  /// hangs on, but for the parts near by.
+  /// Whether contact between two sides is neither excluded nor prevented by bonds; named pairs are
+  /// always included. A cable may be in contact with the bodies it is attached to, except near the
+  /// attachments.
   [[nodiscard]] bool sides_meet(int own, int body) const {
     const std::pair<int, int> key = std::minmax(own, body);
     if (excluded_.contains(key)) return false;
@@ -104,8 +105,8 @@ class SurfacePlanner {
     list_.push_back({own, body, shape, stated.law});
   }
 
-  /// A band that is wide against the triangles of a shape, and the radius of a cable, would reach
-  /// through them.
+  /// A band that is wide compared with the triangles of a shape or the radius of a cable would
+  /// extend through them.
   void check_tolerance(const std::string& where, int own, const BodySpec& body, std::size_t k,
                        const ContactLawSpec& law) {
     const ShapeSpec& shape = body.shapes[k];
@@ -125,7 +126,7 @@ class SurfacePlanner {
             "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
   }
 
-  /// Two solids; or one with itself, if it says so.
+  /// Adds two solids, or one with itself if requested.
   void add_solids(int s, int t) {
     const SolidSpec &one = model_.solids[static_cast<std::size_t>(s)],
                     &two = model_.solids[static_cast<std::size_t>(t)];
@@ -134,7 +135,7 @@ class SurfacePlanner {
                  "surfaces of solids", "meshes");
   }
 
-  /// Two cables; or one with itself, if it says so.
+  /// Adds two cables, or one with itself if requested.
   void add_cables(int c, int d) {
     const CableLineSpec &one = model_.cables[static_cast<std::size_t>(c)],
                         &two = model_.cables[static_cast<std::size_t>(d)];
@@ -158,8 +159,8 @@ class SurfacePlanner {
             "Give the pair a smaller gap_tolerance in contacts.pairs, or leave it out");
   }
 
-  /// Two surfaces without a shape, or one twice. @returns their law, unless something keeps them
-  /// apart.
+  /// Adds two surfaces without a shape, or one with itself. @returns their law, unless contact is
+  /// excluded.
   std::optional<StatedLaw> add_surfaces(int own, const ContactSide& a, int side,
                                         const ContactSide& b, const char* they,
                                         const char* passing) {
@@ -180,7 +181,7 @@ class SurfacePlanner {
     return stated.pair ? format("contacts.pairs.{}", stated.pair->name) : "contacts";
   }
 
-  /// What two surfaces without a shape cannot do.
+  /// Checks a law for properties unsupported between two surfaces without a shape.
   void check_law(const StatedLaw& stated, const std::string& who, const char* they,
                  const char* passing) {
     const std::string where = place_of(stated);
@@ -196,7 +197,7 @@ class SurfacePlanner {
             "Give the pair its own law in contacts.pairs, with law: barrier");
   }
 
-  /// A solid or a cable with itself, named without that it touches itself.
+  /// Checks pairs of a solid or a cable with itself that are named without enabled self-contact.
   void check_named() {
     for (const ContactPairSpec& pair : model_.contacts.pairs) {
       if (pair.of_materials || pair.a != pair.b || !is_surface_side(pair.a)) continue;

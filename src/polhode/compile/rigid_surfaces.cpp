@@ -13,12 +13,13 @@ namespace polhode {
 
 namespace {
 
-/// Part of the smallest half size, or edge of triangles, by which edges are rounded, at least.
+/// Smallest rounding of edges, as a part of the smallest half size, or of the edges of triangles.
 constexpr double kRounding = 1e-3;
-/// The same of boxes and cylinders, of cones and hulls, and of triangles, at most.
+/// Largest rounding in the same units: of boxes and cylinders, of cones and hulls, and of
+/// triangles.
 constexpr double kMaxOfBoxes = 0.5, kMaxOfHulls = 0.2, kMaxOfTriangles = 0.25;
-/// Part of the radius of a cable that its band may take: its points, no farther apart than 1.6
-/// radii, then let nothing through between them.
+/// Largest part of the radius of a cable for its band: its points, at most 1.6 radii apart, then
+/// let nothing through between them.
 constexpr double kMaxOfRadius = 0.125;
 
 bool has_triangles(const ShapeSpec& shape) {

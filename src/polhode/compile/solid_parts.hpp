@@ -10,14 +10,14 @@
 
 namespace polhode {
 
-/// A material of a model as the registry of materials wants it.
+/// Description of a model's material for the registry of materials.
 [[nodiscard]] MaterialDescription material_description(const MaterialSpec& material);
 
-/// What a model may name as a solid's element: kinds of the registry, and cells such as hex8, whose
-/// kind then suits the material.
+/// Valid names of a solid's element: kinds of the registry, and cells such as hex8, for which the
+/// kind is chosen by the material.
 [[nodiscard]] std::vector<std::string> solid_element_names();
 
-/// The cell of an element or cell name; "" for "" and for a name that is unknown.
+/// Cell of an element or cell name; "" for "" and for an unknown name.
 [[nodiscard]] std::string cell_of_element(std::string_view element);
 
 }  // namespace polhode

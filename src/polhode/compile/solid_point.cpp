@@ -14,12 +14,12 @@ namespace polhode {
 
 namespace {
 
-/// How far outside of an element a point may lie, of the element's extent.
+/// Largest distance of a point outside an element, as a part of its extent.
 constexpr double kOutside = 1e-6;
-/// Iterations of the inverse map; it converges quadratically from the middle of sound elements.
+/// Iterations of the inverse map, which converges quadratically from the centre of valid elements.
 constexpr int kPointIterations = 30;
 
-/// How far reference coordinates lie outside of a cell; negative inside.
+/// Distance of reference coordinates outside a cell; negative inside.
 double outside(const CellShape& shape, const Vec3& xi) {
   const auto beyond = [&](int c) { return std::abs(xi[c]) - 1.0; };
   const double corner = std::max({-xi[0], -xi[1], xi[0] + xi[1] - 1.0});
@@ -66,7 +66,7 @@ SolidPoint solid_point(std::string_view where, const Mesh& mesh, const Vec3& X) 
       least = least.cwiseMin(nodes.back());
       most = most.cwiseMax(nodes.back());
     }
-    // Curved faces bulge out of the box of the nodes a little.
+    // Curved faces bulge slightly out of the bounding box of the nodes.
     const double size = (most - least).norm();
     const Vec3 margin = Vec3::Constant(0.1 * size);
     if ((X - least + margin).minCoeff() < 0.0 || (most - X + margin).minCoeff() < 0.0) continue;

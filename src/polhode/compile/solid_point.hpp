@@ -8,12 +8,12 @@
 
 namespace polhode {
 
-/// A material point of a solid: what stands at it is the sum of weights times what stands at nodes.
+/// A material point of a solid: fields at it are weighted sums of nodal values.
 struct SolidPoint {
   std::vector<int> nodes;
   std::vector<double> weights;  ///< Their sum is 1.
 
-  /// The value there of a field that is known at nodes.
+  /// Value at the point of a field given at nodes.
   template <class T>
   [[nodiscard]] T value(const std::vector<T>& field) const {
     T sum = T::Zero();
@@ -23,7 +23,7 @@ struct SolidPoint {
   }
 };
 
-/// The point of a mesh at X, by the shape functions of the element it lies in.
+/// Point of a mesh at X, by the shape functions of the element containing it.
 /// @param X  In the mesh's own coordinates [m].
 /// @throws InputError, at `where`, if it lies in no element; the message names the nearest node.
 [[nodiscard]] SolidPoint solid_point(std::string_view where, const Mesh& mesh, const Vec3& X);

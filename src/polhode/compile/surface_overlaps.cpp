@@ -21,13 +21,13 @@ namespace polhode {
 
 namespace {
 
-/// Shapes are looked at along their edges at distances of this part of a face of the solid.
+/// Distance of test points along the edges of a shape, as a part of a face of the solid.
 constexpr double kSpacing = 0.5;
 constexpr int kMaxParts = 1000;  ///< Of an edge.
-/// Tolerances at which nothing acts: solids keep as many apart from each other.
+/// Gap of solids without force, in tolerances.
 constexpr double kFree = 2.0;
 
-/// Where a shape is looked at: balls of its rounding about these points are all within it.
+/// Test points of a shape: balls of its rounding about these points are inside it.
 std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
   std::vector<Vec3> list = shape.corners;
   if (shape.solid == contact::Solid::polyhedron)
@@ -68,8 +68,8 @@ class Finder {
   }
 
  private:
-  /// A shape of a body in a solid, which may have no point in the shape. What is bonded to the
-  /// body lies around it as it likes.
+  /// Finds overlaps of a shape of a body with a solid, which may have no point in the shape. Parts
+  /// bonded to the body are ignored.
   void look_for_body(const ContactMap::Surface& surface) {
     const auto& bonds = model_.solids[static_cast<std::size_t>(solid_of_side(surface.own))].bonded;
     if (std::any_of(bonds.begin(), bonds.end(),
@@ -78,7 +78,7 @@ class Finder {
     if (!seen_.emplace(surface.own, surface.side, surface.shape).second) return;
     const BodySpec& body = model_.bodies[static_cast<std::size_t>(surface.side)];
     const ShapeSpec& spec = body.shapes[surface.shape];
-    if (spec.type == "plane") return;  // half of the world
+    if (spec.type == "plane") return;  // a half space
     const contact::Shape shape =
         contact_shape(shape_path(body, surface.shape), shape_place(body, spec), spec);
     const int carrier = map_.body[static_cast<std::size_t>(surface.side)];
@@ -91,7 +91,7 @@ class Finder {
     }
   }
 
-  /// Points of a solid or of a cable in another solid.
+  /// Finds overlaps of points of a solid or of a cable with another solid.
   void look_for_points(const ContactMap::Surface& surface, const SolidContact& contact) {
     const SolidInside& solid = inside(surface.side);
     if (surface.own == surface.side) {
@@ -127,7 +127,7 @@ class Finder {
   const SystemMap& map_;
   const State& state_;
   StepContext still_;
-  double free_gap_ = 0.0;  ///< Of the surface that is looked at [m].
+  double free_gap_ = 0.0;  ///< Of the present surface [m].
   std::vector<SideOverlap> list_;
   std::set<std::tuple<int, int, std::size_t>> seen_;
   std::map<int, SolidInside> inside_;  ///< By Model::solids.

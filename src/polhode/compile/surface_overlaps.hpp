@@ -9,26 +9,26 @@
 
 namespace polhode {
 
-/// Two sides that overlap, a solid or a cable one of them.
+/// Two overlapping sides, one of them a solid or a cable.
 struct SideOverlap {
   int own = 0, side = 0;    ///< See contact_spec.hpp.
-  double depth = 0.0;       ///< [m]; 0: they touch.
-  Vec3 out = Vec3::Zero();  ///< Unit, world: where `own` goes to leave; zero if not known.
-  double free_gap = 0.0;    ///< At which nothing acts [m].
+  double depth = 0.0;       ///< [m]; 0: in contact.
+  Vec3 out = Vec3::Zero();  ///< Unit, world: direction of exit of `own`; zero if not known.
+  double free_gap = 0.0;    ///< Gap without force [m].
 };
 
-/// Faces of a solid by the system's numbers of nodes.
+/// Faces of a solid by the system's node numbers.
 [[nodiscard]] std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces);
-/// All around a solid.
+/// Complete boundary of a solid.
 [[nodiscard]] MeshSurface solid_boundary(const SolidMap& solid);
 
-/// Surfaces that are deeper in a shape, or solids, bodies and cables that are deeper in a solid,
-/// than what they touch by lets pass, the deepest place of each two sides; and solids that leave no
-/// gap. What lies wholly within a solid is found, too, see SolidInside.
+/// Overlaps of surfaces with shapes, and of solids, bodies and cables with solids, beyond what
+/// their contact allows, at the deepest point of each two sides; also solids without a gap. Fully
+/// enclosed parts are found, see SolidInside.
 [[nodiscard]] std::vector<SideOverlap> surface_overlaps(const Model& model, const System& system,
                                                         const SystemMap& map, const State& state);
 
-/// "pad in floor by 0.01 m", "pad touches block".
+/// Description of an overlap: "pad in floor by 0.01 m", "pad touches block".
 [[nodiscard]] std::string overlap_text(const Model& model, const SideOverlap& overlap);
 
 }  // namespace polhode

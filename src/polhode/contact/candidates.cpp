@@ -9,10 +9,10 @@ namespace polhode::contact {
 
 namespace {
 
-/// A shape with more corners than this is bounded by a ball.
+/// Number of corners above which a shape is bounded by a ball.
 constexpr std::size_t kManyCorners = 64;
 
-/// Box around a shape, grown by `margin`.
+/// Bounding box of a shape, grown by `margin`.
 Bounds bounds_of(const Shape& s, const Vec3& r, const Mat3& Lambda, double margin) {
   if (s.corners.empty() || s.corners.size() > kManyCorners || s.round()) {
     const Vec3 centre = r + Lambda * s.bound_centre;
@@ -32,7 +32,8 @@ Bounds bounds_of(const Shape& s, const Vec3& r, const Mat3& Lambda, double margi
 
 }  // namespace
 
-/// Of any point of the body, at most: chords are shorter than arcs.
+/// Upper bound of the displacement of any point of the body since its reference placement [m]. A
+/// rotation counts by its chord, which is shorter than the arc.
 double ContactSet::moved(int body, const Vec3& r, const Mat3& Lambda) const {
   const Reference& from = references_[body];
   if (from.margin < 0.0) return std::numeric_limits<double>::infinity();
@@ -68,7 +69,7 @@ void ContactSet::add_points(int a, int b, double dt, std::vector<Point>& points)
   }
 }
 
-/// How far a body may well go in a few steps of that length [m].
+/// Margin of a body: an estimate of its displacement in a few steps of length dt [m].
 double ContactSet::margin_of(int body, const BodyStep& s, double dt) const {
   const double ahead = std::abs(dt) * (s.v_n.norm() + s.W_n.norm() * reach_of_body_[body]) +
                        dt * dt * system_->gravity().norm();
@@ -76,7 +77,7 @@ double ContactSet::margin_of(int body, const BodyStep& s, double dt) const {
   return std::max(4.0 * ahead, 0.05 * size);
 }
 
-/// Where bodies are at t_n, and how far they may go until candidates are found again.
+/// Stores the placements at t_n as references, with the margins within which candidates stay valid.
 void ContactSet::refer(std::span<const BodyStep> steps, const StepContext& context) {
   for (int body = 0; body < static_cast<int>(references_.size()); ++body) {
     Reference& ref = references_[body];
@@ -87,12 +88,13 @@ void ContactSet::refer(std::span<const BodyStep> steps, const StepContext& conte
   }
 }
 
-/// Depends on the references alone, so that a run goes on from an archive bit for bit.
+/// Finds the candidate pairs from the references alone, so that a restarted run is equal bit for
+/// bit.
 void ContactSet::find_candidates(double dt) {
   const auto margin = [&](const PlacedShape& s) {
     return s.body == kGround ? 0.0 : references_[s.body].margin;
   };
-  // What has no bounds meets everything.
+  // Unbounded shapes are paired with all others.
   double widest = default_law_.tolerance;
   for (const auto& [key, law] : laws_) widest = std::max(widest, law.tolerance);
   std::vector<int> bounded, unbounded;
@@ -126,7 +128,7 @@ void ContactSet::find_candidates(double dt) {
   });
   std::sort(shape_pairs.begin(), shape_pairs.end());
 
-  // Pairs of bodies, in order; the ground is always second.
+  // Pairs of bodies are ordered; the ground is always second.
   const auto bodies = [&](int a, int b) {
     int x = shapes_[a].body, y = shapes_[b].body;
     if (x == kGround || (y != kGround && y < x)) std::swap(x, y);
@@ -151,7 +153,7 @@ void ContactSet::find_candidates(double dt) {
       points[k].swapped = shapes_[points[k].a].body != key.first;
     }
   }
-  // Histories go over to the new list.
+  // Histories are carried over to the new list.
   const auto name = [](const Point& p) {
     return std::array<int, 5>{p.a, p.b, static_cast<int>(p.data.pair.kind), p.data.pair.i,
                               p.data.pair.j};
@@ -182,14 +184,14 @@ bool ContactSet::cover(std::span<const BodyStep> steps, const StepContext& conte
                    increments[body].tail<3>().norm() * reach_of_body_[body]);
   };
   const auto bodies = static_cast<int>(references_.size());
-  for (int body = 0; body < bodies && !leaves; ++body)  // what stays was asked for before
+  for (int body = 0; body < bodies && !leaves; ++body)  // no increment: already checked
     leaves = reach_of_body_[body] > 0.0 && !increments[body].isZero(0.0) &&
              !(moved(body, steps[body].r_n1, steps[body].Lambda_n1) + ahead(body) <
                references_[body].margin);
   if (!leaves) return false;
   const std::vector<Participants> before = pairs_;
   refer(steps, context);
-  // The references are those of t_n now: margins must hold from there, for every body.
+  // The references are now those of t_n; margins count from there, for every body.
   for (int body = 0; body < bodies; ++body) {
     const BodyStep& s = steps[body];
     const double span = moved(body, s.r_n1, s.Lambda_n1) + ahead(body);

@@ -9,7 +9,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// A point carried by a body at both ends of the step, and how far it moves.
+/// A point carried by a body at both ends of the step, and its displacement.
 struct Ends {
   Vec3 at_n, at_n1, moved;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What contacts remember from step to step, to and from State::contacts.
+// Contact histories: transfer from step to step, to and from State::contacts.
 #include <algorithm>
 
 #include <polhode/contact/contact_set.hpp>
@@ -123,7 +123,7 @@ void ContactSet::load(const State& state) {
     references_[k].Lambda = Mat3(record.Lambda);
     references_[k].margin = record.margin;
   }
-  // Bare points that carry the histories: find_candidates() hands these on.
+  // Points that carry only their histories: find_candidates() hands these on.
   const std::size_t count = impulses_ ? kNumbersOf<ImpulseRecord> : kNumbersOf<PointRecord>;
   for (std::size_t at = references; at + count <= in.size(); at += count) {
     const double* here = in.data() + at;
@@ -163,7 +163,7 @@ void ContactSet::load(const State& state) {
 void ContactSet::keep_totals(State& state, const std::vector<double>& totals) {
   totals_ = totals;
   if (state.contacts.size() <= totals.size()) return;  // nothing was saved yet
-  const bool own = saved_ == state.contacts;           // else points are those of another step
+  const bool own = saved_ == state.contacts;  // otherwise the points are those of another step
   const auto before = static_cast<std::ptrdiff_t>(state.contacts[0]);
   state.contacts.erase(state.contacts.begin() + 1, state.contacts.begin() + 1 + before);
   state.contacts[0] = static_cast<double>(totals.size());

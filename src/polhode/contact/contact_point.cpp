@@ -8,11 +8,11 @@ namespace polhode::contact {
 
 namespace {
 
-/// Directions closer than this are taken as parallel by fading potentials: sin² of the angle.
+/// Angle below which fading potentials take directions as parallel: its sin².
 constexpr double kFadeSquare = 1e-3;
-/// Displacements and turns below these have no direction: corrections along them are round-off.
+/// Displacements and rotations below these have no direction: corrections along them are round-off.
 constexpr double kNoTurn = 1e-6, kNoMove = 1e-6;
-/// The common point is moved by at most this part of L per unit turn.
+/// Largest shift of the common point per unit rotation, as a part of L.
 constexpr double kLargestShift = 0.1;
 
 /// m of a Fade: x(2 − x) of x = sin²/1e-3 < 1. y is the cosine.
@@ -25,7 +25,7 @@ T fading(Fade fade, const T& y) {
   return near && value(y) < 0.0 ? 1.0 - m : T(0.0);
 }
 
-/// (m(y_1) − m(y_0))/(y_1 − y_0), without the difference where both fade.
+/// (m(y_1) − m(y_0))/(y_1 − y_0), evaluated without the difference where both fade.
 template <class T>
 T fading_quotient(Fade fade, double y_0, const T& y_1) {
   const double x_0 = (1.0 - y_0 * y_0) / kFadeSquare;
@@ -40,7 +40,7 @@ T fading_quotient(Fade fade, double y_0, const T& y_1) {
   return (fading(fade, y_1) - fading(fade, y_0)) / change;
 }
 
-/// A point near the contact at t_n, cheap to find: gaps are formed as seen from there.
+/// A cheap point near the contact at t_n, the origin in which gaps are computed.
 Vec3 near_contact(const PointData& data, const BodyStep& a) {
   const Shape& A = *data.a;
   switch (data.pair.kind) {
@@ -94,7 +94,7 @@ Dual with_value(Dual x, double v) {
   return x;
 }
 
-/// One evaluation of a contact point with numbers of sort T.
+/// One evaluation of a contact point with scalar type T.
 template <class T>
 class Evaluation {
  public:
@@ -114,7 +114,7 @@ class Evaluation {
 
   Wrenches<T> run(PointReport* report) {
     Gap<double> g_0 = gap(data_.pair, *data_.a, *data_.b, n_a_, n_b_);
-    // To the last bit what the last step ended with: deep in the barrier rounding would count.
+    // Equal to the last bit to the end of the last step: deep in the barrier rounding would matter.
     if (data_.history.closed) g_0.distance = data_.history.gap;
     Gap<T> g_1 = gap(data_.pair, *data_.a, *data_.b, e_a_, e_b_);
     if (has_closed_form(data_))
@@ -138,7 +138,7 @@ class Evaluation {
     return w;
   }
 
-  /// After run() with numbers: what the tangent is like at the common point.
+  /// Equivalent spring at the common point, after run() with plain numbers.
   PointForce spring(const Wrenches<T>& w) const {
     PointForce f;
     f.force = value(w.force);
@@ -186,8 +186,8 @@ class Evaluation {
     correct(slope, u);
   }
 
-  /// A corner has one distance from a surface, whatever turns about it: force and correction act
-  /// there. All normals of features of the surface pass through it.
+  /// Common point and correction of a corner on a surface: the corner itself. Rotations about it do
+  /// not change its distance, and all normals of the surface's features pass through it.
   void along_the_corner(const T& slope) {
     const Vec3& Z = data_.a->corners[data_.pair.i];
     point_N_ = average(n_a_.point(Z), e_a_.point(Z), 0.5);
@@ -195,7 +195,7 @@ class Evaluation {
                        cross(move_b_.theta, point_N_ - r_b_));
   }
 
-  /// The discrete gradient along a displacement.
+  /// Discrete-gradient correction of the normal along a displacement.
   void correct(const T& slope, const V3<T>& u) {
     N_ = slope * n_;
     const T length = dot(u, u);
@@ -222,7 +222,7 @@ class Evaluation {
     couple_ = data_.pair.weight * couple_;
   }
 
-  /// The share of the end of the step. @eq{contact-plastic}
+  /// Adds the part of the force taken at the end of the step. @eq{contact-plastic}
   void add_share(const Gap<T>& g_1) {
     if (data_.end_share > 0.0 && data_.pair.weight > 0.0)
       lambda_ =
@@ -244,8 +244,8 @@ class Evaluation {
     couple_ = (-(energy * q)) * cross(average(f_0.a, f_1.a, 0.5), average(f_0.b, f_1.b, 0.5));
   }
 
-  /// A point against a plane or a ball: N and arms for which N·u = Δg needs no correction.
-  /// @eq{contact-point-plane} @eq{contact-sphere-sphere}
+  /// Closed forms of a point against a plane or a ball: N and lever arms for which N·u = Δg needs
+  /// no correction. @eq{contact-point-plane} @eq{contact-sphere-sphere}
   void closed_forms() {
     if (!has_closed_form(data_)) return;
     const Shape &A = *data_.a, &B = *data_.b;
@@ -263,7 +263,7 @@ class Evaluation {
     }
   }
 
-  /// Δg of the same, from how far points and normal move. @eq{contact-gap-change}
+  /// Δg of a closed form, from the displacements of points and normal. @eq{contact-gap-change}
   [[nodiscard]] T closed_form_change() const {
     const Shape &A = *data_.a, &B = *data_.b;
     const auto moved = [](const Motion<T>& m, const V3<double>& z_0, const V3<T>& z_1) {
@@ -281,15 +281,15 @@ class Evaluation {
     return dot(average(n_0, n_1, 0.5), u) + dot(moved(move_b_, n_0, n_1), average(w_0, w_1, 0.5));
   }
 
-  /// The gap at t_{n+1} to the last digits that u and θ have: deep in the barrier those of a
-  /// double's 1e-16 of the bodies' size would be worth energy. @eq{contact-gap-change}
+  /// Gap at t_{n+1} to the precision of u and θ. Deep in the barrier the rounding of positions,
+  /// 1e-16 of the bodies' size, would be worth energy. @eq{contact-gap-change}
   [[nodiscard]] double fine_distance() const {
     return value(gap(data_.pair, *data_.a, *data_.b, Placement<Fine>(a_, from_, 0),
                      Placement<Fine>(b_, from_, 6))
                      .distance);
   }
 
-  /// ρ∞ < 1: force, normal and arms of t_{n+αf}.
+  /// Force, normal and lever arms at t_{n+αf} for ρ∞ < 1.
   void alpha_corrections(const Gap<double>& g_0, const Gap<T>& g_1) {
     const double e = context_.ga.alpha_f - 0.5;
     if (e == 0.0) return;
@@ -366,7 +366,7 @@ class Evaluation {
     report->after.normal = n;
   }
 
-  /// k_T (½ + c_T/(k_T Δt)) in the tangent plane; sliding, less of it, and none along the force.
+  /// Friction spring k_T (½ + c_T/(k_T Δt)) in the tangent plane; sliding: less, none along F.
   void set_friction_spring(const FrictionLaw& f, const V3<T>& middle, const V3<T>& F,
                            double normal_force) {
     const Vec3 n = value(n_), s = value(middle);
@@ -388,7 +388,7 @@ class Evaluation {
     dissipated += -F.dot(u) - 0.5 * k * (after.squaredNorm() - before.squaredNorm());
   }
 
-  /// The bristle at the start of the step, brought into the tangent plane and into the cone.
+  /// Bristle at the start of the step, projected into the tangent plane and into the cone.
   V3<T> start(const Vec3& bristle, const T& spin, const Cone<T>& cone) const {
     return cone.nearest(transported(bristle, data_.history.normal, n_, spin));
   }
@@ -416,7 +416,7 @@ class Evaluation {
     const double m_0 = weight_at(data_, n_a_, n_b_), m_1 = weight_at(data_, end_a, end_b);
     r.work = {};
     r.work.stored = m_1 * data_.normal.energy(r.gap_n1);
-    // What the normal force took beyond the change of the potential.
+    // Work of the normal force beyond the change of the potential.
     const double elastic = 0.5 * (m_0 + m_1) * data_.normal.quotient(r.gap_n, r.gap_n1);
     r.work.dissipated = (r.normal_force - elastic) * (r.gap_n - r.gap_n1);
     r.normal_loss = r.work.dissipated;
@@ -425,7 +425,7 @@ class Evaluation {
   const PointData& data_;
   const BodyStep &a_, &b_;
   const StepContext& context_;
-  Vec3 from_;                    ///< Places are seen from here.
+  Vec3 from_;                    ///< Origin of positions.
   Placement<double> n_a_, n_b_;  ///< At t_n.
   Placement<T> e_a_, e_b_;       ///< At t_{n+1}.
   Motion<T> move_a_, move_b_;
@@ -433,7 +433,7 @@ class Evaluation {
   double stiffness_ = 0.0;
   Mat3 friction_C_ = Mat3::Zero();
   Vec3 slide_ = Vec3::Zero();
-  double lag_ = 0.0, rub_ = 0.0;  ///< Of a point that slides, as in PointForce.
+  double lag_ = 0.0, rub_ = 0.0;  ///< Of a sliding point, as in PointForce.
   V3<T> c_, n_, u_, N_, point_N_, r_a_, r_b_, couple_;
 };
 

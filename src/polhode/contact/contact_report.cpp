@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What contacts tell about the last step, and about a state before a run.
+// Reports of contacts: over the last step, and of a state before a run.
 #include <algorithm>
 #include <limits>
 #include <tuple>
@@ -11,7 +11,7 @@
 namespace polhode::contact {
 
 std::vector<ShapePairReport> ContactSet::reports() const {
-  // The points of a pair of shapes follow one another.
+  // The points of a pair of shapes are consecutive.
   std::vector<ShapePairReport> list;
   std::uint64_t last = 0;
   for (const Point& p : points_) {
@@ -23,7 +23,7 @@ std::vector<ShapePairReport> ContactSet::reports() const {
       last = p.key[0];
     }
     ShapePairReport& r = list.back();
-    // Points that only correct the sum of others are not where surfaces are.
+    // Points of negative weight only correct the sum of others: they do not lie on a surface.
     if (p.data.pair.weight > 0.0)
       r.gap = std::min(r.gap, p.touched || p.report.gap_n1 != 0.0 ? p.report.gap_n1 : p.gap_n);
     if (!p.touched) continue;
@@ -60,9 +60,9 @@ namespace {
 
 using Overlaps = std::map<std::pair<int, int>, ShapeOverlap>;
 
-/// Shapes that lie within surfaces of triangles, none of which is near.
-/// @param touch  (shape, shape) → whether they may.
-/// @param at     (shape) → where it is.
+/// Shapes that are fully enclosed by surfaces of triangles without being near any triangle.
+/// @param touch  (shape, shape) → whether contact between them is allowed.
+/// @param at  (shape) → its placement.
 template <class Touch, class At>
 void add_fully_enclosed(const std::vector<PlacedShape>& shapes, Touch&& touch, At&& at,
                         Overlaps& deepest) {
@@ -121,7 +121,7 @@ std::vector<ShapeOverlap> ContactSet::overlaps_at(const State& state,
   std::vector<ShapeOverlap> list;
   list.reserve(deepest.size());
   for (const auto& [key, overlap] : deepest) list.push_back(overlap);
-  // Nothing of this may be left when steps begin: stiffnesses are frozen while points are closed.
+  // Cleared before steps begin: stiffnesses are frozen while points are closed.
   points_.clear();
   pairs_.clear();
   for (Reference& r : references_) r.margin = -1.0;

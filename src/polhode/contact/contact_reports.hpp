@@ -7,20 +7,20 @@ namespace polhode::contact {
 
 enum class ContactStatus { open, stick, slip };
 
-/// What two shapes did to each other over the last step.
+/// Contact of two shapes over the last step.
 struct ShapePairReport {
   int a = 0, b = 0;              ///< Shapes.
   double gap = 0.0;              ///< Smallest, at t_{n+1} [m].
   Vec3 force = Vec3::Zero();     ///< On a, friction included [N].
   double normal_force = 0.0;     ///< Sum of all points [N].
   Vec3 friction = Vec3::Zero();  ///< On a [N].
-  Vec3 point = Vec3::Zero();     ///< Mean of the points, by normal force [m].
+  Vec3 point = Vec3::Zero();     ///< Mean of the points, weighted by normal force [m].
   int points = 0;
   ContactStatus status = ContactStatus::open;
   double dissipated = 0.0;   ///< In the step, impacts included [J].
-  double impact_loss = 0.0;  ///< The part of it that impacts took [J].
+  double impact_loss = 0.0;  ///< The part of it due to impacts [J].
   int unresolved = 0;  ///< Points that closed in an impact of fewer than twenty steps although
-                       ///< their law has a stiffness or a damper of its own.
+                       ///< their law has a given stiffness or damper.
 };
 
 /// Two shapes that overlap.

@@ -12,20 +12,20 @@ namespace polhode::contact {
 
 namespace {
 
-/// Stiffness of lasting contact, which carries its load at a twentieth of the tolerance:
-/// k d̂ of the barrier over the load there: 3/(1/s² − 3 + 2s) at s = 0.95.
+/// Stiffness of resting contact, with which a point carries its load at a twentieth of the
+/// tolerance: k d̂ of the barrier over the load there, 3/(1/s² − 3 + 2s) at s = 0.95.
 constexpr double kRestStiffness = 373.0;
-/// Slope of that barrier under its load, which is the stiffness of a bristle beside it: a much
-/// softer one lets bodies rock, and Newton finds no end between sticking and sliding.
+/// Slope of that barrier under its load, which is also the stiffness of the bristle: with a much
+/// softer bristle bodies rock, and Newton does not converge between sticking and sliding.
 constexpr double kRestSlope = 38.6;
-/// Stiffness of a linear spring that carries the load at the whole tolerance or less.
+/// Stiffness of a linear spring that carries the load within the tolerance.
 constexpr double kSoftStiffness = 0.75;
-/// Damping ratio of lasting contact with e < 1.
+/// Damping ratio of resting contact with e < 1.
 constexpr double kRestDamping = 0.3;
-/// Largest tolerance of shapes with a core, as a part of their rounding.
+/// Largest tolerance of rounded shapes, as a part of their rounding radius.
 constexpr double kOfRounding = 0.85;
-/// Candidates are found anew when their margin is so many times what is needed, as after an
-/// iteration that went astray.
+/// Ratio of margin to required margin above which candidates are found again, as after a diverged
+/// iteration.
 constexpr double kWideMargin = 8.0;
 
 void check_law(const ContactLaw& law) {
@@ -48,8 +48,8 @@ void check_law(const ContactLaw& law) {
            "Give at least 0.05, or leave out rebound: damped");
 }
 
-/// c |w_pre| of the damper with which a mass rebounds with e, from
-/// (1 + e) x = ln((1 + x)/(1 − e x)), whatever the exponent of the spring. @eq{contact-damped}
+/// c |w_pre| of the damper with which a mass rebounds with e, the root of (1 + e) x = ln((1 + x)/(1
+/// − e x)) for any exponent of the spring. @eq{contact-damped}
 double damping_number(double e) {
   if (e >= 1.0) return 0.0;
   double low = 0.75 * (1.0 - e * e) / (1.0 + e * e * e), high = 1.0 / e;
@@ -60,7 +60,7 @@ double damping_number(double e) {
   return low;
 }
 
-/// c of lasting contact [s/m]. @param load  What rests on the point [N].
+/// c of resting contact [s/m]. @param load  Weight on the point [N].
 double rest_damping(const NormalLaw& law, double k, double mass, double load) {
   double slope = k;
   if (law.potential == NormalPotential::barrier) slope = 2.0 * std::sqrt(k * load / law.tolerance);
@@ -70,8 +70,9 @@ double rest_damping(const NormalLaw& law, double k, double mass, double load) {
 
 }  // namespace
 
-/// On a spring that is made for any body of the model more may rest than its own two: a damper made
-/// for these would let it sink too slowly.
+/// Adapts the damping of resting contact to the load. A spring chosen for any body of the model may
+/// carry more than its own two bodies; a damper chosen for these would let the load sink too
+/// slowly.
 void ContactSet::damp_load(Point& p) const {
   const PointHistory& h = p.data.history;
   const double gravity = system_->gravity().norm();
@@ -110,7 +111,7 @@ void ContactSet::exclude(int owner_a, int owner_b) {
   excluded_.insert(std::minmax(owner_a, owner_b));
 }
 
-/// What no pair states is combined: √(μ_a μ_b), the smaller restitution.
+/// Law of two shapes. Combined if no pair law is given: √(μ_a μ_b), the smaller restitution.
 const ContactLaw& ContactSet::law(int shape_a, int shape_b) const {
   const std::pair<int, int> key = std::minmax(shapes_[shape_a].material, shapes_[shape_b].material);
   if (const auto stated = laws_.find(key); stated != laws_.end()) return stated->second;
@@ -179,10 +180,10 @@ void ContactSet::complete_law(Point& p, double dt) const {
   if (!plane) d.normal.tolerance = std::min(d.normal.tolerance, kOfRounding * rounding);
   const double tolerance = d.normal.tolerance;
   const double weight = mass * system_->gravity().norm();
-  // Springs let bodies pass that weigh more than they were chosen for: any may lie on any other.
+  // Springs let heavier bodies than they were chosen for pass, and any body may lie on any other.
   const double rests = barrier ? weight : heaviest_ * system_->gravity().norm();
   const double load = law.reference_load > 0.0 ? law.reference_load : rests;
-  // A damper works over a time of contact, which shall not depend on the step.
+  // A damper works over the duration of a contact, which must not depend on the step.
   const double by_step = law.damped && load > 0.0 ? 0.0 : mass / (dt * dt);
   const double soft = std::max(kSoftStiffness * load / tolerance, by_step);
   double k = law.stiffness, k_T = law.stiffness;
@@ -343,7 +344,7 @@ void ContactSet::evaluate(std::span<const BodyStep> steps, const StepContext& co
 
 namespace {
 
-/// A point that opened: what its bristles held is lost.
+/// Releases the bristles of a point that opened: their energy is dissipated.
 void release_bristles(const FrictionLaw& f, PointReport& r) {
   const double held = 0.5 * f.stiffness * r.after.bristle.squaredNorm() +
                       0.5 * f.turning_stiffness *
@@ -358,7 +359,7 @@ void release_bristles(const FrictionLaw& f, PointReport& r) {
 }  // namespace
 
 double ContactSet::least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const {
-  // The one gap of several features falls below the nearest of them by less than this.
+  // The combined gap of several features is below the nearest one by less than this.
   const double nearer = 1e-3 * p.data.length;
   const auto moved = [&](int shape, const BodyStep& s) {
     const int body = shapes_[shape].body;
@@ -372,9 +373,9 @@ double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) c
   return balls_[point].holds ? balls_[point].gap_n1(a, b) : gap_n1(p.data, p.gap_n, a, b);
 }
 
-/// A spring that an impact left with a reach below its surface, and that gaps between the two do
-/// not press: it keeps that reach until the surfaces part, since to start from the surface again
-/// would store what nobody put in. @eq{turn-law}
+/// Whether a spring is slack: an impact has left its activation distance below the surface, and the
+/// gap lies between the two. It keeps that distance until the surfaces part, since a spring that
+/// started from the surface again would create energy. @eq{turn-law}
 bool ContactSet::is_slack(const Point& p, double gap) {
   const NormalLaw& law = p.data.normal;
   return law.potential != NormalPotential::barrier && gap >= law.reach() && gap < 0.0;
@@ -423,7 +424,7 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
       add_contact(p.data, a, b, values, unused, &p.report);
     }
     if (gap_1 >= reach) release_bristles(p.data.friction, p.report);
-    if (h.in_impact()) {  // friction is an impulse now: what the bristles held is lost
+    if (h.in_impact()) {  // friction is an impulse now: the bristles' energy is dissipated
       const FrictionLaw& f = p.data.friction;
       p.report.work.dissipated +=
           0.5 * f.stiffness * h.bristle.squaredNorm() +
@@ -450,8 +451,9 @@ Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const Ste
   return work;
 }
 
-/// Leaves no trace: a run ends in the same bits however often it is asked for its energy. What a
-/// state that is not the last one has closed is found again when its next step begins.
+/// Stored energy at an instant. The query changes nothing: results are equal bit for bit however
+/// often it is made. What a state other than the last one has closed is found again when its next
+/// step begins.
 double ContactSet::stored(const State& state, std::span<const BodyStep> instants) {
   if (impulses_) return 0.0;
   if (!loaded_ || saved_ != state.contacts) {

@@ -20,95 +20,94 @@
 
 namespace polhode::contact {
 
-/// How two materials meet. Zero means: chosen from the bodies (see docs/theory/contact.md).
+/// Contact law of two materials. Zero: chosen from the bodies (see docs/theory/contact.md).
 struct ContactLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 0.0;       ///< k [N/m]; Hertz [N/m^{3/2}].
   double tolerance = 0.0;       ///< g_tol of the barrier [m].
-  double reference_load = 0.0;  ///< That a point carries at gap 0 [N]; chooses the stiffness.
+  double reference_load = 0.0;  ///< Load of a point at gap 0 [N]; chooses the stiffness.
   double restitution = 0.0;     ///< e, 0 to 1.
-  /// Hertz and linear: speed of rebound by a damper instead (Gonthier, Carvalho and Martins);
-  /// needs some twenty steps per contact.
+  /// Hertz and linear: rebound by a damper instead (Gonthier, Carvalho and Martins), which needs
+  /// some twenty steps per contact.
   bool damped = false;
-  bool sensor = false;   ///< Reports, but exerts no force.
-  FrictionLaw friction;  ///< stiffness, damping ...: 0 to choose them.
+  bool sensor = false;   ///< Reports contact, but exerts no force.
+  FrictionLaw friction;  ///< Zero stiffness or damping: chosen.
 
   ContactLaw() { friction.stiffness = friction.turning_stiffness = 0.0; }
 };
 
-/// Friction and restitution of one material against itself, for laws that no pair states.
+/// Friction and restitution of a material against itself, for pairs without a law of their own.
 struct ContactMaterial {
   std::string name;
   double mu = 0.0;
   double restitution = 0.0;
 };
 
-/// A shape on a body.
+/// A shape fixed to a body.
 struct PlacedShape {
   int body = kGround;
   std::string name;
   Shape shape;
-  int material = -1;                  ///< Of add_material(); −1: the default law.
-  std::uint32_t groups = 1;           ///< Belongs to these.
-  std::uint32_t meets = 0xffffffffu;  ///< Meets shapes of these; both have to agree.
-  int owner = -2;  ///< Whose it is, for exclude(): a number of the caller's; −2: the body.
+  int material = -1;                  ///< From add_material(); −1: the default law.
+  std::uint32_t groups = 1;           ///< Collision groups of the shape.
+  std::uint32_t meets = 0xffffffffu;  ///< Groups it collides with; both shapes have to agree.
+  int owner = -2;  ///< Owner for exclude(), a number of the caller's; −2: the body.
 };
 
-/// Stands for all owners in a switch.
+/// All owners, in a switch.
 inline constexpr int kEveryOwner = std::numeric_limits<int>::max();
 
 /// Contact between the shapes of bodies.
 ///
-/// Candidates are found when a body has moved by more than its margin since they were found last;
-/// they are sorted, so that sums do not depend on how they were found.
+/// Candidates are found again when a body has moved by more than its margin; they are sorted, so
+/// that sums do not depend on the search.
 class ContactSet final : public BodyContacts, public PointwiseContacts, public ImpulsiveContacts {
  public:
-  /// @returns the shape's number.
+  /// Adds a shape. @returns its number.
   int add_shape(PlacedShape shape);
-  /// @returns the material's number. @throws InputError for values out of range.
+  /// Adds a material. @returns its number. @throws InputError for values out of range.
   int add_material(const ContactMaterial& material);
   void set_default(const ContactLaw& law);
-  /// Law of two materials. @throws InputError for values out of range.
+  /// Sets the law of two materials. @throws InputError for values out of range.
   void set_law(int material_a, int material_b, const ContactLaw& law);
-  /// Contacts act by impulses: of the laws only the coefficients of friction (not by direction, not
-  /// while sticking) and restitution matter then.
+  /// Makes contacts act by impulses. Of the laws only the coefficients of friction (isotropic,
+  /// kinetic) and restitution are then used.
   void set_impulses(const ImpulseOptions& options) { impulses_ = options; }
-  /// Shapes of these owners (bodies, if none is stated) do not meet.
+  /// Excludes contact between the shapes of two owners (bodies, if none is given).
   void exclude(int owner_a, int owner_b);
-  /// Lets the contact of two owners, or of one with kEveryOwner, be switched off and on. Two shapes
-  /// meet while no switch of theirs is off.
+  /// Adds a switch for the contact of two owners, or of one with kEveryOwner. Two shapes are in
+  /// contact only while none of their switches is off.
   void add_switch(int owner_a, int owner_b, bool starts_off);
-  /// Number of a switch that was added.
+  /// Number of an existing switch.
   [[nodiscard]] int switch_of(int owner_a, int owner_b) const;
-  /// Switches at an instant. What points that are gone remembered is forgotten.
+  /// Sets switches at an instant. Histories of points that disappear are dropped.
   void switch_over(State& state, std::span<const int> switches, bool off);
-  /// Shapes that would overlap if these were switched on, in words.
+  /// Descriptions of shapes that would overlap if these were switched on.
   [[nodiscard]] std::vector<std::string> overlaps_if_on(const State& state,
                                                         std::span<const BodyStep> instants,
                                                         std::span<const int> switches);
-  /// Distance of the shapes of two owners at an instant, however far apart they are and whether
-  /// they meet or not; negative: they overlap [m].
+  /// Distance of the shapes of two owners at an instant, at any distance and whether or not contact
+  /// between them is allowed; negative: they overlap [m].
   [[nodiscard]] double distance(int owner_a, int owner_b, std::span<const BodyStep> instants) const;
-  /// Whether two shapes touch when they are near and nothing is switched off: bodies, groups and
-  /// exclusions allow it.
+  /// Whether contact between two shapes is allowed by bodies, groups and exclusions, with all
+  /// switches on.
   [[nodiscard]] bool may_meet(const PlacedShape& a, const PlacedShape& b) const;
 
   [[nodiscard]] const std::vector<PlacedShape>& shapes() const { return shapes_; }
   [[nodiscard]] const ContactLaw& law(int shape_a, int shape_b) const;
-  /// What the last step did, by pairs of shapes that are near each other; after stored() or at the
-  /// start gaps only.
+  /// Results of the last step by pairs of nearby shapes; after stored() or at the start only gaps.
   [[nodiscard]] std::vector<ShapePairReport> reports() const;
   [[nodiscard]] std::vector<TouchingPoint> touching() const;
-  /// Forces and moments about the centres of mass, over the last step, by body, world [N, N m].
+  /// Contact forces and moments about the centres of mass, last step, by body, world [N, N m].
   [[nodiscard]] const std::vector<Vec6>& wrenches() const { return wrenches_; }
   /// Energy lost in impacts and by friction and other dissipation since prepare() [J].
   [[nodiscard]] double lost_in_impacts() const { return lost_in_impacts_; }
   [[nodiscard]] double lost_by_friction() const { return lost_by_friction_; }
-  /// Shapes that overlap by more than the tolerance at an instant, each pair by its deepest point.
+  /// Shapes that overlap by more than the tolerance at an instant, each pair at its deepest point.
   [[nodiscard]] std::vector<ShapeOverlap> deepest_overlaps(std::span<const BodyStep> instants);
-  /// The same in words: "a in b by 0.01 m".
+  /// Descriptions of these overlaps: "a in b by 0.01 m".
   [[nodiscard]] std::vector<std::string> overlaps(std::span<const BodyStep> instants);
-  /// Numbers of the caller's that go with the state: sums over the run, for instance.
+  /// Stores numbers of the caller's with the state, such as sums over the run.
   void keep_totals(State& state, const std::vector<double>& totals);
   [[nodiscard]] static std::vector<double> totals_in(const State& state);
   [[nodiscard]] int point_count() const { return static_cast<int>(points_.size()); }
@@ -146,47 +145,47 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
                        const ImpulseSearch& search) override;
-  /// Of the last step; all zero if contacts act by forces.
+  /// Contact search of the last step; all zero if contacts act by forces.
   [[nodiscard]] const ImpulseSearch& last_search() const { return search_; }
 
  private:
   struct Point {
     int a = 0, b = 0;      ///< Shapes, in the order of the feature pair.
-    int pair = 0;          ///< Of bodies.
-    bool swapped = false;  ///< The feature's side a is side b of the pair of bodies.
+    int pair = 0;          ///< Pair of bodies.
+    bool swapped = false;  ///< The feature's side a is side b of the body pair.
     std::array<std::uint64_t, 2> key{};
     PointData data;
     double restitution = 0.0;
-    double least_gap = 0.0;           ///< No step may go below [m].
+    double least_gap = 0.0;           ///< No step may end below this gap [m].
     bool damped = false;              ///< Rebounds by a damper.
     double damping_number = 0.0;      ///< c |w_pre| of a damped rebound [-].
-    bool may_be_closed_form = false;  ///< Closed forms hold at ρ∞ = 1.
+    bool may_be_closed_form = false;  ///< Closed forms are valid at ρ∞ = 1.
     bool sensor = false;
-    bool plain = false;              ///< They hold in this step.
-    double law_dt = 0.0;             ///< Step the constants of the law were chosen for [s].
-    double mass = 0.0;               ///< Reduced, of both bodies [kg].
-    double rest_stiffness = 0.0;     ///< k of lasting contact.
-    double bristle_stiffness = 0.0;  ///< k_T, if the law leaves it open [N/m].
-    double rest_damping = 0.0;       ///< c of lasting contact that takes energy [s/m].
-    bool open_stiffness = false;     ///< The law states no stiffness.
-    double force_n = 0.0;            ///< λ of the step before, of a point closed at t_n [N].
+    bool plain = false;              ///< They are valid in this step.
+    double law_dt = 0.0;             ///< Step for which the law's constants were chosen [s].
+    double mass = 0.0;               ///< Reduced mass of both bodies [kg].
+    double rest_stiffness = 0.0;     ///< k of resting contact.
+    double bristle_stiffness = 0.0;  ///< k_T, if the law does not give it [N/m].
+    double rest_damping = 0.0;       ///< c of dissipative resting contact [s/m].
+    bool open_stiffness = false;     ///< The law gives no stiffness.
+    double force_n = 0.0;            ///< λ of the previous step, of a point closed at t_n [N].
     bool unresolved = false;         ///< Closes in an impact too short for its law and the step.
     double gap_n = 0.0;
-    Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of a point that is open.
-    bool listed = false;         ///< Among the points that act by impulses in this step.
+    Vec3 normal_n = Vec3::Zero(), place_n = Vec3::Zero();  ///< At t_n, of an open point.
+    bool listed = false;         ///< In the list of impulse points of this step.
     PointReport report;          ///< Of the last accepted step.
-    bool touched = false;        ///< It acted in that step.
+    bool touched = false;        ///< It was in contact in that step.
     double speed_n = 0.0;        ///< Along the normal at the start of the step [m/s].
-    double impact_loss = 0.0;    ///< In impulses, along the normal [J].
-    double friction_loss = 0.0;  ///< Likewise, across it [J].
+    double impact_loss = 0.0;    ///< Of normal impulses [J].
+    double friction_loss = 0.0;  ///< Of friction impulses [J].
   };
-  /// Slide of a point at the last iterate.
+  /// Sliding state of a point at the last iterate.
   struct Slide {
-    Vec3 stretch = Vec3::Zero();  ///< Of its bristle [m]; zero: it stuck.
-    double share = 0.0;           ///< Of the lagged stiffness that it got.
-    bool known = false;           ///< There was an iterate in this step.
+    Vec3 stretch = Vec3::Zero();  ///< Deflection of its bristle [m]; zero: it stuck.
+    double share = 0.0;           ///< Part of the lagged stiffness that was applied.
+    bool known = false;           ///< The step had an iterate already.
   };
-  /// Where a body was when candidates were found, and how far it may go from there.
+  /// Placement of a body when candidates were found, and its margin from there.
   struct Reference {
     Vec3 r = Vec3::Zero();
     Mat3 Lambda = Mat3::Identity();
@@ -230,11 +229,11 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   void find_candidates(double dt);
   void add_points(int a, int b, double dt, std::vector<Point>& points);
   void complete_law(Point& p, double dt) const;
-  /// A bound of the gap at t_{n+1} from below, by how far the bodies have moved [m].
+  /// Lower bound of the gap at t_{n+1}, from the displacements of the bodies [m].
   [[nodiscard]] double least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
   [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
-  /// Whether a point acts in a step that ends with this gap. @param least  Room of the tightest
-  /// point so far, renewed with tightest_ [m].
+  /// Whether a point acts in a step that ends with this gap. @param least  Clearance of the
+  /// tightest point so far, updated with tightest_ [m].
   [[nodiscard]] bool acts(int point, double gap_1, double& least);
   void open_or_close(std::span<const BodyStep> steps, const StepContext& context);
   void open_or_close(Point& p, SpherePairCache& balls, std::span<const BodyStep> steps,
@@ -242,7 +241,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   void share_friction();
   void release_patches(std::span<const BodyStep> steps, double dt);
   [[nodiscard]] double margin_of(int body, const BodyStep& s, double dt) const;
-  /// Part of the increments that is no farther than a step of Newton should go.
+  /// Fraction of the increments allowed by a bound on the rotation and displacement of one Newton
+  /// step.
   [[nodiscard]] double sensible_part(std::span<const Vec6> increments) const;
   [[nodiscard]] double moved(int body, const Vec3& r, const Mat3& Lambda) const;
   void report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss, double dt);
@@ -267,27 +267,30 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
                                 (owners.first == pair.first || owners.first == pair.second));
     }
     bool starts_off = false;
-    bool off = false;  ///< At the state that was loaded or saved last.
+    bool off = false;  ///< In the state loaded or saved last.
   };
   std::vector<Switch> switches_;
   mutable std::map<std::pair<int, int>, ContactLaw> combined_;
 
   const System* system_ = nullptr;
-  std::vector<double> carried_mass_;  ///< By body: its own and that of the solids it holds [kg].
-  double heaviest_ = 0.0;             ///< Largest of them, of bodies with shapes [kg].
+  /// By body: its own mass and that of the solids attached to it [kg].
+  std::vector<double> carried_mass_;
+  double heaviest_ = 0.0;  ///< Largest of these among bodies with shapes [kg].
   std::vector<double> reach_of_body_, size_of_body_;
-  std::vector<double> stride_;  ///< Longest way of a body in one iteration of this step [m].
+  /// Largest displacement of a body in one iteration of this step [m].
+  std::vector<double> stride_;
   std::vector<Vec6> wrenches_;
   std::vector<Reference> references_;
   std::vector<Point> points_;
   std::vector<SpherePairCache> balls_;               ///< By point.
-  std::vector<ActingPoint> acting_, acting_before_;  ///< When forces were asked for last.
+  std::vector<ActingPoint> acting_, acting_before_;  ///< At the last evaluation of forces.
   std::vector<Slide> slides_;                        ///< By point.
-  bool renewed_ = true;                              ///< Points are others since then.
+  bool renewed_ = true;                              ///< The points have changed since then.
   std::vector<Participants> pairs_;
-  std::vector<int> settling_;  ///< Points of the impacts that were listed last.
-  double step_length_ = 0.0;   ///< Of the step that was committed last [s].
-  double longest_step_ = 0.0;  ///< So far: what is chosen by the step stays when one is cut [s].
+  std::vector<int> settling_;  ///< Resting points near the impacts listed last.
+  double step_length_ = 0.0;   ///< Of the last committed step [s].
+  /// Longest step so far: choices that depend on the step are kept when a step is cut [s].
+  double longest_step_ = 0.0;
   std::vector<double> saved_, totals_;
   bool loaded_ = false, touched_ = false;
   double lost_in_impacts_ = 0.0, lost_by_friction_ = 0.0;
@@ -295,7 +298,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   std::vector<Bounds> bounds_;
   std::vector<std::pair<int, int>> near_;
   int tightest_ = -1;
-  bool pointwise_ = false;  ///< Who evaluates: closed forms differ in the last bit.
+  bool pointwise_ = false;  ///< The evaluation is pointwise; closed forms differ in the last bit.
   std::optional<ImpulseOptions> impulses_;
   ImpulseSearch search_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts that are switched off and on during a run.
+// Contacts that are switched on and off during a run.
 #include <algorithm>
 
 #include <polhode/contact/contact_set.hpp>
@@ -26,9 +26,9 @@ bool ContactSet::is_off(const PlacedShape& a, const PlacedShape& b) const {
                      [&](const Switch& s) { return s.off && s.holds(pair); });
 }
 
-/// The next step, and whoever asks before it, loads the state and finds candidates from the
-/// references that it holds, as after a restart: points of what is off are not found, and what they
-/// remembered is gone with the next save().
+/// Sets switches in a state. The next step or query loads the state and finds candidates from its
+/// references, as after a restart: switched-off points are not found, and their histories are
+/// dropped at the next save().
 void ContactSet::switch_over(State& state, std::span<const int> switches, bool off) {
   if (switches.empty()) return;
   std::vector<double>& memory = state.contacts;

@@ -17,7 +17,8 @@ namespace polhode::contact {
 
 namespace {
 
-/// Corners and faces of `b` as seen by shape `a`; both in body coordinates of b.
+/// Search for feature pairs with corners and faces of `b` as seen from shape `a`, in body
+/// coordinates of b.
 class Finder {
  public:
   Finder(const Shape& a, const Shape& b, const Placement<double>& at_a,
@@ -34,13 +35,14 @@ class Finder {
     find_region();
   }
 
-  /// @param other  The same the other way round: what of `a` is near.
+  /// Adds points of a against b. @param other  The search with both shapes exchanged: features of
+  /// `a` near b.
   void points(const Finder& other) {
     if (b_.solid == Solid::ball && a_.solid == Solid::ball && swapped_) return;
-    // A ball has one corner and no other feature: the other shape's corners would repeat it.
+    // A ball has a single corner; the other shape's corners against it would duplicate the pair.
     if (b_.solid == Solid::ball && a_.solid != Solid::ball) return;
     const bool faces = b_.solid == Solid::polyhedron || b_.solid == Solid::surface;
-    // A tube stands on a plane as a cylinder does.
+    // A tube meets a plane as a cylinder does.
     const bool stands = stands_on_plane(), some = a_.tree && !stands;
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
@@ -80,7 +82,7 @@ class Finder {
     }
   }
 
-  /// Side a is round.
+  /// Adds the pairs of a round side a.
   void round() {
     if (!a_.round() && !stands_on_plane()) return;
     const int parts = a_.solid == Solid::cylinder || stands_on_plane() ? 2 : 1;
@@ -105,15 +107,16 @@ class Finder {
       } else if (b_.solid == Solid::polyhedron) {
         add({GapKind::part_solid, i, 0, 1.0, Fade::none});
       }
-    // Edges meet the flank between both ends. All of an ellipsoid is a part already; only capsules
-    // have an edge without faces.
+    // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
+    // part; only capsules have an edge without faces.
     if (a_.solid == Solid::ellipsoid && b_.solid != Solid::segment) return;
     for (int j : edges_)
       if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
   }
 
  private:
-  /// Where the boxes around both shapes overlap, in coordinates of b, and what of b lies there.
+  /// Finds the overlap of the bounding boxes of both shapes, in coordinates of b, and the features
+  /// of b in it.
   void find_region() {
     Eigen::AlignedBox3d a, b;
     if (a_.tree)
@@ -172,7 +175,7 @@ class Finder {
   [[nodiscard]] static Eigen::AlignedBox3d box_of(const Shape& s) {
     return {s.tree->low(), s.tree->high()};
   }
-  /// Whether the box around points meets the region.
+  /// Whether the bounding box of points intersects the region.
   [[nodiscard]] bool in_region(std::initializer_list<Vec3> points) const {
     Eigen::AlignedBox3d box;
     for (const Vec3& x : points) box.extend(x);
@@ -194,10 +197,10 @@ class Finder {
   void add(const FeaturePair& pair) {
     if (gap(pair, a_, b_, at_a_, at_b_).distance < distance_) push(pair);
   }
-  /// Feature i of a against triangles, less the edges that two of them share, plus the corners
-  /// those had in common.
+  /// Adds feature i of a against triangles, minus the edges shared by two of them, plus the corners
+  /// common to those.
   /// @param kinds  Against a triangle, an edge, a corner.
-  /// @param x, radius  A ball around the feature, in body coordinates of b; 0: a point.
+  /// @param x, radius  Ball around the feature, in body coordinates of b; radius 0: a point.
   void over_surface(const std::array<GapKind, 3>& kinds, int i, const Vec3& x, double radius) {
     const double r = reach() + radius;
     const auto take = [&](const Vec3& nearest, int kind, int j, double weight) {
@@ -226,7 +229,7 @@ class Finder {
   bool swapped_, each_triangle_;
   std::vector<OrderedPair>& found_;
   Eigen::AlignedBox3d region_;
-  std::vector<int> corners_, edges_, triangles_;  ///< Of b, in the region.
+  std::vector<int> corners_, edges_, triangles_;  ///< Features of b in the region.
 };
 
 }  // namespace

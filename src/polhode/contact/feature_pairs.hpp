@@ -13,7 +13,8 @@ struct OrderedPair {
   FeaturePair pair;
   bool swapped = false;  ///< Side a of the pair is the second shape.
 
-  /// Sorts and names the pair within its two shapes; the same in every step and every run.
+  /// Key that identifies the pair within its two shapes and sorts it; the same in every step and
+  /// run.
   [[nodiscard]] std::uint64_t key() const {
     return (static_cast<std::uint64_t>(pair.kind) << 57) |
            (static_cast<std::uint64_t>(swapped) << 56) |
@@ -24,11 +25,11 @@ struct OrderedPair {
 /// Appends the feature pairs of two shapes whose gap at the given placements may be below
 /// `distance`, sorted by key. Shapes that are both planes have none.
 ///
-/// Corners of each meet the solid of the other, edges meet edges; round solids meet planes by
-/// their extreme points, edges, and each other. @eq{contact-sum-of-features}
+/// Corners of each shape are paired with the solid of the other, edges with edges; round solids
+/// with planes at their extreme points, with edges, and with each other.
+/// @eq{contact-sum-of-features}
 ///
-/// @param each_triangle  Triangles, edges and corners of surfaces as pairs of their own, for
-/// impulses.
+/// @param each_triangle  Triangles, edges and corners of surfaces as separate pairs, for impulses.
 void near_feature_pairs(const Shape& first, const Shape& second, const Placement<double>& at_first,
                         const Placement<double>& at_second, double distance,
                         std::vector<OrderedPair>& found, bool each_triangle = false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Static friction above that of sliding, which belongs to the patch of two bodies.
+// Static friction above kinetic friction, a property of the contact patch of two bodies.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -10,36 +10,36 @@ namespace polhode::contact {
 
 namespace {
 
-/// A patch whose friction is this close to its bound, as part of it, lets go.
+/// Relative distance to its friction bound at which a patch starts to slide.
 constexpr double kNearlyAll = 1e-3;
 
-/// Loads of points that change by more than this part of the patch's in the time in which bodies
-/// settle in the band, or in a longer step: they settle.
+/// Part of the patch's load by which loads of points change while bodies settle in the band, in the
+/// settling time or in a longer step. Above it they count as settling.
 constexpr double kSettles = 1e-2;
 
-/// Part of its bound that a patch holds on the mean of two steps when it lets go: where steps are
-/// long, normal forces go up and down from one to the next.
+/// Part of its bound that a patch carries, as the mean of two steps, when it starts to slide: with
+/// long steps the normal forces alternate from step to step.
 constexpr double kMostlyAll = 0.99;
 
-/// Speeds over that of a fall into the depth of rest: bodies that swing there have less than the
-/// first, those that stand while their load swings less than the second.
+/// Speeds over that of a fall into the equilibrium depth: oscillating bodies are below the first,
+/// standing bodies under an oscillating load below the second.
 constexpr double kSwings = 0.6, kStands = 3e-3;
-/// Least relative change of a patch's load, in the time in which bodies settle, that counts as an
-/// oscillation. A patch with a steadier load slips at its bound.
+/// Smallest relative change of a patch's load, in the settling time, that counts as an oscillation.
+/// A patch with a steadier load slips at its bound.
 constexpr double kStill = 1e-4;
 
-/// Bound and load of the points between two bodies.
+/// Friction bound and load of the points between two bodies.
 struct Patch {
   double limit = 0.0;    ///< Σ μ_s λ [N].
   double held = 0.0;     ///< Σ |F_T| [N].
   double load = 0.0;     ///< Σ λ [N].
   double change = 0.0;   ///< Σ |Δλ| over the step [N].
-  double fastest = 0.0;  ///< Mean slip of a point over the step [m/s].
-  double depth = 0.0;    ///< Of equilibrium, see rest_depth() [m].
+  double fastest = 0.0;  ///< Largest mean slip speed of a point over the step [m/s].
+  double depth = 0.0;    ///< Equilibrium depth, see rest_depth() [m].
   bool slips = false, all_slip = true;
 };
 
-/// Mean slip of a point over the step [m/s].
+/// Mean slip speed of a point over the step [m/s].
 double slip_speed(const PointReport& r, const BodyStep& a, const BodyStep& b, double dt) {
   const Vec3 u = a.u + a.theta.cross(r.point - a.r_n - 0.5 * a.u) - b.u -
                  b.theta.cross(r.point - b.r_n - 0.5 * b.u);
@@ -69,8 +69,9 @@ double held_by(const PointData& d) { return d.friction.stiffness * d.history.bri
 
 }  // namespace
 
-/// Each point keeps what it holds at t_n, and of what the patch has left its part by normal force:
-/// the bounds add up to that of the patch. @eq{contact-patch}
+/// Distributes the friction bound of each patch. A point keeps what it holds at t_n and gets its
+/// part, by normal force, of what the patch has left: the bounds add up to that of the patch.
+/// @eq{contact-patch}
 void ContactSet::share_friction() {
   std::vector<Patch> patches(pairs_.size());
   bool any = false;
@@ -92,7 +93,7 @@ void ContactSet::share_friction() {
     FrictionShare& share = p.data.share;
     share.slides = patch.slips;
     if (p.data.history.closed) share.load = p.data.history.force;
-    if (patch.slips || patch.limit == 0.0) {  // the law's own: sliding, or met for the first time
+    if (patch.slips || patch.limit == 0.0) {  // the law's own: sliding, or new contact
       share.mu = patch.slips ? p.data.friction.mu : p.data.friction.mu_static;
       continue;
     }
@@ -102,9 +103,10 @@ void ContactSet::share_friction() {
   }
 }
 
-/// A patch that stuck lets go as a whole; one that slid sticks again once no point of it slides.
-/// One that is just being pressed on, whose points give way in turn as their load grows, does not
-/// let go before it moves faster than what is pressed into its band from rest. @eq{contact-patch}
+/// Updates sticking and sliding of patches. A sticking patch starts to slide as a whole; a sliding
+/// one sticks again once none of its points slides. A patch whose load is still growing, so that
+/// its points give way in turn, does not slide before it is faster than a body pressed into its
+/// band from rest. @eq{contact-patch}
 void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
   std::vector<Patch> before(pairs_.size()), after(pairs_.size());
   const double gravity = system_->gravity().norm();
@@ -133,7 +135,8 @@ void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
     if (!belongs(p.data) || p.sensor) continue;
     const Patch &patch = after[p.pair], &last = before[p.pair];
     const bool free = patch.limit == 0.0;
-    // Bodies fall into their depth in the time √(h/g), and swing there for some of these.
+    // Bodies fall to their equilibrium depth in a time √(h/g), and oscillate there for a few of
+    // these.
     const double step = gravity * std::abs(dt), falls = std::sqrt(gravity * patch.depth);
     const bool slow = patch.fastest < std::max(kSlowReboundSteps * step, kSwings * falls);
     const double swing = std::max(step, falls) * patch.change;

@@ -10,7 +10,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// A place where the shape has material, in coordinates of its body.
+/// A point inside the shape, in coordinates of its body.
 Vec3 witness(const Shape& a) { return a.corners.empty() ? a.centre : a.corners.front(); }
 
 }  // namespace
@@ -20,7 +20,7 @@ std::optional<FullyEnclosed> buried(const Shape& a, const Shape& b, const Placem
   const Vec3 y = at_b.to_body(value(at_a.point(witness(a))));
   const bool bordered =
       std::any_of(b.edges.begin(), b.edges.end(), [](const Shape::Edge& e) { return e.open; });
-  // A field of heights is free above: what looks up at it from below is within.
+  // A height field is open above: a point that sees it along the upward ray lies below it.
   const Vec3 ray = bordered ? Vec3(b.axes.col(2)) : kAnyRay;
   int around = 0;
   double least = std::numeric_limits<double>::infinity();

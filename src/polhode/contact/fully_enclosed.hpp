@@ -8,14 +8,14 @@
 
 namespace polhode::contact {
 
-/// How far a shape has to go to leave what it lies in.
+/// Displacement that takes a shape out of the surface that encloses it.
 struct FullyEnclosed {
   double depth = 0.0;          ///< [m]
-  Vec3 normal = Vec3::Zero();  ///< The way out, world.
+  Vec3 normal = Vec3::Zero();  ///< Direction of exit, world.
 };
 
-/// Whether a shape lies within a closed surface, or below one with a border, and not on it:
-/// features that are near each other cannot tell, as triangles have two sides.
+/// Whether a shape lies inside a closed surface, or below one with a border, without intersecting
+/// it. Nearby features cannot decide this, as triangles have two sides.
 /// @param b  A Solid::surface.
 [[nodiscard]] std::optional<FullyEnclosed> buried(const Shape& a, const Shape& b,
                                                   const Placement<double>& at_a,

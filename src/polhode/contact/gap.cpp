@@ -51,7 +51,7 @@ Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
   return g;
 }
 
-/// In the half plane through the axis of a cylinder or cone: h along the axis, q from it.
+/// Point in the half plane through the axis of a cylinder or cone: h along the axis, q from it.
 template <class T>
 struct Meridian {
   T h, q;
@@ -88,7 +88,7 @@ Gap<T> over_cylinder(const V3<T>& x, double rho_a, const Shape& b, const Placeme
   return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
 }
 
-/// The nearest of a ring with a rectangle for its section, of two round faces and two flat ones.
+/// Nearest point of a ring with a rectangular section: two round faces and two flat ones.
 template <class T>
 Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
   const Meridian<T> m(x, b, at_b);
@@ -137,7 +137,7 @@ Gap<T> over_cone(const V3<T>& x, double rho_a, const Shape& b, const Placement<T
   return between_points(x, m.point(at_b, b, -H, R), rho_a, b.rounding);
 }
 
-/// A Newton step in T from the root found in numbers gives the root its derivatives.
+/// Root with derivatives, by one Newton step in T from the root found in plain numbers.
 template <class T>
 Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
   const V3<T> w = x - at_b.point(b.centre);
@@ -150,7 +150,7 @@ Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placem
     Y[i] = value(y[i]);
   }
   T t(nearest_on_ellipsoid(b.half, Y));
-  // In the middle of the shortest axis the root is double: a step might leave on the wrong side.
+  // At the middle of the shortest axis the root is double: a step might leave on the wrong side.
   const double shortest = b.half.minCoeff();
   const bool double_root = value(t) < -(1.0 - 1e-6) * shortest * shortest;
   for (int step = double_root ? 2 : 0; step < (std::is_same_v<T, Fine> ? 2 : 1); ++step) {
@@ -281,7 +281,7 @@ FadeDirections<T> fade_directions(const FeaturePair& pair, const Shape& a, const
   };
   if (pair.kind == GapKind::edge_edge)
     return {at_a.vector(edge(a, pair.i)), at_b.vector(edge(b, pair.j))};
-  // A rim looks along the axis to its own side.
+  // A rim faces along the axis to its own side.
   const bool low =
       pair.kind == GapKind::point_solid && (a.corners[pair.i] - a.centre).dot(a.axes.col(2)) < 0.0;
   return {at_a.vector(low ? Vec3(-a.axes.col(2)) : Vec3(a.axes.col(2))),

@@ -6,7 +6,7 @@
 
 namespace polhode::contact {
 
-/// Which two features meet.
+/// Kinds of feature pairs.
 enum class GapKind {
   point_solid,     ///< Corner i of a, the whole convex solid of b.
   point_triangle,  ///< Corner i of a, triangle j of the surface b.
@@ -24,20 +24,20 @@ enum class GapKind {
   round_round,     ///< The round solids of a and b.
 };
 
-/// How the potential of a feature pair is weighted, by the angle between a direction of a and one
-/// of b, so that it fades where its distance has no unique direction.
+/// Weight of a feature pair's potential as a function of the angle between a direction of a and one
+/// of b. The potential fades where the distance has no unique direction.
 enum class Fade {
   none,
   parallel,  ///< Fades out as the directions become parallel: m = x(2 − x), x = sin²/1e-3.
-  flat,      ///< Is there only while they are nearly opposite: 1 − m.
+  flat,      ///< Nonzero only while they are nearly opposite: 1 − m.
 };
 
-/// Two features that can touch: of shapes a and b. A contact point belongs to one of these; the
-/// energy of contact is the sum over all of them, a function of the configuration alone.
+/// Two features, of shapes a and b, that can be in contact. A contact point belongs to one pair;
+/// the contact energy is the sum over all pairs, a function of the configuration alone.
 struct FeaturePair {
   GapKind kind = GapKind::point_solid;
   int i = 0, j = 0;
-  double weight = 1.0;  ///< −1 for what two triangles count twice: their common edge.
+  double weight = 1.0;  ///< −1 for a common edge, which two triangles count twice.
   Fade fade = Fade::none;
 };
 
@@ -47,26 +47,26 @@ struct Gap {
   T distance{};     ///< g, roundings subtracted; negative: they overlap [m].
   V3<T> normal;     ///< Unit.
   V3<T> point;      ///< Midway between the two surfaces, world [m].
-  T slope{1.0};     ///< |∂g/∂x|: below or above 1 where several features count.
-  T share{1.0};     ///< Of forces of all features, by size, over that of the gap.
-  int feature = 0;  ///< Which part of b was nearest: 0 its face, else an edge or corner.
+  T slope{1.0};     ///< |∂g/∂x|; not 1 where several features count.
+  T share{1.0};     ///< Resultant of the forces of all features over the force of the gap.
+  int feature = 0;  ///< Nearest part of b: 0 its face, else an edge or corner.
 };
 
-/// Distance, normal and point of a feature pair; with Dual their derivatives as well.
+/// Distance, normal and point of a feature pair; with Dual also their derivatives.
 template <class T>
 [[nodiscard]] Gap<T> gap(const FeaturePair& pair, const Shape& a, const Shape& b,
                          const Placement<T>& at_a, const Placement<T>& at_b);
 
-/// A point x with a ball of radius rho around it against the whole convex solid of b.
+/// Gap of a ball of radius rho around the point x against the whole convex solid of b.
 template <class T>
 [[nodiscard]] Gap<T> point_over_solid(const V3<T>& x, double rho, const Shape& b,
                                       const Placement<T>& at_b);
 
-/// What of the round solid a comes near to faces, an ellipsoid: all of an ellipsoid, or of a
-/// cylinder or cone the disc at its end `which`, which bulges a little to the outside.
+/// Part of the round solid a that can come near faces, as an ellipsoid: the whole of an ellipsoid;
+/// of a cylinder or cone a slightly convex disc at its end `which`.
 [[nodiscard]] Shape part_of(const Shape& a, int which);
 
-/// The directions that a Fade compares, carried by a and b (of any length, not changing).
+/// Directions compared by a Fade, fixed to a and b (of any constant length).
 template <class T>
 struct FadeDirections {
   V3<T> a, b;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas of distances between parts of features, for the sources of gaps and their tests.
+// Distance formulas of parts of features, for the gap sources and their tests.
 #pragma once
 
 #include <polhode/contact/gap.hpp>
@@ -7,7 +7,7 @@
 
 namespace polhode::contact {
 
-/// From the nearest points x of core a and y of core b.
+/// Gap from the nearest points x of core a and y of core b.
 template <class T>
 [[nodiscard]] Gap<T> between_points(const V3<T>& x, const V3<T>& y, double rho_a, double rho_b) {
   const V3<T> w = x - y;
@@ -19,7 +19,7 @@ template <class T>
   return g;
 }
 
-/// From a point x of core a and a plane of core b through y with outward unit normal n: signed.
+/// Signed gap from a point x of core a and a plane of core b through y with outward unit normal n.
 template <class T>
 [[nodiscard]] Gap<T> over_plane(const V3<T>& x, const V3<T>& y, const V3<T>& n, double rho_a,
                                 double rho_b) {
@@ -37,7 +37,7 @@ template <class T>
   return q + (dot(x - q, v) / dot(v, v)) * v;
 }
 
-/// Kinds of gap with a round solid on side a.
+/// Gaps with a round solid on side a.
 template <class T>
 [[nodiscard]] V3<T> extreme_point(const Shape& a, int which, const V3<T>& n,
                                   const Placement<T>& at_a);
@@ -46,12 +46,12 @@ template <class T>
 template <class T>
 [[nodiscard]] Gap<T> part_gap(const Shape& part, double reach, const FeaturePair& pair,
                               const Shape& b, const Placement<T>& at_a, const Placement<T>& at_b);
-/// A point x with a ball of radius rho around it against the whole surface of b.
-/// @param reach  Features with gaps above this do not count beside a nearer one [m].
+/// Gap of a ball of radius rho around the point x against the whole surface of b.
+/// @param reach  Features with larger gaps than this do not count besides a nearer one [m].
 template <class T>
 [[nodiscard]] Gap<T> point_over_surface(const V3<T>& x, double rho, double reach, const Shape& b,
                                         const Placement<T>& at_b);
-/// A point against a triangle of b, whose part nearest to it is known.
+/// Gap of a point against a triangle of b whose nearest part is known.
 template <class T>
 [[nodiscard]] Gap<T> over_triangle(const V3<T>& x, double rho_a, const Shape& b, int triangle,
                                    const TriangleRegion& r, const Placement<T>& at_b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Impacts and lasting contact: what a point does from closing to opening.
+// Impacts and resting contact: the phases of a point from closing to opening.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,24 +12,24 @@ namespace polhode::contact {
 
 namespace {
 
-/// Share of the force of lasting contact that is that of the end of the step, where it takes
-/// energy. @eq{contact-plastic}
+/// Share of the force of dissipative resting contact that is evaluated at the end of the step.
+/// @eq{contact-plastic}
 constexpr double kRestShare = 0.5;
-/// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
+/// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
-/// w²).
+/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m w²).
 constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
-/// Time of a Hertz impact, as part of the greatest depth over the speed.
+/// Duration of a Hertz impact over the ratio of greatest depth and speed.
 constexpr double kHertzTime = 2.9432;
-/// Steps in an impact that a damper needs.
+/// Steps per impact that a damper needs.
 constexpr double kResolved = 20.0;
-/// Least part of the tolerance between a gap and the floor of its barrier.
+/// Smallest distance between a gap and the floor of its barrier, as a part of the tolerance.
 constexpr double kMinBand = 0.1;
-/// Part of the speed that lasting contact may have, at which it answers impacts elsewhere.
+/// Part of the slow speed up to which a resting contact takes part in impacts elsewhere.
 constexpr double kPressed = 0.1;
 
-/// Features of a surface of triangles, whose potentials cancel in part: their bands are equal.
+/// Whether it is a feature pair of a surface of triangles, whose potentials partly cancel: their
+/// bands are equal.
 bool of_surface(GapKind kind) {
   switch (kind) {
     case GapKind::point_triangle:
@@ -62,14 +62,14 @@ void ContactSet::set_phase(Point& p, ContactPhase phase) const {
   const bool takes = p.restitution < 1.0 && !by_damper;
   d.end_share = 0.0;
   if (lasts && takes) d.end_share = kRestShare;
-  // An impact without rebound ends where it closes, and not as far away as it would have come.
+  // An impact without rebound ends where it closes, not at the distance it would have reached.
   if (phase == ContactPhase::compression && d.history.restitution == 0.0) d.end_share = 1.0;
   d.rate_damping = lasts && takes ? p.rest_damping : 0.0;
   if (by_damper) d.rate_damping = p.damping_number / -d.history.approach;
 }
 
-/// A gap that is within the band although nothing stopped it on its way there, as at the start,
-/// stores nothing: the band begins there.
+/// Starts the barrier's band at the present gap. A gap that is within the band although no force
+/// acted on the path to it, as at the start, stores no energy.
 void ContactSet::start_band(Point& p) const {
   const NormalLaw& law = p.data.normal;
   if (law.potential != NormalPotential::barrier || of_surface(p.data.pair.kind)) return;
@@ -79,7 +79,8 @@ void ContactSet::start_band(Point& p) const {
   set_band(p, p.open_stiffness ? law.stiffness / narrower : law.stiffness, p.gap_n, lower);
 }
 
-/// Another stiffness, and the reach with which the point stores this energy at its gap.
+/// Changes the stiffness and sets the activation distance with which the point stores this energy
+/// at its gap.
 /// @eq{turn-law}
 void ContactSet::store_again(Point& p, double stiffness, double energy) const {
   NormalLaw law = p.data.normal;
@@ -103,7 +104,7 @@ double ContactSet::impact_stiffness(const Point& p, double speed) const {
   return kImpactStiffness * p.mass * per_square;
 }
 
-/// Time from closing to opening of an elastic impact on a spring of that stiffness [s].
+/// Duration of an elastic impact on a spring of that stiffness [s].
 double ContactSet::contact_time(const Point& p, double stiffness, double speed) {
   const double m = p.mass, w = -speed;
   if (p.data.normal.potential == NormalPotential::hertz)
@@ -111,7 +112,7 @@ double ContactSet::contact_time(const Point& p, double stiffness, double speed) 
   return std::numbers::pi * std::sqrt(m / stiffness);
 }
 
-/// Speed that lasting contact under a force may have: what the force does in two steps, and what a
+/// Largest speed of resting contact under a force: what the force adds in two steps, and what a
 /// body gets that is pressed into its band from rest.
 double ContactSet::slow_speed(const Point& p, double force, double dt) const {
   const double a = std::max(system_->gravity().norm(), force / p.mass);
@@ -119,10 +120,10 @@ double ContactSet::slow_speed(const Point& p, double force, double dt) const {
   return kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
 }
 
-/// At t_n. A point that is open gets the phase it closes in: an
-/// impact is faster than what gravity adds in two steps, or, of a closed point, than what its force
-/// does. A rebound that would be shorter than that does not happen. A damper takes the place of
-/// that law where steps resolve it. @eq{turn-law}
+/// Sets the phase of a point at t_n. An open point gets the phase in which it would close: an
+/// impact is faster than what gravity, or for a closed point its force, adds in two steps. A
+/// shorter rebound than that is suppressed. A damper replaces that law where the steps resolve it.
+/// @eq{turn-law}
 void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   PointHistory& h = p.data.history;
   p.speed_n = speed;
@@ -171,8 +172,8 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   start_band(p);
 }
 
-/// The part of the stored energy that an impact gives back, with a stiffness that falls by it. A
-/// spring keeps what brings it back to its tolerance, of what it has. @eq{turn-law}
+/// Keeps the part of the stored energy that an impact returns; the stiffness is reduced by it. A
+/// spring keeps, of what it has, what brings it back to its tolerance. @eq{turn-law}
 void ContactSet::keep_part(Point& p, double part) const {
   const PointHistory& h = p.data.history;
   const double whole = p.data.normal.energy(h.gap);
@@ -183,7 +184,7 @@ void ContactSet::keep_part(Point& p, double part) const {
     set_band(p, k, std::min(deepest, p.data.normal.reach_for(h.gap, whole)), h.floor);
 }
 
-/// Gravity along the normal against the motion apart [m/s²].
+/// Component of gravity along the normal that opposes separation [m/s²].
 double ContactSet::gravity_along(const Point& p, const Vec3& n) const {
   Vec3 pull = Vec3::Zero();
   if (shapes_[p.a].body != kGround) pull += system_->gravity();
@@ -191,8 +192,8 @@ double ContactSet::gravity_along(const Point& p, const Vec3& n) const {
   return -n.dot(pull);
 }
 
-/// Speed along the normal after the turn, of a point that left its band with `speed`: what it flew
-/// beyond it was under the pull of gravity alone. @eq{turn-law}
+/// Normal speed after the turn of a point that left its band with `speed`; beyond the band it moved
+/// under gravity alone. @eq{turn-law}
 double ContactSet::exit_speed(const Point& p, const Vec3& n, double speed) const {
   const double e = p.data.history.restitution;
   if (e == 1.0) return speed;
@@ -200,13 +201,13 @@ double ContactSet::exit_speed(const Point& p, const Vec3& n, double speed) const
   return std::sqrt(std::max(kept + e * e * (speed * speed + lost - kept) - lost, 0.0));
 }
 
-/// 2 a h: what gravity took from the square of the speed since the point left its band [m²/s²].
+/// 2 a h: reduction by gravity of the squared speed since the point left its band [m²/s²].
 double ContactSet::fallen(const Point& p, const Vec3& n) const {
   return 2.0 * gravity_along(p, n) * std::max(0.0, p.report.gap_n1 - p.data.normal.reach());
 }
 
-/// At t_{n+1}: normal and point of the gap as it is then, common to both bodies, so that momenta
-/// are exact. It wants the speed that it has.
+/// Impact row of a point at t_{n+1} with the normal and the point of the gap at that instant,
+/// common to both bodies, so that momenta are exact. The target speed is the present one.
 PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   PairImpact r;
   r.bodies = {shapes_[p.a].body, shapes_[p.b].body};
@@ -214,11 +215,11 @@ PairImpact ContactSet::row_at(const Point& p, const State& state) const {
     return body == kGround ? BodyMotion{} : system_->motion(state, body);
   };
   const BodyMotion a = motion(r.bodies.a), b = motion(r.bodies.b);
-  const Mat3 Lambda_a = a.Lambda(), Lambda_b = b.Lambda();  // placements refer to them
+  const Mat3 Lambda_a = a.Lambda(), Lambda_b = b.Lambda();  // placements refer to these
   const Placement<double> at_a(a.r, Lambda_a, 0), at_b(b.r, Lambda_b, 6);
   const Gap<double> g = gap(p.data.pair, *p.data.a, *p.data.b, at_a, at_b);
   const Vec3 n = value(g.normal);
-  // Bodies that parted are a gap apart: the lighter one gets its impulse where it touched.
+  // Separated bodies are a gap apart: the lighter one receives its impulse at its surface.
   const auto mass = [&](int body) { return body == kGround ? 0.0 : 1.0 / carried_mass_[body]; };
   const double lean = (mass(r.bodies.a) - mass(r.bodies.b)) / (mass(r.bodies.a) + mass(r.bodies.b));
   const Vec3 c = value(g.point) + 0.5 * lean * g.distance * n;
@@ -236,7 +237,7 @@ PairImpact ContactSet::row_at(const Point& p, const State& state) const {
   if (!(f.mu > 0.0)) return r;
   impact.mu = f.mu;
   impact.mu_across = f.mu_across > 0.0 ? f.mu_across : f.mu;
-  // Lasting contact that sticks is bounded by static friction.
+  // Resting contact that sticks is bounded by static friction.
   const bool sticks = !p.data.history.in_impact() && !p.data.history.slips;
   if (sticks && f.mu_static > f.mu && impact.mu_across == f.mu)
     impact.mu = impact.mu_across = f.mu_static;
@@ -261,7 +262,8 @@ double ContactSet::weight_now(const Point& p, const State& state) const {
                    Placement<double>(b.r, Lambda_b, 6));
 }
 
-/// What the point's phase makes of it at t_{n+1}, in an accepted step. @eq{turn-law}
+/// Impact of a point at t_{n+1} in an accepted step, by its phase; none in most steps.
+/// @eq{turn-law}
 std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Work& work) {
   PointHistory& h = p.data.history;
   if (!p.touched || (p.damped && h.approach < 0.0) || p.sensor || p.data.pair.weight < 0.0)
@@ -275,7 +277,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const double speed = impact.wanted;
   impact.given = step_length_ * p.report.normal_force;
   if (lasts) impact.friction_impulse = step_length_ * p.report.friction_force;
-  const bool turns = speed >= 0.0;  // friction may have turned it at t_n
+  const bool turns = speed >= 0.0;  // friction may have reversed it at t_n
   const auto rests = [&] {
     if (!h.closed) return;
     const double energy = p.data.normal.energy(h.gap);
@@ -285,7 +287,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
   };
-  // Features that fade out, as they come to lie along each other, store a part.
+  // Features whose potential fades as they become parallel store a part of the energy.
   const double plain = h.closed ? p.data.normal.energy(h.gap) : 0.0;
   const double weight = weight_now(p, state);
   const double stored_n = p.data.normal.energy(p.report.gap_n);
@@ -305,7 +307,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   switch (h.phase) {
     case ContactPhase::landing:
       if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
-      impact.wanted = 0.0;  // the midpoint rule would throw it back
+      impact.wanted = 0.0;  // the midpoint rule would return it
       set_phase(p, ContactPhase::rest);
       break;
     case ContactPhase::compression:
@@ -366,13 +368,13 @@ void ContactSet::resting(const State& state, std::span<const int> bodies,
     settling_.push_back(i);
     PairImpact& r = list.emplace_back(row_at(p, state));
     r.slow = kPressed * slow_speed(p, p.force_n, step_length_);
-    // By the midpoint rule it throws back what an impact in the step pressed on it.
+    // By the midpoint rule it returns the energy that an impact in the step has stored in it.
     r.impact.given = step_length_ * p.report.normal_force;
     r.impact.friction_impulse = step_length_ * p.report.friction_force;
   }
 }
 
-/// Reported forces of the step, with the impulses at its end.
+/// Adds the impulses at the end of the step to its reported forces.
 void ContactSet::settled(std::span<const ResolvedImpact> impacts) {
   for (std::size_t k = 0; k < settling_.size(); ++k) {
     Point& p = points_[settling_[k]];

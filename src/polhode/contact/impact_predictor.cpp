@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where Newton starts in a step that bodies would end inside each other.
+// Newton predictor for steps in which bodies would interpenetrate at the end.
 #include <algorithm>
 #include <vector>
 
@@ -9,29 +9,30 @@ namespace polhode::contact {
 
 namespace {
 
-/// Most sweeps over all points; they end when no gap moves by more than this part of its room.
+/// Maximum number of Gauss-Seidel sweeps over all points. They end when no gap changes by more than
+/// this part of its clearance.
 constexpr int kSweeps = 100, kMaxIterations = 30;
 constexpr double kAgreed = 0.1;
-constexpr double kExactEnough = 1e-3;  ///< Part of the room that is left.
-/// Balls that move by more than this part of their distance may pass: the gap along the line of
-/// their centres counts.
+constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
+/// Displacement over distance above which balls may pass each other: then the gap along the line of
+/// centres counts.
 constexpr double kFar = 0.5;
 
-/// A point between two balls, or a ball and a plane, and what its contact does to their motion.
+/// A point between two balls, or a ball and a plane, and the effect of its contact on their motion.
 struct Meeting {
   const PointData* data;
   const SpherePairCache* balls;
-  Vec3 along;               ///< Of the centres at t_n.
-  double share_a, share_b;  ///< One over the masses [1/kg].
-  double held;              ///< Force that the prediction has in it: the bodies rest on it [N].
-  double push = 0.0;        ///< Of both bodies against each other, times mass [kg m].
+  Vec3 along;               ///< Line of centres at t_n.
+  double share_a, share_b;  ///< Inverse masses [1/kg].
+  double held;  ///< Contact force that the prediction contains already: of resting bodies [N].
+  double push = 0.0;  ///< Relative displacement by the contact, times mass [kg m].
 
   [[nodiscard]] double shares() const { return share_a + share_b; }
 };
 
-/// The gap at the end of the step under this contact alone, all other forces as they are: root of
-/// K(g − free) = λ(g_0, g) − held, whose two sides fall and grow with g.
-/// @param free  Without this contact's push [m].  @param K  Of both masses [N/m].
+/// Gap at the end of the step if only this contact acts additionally: the root of K(g − free) =
+/// λ(g_0, g) − held, whose sides increase and decrease with g.
+/// @param free  Gap without this contact's impulse [m]. @param K  Of both masses [N/m].
 double gap_with(const Meeting& m, double free, double K, double dt) {
   const double reach = m.balls->reach, least = m.balls->least_gap, gap_n = m.balls->gap_n;
   const double apart = free - m.held / K;
@@ -52,9 +53,9 @@ double gap_with(const Meeting& m, double free, double K, double dt) {
 
 }  // namespace
 
-/// One point after the other, each as if the others held still, until they agree: without friction
-/// and turns, which matter little to impacts of balls. Without it the fastest pair would hold back
-/// all bodies. @eq{contact-impact-predictor}
+/// Predictor of impacts by Gauss-Seidel iteration over the points. Friction and rotations are
+/// neglected, as they matter little to impacts of balls. Without it the fastest pair would limit
+/// the step of all bodies. @eq{contact-impact-predictor}
 void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContext& context,
                                std::span<Vec6> increments) const {
   const double K = context.ga.alpha_m / (context.ga.beta * context.dt * context.dt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact points that act by impulses: the non-smooth law.
+// Contact points that act by impulses: the non-smooth contact law.
 #include <algorithm>
 #include <cmath>
 
@@ -9,15 +9,15 @@ namespace polhode {
 
 namespace {
 
-/// Of the speed of approach, the part that a point that overlaps may throw back to come free. With
-/// no more than half, what the next step takes is at least what this one gives.
+/// Largest part of the approach speed that an overlapping point may return to separate. With at
+/// most half of it the next step dissipates at least what this one adds.
 constexpr double kComesFree = 0.5;
 
 }  // namespace
 
-/// A point that lands is slowed down so that it arrives at gap 0 with the next step. One that
-/// rebounds does so in the step after which it would be too close. Both keep p_n (w_n + w_{n+1})
-/// from being positive.
+/// Smallest normal speed after an impulse. A landing point is slowed down so that it reaches gap 0
+/// in the next step. A rebounding point does so in the step after which it would be too close. Both
+/// keep p_n (w_n + w_{n+1}) from being positive.
 double least_exit_speed(double gap, double w, double restitution, double dt, double slow) {
   const double land = -0.5 * w - gap / dt;
   if (w >= 0.0) return std::min(land, -w);
@@ -31,16 +31,16 @@ namespace contact {
 
 namespace {
 
-/// A point whose potential would have faded by more than this has a neighbour that acts instead.
+/// Weight of a potential below which a neighbouring point acts instead.
 constexpr double kMinWeight = 0.5;
-/// Normals of the middle of the step that turn by more than this (cosine) since its start come from
-/// bodies that would pass one another.
+/// Cosine of the angle between the normals at the middle and the start of the step below which the
+/// bodies would pass each other.
 constexpr double kPasses = 0.5;
-/// Turns and displacements below these, the latter as part of the size, have no direction.
+/// Rotations and displacements (as a part of the size) below these have no direction.
 constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
-/// A place is moved by at most this part of the size, a normal turned by at most this.
+/// Largest shift of a point, as a part of the size, and largest rotation of a normal.
 constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
-/// Points of one surface that are closer than this part of the rounding are one.
+/// Distance, as a part of the rounding, below which points of one surface are the same.
 constexpr double kSamePlace = 1e-6;
 
 /// Weight of a feature pair's potential, see Fade.
@@ -54,8 +54,9 @@ double weight_of(const PointData& d, const Placement<double>& at_a, const Placem
   return y < 0.0 ? 1.0 - m : 0.0;
 }
 
-/// Edges touch where they cross; their ends are corners, which meet the whole solid. Cores that
-/// have passed through one another are told by the outward sides of the edges.
+/// Corrects the gap of two edges. Edges are in contact where they cross; their ends are corners,
+/// which are paired with the whole solid. Whether the cores have passed through each other follows
+/// from the outward sides of the edges.
 bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<double>& g) {
   const Shape::Edge &e = d.a->edges[d.pair.i], &f = d.b->edges[d.pair.j];
   const auto inner = [](const Shape& s, const Shape::Edge& edge, const BodyStep& step,
@@ -73,8 +74,8 @@ bool mend_edges(const PointData& d, const BodyStep& a, const BodyStep& b, Gap<do
   return true;
 }
 
-/// Neighbouring triangles have an edge in common, and are as near by it as each other: what is not
-/// left over after the edges' weights, −1, is no point of the surface's own.
+/// Drops points that cancel. Neighbouring triangles are equally near at a common edge; a point that
+/// does not remain after the weights −1 of edges is not a point of the surface.
 void drop_cancelled(std::vector<ImpulsePoint>& list, std::size_t first,
                     std::vector<double>& weights) {
   std::size_t kept = first;
@@ -84,7 +85,7 @@ void drop_cancelled(std::vector<ImpulsePoint>& list, std::size_t first,
   weights.clear();
 }
 
-/// The middle of a step as a placement: the mean of both orientations is no rotation, but carries
+/// Placement at the middle of a step. The mean of both orientations is not a rotation, but carries
 /// points by exactly u + θ × z̄ over the step.
 struct Middle {
   Vec3 r;
@@ -94,15 +95,16 @@ struct Middle {
       : r(s.r_n + 0.5 * s.u), Lambda(0.5 * (s.Lambda_n + s.Lambda_n1)) {}
 };
 
-/// Points over triangles and edges that cross: what turns there is none of these features alone,
-/// and a body that leaves one of them does not come away from the surface.
+/// Whether a pair consists of flat pieces: points over triangles, and edges that cross. A contact
+/// that rotates involves several such features, and a body that leaves one of them has not left the
+/// surface.
 bool of_flat_pieces(GapKind kind) {
   return kind == GapKind::edge_edge || kind == GapKind::point_triangle ||
          kind == GapKind::point_edge || kind == GapKind::point_corner;
 }
 
-/// Moves the place, or turns the normal, so that the bodies move apart along it by as much as the
-/// gap opens: what touches all the time does so without work. @eq{contact-direction}
+/// Shifts the point, or rotates the normal, so that the relative displacement along the normal
+/// equals the change of the gap: permanent contact then does no work. @eq{contact-direction}
 void follow_gap(const PointData& d, double change, const BodyStep& a, const BodyStep& b,
                 ImpulsePoint& at) {
   const Vec3 turn = a.theta - b.theta, across = at.normal.cross(turn);
@@ -140,7 +142,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
   if (list.empty())
     for (Point& p : points_) p.listed = false;
   const std::size_t before = list.size();
-  std::size_t of_pair = before;  // first of the points of the pair of shapes at hand
+  std::size_t of_pair = before;  // first point of the present pair of shapes
   std::uint64_t last = 0;
   std::vector<double> weights;  // of the points of a pair with a surface of triangles
   for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
@@ -157,7 +159,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     const Vec3 velocity =
         relative(a.v_n, a.Lambda_n * a.W_n, arm_a, b.v_n, b.Lambda_n * b.W_n, arm_b);
     const double w = n.dot(velocity);
-    // Either of them may be stopped by something else.
+    // Either of them may be stopped by another contact.
     const double of_a = n.dot(a.u + a.theta.cross(arm_a)), of_b = n.dot(b.u + b.theta.cross(arm_b));
     const double way = std::min({of_a - of_b, of_a, -of_b});
     const double least = least_exit_speed(p.gap_n, w, p.restitution, dt, slow);
@@ -237,7 +239,7 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
                         Placement<double>(m_b.r, m_b.Lambda, 6));
     if (p.data.pair.kind == GapKind::edge_edge) mend_edges(p.data, a, b, g);
     const Vec3 n = value(g.normal);
-    // What slides off its triangle belongs to the next one, not to the edge between them.
+    // A point that slides off its triangle belongs to the next one, not to the edge between them.
     const bool leaves = p.data.pair.kind == GapKind::point_triangle && g.feature != 0;
     if (!leaves && n.dot(p.normal_n) > kPasses) {
       at.normal = n.normalized();
@@ -305,7 +307,7 @@ Work ContactSet::commit_impulses(State& state, std::span<const BodyStep> steps,
     lost_by_friction_ += losses[k].friction;
     work.dissipated += losses[k].normal + losses[k].friction;
   }
-  // What sweeps that ended early may have given shall be seen in the balance, not hide in it.
+  // Energy added by Gauss-Seidel sweeps that ended early appears as an error of the balance.
   work.dissipated = std::max(0.0, work.dissipated);
   save(state);
   return work;

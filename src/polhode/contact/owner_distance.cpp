@@ -9,7 +9,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// Looks for features with ever more room between them.
+/// Largest number of doublings of the search radius.
 constexpr int kMaxDoublings = 60;
 
 /// Distance of two shapes [m].
@@ -27,7 +27,7 @@ double distance_of(const Shape& a, const Shape& b, const Placement<double>& at_a
     found.clear();
     near_feature_pairs(a, b, at_a, at_b, near, found);
     for (const OrderedPair& f : found) {
-      // Points that only correct the sum of others are not where surfaces are.
+      // Points of negative weight only correct the sum of others: they do not lie on a surface.
       if (!(f.pair.weight > 0.0)) continue;
       const Gap<double> g =
           f.swapped ? gap(f.pair, b, a, at_b, at_a) : gap(f.pair, a, b, at_a, at_b);

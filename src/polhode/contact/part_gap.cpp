@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances between a part of a round solid and what has faces: smooth, since one of both is
-// strictly convex and the other convex.
+// Distances between a part of a round solid and features with faces. They are smooth, since one of
+// both is strictly convex and the other convex.
 #include <algorithm>
 #include <limits>
 
@@ -13,10 +13,10 @@ namespace polhode::contact {
 
 namespace {
 
-/// How far the disc for an end of a cylinder or cone bulges, part of its radius.
+/// Bulge of the disc at an end of a cylinder or cone, as a part of its radius.
 constexpr double kBulge = 2e-3;
 
-/// What of b is nearest to a part.
+/// Feature of b nearest to a part.
 struct Nearest {
   enum Kind { none, face, edge, corner } kind = none;
   int index = 0;
@@ -24,7 +24,7 @@ struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-/// A part as seen from a body b that has faces.
+/// A part as seen from a body b with faces.
 class SeenPart {
  public:
   template <class T>
@@ -38,9 +38,9 @@ class SeenPart {
   }
   [[nodiscard]] const Vec3& centre() const { return centre_; }
 
-  /// The nearest point of a plane lies in its triangle; or, where the part reaches through the
-  /// plane, the middle of what the plane cuts out of it does.
-  /// @param sides  2: the triangle has two.
+  /// Nearest point of a plane if it lies in its triangle; where the part penetrates the plane, the
+  /// middle of the section.
+  /// @param sides  2: a two-sided triangle.
   /// @returns the signed distance of the part from the plane.
   double face(const Shape& b, int triangle, int sides, Nearest& best) const {
     const auto& c = b.triangles[triangle];
@@ -56,13 +56,14 @@ class SeenPart {
     const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
     const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
     if (s < 0.0 || t < 0.0 || s + t > 1.0) return distance;
-    // Of several faces that it reaches through, the one that is easiest to leave by.
+    // Of several penetrated faces, the one with the shortest exit.
     if (best.kind != Nearest::face || !(best.distance > distance))
       best = {Nearest::face, triangle, 0.0, distance};
     return distance;
   }
 
-  /// Distances from a convex body lie above their tangent planes: no point of a box is nearer.
+  /// Lower bound of the distance: convex bodies lie behind their tangent planes, so no point of a
+  /// box is nearer.
   [[nodiscard]] double bound(const Vec3& low, const Vec3& high) const {
     const Vec3 y = axes_.transpose() * (0.5 * (low + high) - centre_);
     const double root = nearest_on_ellipsoid(half_, y);
@@ -148,7 +149,7 @@ struct SeenSurface {
   }
 };
 
-/// The places of a surface that count, or the nearest one alone.
+/// Nearby features of a surface that count, or the nearest one alone.
 const std::vector<SurfacePlace>& places_of(const SeenPart& part, const Shape& b, double round,
                                            double reach) {
   const SeenSurface seen{part, b, round};
@@ -217,8 +218,8 @@ Gap<T> over_face(const Shape& part, const Shape& b, int triangle, bool behind,
                     at_b.point(b.corners[b.triangles[triangle][0]]), n, part.rounding, b.rounding);
 }
 
-/// The place along the edge gets its derivatives by a Newton step. The distance does not depend on
-/// them, nor on the last digits of the place.
+/// Position along the edge with its derivatives, by a Newton step. The distance depends on neither
+/// these nor the last digits of the position.
 template <class T>
 Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Placement<T>& at_a,
                  const Placement<T>& at_b) {
@@ -242,8 +243,8 @@ Gap<T> over_edge(const Shape& part, const Shape& b, int edge, double t, const Pl
   return turned_round(point_over_solid(p + at * v, b.rounding, part, at_a), 1 + edge);
 }
 
-/// The point of the part that is farthest from the axis of a tube about it: where it touches the
-/// inner side. The extent n·x of a convex body is largest there over all n across the axis.
+/// Point of the part farthest from the axis of a tube, where it is in contact with the inner side.
+/// The extent n·x of a convex body is largest there over all n normal to the axis.
 template <class T>
 V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T>& at_a,
                          const Placement<T>& at_b) {

@@ -5,8 +5,8 @@
 
 namespace polhode::contact {
 
-/// The damper of a spring acts on the share of the end as well: else that share would throw back
-/// what an impact has left in the spring.
+/// Normal force of a point. The damper of a spring acts on the share of the end as well: otherwise
+/// that share would return what an impact has left in the spring.
 NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
   NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
   const double quotient = f.value, weight = data.pair.weight, share = data.end_share;

@@ -9,15 +9,15 @@ namespace polhode::contact {
 
 namespace {
 
-/// Share of the lagged stiffness that a point gets which began to slide or turned back, and the
-/// part of it that is left at the next iterate.
+/// Share of the lagged stiffness for a point that began to slide or reversed, and the part of it
+/// that remains at the next iterate.
 constexpr double kTurnedBack = 0.5, kShareFades = 0.25;
 
 }  // namespace
 
-/// Damping of slides that turn back. Along a slide the force does not change, so Newton moves the
-/// point on until it slides the other way; the lagged stiffness, force over stretch, bounds the
-/// force from above and stops it in between. @eq{contact-slide-damping}
+/// Damping of reversing slides. Along a slide the force is constant, so Newton moves the point
+/// until it slides the other way; the lagged stiffness, force over deflection, bounds the force
+/// from above and stops the point in between. @eq{contact-slide-damping}
 void ContactSet::damp_slide(Slide& before, PointForce& f) {
   if (f.lag == 0.0) {
     before = {Vec3::Zero(), 0.0, true};
@@ -50,7 +50,7 @@ std::span<const ActingPoint> ContactSet::evaluate_pointwise(std::span<const Body
     }
     const BodyStep &a = steps[balls.a], &b = steps[balls.b];
     double gap_1 = 0.0;
-    if (balls.holds) {  // most are only near: nothing but what lies side by side is read for them
+    if (balls.holds) {  // most points are only near: only contiguous data are read for them
       gap_1 = balls.gap_n1(a, b);
       if (balls.gap_n >= balls.reach && gap_1 >= balls.reach) continue;
     } else {

@@ -11,15 +11,15 @@ namespace polhode::contact {
 
 namespace {
 
-/// Radius to which the corners of two cylinders or cones are rounded against each other, part of
-/// their size: their support functions are smooth then.
+/// Radius to which the rims of two cylinders or cones are rounded against each other, as a part of
+/// their size: their support functions are then smooth.
 constexpr double kSmooth = 1e-2;
 
-/// What the support point of a round solid is composed of: ellipsoids by their semi-axes.
+/// Components of the support point of a round solid: ellipsoids by their semi-axes.
 struct Parts {
-  Vec3 body;              ///< The ellipsoid, the disc of a cylinder, the base of a cone.
-  Vec3 needle;            ///< Of a cylinder, added to its disc.
-  double apex = 0.0;      ///< Of a cone, from its centre; its base is as far on the other side.
+  Vec3 body;          ///< The ellipsoid, the disc of a cylinder, the base of a cone.
+  Vec3 needle;        ///< Of a cylinder, added to its disc.
+  double apex = 0.0;  ///< Of a cone: distance from its centre to the apex, and also to the base.
   double softness = 0.0;  ///< Of a cone, where apex and base are equally far [m].
 
   explicit Parts(const Shape& s) {
@@ -66,7 +66,7 @@ V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& direction) {
   return 0.5 * (apex + base + (more / root) * d + (soft / root) * direction);
 }
 
-/// Of a shape, in the world.
+/// Support point of a shape in the world.
 template <class T>
 struct Axes {
   V3<T> axis[3];
@@ -89,7 +89,7 @@ struct Curved {
   Mat3 D;
 };
 
-/// As `of_ellipsoid`, along the axes. The derivative of B²n/|Bn| is (B² − x xᵀ)/|Bn|.
+/// Like `of_ellipsoid`, along the axes. The derivative of B²n/|Bn| is (B² − x xᵀ)/|Bn|.
 Curved curved_ellipsoid(const Vec3& B, const Vec3& n) {
   const Vec3 squares = B.cwiseAbs2();
   const double length = B.cwiseProduct(n).norm();
@@ -99,7 +99,7 @@ Curved curved_ellipsoid(const Vec3& B, const Vec3& n) {
   return c;
 }
 
-/// As `support`, in numbers.
+/// Like `support`, with plain numbers.
 Curved curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
   const Parts parts(s);
   const Vec3 n = axes.transpose() * direction;
@@ -118,11 +118,11 @@ Curved curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
   return {axes * c.x, axes * c.D * axes.transpose()};
 }
 
-/// Thickest half of a needle, part of its length.
+/// Largest half thickness of a needle, as a part of its length.
 constexpr double kSlender = 1e-3;
 
-/// An edge as a slender ellipsoid: unlike a straight line it has one place nearest to a face that
-/// it lies on. What the edge is rounded by beyond its thickness is left out.
+/// An edge as a slender ellipsoid. Unlike a straight line it has a unique nearest point to a face
+/// that it lies on. The rounding of the edge beyond its thickness is left out.
 Shape needle(const Shape& b, int edge) {
   const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
   Shape s;
@@ -136,21 +136,22 @@ Shape needle(const Shape& b, int edge) {
   return s;
 }
 
-/// Two unit vectors across n.
+/// Two unit vectors normal to n.
 void tangents(const Vec3& n, Vec3& e, Vec3& f) {
   e = n.unitOrthogonal();
   f = n.cross(e);
 }
 
-/// The direction in which two round solids are farthest apart: the largest of
-/// F(n) = n·(x_a(−n) − x_b(n)), by Newton on the unit sphere.
+/// Direction of largest separation of two round solids: the maximum of F(n) = n·(x_a(−n) − x_b(n)),
+/// by Newton's method on the unit sphere.
 struct Separation {
   Vec3 n;
-  Eigen::Matrix2d M;  ///< −D of the tangential part of x_a − x_b by the two tangential moves of n.
+  Eigen::Matrix2d M;  ///< Negative derivative of the tangential part of x_a − x_b by the two
+                      ///< tangential increments of n.
 };
 
 /// @param between  From the centre of b to that of a.
-/// @param start  A direction to begin with, of any length.
+/// @param start  Initial direction, of any length.
 Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Mat3& axes_b,
                     const Vec3& between, const Vec3& start) {
   Separation s;
@@ -169,7 +170,7 @@ Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Ma
     s.M << e.dot(D * e) + F, e.dot(D * f), f.dot(D * e), f.dot(D * f) + F;
     const Eigen::Vector2d slope(e.dot(w), f.dot(w));
     if (slope.norm() <= 1e-14 * size) break;
-    // Where F is not concave, each principal direction goes uphill by its own curvature.
+    // Where F is not concave, each principal direction ascends by its own curvature.
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
     principal.computeDirect(s.M);
     const Eigen::Vector2d curvature = principal.eigenvalues().cwiseAbs().cwiseMax(1e-12 * size);
@@ -190,7 +191,7 @@ Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Ma
   return s;
 }
 
-/// @param start  Roughly the direction from b to a.
+/// @param start  Approximate direction from b to a.
 /// @param rounding  Of b, beyond its own.
 template <class T>
 Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
@@ -198,7 +199,7 @@ Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
   const Axes<T> on_a(a, at_a), on_b(b, at_b);
   const V3<T> between = on_a.centre - on_b.centre;
   const Separation s = separate(a, b, values(on_a), values(on_b), value(between), start);
-  // n in T: one Newton step from the direction found in numbers.
+  // n in T: one Newton step from the direction found in plain numbers.
   Vec3 e, f;
   tangents(s.n, e, f);
   const V3<T> n_0 = constant<T>(s.n);
@@ -237,7 +238,7 @@ template <class T>
 Gap<T> round_over_edge(const Shape& a, const Shape& b, int edge, const Placement<T>& at_a,
                        const Placement<T>& at_b) {
   const Shape slender = needle(b, edge);
-  // As if a were a ball: the needle's place nearest to it is that of the edge.
+  // As if a were a ball: the nearest point of the needle is that of the edge.
   const Vec3 X = at_b.to_body(value(at_a.point(a.centre))) - slender.centre,
              v = slender.axes.col(0);
   const double along = v.dot(X), length = slender.half.x(), part = along / length;

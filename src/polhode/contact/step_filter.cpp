@@ -12,21 +12,22 @@ namespace polhode::contact {
 
 namespace {
 
-/// Of the room a point has, this part is kept in one iteration.
+/// Part of a point's clearance that is kept in one iteration.
 constexpr double kKept = 0.1;
-/// The same between balls, which are many, and all wait for the tightest two.
+/// The same between balls, which are many and all limited by the tightest pair.
 constexpr double kKeptByBalls = 0.35;
-/// Points that cannot use more than this part of their room are not followed.
+/// Part of its clearance below which a point's approach is not followed.
 constexpr double kHarmless = 0.9;
-/// An advance below this part of the increment ends the search.
+/// Smallest advance, as a part of the increment; a smaller one ends the search.
 constexpr double kMinAdvance = 1e-4;
-/// Of what a point shall keep, this part may be missing in the end.
+/// Tolerance on the kept clearance, as a part of it.
 constexpr double kMissing = 0.5;
 constexpr int kHalvings = 30;
-/// Cayley vector of the longest turn in one iteration.
+/// Cayley vector of the largest rotation in one iteration.
 constexpr double kLongestTurn = 0.6;
 
-/// Farthest point of a feature from the origin of its body: how fast a turn moves it.
+/// Distance of the farthest point of a feature from the origin of its body, the lever arm of
+/// rotations.
 double lever(const Shape& s, const FeaturePair& f, bool side_a) {
   if (!s.bounded()) return 0.0;
   const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
@@ -37,8 +38,8 @@ double lever(const Shape& s, const FeaturePair& f, bool side_a) {
   return s.reach;
 }
 
-/// How fast points z of a body come nearer along n, per unit of the increment: what the turn does
-/// to the points themselves and, for what is left of it, at most.
+/// Approach speed of points z of a body along n per unit of the increment: the effect of the
+/// rotation on the points themselves plus an upper bound for the part of it that is left.
 double approach_by_turn(const Vec3& theta, const Vec3& n, std::span<const Vec3> z, double left) {
   double most = 0.0, farthest = 0.0;
   for (const Vec3& x : z) {
@@ -71,13 +72,13 @@ int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec
 
 }  // namespace
 
-/// A point to be followed along the increment, and the gap that it keeps [m].
+/// A point that is followed along the increment, and the gap that it keeps [m].
 struct ContactSet::Followed {
   int point;
   double least;
 };
 
-/// Where a point's shapes are at a part of the increments.
+/// Gap of a point's shapes at a fraction of the increments.
 Gap<double> ContactSet::gap_along(const Point& p, const FeaturePair& pair,
                                   std::span<const BodyStep> steps, std::span<const Vec6> increments,
                                   double part) const {
@@ -107,8 +108,9 @@ double ContactSet::sensible_part(std::span<const Vec6> increments) const {
   return part;
 }
 
-/// What a bound of the speed finds harmless is not followed. The extreme point of a round solid
-/// also slides along its rim, as fast as it likes where the axis is along the normal: it always is.
+/// Largest admissible part of the increments. Points that a bound of the speed finds harmless are
+/// not followed. The extreme point of a round solid is always followed: it also slides along its
+/// rim, arbitrarily fast where the axis is along the normal.
 double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) {
   const Vec6 still = Vec6::Zero();
   const auto increment = [&](int shape) -> const Vec6& {
@@ -145,7 +147,7 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
       speed += x_b.tail<3>().norm() * ((a.r_n1 - b.r_n1).norm() + A.reach + B.centre.norm());
     }
     if (speed == 0.0) continue;
-    // The one gap of several features may be used up faster than any of theirs.
+    // The combined gap of several features may decrease faster than each of theirs.
     const bool surface =
         p.data.pair.kind == GapKind::point_surface || p.data.pair.kind == GapKind::part_surface;
     const auto harmless = [&](double clearance) {
@@ -183,9 +185,9 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
   return part;
 }
 
-/// Conservative advancement: along r + a Δr, cay(a Δθ)Λ two convex features come nearer along the
-/// normal n of where they are no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a
-/// gap can be followed by steps of its own size.
+/// Conservative advancement. Along r + a Δr, cay(a Δθ)Λ two convex features approach along their
+/// present normal n no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a gap can be
+/// followed by steps of its own size.
 /// @eq{contact-filter}
 double ContactSet::advance(const Followed& followed, std::span<const BodyStep> steps,
                            std::span<const Vec6> increments, double most) {
@@ -198,7 +200,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const Vec6 &x_a = increment(p.a), &x_b = increment(p.b);
   const BodyStep &a = step_of(p.a, steps), &b = step_of(p.b, steps);
   const Vec3 relative = x_a.head<3>() - x_b.head<3>();
-  // A straight way may come nearer to a hollow side faster than along the normal of where it is.
+  // On a straight path a concave side may be approached faster than along the present normal.
   const GapKind kind = p.data.pair.kind;
   const bool hollow =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
@@ -228,7 +230,7 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
                                     : std::numeric_limits<double>::infinity();
     if (step >= most - done) return most;
     tightest_ = followed.point;
-    // Bodies that part from a narrow gap start with small advances, each larger than the last.
+    // Bodies that separate from a narrow gap start with small advances, each larger than the last.
     if (!(step > 0.0) || (step < kMinAdvance * most && step < last))
       return done > 0.0 ? done : 1e-3 * most;
     last = step;
@@ -237,8 +239,9 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   return done;
 }
 
-/// Every triangle that comes near is convex, and so is what lies before its plane: the part of the
-/// increment that leaves the gap to one of both. @eq{contact-filter}
+/// Conservative advancement over a surface of triangles. Every nearby triangle is convex, and so is
+/// the half space in front of its plane: the part of the increment that leaves the gap to one of
+/// both. @eq{contact-filter}
 double ContactSet::advance_over_surface(int point, std::span<const BodyStep> steps,
                                         std::span<const Vec6> increments, double most) {
   const Point& p = points_[point];
@@ -274,7 +277,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
                                turn_b * turn_b * (start.y.norm() + way) + 2.0 * turn_b * way);
   const double band = p.data.normal.reach() - p.least_gap;
   const double wide = round + farthest + bulge + std::max(0.0, p.least_gap + kKept * band);
-  // Free to be used: single triangles, all that is asked for below, search nothing.
+  // Reusable list: the gaps of single triangles evaluated below start no search.
   std::vector<int>& near = SurfaceSearch::of_this_thread().triangles;
   near.clear();
   const Vec3 middle = 0.5 * (start.y + end.y);

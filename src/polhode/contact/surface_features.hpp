@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles, edges and corners of a surface that something meets, as one gap.
+// Combined gap to the triangles, edges and corners of a surface.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,21 @@
 
 namespace polhode::contact {
 
-/// Gap from which on features of a surface count together: that of shapes alone, whatever the law.
+/// Gap below which features of a surface count together; it depends on the shapes alone, not on the
+/// law.
 [[nodiscard]] inline double surface_reach(const Shape& a, const Shape& b) {
   return std::min(1e-3 * std::min(a.size, b.size), a.rounding + b.rounding);
 }
 
-/// Where something is nearest to a triangle, an edge or a corner.
+/// Nearest point on a triangle, an edge or a corner.
 struct SurfacePlace {
-  int kind = 0, index = 0;  ///< 0 face, 1 edge, 2 corner; which of the shape's.
+  int kind = 0, index = 0;  ///< 0 face, 1 edge, 2 corner; its index in the shape.
   double gap = 0.0;         ///< [m]
   double t = 0.0;           ///< Along the edge.
-  int count = 0;            ///< How often it counts.
+  int count = 0;            ///< Multiplicity.
 };
 
-/// Lists of a search among features of a surface, kept from one search to the next of a thread.
+/// Lists of a search among features of a surface, reused by the searches of a thread.
 struct SurfaceSearch {
   std::vector<int> triangles, edges, corners;
   std::vector<SurfacePlace> places;
@@ -35,12 +36,12 @@ struct SurfaceSearch {
   }
 };
 
-/// Places that count at a gap below `reach`, nearest first. Each triangle counts once, less each
-/// edge that two share, plus each inner corner: neighbours that are nearest by what they have in
-/// common cancel, by number, so over what is flat one face is left. In order of their gaps places
-/// sum up to one at least, as over a pit that is narrower than a ball. @eq{contact-one-gap}
+/// Nearest points that count at a gap below `reach`, nearest first. Each triangle counts once,
+/// minus each edge shared by two, plus each inner corner. Neighbours with a common nearest point
+/// thus cancel exactly, so that over a flat region one face is left. In order of their gaps the
+/// multiplicities sum to at least one, as over a pit narrower than a ball. @eq{contact-one-gap}
 ///
-/// @param search  Its triangles are those that may be near; gets the places.
+/// @param search  Its triangles are those that may be near; receives the places.
 /// @param seen  triangle(t), edge(e), corner(k) → SurfacePlace.
 template <class Seen>
 void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach, const Seen& seen) {
@@ -53,7 +54,7 @@ void find_places_that_count(const Shape& b, SurfaceSearch& search, double reach,
     if (!(place.gap < reach)) continue;
     place.count = 1;
     list.push_back(place);
-    // An edge or corner is as near as one of its triangles at most.
+    // An edge or corner is at most as near as one of its triangles.
     for (int k = 0; k < 3; ++k) {
       const int e = b.triangle_edges[t][k], c = b.triangles[t][k];
       if (!b.edges[e].open) search.edges.push_back(e);
@@ -102,7 +103,7 @@ class OneGap {
  public:
   explicit OneGap(double reach) : reach_(reach), gaps_(list()) { gaps_.clear(); }
 
-  /// The nearest one comes first; others beyond the reach do not count.
+  /// Adds a gap, the nearest one first; others beyond `reach` do not count.
   void add(const Gap<T>& gap, int count) {
     if (gaps_.empty() || value(gap.distance) < reach_) gaps_.push_back({gap, double(count)});
   }
@@ -150,7 +151,7 @@ class OneGap {
   }
 
   double reach_;
-  std::vector<Counted>& gaps_;  ///< One OneGap at a time in a thread.
+  std::vector<Counted>& gaps_;  ///< One OneGap at a time per thread.
 };
 
 }  // namespace polhode::contact

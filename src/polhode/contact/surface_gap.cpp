@@ -6,8 +6,8 @@ namespace polhode::contact {
 
 namespace {
 
-/// By this part of the rounding a point is looked at beside itself, to find out which features are
-/// nearest: over an edge or corner exactly, neighbours agree on it all the same.
+/// Offset, as a part of the rounding, at which the nearest features of a point are determined:
+/// exactly over an edge or corner neighbouring points still agree on them.
 constexpr double kAside = 1e-7;
 
 /// A point as seen from a surface.

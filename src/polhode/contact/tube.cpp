@@ -9,7 +9,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// Fixed points on a rim, for standing on it, as a cylinder has.
+/// Number of fixed points on a rim, as a cylinder has them, for standing on it.
 constexpr int kTubeRimPoints = 12;
 
 }  // namespace

@@ -7,28 +7,28 @@
 
 namespace polhode::contact {
 
-/// A hollow round bar along z of the place: a surface of triangles to what has edges or faces, and
-/// its own round faces to points with balls about them and to half spaces.
+/// A hollow round bar along z of the placement: a surface of triangles to shapes with edges or
+/// faces, with exact round faces to rounded points and to half spaces.
 ///
 /// @param outer, inner  Diameters [m].
-/// @param polygon  The same with flat sides, closed; corners of its rims lie on their circles.
+/// @param polygon  Closed polyhedral approximation; the corners of its rims lie on their circles.
 /// @throws InputError as mesh() does.
 [[nodiscard]] Shape tube(std::string_view where, double outer, double inner, double length,
                          const TriangleSurface& polygon, const ShapePlace& place = {},
                          double rounding = 0.0);
 
-/// A surface with round faces. Its `half` are the outer and inner radius of the core and half its
-/// length, along the third of its axes.
+/// Whether a shape is a tube, a surface with round faces. Its `half` are the outer and inner radius
+/// of the core and half its length, along the third of its axes.
 [[nodiscard]] inline bool is_tube(const Shape& s) {
   return s.solid == Solid::surface && s.half[0] > 0.0;
 }
 
-/// Whether a corner of the polygon of a tube lies on the inner side.
+/// Whether a corner of a tube's polygon lies on the inner side.
 [[nodiscard]] inline bool on_inner_side(const Shape& tube, int corner) {
   const Vec3 x = tube.axes.transpose() * (tube.corners[corner] - tube.centre);
   return std::hypot(x.x(), x.y()) < 0.5 * (tube.half[0] + tube.half[1]);
 }
-/// Whether a triangle of it does, whose place the round side takes.
+/// Whether a triangle of it does; the round side then replaces it.
 [[nodiscard]] inline bool is_inner_side(const Shape& tube, int triangle) {
   const auto& c = tube.triangles[triangle];
   return on_inner_side(tube, c[0]) && on_inner_side(tube, c[1]) && on_inner_side(tube, c[2]);

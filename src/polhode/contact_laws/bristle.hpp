@@ -8,7 +8,7 @@
 
 namespace polhode::contact {
 
-/// The bristle of t_n in the tangent plane of the step: turned with the normal by the smallest
+/// Bristle of t_n in the tangent plane of the step: rotated with the normal by the smallest
 /// rotation, and about it with the bodies. Zero if `before`, the normal that left it, is.
 template <class T>
 [[nodiscard]] V3<T> transported(const Vec3& bristle, const Vec3& before, const V3<T>& n,
@@ -26,16 +26,16 @@ template <class T>
   return scale * ((1.0 - square) * turned + spin * cross(n, turned));
 }
 
-/// The set of bristle deflections that stick: |s| ≤ R, or in the tangent plane an ellipse with the
-/// half axes R along e and R·ratio along f.
+/// Set of bristle deflections that stick: |s| ≤ R, or in the tangent plane an ellipse with the half
+/// axes R along e and R·ratio along f.
 template <class T>
 struct Cone {
   T radius{};
   double ratio = 1.0;
-  V3<T> e, f;  ///< Used if ratio ≠ 1: unit, across the normal and each other.
+  V3<T> e, f;  ///< Used if ratio ≠ 1: unit, normal to each other and to the contact normal.
 
-  /// The nearest deflection that sticks. Nearest in the sense of the bristle's energy: with that
-  /// the dissipation of a step is never negative. @eq{contact-bristle}
+  /// Nearest deflection that sticks, in the metric of the bristle's energy: the dissipation of a
+  /// step is then never negative. @eq{contact-bristle}
   [[nodiscard]] V3<T> nearest(const V3<T>& s) const {
     if (ratio != 1.0) return nearest_in_ellipse(s);
     const double r = value(radius), square = value(dot(s, s));
@@ -50,7 +50,7 @@ struct Cone {
   }
 
  private:
-  /// Root of (a x/(a² + t))² + (b y/(b² + t))² = 1, t > 0; a step in T gives it its derivatives.
+  /// Root of (a x/(a² + t))² + (b y/(b² + t))² = 1, t > 0; a step in T gives its derivatives.
   [[nodiscard]] V3<T> nearest_in_ellipse(const V3<T>& s) const {
     const T x = dot(e, s), y = dot(f, s);
     if (!outside(value(s))) return s;

@@ -5,8 +5,8 @@ namespace polhode::contact {
 
 /// Phases of a contact, from closing to opening.
 enum class ContactPhase : unsigned char {
-  rest,         ///< Lasting contact.
-  landing,      ///< Lasting contact that has closed slowly and has not turned yet.
+  rest,         ///< Resting contact.
+  landing,      ///< Resting contact that has closed slowly and has not turned yet.
   compression,  ///< An impact before its turn.
   restitution,  ///< An impact after its turn.
 };

@@ -36,7 +36,8 @@ double NormalLaw::gap_of(double energy) const {
   if (!(energy > 0.0)) return reach();
   switch (potential) {
     case NormalPotential::barrier: {
-      // (1 − s)³ = v s: decreasing and convex on the left, so Newton climbs to s from 0.
+      // (1 − s)³ = v s: decreasing and convex on the left, so Newton converges monotonically from
+      // 0.
       const double band = this->band(), v = 3.0 * energy / (stiffness * band * band);
       double s = 0.0;
       for (int k = 0; k < 100; ++k) {

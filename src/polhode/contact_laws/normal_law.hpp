@@ -7,13 +7,13 @@
 
 namespace polhode::contact {
 
-/// Which potential a gap has.
+/// Potentials of a gap.
 enum class NormalPotential { barrier, linear, hertz };
 
-/// The potential b(g) of a contact point as a function of its gap g, its force and its quotient.
+/// Potential b(g) of a contact point as a function of its gap g, with its force and its quotient.
 ///
-/// The barrier lives on the band between its floor, where it is infinite, and its reach: with
-/// s = (g − floor)/d̂, d̂ = reach − floor,
+/// The barrier acts on the band between its floor, where it is infinite, and its activation
+/// distance (reach): with s = (g − floor)/d̂, d̂ = reach − floor,
 ///
 ///   b = (k d̂²/3)(1/s − 3 + 3s − s²),   f = −b' = (k d̂/3)(1/s² − 3 + 2s)
 ///
@@ -21,27 +21,27 @@ enum class NormalPotential { barrier, linear, hertz };
 /// depth δ = reach − g: linear b = ½ k δ², Hertz b = (2/5) k δ^{5/2}.
 ///
 /// The quotient λ = −(b(g_1) − b(g_0))/(g_1 − g_0) is written without the difference, so it has no
-/// 0/0; it is never negative. With it the step gives back exactly what it stored.
-/// @eq{contact-quotient}
+/// 0/0; it is never negative. With it the step conserves the energy exactly. @eq{contact-quotient}
 struct NormalLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 1.0;   ///< k [N/m]; Hertz: [N/m^{3/2}].
   double tolerance = 1e-3;  ///< Of the gap [m].
-  /// Ends of the band, where they are not ±tolerance of a barrier, or 0 of another potential [m].
+  /// Ends of the band, if they are not ±tolerance of a barrier, or 0 of another potential [m].
   std::optional<double> upper, lower;
-  /// Gap at which a barrier begins to press, where that is within its band: its force is less by
-  /// the one there [m]. @eq{contact-later}
+  /// Gap at which a barrier starts to act, if that is within its band: its force is reduced by the
+  /// one there [m]. @eq{contact-later}
   std::optional<double> later;
 
-  /// Gaps from here on carry no force [m].
+  /// Activation distance: larger gaps carry no force [m].
   [[nodiscard]] double reach() const { return later ? *later : end(); }
-  /// No step may bring the gap to this [m]; −∞ if the law lets bodies overlap.
+  /// Gap that no step may reach [m]; −∞ if the law allows overlaps.
   [[nodiscard]] double floor() const;
   [[nodiscard]] double band() const { return end() - floor(); }
 
-  [[nodiscard]] double energy(double gap) const;     ///< b [J]
-  [[nodiscard]] double gap_of(double energy) const;  ///< Where b is that; reach() if it is zero.
-  /// The reach with which the law stores an energy at a gap [m]. @eq{contact-same-energy}
+  [[nodiscard]] double energy(double gap) const;  ///< b [J]
+  /// Gap with this energy; reach() if it is zero.
+  [[nodiscard]] double gap_of(double energy) const;
+  /// Activation distance with which the law stores an energy at a gap [m]. @eq{contact-same-energy}
   [[nodiscard]] double reach_for(double gap, double energy) const;
   template <class T>
   [[nodiscard]] T force(const T& gap) const;  ///< f = −b' [N]
@@ -50,7 +50,7 @@ struct NormalLaw {
   template <class T>
   [[nodiscard]] T quotient(double gap_0, const T& gap_1) const;  ///< λ [N]
 
-  /// With the derivative by the gap at the end of the step [N/m].
+  /// Value with the derivative by the gap at the end of the step [N/m].
   struct WithSlope {
     double value, slope;
   };
@@ -58,11 +58,11 @@ struct NormalLaw {
   [[nodiscard]] WithSlope quotient_and_slope(double gap_0, double gap_1) const;
 
  private:
-  /// Of the band [m].
+  /// Upper end of the band [m].
   [[nodiscard]] double end() const {
     return upper ? *upper : potential == NormalPotential::barrier ? tolerance : 0.0;
   }
-  /// s where it begins to press.
+  /// s where it starts to act.
   [[nodiscard]] double first() const { return later ? (*later - floor()) / band() : 1.0; }
   [[nodiscard]] static double chained(double, const WithSlope& f) { return f.value; }
   [[nodiscard]] static Dual chained(const Dual& x, const WithSlope& f) {

@@ -7,8 +7,8 @@ namespace polhode::contact {
 
 namespace {
 
-/// Gaps this close to the floor of the barrier, as part of its band, are continued straight: only
-/// iterates get there. In statics, which does not hold its iterates back, from farther away.
+/// Distance to the floor of the barrier, as a part of its band, below which its force is continued
+/// linearly: only iterates get there. Larger in statics, whose iterates are not limited.
 constexpr double kStraight = 1e-9, kStraightStatics = 1e-3;
 
 template <class Force>

@@ -10,16 +10,16 @@ struct ForceAndSlope {
   double value = 0.0, slope = 0.0;
 };
 
-/// How a gap is taken over a step.
+/// A gap over a step.
 struct GapStep {
   double at_n = 0.0, at_n1 = 0.0;  ///< [m] or [rad]
   double alpha_f = 0.5;
   bool conserving = true;  ///< By the quotient; else the mean of both ends' forces.
-  double end_share = 0.0;  ///< Part of the force that is that of t_{n+1}: takes energy.
+  double end_share = 0.0;  ///< Part of the force that is evaluated at t_{n+1}: dissipative.
 };
 
-/// The force of a law at t_{n+αf}. Where the barrier is infinite, which only iterates reach, it is
-/// continued straight. @eq{contact-quotient} @eq{contact-plastic}
+/// Force of a law at t_{n+αf}. Where the barrier is infinite, which only iterates reach, it is
+/// continued linearly. @eq{contact-quotient} @eq{contact-plastic}
 [[nodiscard]] ForceAndSlope stop_force(const NormalLaw& law, const GapStep& gap);
 
 }  // namespace polhode::contact

@@ -7,10 +7,10 @@
 
 namespace polhode {
 
-/// The model or an argument is wrong, and the user can mend it.
+/// Error of the model or an argument that the user can correct.
 ///
-/// The message has three parts, always in this order: where, what (with the
-/// value that was given and its unit), and how to mend it.
+/// The message has three parts, always in this order: where, what (with the value that was given
+/// and its unit), and a hint how to correct it.
 class InputError : public std::invalid_argument {
  public:
   InputError(std::string_view where, std::string_view what, std::string_view hint);
@@ -23,11 +23,11 @@ class InputError : public std::invalid_argument {
   std::string where_, what_, hint_;
 };
 
-/// Equations of a model that cannot be solved: a matrix that is too large or has no inverse, an
-/// eigenvalue problem that does not converge. Nobody's fault; the message says what to try.
+/// Equations of a model that cannot be solved: a matrix that is too large or singular, an
+/// eigenvalue problem that does not converge. The message contains a hint what to try.
 class SolveError : public std::runtime_error {
  public:
-  /// Reads "what. hint."
+  /// The text is "what. hint."
   SolveError(std::string_view what, std::string_view hint);
 };
 

@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// The candidate closest to a mistyped word, or "" if none is close: at most a third of the
-/// letters (and at least one) inserted, left out, replaced or swapped with a neighbour.
+/// Candidate closest to a mistyped word, or "" if none is close: at most a third of the letters
+/// (and at least one) inserted, left out, replaced or swapped with a neighbour.
 [[nodiscard]] std::string closest(std::string_view word,
                                   const std::vector<std::string>& candidates);
 

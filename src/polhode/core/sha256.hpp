@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// SHA-256 (FIPS 180-4) of bytes that come piece by piece.
+/// SHA-256 (FIPS 180-4) of bytes added piece by piece.
 class Sha256 {
  public:
   Sha256();

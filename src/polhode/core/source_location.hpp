@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Where a thing stands in the user's file; line 0 means it was built in code.
+/// Position of an object in the user's file; line 0 means it was built in code.
 struct SourceLocation {
   std::string file;
   int line = 0;    ///< 1-based.

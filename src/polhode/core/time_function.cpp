@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Values that differ by less than this part of them are the same.
+/// Relative difference of values below which they are equal.
 constexpr double kSame = 1e-10;
 
 double shift(double t) { return 2.0 * kSameBreak * std::max(std::abs(t), 1e-6); }

@@ -30,13 +30,13 @@ struct TimeBreak {
   [[nodiscard]] bool exists() const { return t < std::numeric_limits<double>::infinity(); }
 };
 
-/// Two breaks closer than this part of their time are one [-].
+/// Relative difference of times below which two breaks are one [-].
 inline constexpr double kSameBreak = 0x1p-46;
 
 /// Bounds of a function over a span of time, in its unit.
 struct TimeBounds {
   double size = 0.0;       ///< Of |f|.
-  double curvature = 0.0;  ///< Of |f''|, breaks left out [1/s²].
+  double curvature = 0.0;  ///< Of |f''|, without breaks [1/s²].
 };
 
 /// A number that may depend on time: constant, expression in t, or table. SI units.
@@ -47,13 +47,13 @@ class TimeFunction {
   [[nodiscard]] virtual bool is_constant() const { return false; }
   /// Number of the controller that sets it during a run; -1: none does.
   [[nodiscard]] virtual int controller() const { return -1; }
-  /// Limits from one side of t. Here by differences over 0.2 ms on that side: for functions that
-  /// do not know better, with an error of order (0.1 ms)².
+  /// Value and derivatives as limits from one side of t. By default differences over 0.2 ms on that
+  /// side, with an error of order (0.1 ms)².
   [[nodiscard]] virtual TimeRates rates(double t, TimeSide side) const;
-  /// The first break after t, up to `until`. What it returns hangs on neither t nor `until`, so
-  /// that a run that is continued meets the same ones.
+  /// First break after t, up to `until`. The breaks depend on neither t nor `until`, so that a
+  /// continued run has the same ones.
   [[nodiscard]] virtual TimeBreak next_break(double /*t*/, double /*until*/) const { return {}; }
-  /// Bounds over [from, to]; by default from samples, which see no change shorter than a 64th.
+  /// Bounds over [from, to]; by default from samples, which miss changes shorter than a 64th.
   [[nodiscard]] virtual TimeBounds bounds(double from, double to) const;
 };
 using TimeFunctionPtr = std::shared_ptr<const TimeFunction>;
@@ -61,12 +61,12 @@ using TimeFunctionPtr = std::shared_ptr<const TimeFunction>;
 /// Three time functions, one per component.
 using TimeVector = std::array<TimeFunctionPtr, 3>;
 
-/// A time on one side of t, nearer than any two times of a model that differ.
+/// A time on one side of t, nearer than any two different times of a model.
 [[nodiscard]] double beside(double t, TimeSide side);
 
-/// The jump from before to after, or zero where rounding alone makes them differ.
-/// @param before, after    The two limits.
-/// @param change           Sum of the magnitudes of their derivatives.
+/// Jump from before to after, or zero if the difference is rounding.
+/// @param before, after  The two limits.
+/// @param change  Sum of the magnitudes of their derivatives.
 [[nodiscard]] double jump_at(double t, double before, double after, double change);
 
 }  // namespace polhode

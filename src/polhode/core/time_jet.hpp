@@ -6,7 +6,7 @@
 namespace polhode {
 
 /// A value with its first two derivatives by time (automatic differentiation, forward mode).
-/// Comparisons go by the value.
+/// Comparisons use the value.
 struct TimeJet {
   double value = 0.0, rate = 0.0, second = 0.0;
 

@@ -14,7 +14,7 @@ using Vec = Eigen::VectorXd;
 using Mat = Eigen::MatrixXd;
 using Quat = Eigen::Quaterniond;  ///< Unit quaternion (w, x, y, z), body to world.
 
-/// The body index of the ground, which never moves and costs nothing.
+/// Body index of the ground, which is fixed.
 inline constexpr int kGround = -1;
 
 }  // namespace polhode

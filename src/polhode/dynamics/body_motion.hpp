@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// One body's motion, as users and tests read and set it.
+/// Motion of one body, as set and reported.
 struct BodyMotion {
   Vec3 r = Vec3::Zero();
   Quat q = Quat::Identity();

@@ -6,15 +6,15 @@
 
 namespace polhode {
 
-/// The step everybody is taking: method, times and form of the potentials.
+/// Common data of the current step: method, times and form of the potentials.
 struct StepContext {
   GeneralizedAlpha ga;
   double t_n = 0.0;          ///< Start of the step [s].
   double dt = 0.0;           ///< Length of the step [s]; negative in stages of orders 4 to 8.
   bool conserving = true;    ///< Potentials in discrete-gradient form.
-  double load_factor = 1.0;  ///< Part of all loads and of gravity that acts: statics. [-]
-  bool tangents = true;      ///< Tangents and G are wanted; else only wrenches and values.
-  /// Geometric stiffness from the stress that histories hold, not from that of the iterate:
+  double load_factor = 1.0;  ///< Factor of all loads and of gravity in statics. [-]
+  bool tangents = true;      ///< Tangents and G are needed; else only wrenches and values.
+  /// Geometric stiffness from the stress stored in histories, not from that of the iterate:
   /// statics.
   bool mixed_point = false;
 
@@ -22,22 +22,22 @@ struct StepContext {
   [[nodiscard]] double t_n1() const { return t_n + dt; }                  ///< [s]
 };
 
-/// A vector that a body carries, or a point's position, at the three times of a step.
+/// A body-fixed vector, or a point's position, at the three times of a step.
 ///
-/// Its tangents are known: a carried vector z has D z_{n+αf}[Δθ] = −α_f ẑ_{n+1}, a point
-/// x has in addition D x_{n+αf}[Δr] = α_f I. @eq{ga-z-tangent}
+/// Its tangents are known: a body-fixed vector z has D z_{n+αf}[Δθ] = −α_f ẑ_{n+1}, a point x has
+/// in addition D x_{n+αf}[Δr] = α_f I. @eq{ga-z-tangent}
 struct Carried {
   Vec3 at_n, at_alpha, at_n1;
 };
 
-/// Motion of one rigid body over the current step: all that a joint, load, spring or
-/// contact may know of it. The ground is a BodyStep at rest.
+/// Motion of one rigid body over the current step, the only input of joints, loads, springs and
+/// contacts. The ground is a BodyStep at rest.
 ///
 /// Capital letters are body components, small ones world components.
 struct BodyStep {
   Vec3 r_n = Vec3::Zero(), r_n1 = Vec3::Zero();  ///< Centre of mass [m].
   Mat3 Lambda_n = Mat3::Identity(), Lambda_n1 = Mat3::Identity();
-  Vec3 u = Vec3::Zero();                         ///< r_{n+1} − r_n, kept apart [m].
+  Vec3 u = Vec3::Zero();                         ///< r_{n+1} − r_n, stored separately [m].
   Vec3 theta = Vec3::Zero();                     ///< Cayley vector of the step, world [-].
   Vec3 v_n = Vec3::Zero(), v_n1 = Vec3::Zero();  ///< [m/s]
   Vec3 W_n = Vec3::Zero(), W_n1 = Vec3::Zero();  ///< Material angular velocity [rad/s].
@@ -87,7 +87,7 @@ struct BodyStep {
   /// Material angular velocity at t_{n+αf} [rad/s].
   [[nodiscard]] Vec3 W_alpha() const { return (1.0 - alpha_f) * W_n + alpha_f * W_n1; }
 
-  /// The degenerate step that stays at one instant: what a state means to an interaction.
+  /// Degenerate step at one instant: a state as seen by an interaction.
   [[nodiscard]] static BodyStep at_instant(const Vec3& r, const Mat3& Lambda, const Vec3& v,
                                            const Vec3& W) {
     BodyStep s;

@@ -12,9 +12,9 @@ namespace polhode {
 /// eleven. Order 8: Kahan & Li (1997), seventeen. Some stages run backwards in time.
 ///
 /// @param order     2, 4, 6 or 8.
-/// @param doubled   Each stage as two equal steps: needed for orders 6 and 8 as soon as there are
-///                  multiplier rows, because a single step reflects the constraint-normal velocity
-///                  while two are near the identity.
+/// @param doubled   Each stage as two equal steps: needed for orders 6 and 8 if there are
+/// multiplier rows, because a single step reflects the constraint-normal velocity while two are
+/// near the identity.
 /// @throws InputError for any other order.
 [[nodiscard]] std::vector<double> composition_stages(int order, bool doubled);
 

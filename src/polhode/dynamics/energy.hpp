@@ -12,8 +12,8 @@ namespace polhode {
 }
 
 /// Power of the rates of momentum, ṙ·ṗ + ω·ḣ [W]: the rate of the kinetic energy, and the power of
-/// the external force and moment. With δr and δθ in the place of the velocities it is the inertial
-/// part of the virtual work. @eq{eq:rbm-virtual-work}
+/// the external force and moment. With δr and δθ instead of the velocities it is the inertial part
+/// of the virtual work. @eq{eq:rbm-virtual-work}
 [[nodiscard]] inline double power(const Vec3& r_dot, const Vec3& omega, const Vec3& f,
                                   const Vec3& m) {
   return r_dot.dot(f) + omega.dot(m);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxIterations = 20;
 constexpr double kRoundOff = 4.4e-16;
-/// Where iterations gain nothing any more, this part of the momenta counts as round-off.
+/// Part of the momenta that counts as round-off where iterations make no more progress.
 constexpr double kNoGain = 1e-13;
 
 }  // namespace

@@ -51,8 +51,8 @@ void kinematic_form(const Mat3& J_r, const BodyMotion& at_n, const BodyStep& s,
   out.K_theta = alpha_m * (1.0 / (beta * dt) * D_rates * cayley_tangent(s.theta) - hat(h_dot_n1));
 }
 
-/// The kinematic form with each term taken where it belongs: J α at t_{n+αm} in the averaged
-/// orientation, ω × h at t_{n+αf}. Second order for every ρ∞. @eq{ga-K-kinematic-corrected}
+/// Kinematic form with each term at its proper time: J α at t_{n+αm} in the averaged orientation, ω
+/// × h at t_{n+αf}. Second order for every ρ∞. @eq{ga-K-kinematic-corrected}
 void corrected_form(const Mat3& J_r, const BodyMotion& at_n, const BodyStep& s,
                     const StepContext& context, MomentumRates& out) {
   const GeneralizedAlpha& ga = context.ga;

@@ -8,13 +8,13 @@
 
 namespace polhode {
 
-/// How the rate of angular momentum at t_{n+αm} is formed.
+/// Forms of the rate of angular momentum at t_{n+αm}.
 ///
 /// At ρ∞ = 1 only `momentum` conserves; for ρ∞ < 1 it and `kinematic_corrected` are of second
 /// order, `kinematic` (as the theory prints it, kept for comparison) of first.
 enum class MomentumRate { momentum, kinematic, kinematic_corrected };
 
-/// From the word in a model file: momentum, kinematic, kinematic_corrected.
+/// Form from its name in a model file: momentum, kinematic, kinematic_corrected.
 /// @throws InputError if it is none of them.
 [[nodiscard]] MomentumRate momentum_rate(std::string_view word);
 
@@ -34,8 +34,8 @@ struct MomentumRates {
 [[nodiscard]] BodyStep newmark_step(const BodyMotion& at_n, const Vec3& u, const Vec3& theta,
                                     const StepContext& context);
 
-/// Rates of momentum at t_{n+αm} with the inertia tangent; the residual of the body is its
-/// wrench less these. @eq{eq:ga-residual-vector} @eq{eq:ga-momenta-interpolation}
+/// Rates of momentum at t_{n+αm} with the inertia tangent; the residual of the body is its wrench
+/// minus these. @eq{eq:ga-residual-vector} @eq{eq:ga-momenta-interpolation}
 ///
 /// @param mass  [kg]
 /// @param J_r   Inertia about the centre of mass, body components [kg m²].

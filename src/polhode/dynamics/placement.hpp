@@ -8,8 +8,8 @@
 
 namespace polhode::contact {
 
-/// Where a body stands at an instant: carries body coordinates (from its centre of mass) to the
-/// world. With T = Dual the results know their derivatives by the body's increments.
+/// Placement of a body at an instant: maps body coordinates (from its centre of mass) to the world.
+/// With T = Dual the results have derivatives by the body's increments.
 template <class T>
 class Placement {
  public:
@@ -17,9 +17,9 @@ class Placement {
   Placement(const Vec3& r, const Mat3& Lambda, int first)
       : r_(r), Lambda_(&Lambda), first_(first) {}
 
-  /// The end of a step, seen from a point near the contact. Points come from where they were and
-  /// how far they moved, so that what rounding does to positions in the world does not reach gaps:
-  /// deep in the barrier it would count. @eq{contact-gap-change}
+  /// Placement at the end of a step, relative to a point near the contact. Points are computed from
+  /// their initial positions and displacements, so that the rounding of world positions does not
+  /// affect gaps: deep in the barrier it would matter. @eq{contact-gap-change}
   Placement(const BodyStep& step, const Vec3& from, int first)
       : r_(step.r_n - from + step.u),
         Lambda_(&step.Lambda_n1),
@@ -27,7 +27,7 @@ class Placement {
         step_(&step),
         start_(step.r_n - from) {}
 
-  /// Λ Z: the vector Z fixed in the body.
+  /// Λ Z: the body-fixed vector Z.
   [[nodiscard]] V3<T> vector(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
     if constexpr (kFine)
@@ -36,12 +36,12 @@ class Placement {
     turn(result, z);
     return result;
   }
-  /// Λ (Q − P), the same from both sides of an edge.
+  /// Λ (Q − P), equal from both sides of an edge.
   [[nodiscard]] V3<T> between(const Vec3& P, const Vec3& Q) const {
     if constexpr (kFine) return vector(Q) - vector(P);
     return vector(Q - P);
   }
-  /// r + Λ Z: the point Z fixed in the body.
+  /// r + Λ Z: the body-fixed point Z.
   [[nodiscard]] V3<T> point(const Vec3& Z) const {
     const Vec3 z = *Lambda_ * Z;
     V3<T> result = step_ ? at_end(Z, z) : constant<T>(r_ + z);
@@ -54,7 +54,7 @@ class Placement {
     move(result);
     return result;
   }
-  /// Body coordinates of a world point: to find out which feature is near.
+  /// Body coordinates of a world point, to find the nearest feature.
   [[nodiscard]] Vec3 to_body(const Vec3& x) const { return Lambda_->transpose() * (x - r_); }
 
  private:
@@ -62,7 +62,7 @@ class Placement {
   using Plain = std::conditional_t<kFine, Fine, double>;
 
   [[nodiscard]] Vec3 z_n(const Vec3& Z) const { return step_->Lambda_n * Z; }
-  /// cay(θ) z_n − z_n = θ × z̄. With Fine from θ alone: the rotation at the end is a rounded one.
+  /// cay(θ) z_n − z_n = θ × z̄. With Fine from θ alone: the rotation at the end is rounded.
   [[nodiscard]] V3<Plain> turned(const Vec3& z_n, const Vec3& z) const {
     const V3<Plain> theta = constant<Plain>(step_->theta);
     if constexpr (kFine) {

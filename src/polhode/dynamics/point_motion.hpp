@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Where a body's coordinates are: x = r + Λ·Z carries body points into space.
+/// Placement of a body's coordinates: x = r + Λ·Z maps body points into space.
 struct Pose {
   Vec3 r;       ///< Centre of mass, spatial [m].
   Mat3 Lambda;  ///< Rotation, material to spatial [-].

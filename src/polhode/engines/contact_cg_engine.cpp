@@ -12,32 +12,34 @@ namespace polhode {
 
 namespace {
 
-/// How far the squared residual falls in the inner iterations: coarse while Newton is far.
+/// Reduction of the squared residual by the inner iterations: coarse in the first Newton
+/// iterations.
 constexpr double kCoarse = 1e-3, kFine = 1e-4;
 constexpr int kCoarseIterations = 2, kMaxInner = 400;
-/// Residual, in weights, below which friction follows the normal forces within an increment, and
-/// directions that it is sought in: farther away sliding points change too much.
+/// Residual, in weights, below which friction forces follow the normal forces within an increment,
+/// and number of search directions for that: at larger residuals sliding points change too much.
 constexpr double kFrictionBelow = 1.0;
 constexpr int kCrowdDirections = 3;
-/// An increment that leaves more than this part of the residual lacks that friction.
+/// Remaining part of the residual above which an increment needs that coupling of friction.
 constexpr double kSlow = 0.2;
 constexpr int kMaxCuts = 2;
-/// Bodies are moved on while their residual is above this part of what counts as solved; others
-/// within so many contacts of them go with them. Where these are most, all are.
+/// Part of the target residual above which bodies are still moved, together with others within so
+/// many contacts of them. If these are most of all bodies, all are moved.
 constexpr double kLate = 0.02, kMaxCrowd = 0.7;
 constexpr int kRings = 2;
-/// Part of the merit that an increment shall take away. An increment that takes hardly anything
-/// flips between sticking and sliding: half of it takes nearly all.
+/// Part of the merit by which an increment has to reduce it. An increment with hardly any reduction
+/// alternates between sticking and sliding: half of it gives nearly the whole reduction.
 constexpr double kDecrease = 0.25;
 constexpr double kCrowdRoundOff = 4.4e-16;
-/// Rows of joints may stay that far open where iterations do not close them, as part of ℓ.
+/// Remaining violation of joint rows that is accepted if iterations do not reduce it, as a part of
+/// ℓ.
 constexpr double kRowsHold = 1e-12;
-/// In shorter steps less residual is left, in proportion [s].
+/// Step below which the tolerated residual decreases in proportion [s].
 constexpr double kWholeStep = 1e-3;
-/// Without gravity, the acceleration that counts as weight: this part of the speed in one step.
+/// Acceleration that replaces weight without gravity: this part of the speed per step.
 constexpr double kPartOfApproach = 1e-3;
 
-/// It acts between two bodies, or holds one.
+/// Whether an interaction acts between two bodies, or constrains one.
 bool couples(const InteractionRef& ref) {
   return ref.rows > 0 || (ref.a != kGround && ref.b != kGround);
 }
@@ -100,8 +102,8 @@ ContactCgEngine::ContactCgEngine(const System& system, double residual)
   start_.resize(n);
 }
 
-/// The inertia tangent of the step's start serves all iterations: turns of a step are small.
-/// @eq{eq:ga-momenta-Newmark} @eq{ga-K-momentum}
+/// Inertia tangent at the start of the step, used in all its iterations: rotations in a step are
+/// small. @eq{eq:ga-momenta-Newmark} @eq{ga-K-momentum}
 void ContactCgEngine::start_inertia(const State& state, const StepContext& context) {
   const GeneralizedAlpha& ga = context.ga;
   const double dt = context.dt, K = ga.alpha_m / (ga.beta * dt * dt);
@@ -159,7 +161,7 @@ void ContactCgEngine::begin_step(const State& state, Trial& trial) {
   weight_ = std::max(weight_, std::numeric_limits<double>::min());
   contacts_->begin_step(state, steps_, trial.context);
   contacts_->cover(steps_, trial.context, x_);
-  std::vector<Vec6> predicted;  // bodies of joints stay as predicted: their rows hold there
+  std::vector<Vec6> predicted;  // bodies of joints keep their prediction, for which their rows hold
   for (const int b : coupled_) predicted.push_back(x_[b]);
   pointwise_->place_impacts(steps_, trial.context, x_);
   for (std::size_t k = 0; k < coupled_.size(); ++k) x_[coupled_[k]] = predicted[k];
@@ -199,7 +201,7 @@ void ContactCgEngine::move_late() {
   if (static_cast<double>(moving_.size()) > kMaxCrowd * static_cast<double>(n)) move_all();
 }
 
-/// Rows that are switched off have no motion of their own.
+/// Adds an interaction's forces and rows; rows that are switched off have no motion of their own.
 void ContactCgEngine::add_interaction(int interaction, const PairTerms& t, const Trial& trial) {
   const InteractionRef& ref = system_->interactions()[interaction];
   if (ref.a != kGround) {
@@ -220,7 +222,8 @@ void ContactCgEngine::add_interaction(int interaction, const PairTerms& t, const
   }
 }
 
-/// Rounding of positions, or what no iteration takes away any more.
+/// Whether the rows hold: to rounding of positions, or with a violation that iterations no longer
+/// reduce.
 bool ContactCgEngine::rows_hold() const {
   if (rows_.empty()) return true;
   double far = system_->length_scale();
@@ -229,7 +232,7 @@ bool ContactCgEngine::rows_hold() const {
          (rows_off_ <= kRowsHold * far && rows_off_ > 0.5 * rows_off_before_);
 }
 
-/// Forces of bodies, loads and contacts at the trial, whose steps are up to date.
+/// Evaluates forces of bodies, loads and contacts at the trial, whose steps are up to date.
 void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
   const double per_speed = context.ga.kappa / context.dt;
@@ -252,7 +255,7 @@ void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
   for (const BlockCg::Row& row : rows_)
     if (!(std::abs(row.g) <= rows_off_)) rows_off_ = std::abs(row.g);
   acting_ = pointwise_->evaluate_pointwise(steps_, context, moves_);
-  double noise = 0.0;  // what rounding of positions leaves of stiff contacts
+  double noise = 0.0;  // rounding of positions times the stiffness of contacts
   for (const ActingPoint& p : acting_) {
     const int a = p.spring.a, b = p.spring.b;
     if (a != kGround) {
@@ -277,13 +280,13 @@ void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
     if (!(size * per.moved <= worst)) worst = size * per.moved, worst_body_ = b;
   }
   residual_ = std::sqrt(worst) / weight_;
-  // Residuals push in every step: the shorter the steps, the more of them.
+  // Residual forces act in every step: the tolerance decreases with the step.
   const double asked = tolerance_ * std::min(1.0, std::abs(context.dt) / kWholeStep);
   enough_ = std::max(asked, kCrowdRoundOff * noise / weight_);  // no residual can be smaller
   evaluated_ = true;
 }
 
-/// Increments of bodies that move, and of multipliers.
+/// Solves for increments of moving bodies and of multipliers.
 bool ContactCgEngine::solve(const Trial& trial) {
   if (searches_ == 0 && !cg_.set_bodies(own_)) return false;
   if (!acted_on_.empty() && !cg_.update_bodies(acted_on_, blocks_)) return false;
@@ -335,13 +338,14 @@ Iteration ContactCgEngine::iterate(const State& state, Trial& trial, bool, doubl
     const double left = at_stake - (before - merit_);
     if (cut == kMaxCuts || left <= (1.0 - kDecrease * part) * at_stake || residual_ < enough_)
       break;
-    const double best = at_stake / (left - (1.0 - 2.0 * part) * at_stake) * part;  // of a parabola
+    // minimum of a parabola
+    const double best = at_stake / (left - (1.0 - 2.0 * part) * at_stake) * part;
     part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
   }
   done.applied = part;
   if (part == 1.0 && residual_before < kFrictionBelow)
     slow_ = slow_ || residual_ > kSlow * residual_before;
-  // What the residual says is final: the increment is no measure of the next one.
+  // The residual decides: the increment is no measure of the next one.
   if (residual_ < enough_ && rows_hold()) {
     done.increment = 0.0;
     done.applied = 1.0;
@@ -358,7 +362,7 @@ void ContactCgEngine::add_ground_wrench(double* force, double* moment) const {
     f += on_b;
     m += (steps_[b].r_n + steps_[b].alpha_f * steps_[b].u).cross(on_b) + moment_on_b;
   };
-  // Forces between bodies cancel in the sums: what is left is the ground's.
+  // Forces between bodies cancel in the sums: the remainder is that of the ground.
   for (const ActingPoint& p : acting_) {
     add(p.spring.a, p.force, p.moment_a);
     add(p.spring.b, -p.force, p.moment_b);

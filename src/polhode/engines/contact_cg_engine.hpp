@@ -11,20 +11,20 @@
 
 namespace polhode {
 
-/// Newton iterations of many bodies that contacts couple, with joints, springs and motors
-/// among them. Conjugate gradients instead of a factorisation, on the motions that rows allow; the
-/// tangent is the symmetric positive part of the true one, so Newton contracts by a factor. A step
-/// is solved when the residual of every body is below a part of its weight, and rows hold to
-/// round-off. Most bodies are there after a few iterations: only the others, those they touch, and
-/// those that interactions act on are moved from then on.
+/// Newton iterations for many bodies coupled by contacts, with joints, springs and motors among
+/// them. Conjugate gradients replace a factorisation, on the motions that rows allow. The tangent
+/// is the symmetric positive part of the true one, so Newton converges linearly. A step is solved
+/// when the residual of every body is below a part of its weight, and rows hold to round-off. Most
+/// bodies converge in a few iterations; from then on only the others, bodies in contact with them,
+/// and bodies with interactions are moved.
 class ContactCgEngine final : public NewtonEngine {
  public:
-  /// Residual that counts as solved, as part of a body's weight; in steps below 1 ms less in
-  /// proportion, for momentum's sake. With friction or restitution below
-  /// one it only shifts when energy is lost; with neither it is what energy is lost or gained by.
+  /// Tolerated residual, as a part of a body's weight; in steps below 1 ms it decreases in
+  /// proportion, to limit the momentum error. With friction or restitution below one it only shifts
+  /// when energy is dissipated; with neither it is an energy error.
   static constexpr double kResidual = 1e-6;
 
-  /// @throws InputError if suits() says no.
+  /// @throws InputError if suits() is false.
   explicit ContactCgEngine(const System& system, double residual = kResidual);
   [[nodiscard]] std::string name() const override { return "contact CG"; }
   void begin_step(const State& state, Trial& trial) override;
@@ -42,10 +42,10 @@ class ContactCgEngine final : public NewtonEngine {
   /// Iterations of conjugate gradients so far.
   [[nodiscard]] long inner_iterations() const { return inner_; }
 
-  /// Whether a system's bodies are coupled by contacts, by joints without friction and stops, and
-  /// by forces without length, such as springs; beams and cables are too stiff.
+  /// Whether the engine suits a system: bodies coupled by contacts, by joints without friction and
+  /// stops, and by forces without a rest length, such as springs; beams and cables are too stiff.
   [[nodiscard]] static bool suits(const System& system);
-  /// Bodies that contacts alone couple to others.
+  /// Number of bodies coupled to others by contacts alone.
   [[nodiscard]] static int free_bodies(const System& system);
 
  private:
@@ -64,17 +64,17 @@ class ContactCgEngine final : public NewtonEngine {
   InteractionSweep loads_;
   double tolerance_, enough_ = 0.0;
   BlockCg cg_;
-  bool slow_ = false;  ///< An increment of this step left much of the residual.
-  /// The parts of a body's momentum rates and velocities at t_{n+1} that t_n determines.
+  bool slow_ = false;  ///< An increment of this step left a large part of the residual.
+  /// Parts of a body's momentum rates and velocities at t_{n+1} that are determined by t_n.
   struct Inertia {
-    Vec3 force, moment;  ///< Gravity and what the rates have of t_n [N, N m].
+    Vec3 force, moment;  ///< Gravity and the part of the rates from t_n [N, N m].
     Vec3 v, W;           ///< [m/s, rad/s]
   };
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<Inertia> inertia_;
-  std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; and with loads, of bodies with loads.
+  std::vector<Mat6> own_, blocks_;  ///< Of inertia alone; including loads, of bodies with loads.
   std::vector<int> acted_on_;       ///< Bodies with loads or joints, ascending.
-  std::vector<int> coupled_;        ///< Those of them that are held or tied to others.
+  std::vector<int> coupled_;        ///< Those of them that are constrained or coupled to others.
   std::vector<BlockCg::Tie> ties_;
   std::vector<BlockCg::Row> rows_;
   std::vector<int> row_number_;                    ///< Of each of rows_.
@@ -82,15 +82,15 @@ class ContactCgEngine final : public NewtonEngine {
   double rows_off_ = 0.0, rows_off_before_ = 0.0;  ///< Largest |g| [m or -].
   std::vector<Vec6> of_motion_, rhs_, x_, start_;  ///< rhs_: of the motion, loads and contacts.
   struct PerMass {
-    double moved, turned;  ///< One over the mass, and one over the mean moment of inertia.
+    double moved, turned;  ///< Inverse mass, and inverse mean moment of inertia.
   };
   std::vector<PerMass> per_mass_;
   std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].
-  std::vector<double> sizes_;  ///< By body, of its residual [N² / kg].
+  std::vector<double> sizes_;  ///< By body: size of its residual [N² / kg].
   std::span<const ActingPoint> acting_;
   std::vector<int> moving_;  ///< Bodies that the iteration moves, ascending.
   std::vector<char> moves_;  ///< The same by body; the ground last.
-  std::vector<char> ring_;   ///< Those that move so far.
+  std::vector<char> ring_;   ///< Moving bodies before the ring grows.
   double merit_ = 0.0;       ///< Sum of sizes.
   double residual_ = 0.0, weight_ = 0.0;
   bool evaluated_ = false;

@@ -14,7 +14,7 @@ ContactEngine::ContactEngine(const System& system, const std::string& solver, Mo
   set_up();
 }
 
-/// The pairs that touch and of which both move go into the matrix after those of interactions.
+/// Sets up the matrix: pairs of moving bodies in contact follow the pairs of interactions.
 void ContactEngine::set_up() {
   newton_.couple(touching_.pairs());
   solver_->analyse(newton_.topology());
@@ -22,7 +22,7 @@ void ContactEngine::set_up() {
   ++analyses_;
 }
 
-/// The prediction is held back like every increment.
+/// Limits the prediction like every increment.
 void ContactEngine::begin_step(const State& state, Trial& trial) {
   if (!touching_.begin_step(state, trial)) set_up();
   if (const double part = touching_.free_part(); part < 1.0)

@@ -9,9 +9,9 @@
 
 namespace polhode {
 
-/// Newton iterations of bodies, joints and contacts between bodies: one sparse matrix whose pairs
-/// are those of the interactions and those of bodies that may touch. The matrix is analysed anew
-/// when these change. Increments are held back so that nothing passes through.
+/// Newton iterations of bodies, joints and contacts between bodies. One sparse matrix has the pairs
+/// of the interactions and those of bodies that may be in contact; it is analysed again when these
+/// change. Increments are limited so that no shapes pass through each other.
 class ContactEngine final : public NewtonEngine {
  public:
   /// @param system  Must have contacts(). @param solver  "block_lu", "klu" or "sparse_lu".

@@ -12,24 +12,24 @@ namespace polhode {
 
 namespace {
 
-/// Up to this many unknowns of nodes a factorisation costs less than the iterations it saves.
+/// Number of node unknowns up to which a factorisation costs less than the iterations it saves.
 constexpr int kFactorAlways = 3000;
-/// A kept factorisation is given up when an iteration contracts worse than this, after this many
-/// iterations of a step, or when Δt² is off by this part.
+/// Limits of a reused factorisation: it is renewed when an iteration contracts less than this,
+/// after this many iterations of a step, or when Δt² differs by this part.
 constexpr double kWorstContraction = 0.5;
 constexpr int kCoupledPatience = 8;
 constexpr double kStepChange = 0.2;
-/// An iterate that turns elements inside out is gone back from this often, half the way each time.
+/// Largest number of halvings of an increment that inverts elements.
 constexpr int kCoupledHalvings = 8;
-/// Increments below this do not turn an element inside out: no iterate is kept to go back to.
+/// Increment below which no element is inverted: no iterate is stored.
 constexpr double kHarmless = 1e-3;
-/// Bodies that may touch are looked up so often for one iteration.
+/// Largest number of renewals of the contact pairs in one iteration.
 constexpr int kMaxPairChanges = 4;
-/// Round-off of a merit, as part of ℓ² m.
+/// Round-off of a merit, as a part of ℓ² m.
 constexpr double kNoForce = 1e-28;
 
-/// Whether surfaces of solids keep off something by barriers. Cables alone, whose few nodes bounce
-/// on what they touch, converge as well without a search.
+/// Whether surfaces of solids have barriers. Cables alone, whose few nodes bounce on what they
+/// contact, converge as well without a line search.
 bool meshes_meet(const Nodes& nodes) {
   if (nodes.unknowns() == 0) return false;
   for (int g = 0; g < nodes.group_count(); ++g)
@@ -54,7 +54,7 @@ CoupledEngine::CoupledEngine(const System& system, const std::string& solver, Mo
   shares_.resize(system.body_count());
 }
 
-/// The matrix of bodies: interactions, then solids, then pairs that may touch.
+/// Sets up the matrix of bodies: interactions, then solids, then pairs that may be in contact.
 void CoupledEngine::set_up() {
   std::vector<KktPair> more = condensation_.pairs();
   if (touching_) more.insert(more.end(), touching_->pairs().begin(), touching_->pairs().end());
@@ -188,7 +188,7 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   return done;
 }
 
-/// Elements that are turned inside out have no residual: there the merit is infinite.
+/// Line search on the merit; it is infinite for inverted elements, which have no residual.
 void CoupledEngine::search(const State& state, Trial& trial, double before, Iteration& done) {
   MeritSearch search(before, part_);
   while (search.wants(done.increment)) {
@@ -226,7 +226,7 @@ void CoupledEngine::move_nodes(const State& state, Trial& trial, double damping,
   done.increment = std::max(done.increment, per_size * inside);
 }
 
-/// Moves free nodes by du_, bonded ones with their bodies.
+/// Moves free nodes by du_, bonded nodes with their bodies.
 void CoupledEngine::shift_nodes(const State& state, Trial& trial) const {
   const System& system = newton_.system();
   const Nodes& nodes = system.nodes();
@@ -241,7 +241,7 @@ void CoupledEngine::shift_nodes(const State& state, Trial& trial) const {
   update_node_velocities(system, state, trial);
 }
 
-/// Back to this part of the way from the iterate before.
+/// Returns to this fraction of the increment from the previous iterate.
 void CoupledEngine::retreat(const State& state, Trial& trial, double part) {
   const System& system = newton_.system();
   const std::vector<double> inside =

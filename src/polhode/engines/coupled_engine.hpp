@@ -12,17 +12,18 @@
 
 namespace polhode {
 
-/// When the nodes of solids are factored anew.
+/// Policies for the factorisation of the nodes of solids.
 enum class NodeFactor {
   automatic,        ///< Few unknowns: every iteration. Many: as long as it converges well.
-  every_iteration,  ///< Newton proper.
-  reuse,            ///< Keeps the factorisation, turned with the solids' bodies.
+  every_iteration,  ///< Full Newton.
+  reuse,            ///< Reuses the factorisation, rotated with the solids' bodies.
 };
 
 /// Newton iterations of bodies, joints, deformable solids and contacts between bodies: one system
-/// of equations, from which the nodes are eliminated first. The rest goes to one of the sparse
-/// solvers, whose matrix is analysed anew when other bodies may touch. Where bodies touch,
-/// increments are held back so that nothing passes through, and shortened until the residual falls.
+/// of equations, from which the nodes are eliminated first. The rest is solved by one of the sparse
+/// solvers, whose matrix is analysed again when other bodies may be in contact. Near contacts
+/// increments are limited so that no shapes pass through each other, and shortened until the
+/// residual decreases.
 class CoupledEngine final : public NewtonEngine {
  public:
   /// @param solver  Of bodies and joints: "block_lu", "klu" or "sparse_lu".
@@ -58,13 +59,13 @@ class CoupledEngine final : public NewtonEngine {
  private:
   void set_up();
   [[nodiscard]] bool must_factor(const Trial& trial, bool refactor) const;
-  /// Forces of elements at the iterate, which is retreated from where it turns one inside out.
+  /// Evaluates forces of elements at the iterate, with shorter increments if elements are inverted.
   [[nodiscard]] bool take_elements(const State& state, Trial& trial, bool factor, Iteration& done);
-  /// Increments of bodies, rows and nodes.
+  /// Solves for increments of bodies, rows and nodes.
   [[nodiscard]] bool solve(const State& state, const Trial& trial);
   /// R·M⁻¹R of bodies, rows and nodes, whose residuals have been assembled.
   [[nodiscard]] double merit(const State& state, const Trial& trial);
-  /// Takes back as much of the increment as raises the merit.
+  /// Shortens an increment that raises the merit.
   void search(const State& state, Trial& trial, double before, Iteration& done);
   void move(const State& state, Trial& trial, double damping, Iteration& done);
   void move_nodes(const State& state, Trial& trial, double damping, Iteration& done);
@@ -75,14 +76,14 @@ class CoupledEngine final : public NewtonEngine {
   NodeCondensation condensation_;
   NodeSystem nodes_;
   NewtonSystem newton_;
-  std::optional<BodyContactAssembler> touching_;  ///< If bodies may touch.
+  std::optional<BodyContactAssembler> touching_;  ///< If bodies may be in contact.
   bool searches_ = false;                         ///< Line search on the merit, see MeritSearch.
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Vec6> shares_;
   std::vector<double> du_;
   Vec x_, rhs_;
-  IterateSnapshot before_;  ///< The iterate before, as long as increments are large.
-  double part_ = 1.0;       ///< Of x_ that was applied to it.
+  IterateSnapshot before_;  ///< The previous iterate, as long as increments are large.
+  double part_ = 1.0;       ///< Applied part of x_.
   bool reuse_ = false;
   double factored_dt_ = 0.0;
   int step_iterations_ = 0;

@@ -13,9 +13,9 @@ namespace polhode {
 namespace {
 
 constexpr int kMaxIterations = 60, kMaxHalvings = 8;
-/// The merit may rise above that of the last iterate, but not above those of so many.
+/// Number of previous iterates whose merit must not be exceeded; it may rise above the last one.
 constexpr std::size_t kLookBack = 5;
-/// Share of D on its diagonal by which points that carry a load together become unique.
+/// Part of the diagonal of D added to it, so that points that share a load become unique.
 constexpr double kUnique = 1e-10;
 
 using Frame = std::array<Vec3, 3>;  ///< Normal and two tangents.
@@ -68,7 +68,7 @@ class Solution {
     return false;
   }
 
-  /// Impulses and speeds of bodies become those that were found.
+  /// Writes impulses and speeds back to the bodies.
   void give_back() {
     for (Eigen::Index k = 0; k < count_; ++k) {
       ProjectedGaussSeidel::Point& p = s_->points[static_cast<std::size_t>(k)];
@@ -89,7 +89,7 @@ class Solution {
     const ProjectedGaussSeidel::Body &a = s_->bodies[p.a], &b = s_->bodies[p.b];
     return a.v + a.w.cross(p.arm_a) - b.v - b.w.cross(p.arm_b);
   }
-  /// Speeds at k by unit impulses at l.
+  /// Adds the speeds at k by unit impulses at l.
   void couple(Eigen::Index k, Eigen::Index l) {
     const ProjectedGaussSeidel::Point &to = point(k), &from = point(l);
     const auto add = [&](int body, double sign, const Vec3& arm_to, const Vec3& arm_from) {
@@ -107,8 +107,8 @@ class Solution {
     if (to.b == from.a) add(to.b, -1.0, to.arm_b, from.arm_a);
   }
 
-  /// What projection leaves, as impulses, with its derivative. @returns the largest of it as a
-  /// speed, squared.
+  /// Residual of the projection, as impulses, with its derivative. @returns the largest of it as a
+  /// squared speed.
   double residual(const Vec& p, bool derivative) {
     const Vec off = y_start_ + D_ * (p - p_start_) - wanted_;
     F_.resize(p.size());

@@ -5,14 +5,14 @@
 
 namespace polhode {
 
-/// Points up to which solve_impulses() is worth its dense factors.
+/// Largest number of points for which the dense factors of solve_impulses() pay.
 inline constexpr int kMaxDensePoints = 40;
 
-/// Newton's method for the impulses of a few points, where sweeps contract too slowly: masses far
-/// apart, tall stacks. Starts from the impulses that the sweeps have left, and leaves them as they
-/// are if it does not converge. @eq{nonsmooth-projection}
-/// @param sweeps  Prepared, without resistance to turning.
-/// @param enough  What may be left of speeds that are asked for [m/s].
+/// Solves for the impulses of a few points by Newton's method where Gauss-Seidel sweeps contract
+/// too slowly: large mass ratios, tall stacks. Starts from the impulses of the sweeps, and leaves
+/// them unchanged if it does not converge. @eq{nonsmooth-projection}
+/// @param sweeps  Prepared, without rolling and torsional friction.
+/// @param enough  Tolerance of target speeds [m/s].
 /// @returns whether it converged.
 bool solve_impulses(ProjectedGaussSeidel& sweeps, double enough);
 

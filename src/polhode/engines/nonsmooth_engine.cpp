@@ -13,19 +13,19 @@ namespace polhode {
 
 namespace {
 
-/// Searches with geometry renewed, after the first.
+/// Largest number of searches with updated geometry, after the first.
 constexpr int kMaxRounds = 4;
-/// Loads that depend on the motion are repeated until the motion changes by less than this part.
+/// Relative change of the motion at which the iteration of motion-dependent loads ends.
 constexpr double kSameMotion = 1e-13;
 constexpr int kMaxRepeats = 60;
-/// Depth of an overlap, as part of the smaller size, that no step may bring about.
+/// Depth of an overlap that no step may produce, as a part of the smaller size.
 constexpr double kPressedIn = 0.1;
-/// Change of speeds in the last sweep over few points, over what gravity adds in a step, with which
-/// no step may end.
+/// Change of speeds in the last sweep over few points, relative to gravity's speed increment in a
+/// step, above which a step fails.
 constexpr double kFarOff = 1.0;
-/// Solutions in a step that would gain energy, with more points held back in each.
+/// Largest number of solutions of a step that would gain energy, each with more points held back.
 constexpr int kMaxHeldBack = 3;
-/// Without gravity, the speed that tolerances are a part of: this part of the fastest.
+/// Reference speed of tolerances without gravity: this part of the fastest speed.
 constexpr double kPartOfSpeed = 1e-2;
 
 }  // namespace
@@ -60,7 +60,7 @@ NonsmoothEngine::NonsmoothEngine(const System& system)
   }
 }
 
-/// Bodies stand where they are at t_n and go on as they go.
+/// Predictor: bodies keep their velocities of t_n.
 void NonsmoothEngine::begin_step(const State& state, Trial& trial) {
   const double dt = dt_ = trial.context.dt;
   double fastest = 0.0;
@@ -79,8 +79,8 @@ void NonsmoothEngine::begin_step(const State& state, Trial& trial) {
   contacts_->begin_step(state, steps_, trial.context);
 }
 
-/// Where impulses and loads take the bodies: exactly, by the same equations as any force. Loads
-/// that depend on where bodies go are repeated.
+/// Moves the bodies by impulses and loads: exactly, by the same equations as any force.
+/// Motion-dependent loads are iterated.
 bool NonsmoothEngine::move(const State& state, const Trial& trial) {
   const double dt = trial.context.dt, per_length = 1.0 / system_->length_scale();
   StepContext values = trial.context;
@@ -109,7 +109,7 @@ bool NonsmoothEngine::move(const State& state, const Trial& trial) {
       change = std::max(change, per_length * (s.u - before).norm());
       size = std::max(size, per_length * s.u.norm());
     }
-    // Arms reach from the middle of the step, which is known now.
+    // Lever arms are those of the middle of the step, which is now known.
     for (const ImpulsePoint& p : points_) {
       const auto turn = [&](int body, double sign) {
         if (body == kGround) return;
@@ -144,7 +144,7 @@ bool NonsmoothEngine::move(const State& state, const Trial& trial) {
   return false;
 }
 
-/// @param first  The steps know nothing of impulses yet.
+/// @param first  The steps contain no impulses yet.
 void NonsmoothEngine::set_up(double dt, bool first) {
   for (int b = 0; b < bodies_; ++b) {
     sweeps_.bodies[b].v = 2.0 / dt * steps_[b].u;
@@ -160,7 +160,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     p.a = index(at.a);
     p.b = index(at.b);
     p.normal = at.normal;
-    // Nobody asks for the arms of the ground.
+    // The ground's lever arms are not used.
     p.arm_a = a.moves ? Vec3(at.place - a.r_n - 0.5 * a.u) : Vec3::Zero();
     p.arm_b = b.moves ? Vec3(at.place - b.r_n - 0.5 * b.u) : Vec3::Zero();
     const Vec3 w_a = a.Lambda_n * a.W_n, w_b = b.Lambda_n * b.W_n;
@@ -176,7 +176,7 @@ void NonsmoothEngine::set_up(double dt, bool first) {
     if (first) {
       at.impulse = p.normal_impulse * p.normal + p.friction_impulse;
       sweeps_.apply(p, at.impulse);
-    } else if (k < static_cast<int>(places_.size())) {  // what it did, it does from here
+    } else if (k < static_cast<int>(places_.size())) {  // its impulse now acts here
       const Vec3 moment = (at.place - places_[k]).cross(at.impulse);
       sweeps_.turn(p, moment);
     }
@@ -187,7 +187,8 @@ void NonsmoothEngine::set_up(double dt, bool first) {
   }
 }
 
-/// Where sweeps do not end, Newton's method goes on from what they left, if there are few points.
+/// Gauss-Seidel sweeps. If they do not converge, Newton's method continues from them for few
+/// points.
 void NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   const bool balls = SphereGaussSeidel::suit(sweeps_);
@@ -212,8 +213,9 @@ void NonsmoothEngine::sweep() {
   for (const ProjectedGaussSeidel::Turn& t : sweeps_.turns) points_[t.point].turning = t.impulse;
 }
 
-/// The first search starts from where bodies go without contact and from the impulses of the last
-/// step, the next ones from where the impulses take them: geometry and turns are renewed then.
+/// Search for the impulses. The first round starts from the contact-free motion and from the
+/// impulses of the last step, later rounds from the motion with impulses: geometry and rotations
+/// are updated then.
 bool NonsmoothEngine::search(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
   points_.clear();
@@ -283,9 +285,9 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
   return done;
 }
 
-/// Friction gives energy where a point slips at first along the force that will hold it. In a step
-/// that would gain by that such points get no slip on the mean of the step, so that they take some.
-/// @eq{nonsmooth-energy}
+/// Holds points back in a step that would gain energy: friction adds energy where a point first
+/// slips along the force that will hold it. Such points get zero mean slip over the step, so that
+/// they dissipate. @eq{nonsmooth-energy}
 bool NonsmoothEngine::hold_back() {
   double taken = 0.0, pressed = 0.0;
   for (int k = 0; k < point_count(); ++k) {
@@ -303,8 +305,8 @@ bool NonsmoothEngine::hold_back() {
   return any;
 }
 
-/// The point that ends the step deepest, if that is a part of its bodies' size and deeper than it
-/// began, or where the search is far from its end; −1: none.
+/// The deepest point at the end of the step, if its depth is a considerable part of its bodies'
+/// size and has increased, or if the search is far from convergence; −1: none.
 int NonsmoothEngine::pressed_in() const {
   int worst = -1;
   double deepest = -kPressedIn;
@@ -318,8 +320,8 @@ int NonsmoothEngine::pressed_in() const {
     deepest = gap;
     worst = k;
   }
-  // Few points whose sweeps and Newton's method both failed: gaps alone do not show how far off
-  // they are where surfaces lie flush, as a corner is then near the side of the other body.
+  // Few points for which sweeps and Newton's method both failed: where surfaces are flush the gaps
+  // do not show the error, as a corner is then near the side of the other body.
   if (worst >= 0 || search_.converged || !is_small() || search_.change < kFarOff) return worst;
   const auto weaker = [](const ImpulsePoint& p, const ImpulsePoint& q) {
     return p.impulse.squaredNorm() < q.impulse.squaredNorm();
@@ -328,7 +330,7 @@ int NonsmoothEngine::pressed_in() const {
                           points_.begin());
 }
 
-/// What impulses took, from the motion that they have led to: −½ p·y. @eq{nonsmooth-energy}
+/// Energy losses of the impulses from the resulting motion: −½ p·y. @eq{nonsmooth-energy}
 void NonsmoothEngine::add_up(double dt) {
   losses_.resize(points_.size());
   for (int k = 0; k < point_count(); ++k) {

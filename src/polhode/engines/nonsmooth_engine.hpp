@@ -13,11 +13,11 @@
 
 namespace polhode {
 
-/// Steps of bodies that meet by impulses (Moreau's midpoint rule): velocities jump inside a step,
-/// forces and positions follow the midpoint rule. What other engines iterate by Newton is one
-/// search for impulses here, which always ends; joints are out of its reach.
+/// Steps of bodies with impulsive contacts (Moreau's midpoint rule): velocities jump inside a step,
+/// forces and positions follow the midpoint rule. One search for impulses, which always ends,
+/// replaces Newton's iterations of other engines; joints are not supported.
 ///
-/// Whatever the search leaves, momenta are exact: the last impulses move the bodies by the same
+/// Momenta are exact for any result of the search: the last impulses move the bodies by the same
 /// equations as forces would. @eq{nonsmooth-step}
 class NonsmoothEngine final : public NewtonEngine {
  public:
@@ -47,7 +47,7 @@ class NonsmoothEngine final : public NewtonEngine {
     return point_count() <= kMaxDensePoints && sweeps_.turns.empty();
   }
   void add_up(double dt);
-  /// @returns whether any point is new among those that are held back.
+  /// @returns whether any point is newly held back.
   [[nodiscard]] bool hold_back();
   [[nodiscard]] int pressed_in() const;
 
@@ -62,14 +62,14 @@ class NonsmoothEngine final : public NewtonEngine {
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   std::vector<ImpulsePoint> points_;
   std::vector<ImpulseLoss> losses_;
-  std::vector<char> held_back_;  ///< By point: its slip ends on the mean of the step.
-  std::vector<Vec3> places_;     ///< By point: where impulses acted when bodies were moved last.
+  std::vector<char> held_back_;  ///< By point: its mean slip over the step is zero.
+  std::vector<Vec3> places_;     ///< By point: where impulses acted when bodies were last moved.
   std::vector<Vec6> loads_now_, impulses_, nowhere_;  ///< By body.
   std::vector<Mat3> inertia_;                         ///< World, at t_n.
-  std::vector<char> round_;  ///< By body: turns equally easily about any axis.
+  std::vector<char> round_;                           ///< By body: isotropic inertia.
   ImpulseSearch search_;
   double dt_ = 0.0;         ///< Of the step [s].
-  double reference_ = 0.0;  ///< Speed that ImpulseOptions::tolerance is a part of [m/s].
+  double reference_ = 0.0;  ///< Reference speed of ImpulseOptions::tolerance [m/s].
   int worst_body_ = -1;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tree does not hold: rows of springs and loads, rows and columns of loops.
-// Derivation: docs/theory/elimination_along_the_tree.md.
+// Interactions outside the tree: rows of springs and loads, rows and columns of loops. Derivation:
+// docs/theory/elimination_along_the_tree.md.
 #include <algorithm>
 
 #include <polhode/engines/tree_engine.hpp>
@@ -9,11 +9,11 @@ namespace polhode {
 
 namespace {
 
-/// The columns y_i = d_i × e_i of a joint's direction rows: what they leave free, and how to find
-/// their multipliers in a couple.
+/// The columns y_i = d_i × e_i of a joint's direction rows: their free directions, and how to
+/// obtain their multipliers from a couple.
 struct DirectionRows {
   Mat3 dual = Mat3::Zero();  ///< Row i: λ_i of a couple Σ λ_i y_i.
-  Mat3 free = Mat3::Zero();  ///< Rows: unit vectors at right angles to all y_i.
+  Mat3 free = Mat3::Zero();  ///< Rows: unit vectors normal to all y_i.
   int rows = 0;
 };
 
@@ -57,7 +57,7 @@ void TreeEngine::lay_out_loop_joints() {
   std::stable_sort(
       joints.begin(), joints.end(),
       [&](const OffTreeInteraction* x, const OffTreeInteraction* y) { return kind(x) < kind(y); });
-  int size = 0;  // lanes of loop_data_
+  int size = 0;  // SIMD lanes of loop_data_
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const OffTreeInteraction& x = *joints[i];
     const JointLayout layout{3, x.rows - 3};
@@ -103,12 +103,12 @@ void TreeEngine::add_extra(const OffTreeInteraction& x, const PairTerms& terms,
   const auto add_own = [&](int slot, const Vec6& wrench, const Mat6& D) {
     if (slot < 0) return;
     RowData* A = extra_rows_[plan_.extra_of_slot[slot]].A;
-    const int first = x.rotations_only ? 3 : 0;  // where D has anything
+    const int first = x.rotations_only ? 3 : 0;  // first nonzero column of D
     for (int i = first; i < 6; ++i)
       for (int j = first; j < 6; ++j) A[i][j] -= s * D(i, j);
     for (int i = 0; i < 6; ++i) A[i][7] -= s * wrench[i];
   };
-  if (x.coupling == Coupling::couple) {  // write_couple() takes the rest
+  if (x.coupling == Coupling::couple) {  // write_couple() handles the rest
     add_own(x.slot_a, terms.wrench_a, terms.D_aa + terms.D_ba);
     add_own(x.slot_b, terms.wrench_b, terms.D_bb + terms.D_ab);
   } else {
@@ -162,9 +162,9 @@ void TreeEngine::write_loop(const OffTreeInteraction& x, const PairTerms& terms,
   if (x.coupling == Coupling::all) write_coupling(x, terms);
 }
 
-/// The joint's whole couple on b is the unknown: M = Σ Δλ̂_i y_i + σ, σ = −s (D_ba Δθ_a − D_ab Δθ_b)
-/// from the directions that turn with the bodies. Its part in the span of the y_i holds the
-/// direction rows, the rest is σ's.
+/// Writes the joint's whole couple on b as the unknown: M = Σ Δλ̂_i y_i + σ, σ = −s (D_ba Δθ_a −
+/// D_ab Δθ_b) from the directions that rotate with the bodies. Its part in the span of the y_i
+/// enforces the direction rows, the rest is that of σ.
 void TreeEngine::write_couple(const OffTreeInteraction& x, const PairTerms& terms,
                               const double* softness) {
   const double s = view_.scale;
@@ -193,7 +193,8 @@ void TreeEngine::write_couple(const OffTreeInteraction& x, const PairTerms& term
   couples_[x.couple] = {d.dual, by_a, by_b};
 }
 
-/// −s D_ab Δx_b acts on a, −s D_ba Δx_a on b: twelve unknowns after the multipliers.
+/// Writes the coupling as twelve unknowns after the multipliers: −s D_ab Δx_b acts on a, −s D_ba
+/// Δx_a on b.
 void TreeEngine::write_coupling(const OffTreeInteraction& x, const PairTerms& terms) {
   const double s = view_.scale;
   const TreeLoop& loop = plan_.loops[x.loop];

@@ -30,7 +30,7 @@ void ProjectedGaussSeidel::prepare() {
     const Vec3 Dn = D * p.normal;
     p.per_normal = p.normal.dot(Dn);
     p.across = Dn - p.per_normal * p.normal;
-    // Of the 2 × 2 block in the tangent plane: half the trace and the radius of Mohr's circle.
+    // Half the trace and the radius of Mohr's circle of the 2 × 2 block in the tangent plane.
     const Vec3 t = p.normal.unitOrthogonal(), s = p.normal.cross(t);
     const double tt = t.dot(D * t), ss = s.dot(D * s), ts = t.dot(D * s);
     p.per_friction = 0.5 * (tt + ss) + std::hypot(0.5 * (tt - ss), ts);
@@ -40,7 +40,7 @@ void ProjectedGaussSeidel::prepare() {
   for (Turn& t : turns) {
     const Point& p = points[t.point];
     const Mat3 D = bodies[p.a].inverse_inertia + bodies[p.b].inverse_inertia;
-    t.per_impulse = D.lpNorm<1>();  // not below the largest eigenvalue
+    t.per_impulse = D.lpNorm<1>();  // an upper bound of the largest eigenvalue
     t.length = std::sqrt(p.per_normal / t.per_impulse);
   }
 }

@@ -7,20 +7,20 @@
 
 namespace polhode {
 
-/// Impulses at points between bodies, one after the other: projected Gauss-Seidel.
+/// Projected Gauss-Seidel solver for impulses at points between bodies.
 ///
 /// Velocities are twice the mean ones of the step, y = 2 v̄: an impulse changes them by M⁻¹Jᵀp, and
-/// takes the energy −½ p·y. A point asks y_n ≥ c_n, p_n ≥ 0, one of them zero, and y_t = c_t with
-/// p_t inside the cone. @eq{nonsmooth-projection}
+/// dissipates the energy −½ p·y. The conditions of a point are y_n ≥ c_n, p_n ≥ 0, one of them an
+/// equality, and y_t = c_t with p_t inside the cone. @eq{nonsmooth-projection}
 class ProjectedGaussSeidel {
  public:
   struct Body {
     Vec3 v = Vec3::Zero(), w = Vec3::Zero();  ///< Of the centre of mass; angular [m/s, rad/s].
-    double inverse_mass = 0.0;                ///< 0: stands still [1/kg].
+    double inverse_mass = 0.0;                ///< 0: fixed [1/kg].
     Mat3 inverse_inertia = Mat3::Zero();      ///< World [1/(kg m²)].
   };
   struct Point {
-    int a = 0, b = 0;                      ///< Bodies; what stands still is a body, too.
+    int a = 0, b = 0;                      ///< Bodies, including fixed ones.
     Vec3 normal, arm_a, arm_b;             ///< From b to a; from the centres of mass [-, m].
     double least = 0.0;                    ///< c_n [m/s].
     Vec3 wanted = Vec3::Zero();            ///< c_t, tangential [m/s].
@@ -32,26 +32,26 @@ class ProjectedGaussSeidel {
     Vec3 across = Vec3::Zero();            ///< D_tn: tangential speed by normal impulse [1/kg].
     double free_normal = 0.0, free_friction = 0.0;  ///< Inverses.
   };
-  /// Resistance to turning at a point.
+  /// Rolling and torsional friction at a point.
   struct Turn {
     int point = 0;
-    double rolling = 0.0, torsion = 0.0;  ///< Of the normal impulse [m].
-    Vec3 wanted = Vec3::Zero();           ///< Relative angular velocity [rad/s].
+    double rolling = 0.0, torsion = 0.0;  ///< Moments over the normal impulse [m].
+    Vec3 wanted = Vec3::Zero();           ///< Target of the relative angular velocity [rad/s].
     Vec3 impulse = Vec3::Zero();          ///< [N m s]
     double per_impulse = 0.0;             ///< [1/(kg m²)]
-    double length = 0.0;                  ///< Makes speeds of turns comparable [m].
+    double length = 0.0;                  ///< Length that makes angular speeds comparable [m].
   };
 
   std::vector<Body> bodies;
   std::vector<Point> points;
   std::vector<Turn> turns;
 
-  /// Fills what follows from arms and bodies.
+  /// Computes what depends on lever arms and bodies.
   void prepare();
-  /// All points once, in order or from the last to the first.
+  /// One sweep over all points, in order or from the last to the first.
   /// @returns the largest change of a point's speed, squared [m²/s²].
   double sweep(bool backwards);
-  /// An impulse acts at a point, and one that turns.
+  /// Applies an impulse at a point, and an angular impulse.
   void apply(const Point& p, const Vec3& impulse);
   void turn(const Point& p, const Vec3& impulse);
 

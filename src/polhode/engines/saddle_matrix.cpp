@@ -9,7 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// Rows smaller than this part of the largest may be rounding alone.
+/// Part of the largest row below which a row may be rounding alone.
 constexpr double kNoise = 1e-12;
 
 }  // namespace
@@ -107,7 +107,7 @@ void SaddleMatrix::for_each(const KktValues* bodies, const std::vector<double>* 
     for (int k = nodes.row_start()[i]; k < nodes.row_start()[i + 1]; ++k)
       put_block(i, nodes.column()[k], static_cast<std::size_t>(k));
     if (nodes[i].body < 0) continue;
-    Mat3 D = Mat3::Zero();  // The arm turns as well. @eq{ga-z-tangent}
+    Mat3 D = Mat3::Zero();  // The lever arm rotates as well. @eq{ga-z-tangent}
     if (forces) D = s * hat(Eigen::Map<const Vec3>(forces + 3 * i)) * hat(arm_[i]);
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) put(a.unknown[3 + r], a.unknown[3 + c], D(r, c));
@@ -163,7 +163,7 @@ const std::vector<double>& SaddleMatrix::lower_values() {
 }
 
 double SaddleMatrix::asymmetry() const {
-  // (A − Aᵀ) x with numbers x that have nothing in common.
+  // (A − Aᵀ) x with unrelated numbers x.
   Vec left = Vec::Zero(size()), size_of = Vec::Zero(size());
   const auto x = [](int i) { return 1.0 + 0.5 * std::sin(1.0 + 7.3 * i); };
   for (std::size_t k = 0; k < values_.size(); ++k) {
@@ -173,7 +173,7 @@ double SaddleMatrix::asymmetry() const {
   }
   const double largest = size_of.size() > 0 ? size_of.maxCoeff() : 0.0;
   double worst = 0.0;
-  for (int i = 0; i < size(); ++i)  // rows that are nothing but rounding do not count
+  for (int i = 0; i < size(); ++i)  // rows of rounding alone do not count
     if (size_of[i] > kNoise * largest) worst = std::max(worst, std::abs(left[i]) / size_of[i]);
   return worst;
 }

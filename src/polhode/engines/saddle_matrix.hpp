@@ -13,45 +13,46 @@ namespace polhode {
 ///   [ s K  −Gᵀ ] [ x ]       x: (Δr, Δθ) by body, then the unknowns of nodes
 ///   [ −G   −C  ] [ λ̂ ]
 ///
-/// The rows of the constraints are those of the Newton system with the other sign, so that the
-/// matrix is symmetric where K is. Nodes that a body carries are eliminated by their bonds,
-/// Δx = Δr − ẑ Δθ, entry by entry.
+/// The rows of the constraints are those of the Newton system with opposite sign, so that the
+/// matrix is symmetric if K is. Nodes bonded to a body are eliminated, Δx = Δr − ẑ Δθ, entry by
+/// entry.
 class SaddleMatrix {
  public:
   SaddleMatrix(const System& system, const KktTopology& topology);
 
   [[nodiscard]] int size() const { return movable_ + rows_; }
-  [[nodiscard]] int movable() const { return movable_; }  ///< Unknowns before the multipliers.
+  /// Number of unknowns before the multipliers.
+  [[nodiscard]] int movable() const { return movable_; }
   [[nodiscard]] int bodies() const { return topology_.bodies; }
   [[nodiscard]] int unknown(int node, int component) const {
     const int u = system_->nodes().unknown(node, component);
     return u < 0 ? -1 : 6 * system_->body_count() + u;
   }
-  /// Of all entries: their rows and columns, the same for every set of values.
+  /// Rows and columns of all entries, the same for every set of values.
   [[nodiscard]] const std::vector<int>& row() const { return row_; }
   [[nodiscard]] const std::vector<int>& column() const { return column_; }
-  /// Of each entry, its place in the lower triangle.
+  /// Positions of all entries in the lower triangle.
   [[nodiscard]] const std::vector<int>& lower_row() const { return lower_row_; }
   [[nodiscard]] const std::vector<int>& lower_column() const { return lower_column_; }
 
-  /// Blocks beside the graph of nodes, see NodeSystem::moving(). @returns whether the entries are
-  /// others than before.
+  /// Sets the blocks outside the graph of nodes, see NodeSystem::moving(). @returns whether the
+  /// entries have changed.
   bool set_moving(const NodeBlocks& moving);
-  /// Takes the arms of the bonded nodes from the trial.
+  /// Takes the lever arms of the bonded nodes from the trial.
   void place(const Trial& trial);
-  /// The same as another matrix of this system.
+  /// Takes them from another matrix of this system.
   void place_like(const SaddleMatrix& other) {
     carrier_ = other.carrier_, arm_ = other.arm_;
     set_moving(other.moving_);
   }
-  /// A + factor·B, of the same system and topology.
+  /// A + factor·B, of the same system and pattern.
   void combine(const SaddleMatrix& A, double factor, const SaddleMatrix& B);
-  /// @param bodies  Values and rows of bodies and joints, scaled by s already.
-  /// @param blocks  3×3 blocks of the graph of nodes, row by row, then those beside it, or none.
-  /// @param forces  Residual of the nodes [N], whose arms turn; null: none.
+  /// @param bodies  Values and rows of bodies and joints, already scaled by s.
+  /// @param blocks  3×3 blocks of the graph of nodes, row by row, then those outside it, or none.
+  /// @param forces  Residual of the nodes [N], whose lever arms rotate; null: none.
   void set(const KktValues& bodies, const std::vector<double>& blocks, const double* forces,
            double s);
-  /// Adds to the stiffness against turns of point masses, which nothing else resists.
+  /// Adds stiffness against rotations of point masses, which have none of their own.
   void hold_point_masses(double stiffness);
   /// Adds the moments' part −½ R̂ that makes K of conservative systems symmetric off equilibrium:
   /// @param moments  Residual by body, of which the last three are taken, times s.
@@ -59,7 +60,7 @@ class SaddleMatrix {
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
   /// The lower triangle of ½(A + Aᵀ), entry by entry in the order of lower_row().
   [[nodiscard]] const std::vector<double>& lower_values();
-  /// How far A is from Aᵀ: 0 for a symmetric matrix, about 1 for any other.
+  /// Relative size of A − Aᵀ: 0 for a symmetric matrix, about 1 for an arbitrary one.
   [[nodiscard]] double asymmetry() const;
 
   /// y = A x.
@@ -68,11 +69,11 @@ class SaddleMatrix {
   void magnitudes(const Vec& x, Vec& y) const;
   /// Adds Pᵀ F of forces on nodes (3 each) to the first part of a vector of unknowns.
   void gather(const std::vector<double>& F, double factor, Vec& y) const;
-  /// Increments of all nodes by those of the unknowns; of prescribed components zero.
+  /// Increments of all nodes from those of the unknowns; zero for prescribed components.
   void expand(const Vec& x, std::vector<double>& du) const;
 
  private:
-  /// What moves a node: up to six columns of a 3×6 matrix.
+  /// Unknowns that move a node: up to six columns of a 3×6 matrix.
   struct Carrier {
     int count = 0;
     int unknown[6];
@@ -88,7 +89,7 @@ class SaddleMatrix {
   int movable_, rows_;
   NodeBlocks moving_;
   std::vector<Carrier> carrier_;  ///< By node.
-  std::vector<Vec3> arm_;         ///< By node, of bonded ones.
+  std::vector<Vec3> arm_;         ///< By node: lever arm of a bonded node.
   std::vector<int> row_, column_, lower_row_, lower_column_;
   std::vector<double> values_, lower_;
 };

@@ -10,15 +10,15 @@ namespace polhode {
 
 namespace {
 
-/// A motion is free if its force is below this part of the terms it is the sum of.
+/// Part of the terms of its sum below which the force of a motion counts as zero.
 constexpr double kFreeForce = 2e-14;
-/// Added to the diagonal, as part of the largest stiffness, while free motions are looked for.
+/// Part of the largest stiffness added to the diagonal in the search for free motions.
 constexpr double kProbe = 1e-8;
 constexpr int kProbeIterations = 3;
-/// Components of a direction below this are not named.
+/// Component of a direction below which it is not named.
 constexpr double kNoPart = 1e-6;
 
-/// Numbers between −1 and 1 without pattern, the same on every machine.
+/// Pseudo-random numbers between −1 and 1, the same on every machine.
 class Scatter {
  public:
   double operator()() {

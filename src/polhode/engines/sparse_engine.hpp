@@ -13,8 +13,8 @@ namespace polhode {
 void apply_increments(const System& system, const State& state, Trial& trial, const Vec& x,
                       double damping, Iteration& done, int& worst);
 
-/// Newton iterations by one sparse matrix of all bodies and all multipliers, with any of the
-/// linear solvers: the reference of the elimination along the tree, and its fallback.
+/// Newton iterations with one sparse matrix of all bodies and all multipliers, with any of the
+/// linear solvers: the reference for the elimination along the tree, and its fallback.
 class SparseEngine final : public NewtonEngine {
  public:
   /// @param solver  "block_lu", "klu" or "sparse_lu". @throws InputError for any other.

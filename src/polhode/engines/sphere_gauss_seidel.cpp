@@ -8,9 +8,9 @@ namespace polhode {
 
 namespace {
 
-/// Inertias and arms that differ by less than this part are those of balls.
+/// Relative difference below which inertias and lever arms are those of balls.
 constexpr double kSweepsRoundOff = 1e-12;
-/// What stands still is there so many times, lest points wait for it.
+/// Number of copies of fixed bodies, so that points do not wait for each other.
 constexpr int kGrounds = 16;
 
 bool is_round(const Mat3& m) {

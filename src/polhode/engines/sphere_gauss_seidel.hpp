@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// The sweeps of ProjectedGaussSeidel for bodies that turn equally easily about any axis and points
-/// whose arms lie along the normal, as of balls: a third of the arithmetic, in half the memory.
+/// The sweeps of ProjectedGaussSeidel for bodies with isotropic inertia and points whose lever arms
+/// are along the normal, as of balls: a third of the arithmetic, half the memory.
 class SphereGaussSeidel {
  public:
   [[nodiscard]] static bool suit(const ProjectedGaussSeidel& from);

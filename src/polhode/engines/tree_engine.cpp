@@ -10,11 +10,11 @@ namespace polhode {
 
 namespace {
 
-/// ε of loop rows. Tree joints have none, so redundant loops need a little more than the sparse
+/// ε of loop rows. Tree joints have none, so redundant loops need a larger value than the sparse
 /// engine's rows.
 constexpr double kProximalOfLoops = 1e-11;
 
-/// What is evaluated one by one.
+/// Interactions evaluated one by one.
 std::vector<int> not_in_lanes(const TreeLoopPlan& plan) {
   std::vector<int> list;
   for (const OffTreeInteraction& x : plan.extras)

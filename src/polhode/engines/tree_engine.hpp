@@ -31,7 +31,7 @@ class TreeEngine final : public NewtonEngine {
   void end_step(const State& state, Trial& trial) override;
 
   [[nodiscard]] const char* instruction_set() const { return kernels_->name; }
-  /// Multiplications and additions of one iteration, to choose between solvers.
+  /// Floating-point operations of one iteration, to choose between solvers.
   [[nodiscard]] double flops() const { return plan_.flops; }
   [[nodiscard]] const TreeLoopPlan& plan() const { return plan_; }
   /// Body with the largest increment of the last iteration.
@@ -41,12 +41,13 @@ class TreeEngine final : public NewtonEngine {
 
  private:
   void lay_out();
-  /// Where a body's lane begins in the trial, in doubles; −1: the ground's.
+  /// Offset of a body's SIMD lane in the trial, in doubles; −1: the ground's.
   [[nodiscard]] int trial_offset(int slot) const;
   void lay_out_loop_joints();
   void fill_joint_constants();
   void set_step(const State& state, Trial& trial);
-  /// Steps of the bodies that extras act on; `first`: of the step, else only t_{n+1} has changed.
+  /// Updates the steps of bodies with off-tree interactions; `first`: of the whole step, else only
+  /// at t_{n+1}.
   void take_steps(const State& state, const Trial& trial, bool first);
   void evaluate_extras(const State& state, const Trial& trial);
   void add_extra(const OffTreeInteraction& x, const PairTerms& terms, const Trial& trial);
@@ -60,7 +61,7 @@ class TreeEngine final : public NewtonEngine {
   const System* system_;
   const LaneKernels* kernels_;
   TreeLoopPlan plan_;
-  InteractionSweep sweep_;       ///< Over what neither the tree holds nor LoopJoints.
+  InteractionSweep sweep_;       ///< Of interactions outside both the tree and LoopJoints.
   std::vector<BodyStep> steps_;  ///< By body, the ground last; only where needed.
   std::vector<int> touched_;     ///< Bodies of those.
   /// How the multipliers of direction rows follow from a loop joint's couple.
@@ -68,7 +69,7 @@ class TreeEngine final : public NewtonEngine {
     Mat3 dual, by_a, by_b;
   };
   std::vector<Couple> couples_;
-  bool rates_ = false;            ///< Some extra may want velocities at t_{n+1}.
+  bool rates_ = false;            ///< Some off-tree interaction may need velocities at t_{n+1}.
   bool loops_outside_ = false;    ///< Some loop is not among LoopJoints.
   std::vector<int> extra_index_;  ///< By interaction: index into plan_.extras.
   TreeView view_;
@@ -76,7 +77,7 @@ class TreeEngine final : public NewtonEngine {
   // Storage behind the view.
   std::vector<int> slot_in_order_, parent_, gather_, shape_, y_row_, joint_;
   std::vector<unsigned char> has_children_, first_child_;
-  /// Where a tree joint's multipliers are: in joint_data_, in doubles, and in the trial.
+  /// Location of a tree joint's multipliers: in joint_data_, in doubles, and in the trial.
   struct TreeJoint {
     int lambda, first_row, rows;
   };
@@ -93,9 +94,9 @@ class TreeEngine final : public NewtonEngine {
   std::vector<EdgeRows> edge_rows_;
 };
 
-/// Mass properties by slot, for the kernels that need nothing else.
+/// Mass properties by slot, for kernels that need nothing else.
 [[nodiscard]] std::vector<MassBlock> mass_blocks(const System& system);
-/// Writes a joint's points, directors and slides into its lane of joint data.
+/// Writes a joint's points, directors and slides into its SIMD lane of joint data.
 void put_joint_constants(const MotionBasis& basis, const JointLayout& l, double* lane);
 
 }  // namespace polhode

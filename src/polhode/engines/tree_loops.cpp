@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Builds the plan; the maps are needed only while planning.
+/// Builder of the plan; the maps are needed only while planning.
 class Planner {
  public:
   explicit Planner(const System& system) : system_(system), tree_(system.tree()) {
@@ -96,7 +96,7 @@ class Planner {
     return entry->second;
   }
 
-  /// Marks the bodies on the path between a loop's ends, up to their lowest common ancestor.
+  /// Marks the bodies on the paths between a loop's ends and their lowest common ancestor.
   void trace_loops() {
     for (int l = 0; l < static_cast<int>(plan_.loops.size()); ++l) {
       OffTreeInteraction& x = plan_.extras[loop_extra_[l]];
@@ -120,7 +120,7 @@ class Planner {
     }
   }
 
-  /// Order of elimination and the fill between loops.
+  /// Chooses the order of elimination and the fill between loops.
   void order_loops() {
     const int n = static_cast<int>(plan_.loops.size());
     std::vector<int> order;
@@ -202,7 +202,7 @@ class Planner {
     return 6 - ref.rows;
   }
 
-  /// In units of the measured cost of plain elimination, 1400 flops a body.
+  /// Counts the cost in units of the measured cost of plain elimination, 1400 flops a body.
   void count_flops() {
     double flops = 1400.0 * system_.body_count();
     for (int b : tree_.order) {

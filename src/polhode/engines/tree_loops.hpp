@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// An interaction that the tree does not hold: loop joint, spring, load.
+/// An interaction outside the tree: loop joint, spring, load.
 struct OffTreeInteraction {
   int interaction = -1;
   int slot_a = -1, slot_b = -1;  ///< −1: the ground.
@@ -18,18 +18,19 @@ struct OffTreeInteraction {
   int edge = -1;  ///< Its bodies are parent and child: index of the edge.
   bool edge_child_is_b = true;
   int loop = -1;                 ///< Index of its loop, if it needs one.
-  int pair_a = -1, pair_b = -1;  ///< Where its loop's columns and rows stand.
-  /// How its distant bodies are coupled; the loop has further unknowns for that: the couple (3, for
-  /// all direction rows), or what each body's rows owe to the other's motion (12).
+  int pair_a = -1, pair_b = -1;  ///< Positions of its loop's columns and rows.
+  /// Coupling of its distant bodies, for which the loop has further unknowns: the couple (3, for
+  /// all direction rows), or the effect of each body's motion on the other's rows (12).
   Coupling coupling = Coupling::none;
   int translation_rows = 0;     ///< Of a joint coupled by a couple: rows before the direction rows.
-  int couple = -1;              ///< Its index among those.
-  bool rotations_only = false;  ///< Its tangents are of moments by rotations.
-  bool in_lanes = false;  ///< A joint with coincident points, assembled with others: LoopJoints.
+  int couple = -1;              ///< Its index among joints coupled by a couple.
+  bool rotations_only = false;  ///< Its tangents are derivatives of moments by rotations.
+  /// A joint with coincident points, assembled with others in SIMD lanes: LoopJoints.
+  bool in_lanes = false;
 };
 
-/// Symbolic part of elimination along the tree with loops: what is carried where, in which order
-/// loops are eliminated, which blocks between loops fill in.
+/// Symbolic part of elimination along the tree with loops: what is carried along which path, the
+/// elimination order of the loops, and the fill between them.
 /// docs/theory/elimination_along_the_tree.md
 struct TreeLoopPlan {
   std::vector<OffTreeInteraction> extras;
@@ -47,8 +48,8 @@ struct TreeLoopPlan {
   std::vector<LoopUpdate> update;
   std::vector<int> first_common, common;
   int pair_rows = 0, kept_rows = 0, S_size = 0, nu_size = 0, U_rows = 0;  ///< Rows of 8; doubles.
-  int most_open = 0;   ///< Most loops open at one body.
-  double flops = 0.0;  ///< Multiplications and additions of one elimination.
+  int most_open = 0;   ///< Largest number of loops open at one body.
+  double flops = 0.0;  ///< Floating-point operations of one elimination.
 };
 
 [[nodiscard]] TreeLoopPlan plan_tree_loops(const System& system);

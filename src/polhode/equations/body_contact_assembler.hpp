@@ -8,33 +8,33 @@
 
 namespace polhode {
 
-/// Contacts between bodies as a Newton engine with a matrix has them: the pairs of bodies they
-/// couple, their terms, and how far increments may go.
+/// Contacts between bodies for Newton engines with a matrix: the pairs of bodies they couple, their
+/// terms, and limits of increments.
 class BodyContactAssembler {
  public:
   /// @throws InputError if the system has no contacts.
   explicit BodyContactAssembler(const System& system);
 
-  /// Pairs of which both bodies move, for NewtonSystem::couple(). They may change in begin_step()
-  /// and in cover().
+  /// Pairs of two moving bodies, for NewtonSystem::couple(). They may change in begin_step() and in
+  /// cover().
   [[nodiscard]] const std::vector<KktPair>& pairs() const { return couplings_; }
-  /// Finds what is near. @returns whether the pairs are still the same.
+  /// Updates the nearby pairs. @returns whether they are unchanged.
   bool begin_step(const State& state, const Trial& trial);
-  /// The part of the predicted motion that lets nothing pass through; after begin_step().
+  /// Part of the predicted motion in which no shapes pass through each other; after begin_step().
   [[nodiscard]] double free_part();
-  /// Makes sure that bodies can move by the increments x from where they are in the trial.
-  /// @returns whether the pairs are still the same.
+  /// Extends the search so that it covers the increments x from the trial.
+  /// @returns whether the pairs are unchanged.
   bool cover(const Trial& trial, const Vec& x);
-  /// The part of the increments that lets nothing pass through; after cover().
+  /// Part of the increments in which no shapes pass through each other; after cover().
   [[nodiscard]] double filter() { return contacts_->filter(steps_, increments_); }
-  /// Terms of all pairs at the trial.
+  /// Evaluates the terms of all pairs at the trial.
   void evaluate(const State& state, const Trial& trial, bool tangents);
   /// Adds the wrenches, times `scale`, to the bodies' right-hand side.
   void add_wrenches(double scale, Vec& rhs) const;
   /// Adds the tangents to the bodies' blocks and to those of pairs().
   void add_tangents(double scale, KktValues& values, std::span<KktValues::Pair> pairs) const;
 
-  /// The trial has converged: what the ground feels.
+  /// Adds the wrench on the ground; the trial has converged.
   void end_step(const State& state, const Trial& trial);
   void add_ground_wrench(double* force, double* moment) const;
   [[nodiscard]] double stored(const State& state) const;
@@ -43,13 +43,13 @@ class BodyContactAssembler {
 
  private:
   void take_steps(const State& state, const Trial& trial);
-  /// @returns whether the pairs are still the same.
+  /// @returns whether the pairs are unchanged.
   bool take_pairs();
 
   const System* system_;
   BodyContacts* contacts_;
-  std::vector<Participants> known_;  ///< Pairs that the couplings are of.
-  std::vector<int> place_;  ///< By contact pair: its coupling, or −1 (one side stands still).
+  std::vector<Participants> known_;  ///< Pairs of the present couplings.
+  std::vector<int> place_;  ///< By contact pair: its coupling, or −1 (one side is fixed).
   std::vector<KktPair> couplings_;
   std::vector<BodyStep> steps_, start_;  ///< By body, the ground last.
   std::vector<PairTerms> terms_;

@@ -3,12 +3,12 @@
 
 namespace polhode {
 
-/// How well the constraints hold at the current iterate.
+/// Violation of the constraints at the current iterate.
 struct ConstraintCheck {
   double residual = 0.0;  ///< Largest |g| [m or -].
   int worst_row = -1;
-  double work_defect = 0.0;  ///< Σ |λ g|: the energy that the multipliers may leak [J].
-  double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the least that can be asked [J].
+  double work_defect = 0.0;  ///< Σ |λ g|: possible energy leak of the multipliers [J].
+  double work_scale = 0.0;  ///< Σ |λ|(ℓ + |x|): times round-off, the smallest attainable leak [J].
 };
 
 }  // namespace polhode

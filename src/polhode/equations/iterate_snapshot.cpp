@@ -8,8 +8,8 @@ namespace polhode {
 
 namespace {
 
-/// Calls visit(group, its scratch, place of its unknowns) for groups that have any.
-/// @returns how many unknowns there are.
+/// Calls visit(group, its scratch, offset of its unknowns) for groups that have any. @returns the
+/// number of unknowns.
 template <class Visit>
 std::size_t each_group(const System& system, const Visit& visit) {
   const Nodes& nodes = system.nodes();

@@ -10,18 +10,18 @@ namespace polhode {
 /// Internal unknowns of all elements, one group after the other: enhanced modes, pressures.
 [[nodiscard]] std::vector<double> element_unknowns(const System& system, const Trial& trial);
 void set_element_unknowns(const System& system, const std::vector<double>& unknowns, Trial& trial);
-/// a + part (b − a), number by number: internal unknowns part of the way from a to b.
+/// Linear interpolation a + part (b − a) of internal unknowns.
 [[nodiscard]] std::vector<double> part_way(const std::vector<double>& a,
                                            const std::vector<double>& b, double part);
 
-/// An iterate to go back to: everything that iterations move, without the condensations of elements
-/// and whatever else lives beside the unknowns.
+/// Stored iterate: everything that iterations change, without the condensations of elements and
+/// other data derived from the unknowns.
 class IterateSnapshot {
  public:
   void keep(const System& system, const Trial& trial);
   void forget() { kept_ = false; }
   [[nodiscard]] bool kept() const { return kept_; }
-  /// The trial as it was; velocities of nodes too.
+  /// Restores the trial, including velocities of nodes.
   void restore(const System& system, Trial& trial) const;
   [[nodiscard]] const std::vector<double>& unknowns() const { return unknowns_; }
 

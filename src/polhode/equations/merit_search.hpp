@@ -8,7 +8,8 @@
 
 namespace polhode {
 
-/// R·M⁻¹R of the bodies, and g² of rows at the mean mass: an increment of Newton lowers it.
+/// Merit R·M⁻¹R of the bodies, plus g² of rows at the mean mass: a Newton increment is a descent
+/// direction.
 /// @param rhs  Scaled residuals: bodies (6 each), then rows.
 [[nodiscard]] inline double merit_of_bodies(const System& system, const Vec& rhs) {
   double sum = 0.0;
@@ -20,29 +21,30 @@ namespace polhode {
   return sum + rhs.tail(system.rows()).squaredNorm() / system.mean_mass();
 }
 
-/// Shortens an increment until the merit falls. Where a barrier begins the merit has a kink: what
-/// just reaches it may stand although a little more may not, and Newton sees the barrier only from
-/// there on. So a part far below one that may not stand is lengthened again.
+/// Line search on the merit. At the start of a barrier the merit has a kink: an increment that just
+/// reaches it may be acceptable while a slightly longer one is not, and Newton's increment includes
+/// the barrier only from there on. Therefore a part far below a rejected one is lengthened again.
 class MeritSearch {
  public:
-  /// Increments below this need no search: Newton converges quadratically there.
+  /// Increment below which no search is needed: Newton converges quadratically there.
   static constexpr double kNoSearchBelow = 1e-6;
 
-  /// @param before  Merit where the increment starts. @param part  Of it that is tried first.
+  /// @param before  Merit at the start of the increment. @param part  Initial part of the
+  /// increment.
   MeritSearch(double before, double part) : before_(before), part_(part) {}
   [[nodiscard]] double part() const { return part_; }
-  /// Whether the merit there is asked for: no increment is searched for ever.
+  /// Whether the merit is needed; the number of trials is limited.
   [[nodiscard]] bool wants(double increment) const {
     return tries_ < kMaxTries && !found_ && !(increment < kNoSearchBelow);
   }
-  /// Whether the increment may stand as it is; if not, part() is another one.
+  /// Whether the increment is acceptable; if not, part() is the next trial.
   [[nodiscard]] bool accepts(double after) {
     ++tries_;
     const bool stands = after <= (1.0 - 1e-4 * part_) * before_;
     (stands ? stands_ : too_much_) = part_;
     if (stands_ == 0.0) {
       const double best =
-          before_ / (after - (1.0 - 2.0 * part_) * before_) * part_;  // of a parabola
+          before_ / (after - (1.0 - 2.0 * part_) * before_) * part_;  // minimum of a parabola
       part_ *= std::isfinite(after) ? std::clamp(best, 0.1, 0.5) : 0.25;
       return false;
     }
@@ -57,11 +59,11 @@ class MeritSearch {
 
  private:
   static constexpr int kMaxTries = 10;
-  static constexpr double kClose = 3.0;  ///< No kink is looked for between parts closer than this.
+  static constexpr double kClose = 3.0;  ///< Ratio of parts below which no kink is searched for.
 
   double before_, part_;
   double stands_ = 0.0,
-         too_much_ = 0.0;  ///< The largest part that may stand, the least that may not.
+         too_much_ = 0.0;  ///< Largest accepted part, smallest rejected one.
   int tries_ = 0;
   bool found_ = false;
 };

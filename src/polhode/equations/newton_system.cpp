@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// Items per virtual call: their terms stay in the second-level cache.
+/// Items per virtual call: their terms fit into the second-level cache.
 constexpr int kBatch = 64;
 
 }  // namespace
@@ -192,7 +192,7 @@ void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& 
     const int row = ref.first_row + k;
     const double lambda = trial.lambda[row];
     const double g = terms.g[k] + terms.compliance[k] * lambda;
-    if (!(std::abs(g) <= check.residual)) {  // a NaN is the worst
+    if (!(std::abs(g) <= check.residual)) {  // a NaN counts as the largest
       check.residual = std::abs(g);
       check.worst_row = row;
     }

@@ -10,31 +10,31 @@
 
 namespace polhode {
 
-/// ε of exact multiplier rows in the scaled system: G x + ε(λ̂ − λ̂_c) = 0 [-]. With the centre zero
-/// it selects the smallest multipliers among those that redundant rows allow; with the centre at
-/// the solution it is without effect.
+/// ε of exact multiplier rows in the scaled system: G x + ε(λ̂ − λ̂_c) = 0 [-]. With a zero centre
+/// it selects the smallest of the multipliers that redundant rows leave undetermined; with the
+/// centre at the solution it has no effect.
 inline constexpr double kProximal = 1e-12;
 
-/// Which blocks the linear system of a System has: a pair for each interaction that has multiplier
-/// rows or acts between two moving bodies.
+/// Block pattern of the linear system: a pair for each interaction that has multiplier rows or acts
+/// between two moving bodies.
 struct KktMap {
   KktTopology topology;
   std::vector<int> pair;  ///< By interaction: its pair, or -1 (a load on one body).
 };
 [[nodiscard]] KktMap kkt_map(const System& system);
 
-/// Evaluates interactions a batch at a time, one virtual call per batch of one group, and hands
-/// the terms of each to a visitor. Holds the only buffers that needs; allocates once.
+/// Batched evaluation of interactions, one virtual call per batch of one group, whose terms are
+/// passed to a visitor. It owns the only buffers needed and allocates once.
 class InteractionSweep {
  public:
   explicit InteractionSweep(const System& system);
-  /// Only these interactions, in ascending order.
+  /// Evaluates only these interactions, in ascending order.
   InteractionSweep(const System& system, std::vector<int> interactions);
 
   [[nodiscard]] bool empty() const { return interactions_.empty(); }
-  /// @param steps    By body, the ground last.
-  /// @param visit    visit(int interaction, const PairStep&, const PairTerms&).
-  /// @param rows_only  Leave out batches without multiplier rows.
+  /// @param steps  By body, the ground last.
+  /// @param visit  visit(int interaction, const PairStep&, const PairTerms&).
+  /// @param rows_only  Skip batches without multiplier rows.
   template <class Visit>
   void run(std::span<const BodyStep> steps, const StepContext& context, const double* lambda,
            const double* history, Visit&& visit, bool rows_only = false) {
@@ -63,7 +63,7 @@ class InteractionSweep {
   std::vector<PairTerms> terms_;
 };
 
-/// Adds the rows of an interaction, with tangents or without, to how well constraints hold.
+/// Adds the rows of an interaction to the constraint check, with tangents or without.
 void add_rows(const InteractionRef& ref, const PairStep& step, const PairTerms& terms,
               const Trial& trial, double length_scale, ConstraintCheck& check);
 
@@ -77,31 +77,32 @@ class NewtonSystem {
  public:
   NewtonSystem(const System& system, MomentumRate form);
 
-  /// Pairs of bodies that something else couples: their blocks come last in values(), for others
-  /// to fill. Replaces those stated before.
+  /// Sets further coupled pairs of bodies: their blocks come last in values() and are filled by
+  /// others. Replaces earlier ones.
   void couple(const std::vector<KktPair>& more);
-  /// Their blocks, all zero.
+  /// Blocks of these pairs, set to zero.
   [[nodiscard]] std::span<KktValues::Pair> cleared_couplings();
-  /// Statics: bodies have no rates of momentum.
+  /// Selects statics: bodies have no momentum rates.
   void set_static(bool yes) { static_ = yes; }
-  /// Fills right_hand_side() and the residuals; with `tangent` the values as well.
+  /// Computes right_hand_side() and the residuals; with `tangent` the values as well.
   void assemble(const State& state, const Trial& trial, bool tangent);
-  /// Constraint values at the iterate only.
+  /// Evaluates only the constraint values at the iterate.
   [[nodiscard]] ConstraintCheck check(const State& state, const Trial& trial);
 
   [[nodiscard]] const KktTopology& topology() const { return map_.topology; }
   [[nodiscard]] const KktValues& values() const { return values_; }
-  [[nodiscard]] KktValues& values() { return values_; }  ///< To add to after assemble().
+  /// Values, to which terms may be added after assemble().
+  [[nodiscard]] KktValues& values() { return values_; }
   /// Bodies (6 each, scaled by −s), then rows (negative).
   [[nodiscard]] const Vec& right_hand_side() const { return rhs_; }
 
   /// Momentum rate minus wrench at the iterate: (force [N], moment [N m]).
   [[nodiscard]] const Vec6& body_residual(int body) const { return body_residual_[body]; }
-  /// Sum of the magnitudes that body_residual() is made of: times round-off, its noise.
+  /// Sum of the magnitudes of the terms of body_residual(): times round-off, its noise.
   [[nodiscard]] const Vec6& body_residual_scale(int body) const { return body_scale_[body]; }
   /// g + compliance·λ of a row [m or -].
   [[nodiscard]] double row_residual(int row) const { return row_residual_[row]; }
-  /// Whether a row has a compliance, so that its multiplier is a spring's force.
+  /// Whether a row has a compliance, so that its multiplier is a spring force.
   [[nodiscard]] bool is_spring(int row) const { return is_spring_[row]; }
   [[nodiscard]] const System& system() const { return *system_; }
 
@@ -114,7 +115,7 @@ class NewtonSystem {
   MomentumRate form_;
   bool static_ = false;
   KktMap map_;
-  std::size_t own_pairs_ = 0;  ///< Of interactions: the first ones.
+  std::size_t own_pairs_ = 0;  ///< Of interactions, which come first.
   InteractionSweep sweep_;
   std::vector<BodyStep> steps_;  ///< By body, the ground last.
   KktValues values_;
@@ -124,7 +125,7 @@ class NewtonSystem {
   std::vector<bool> is_spring_;
 };
 
-/// Where the assembled residual is farthest from round-off.
+/// Largest residual relative to round-off.
 struct WorstResidual {
   int body = -1;            ///< Or -1: nothing to report.
   int component = 0;        ///< 0 to 2 force, 3 to 5 moment.

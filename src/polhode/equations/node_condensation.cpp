@@ -20,7 +20,7 @@ Mat3 Lambda_n1(const System& system, const Trial& trial, int body) {
   return lane_matrix(trial.blocks[slot / kLanes].Lambda, slot % kLanes);
 }
 
-/// [I, −ẑ]: increment of a carried point by that of its body.
+/// [I, −ẑ]: increment of a bonded point by that of its body.
 Eigen::Matrix<double, 3, 6> carried(const Vec3& z) {
   Eigen::Matrix<double, 3, 6> P;
   P << Mat3::Identity(), -hat(z);
@@ -155,7 +155,7 @@ void NodeCondensation::gather_couplings(const std::vector<double>& K,
         c.fb += block_of(j, i) * P;
       }
     }
-    // The arm turns as well.
+    // The lever arm rotates as well.
     const int p = piece_of_pair(bond.body, bond.body);
     const Vec3 F = Eigen::Map<const Vec3>(F_all.data() + 3 * i);
     const Mat3 turned_arm = arm_weight * hat(F) * hat(bond.z_n1);
@@ -178,13 +178,14 @@ NodeCondensation::Coupling& NodeCondensation::coupling(int piece, int node, int 
   return list[it->second];
 }
 
-/// A bonded node's neighbours: of one piece if one of them is free; bodies alone else.
+/// Connected component of a pair of bodies bonded to neighbouring nodes; −1 if they are coupled
+/// without free nodes.
 int NodeCondensation::piece_of_pair(int a, int b) const {
   const auto found = piece_of_.find(std::minmax(a, b));
   return found == piece_of_.end() ? -1 : found->second;
 }
 
-/// The blocks beside the graph, each by itself: K_ij and K_ji are two.
+/// Adds the blocks outside the graph, one by one: K_ij and K_ji are separate.
 void NodeCondensation::gather_moving(const std::vector<double>& K,
                                      const std::vector<const Bond*>& bond_of) {
   const Nodes& nodes = system_->nodes();
@@ -214,7 +215,8 @@ void NodeCondensation::gather_moving(const std::vector<double>& K,
   }
 }
 
-/// Pairs of bodies whose nodes may meet, unless a piece reaches both.
+/// Finds the pairs of bodies whose bonded nodes may come into contact, unless one connected
+/// component couples both.
 void NodeCondensation::find_neighbours() {
   const Nodes& nodes = system_->nodes();
   std::map<std::pair<int, int>, std::size_t> now;

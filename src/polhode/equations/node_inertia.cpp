@@ -28,7 +28,7 @@ bool NodeInertia::take(const State& state) {
     const double* history = state.element_history.data() + nodes.first_history(g);
     double* scratch = trial_.element_scratch.data() + nodes.first_scratch(g);
     nodes.group(g).begin_step(history, scratch);
-    // With tangents, so that elements condense their internal unknowns where they stand.
+    // With tangents, so that elements condense their internal unknowns at the present positions.
     nodes.group(g).evaluate(instant, history, scratch, Mat3::Identity(),
                             {residual_.data(), nodes.slots(g).empty() ? nullptr : tangent_.data(),
                              nodes.slots(g).data()});

@@ -6,7 +6,7 @@ namespace polhode {
 
 namespace {
 
-/// Place of a prescribed component among those of all nodes.
+/// Index of a prescribed component among those of all nodes.
 std::size_t place(const PrescribedComponent& p) {
   return 3 * static_cast<std::size_t>(p.node) + static_cast<std::size_t>(p.component);
 }
@@ -32,7 +32,7 @@ void predict_nodes(const System& system, const State& state, Trial& trial,
     trial.node_u[k] = c.dt * v;
     trial.node_x[k] = state.node_x[k] + trial.node_u[k];
   }
-  // The end of the step belongs to it: at a kink there the limit from within.
+  // The step is closed at its end: at a kink the limit from inside the step counts.
   const TimeSide within = c.dt >= 0.0 ? TimeSide::kBefore : TimeSide::kAfter;
   trial.prescribed_v.clear();
   for (const PrescribedComponent& p : nodes.prescribed()) {
@@ -63,7 +63,7 @@ void follow_bodies(const System& system, const State& state, Trial& trial) {
     const int slot = system.slot(node.body), l = slot % kLanes;
     const TrialBlock& t = trial.blocks[slot / kLanes];
     const Vec3 z_n = get(t.Lambda_n, l) * node.Z, z_n1 = get(t.Lambda, l) * node.Z;
-    // Λ_{n+1} = cay[θ] Λ_n: the increment by the averaged arm, without cancellation.
+    // Λ_{n+1} = cay[θ] Λ_n: the increment by the averaged lever arm, without cancellation.
     at_node(trial.node_u, i) = get(t.u, l) + get(t.theta, l).cross(0.5 * (z_n + z_n1));
     at_node(trial.node_x, i) = get(t.r, l) + z_n1;
   }
@@ -150,8 +150,7 @@ void commit_nodes(const System& system, State& state, const Trial& trial) {
   double* past = state.node_past.data() + state.past_next * state.node_x.size();
   std::vector<double> v, prescribed_a;
   end_velocities(system, trial, v);
-  // Newmark's accelerations: those of the positions, and where these are prescribed of the
-  // velocities.
+  // Newmark accelerations: from the positions, and for prescribed components from the velocities.
   for (const PrescribedComponent& p : nodes.prescribed()) {
     const std::size_t k = place(p);
     const double mean = (v[k] - state.node_v[k]) / dt;

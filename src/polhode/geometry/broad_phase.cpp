@@ -9,7 +9,7 @@ namespace polhode::contact {
 
 namespace {
 
-/// Cells of a grid per box: a scene with stragglers gets larger cells.
+/// Largest number of grid cells per box: a scene with outliers gets larger cells.
 constexpr double kCellsPerBox = 4.0;
 
 float rounded_down(double x) {
@@ -93,7 +93,7 @@ void BroadPhase::test(const SizeClass& of, int box, const SizeClass& in, int fir
   }
 }
 
-/// Cells side by side in x stand side by side in memory: four stretches instead of 13 cells.
+/// Cells adjacent in x are adjacent in memory: four sections instead of 13 cells.
 void BroadPhase::within(const SizeClass& c, std::vector<std::pair<int, int>>& pairs) {
   static constexpr int kRows[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};  // dy, dz
   for (int z = 0; z < c.count[2]; ++z)
@@ -121,7 +121,7 @@ void BroadPhase::between(const SizeClass& small, const SizeClass& large,
     int from[3], to[3];
     bool any = true;
     for (int k = 0; k < 3; ++k) {
-      // Centres of partners: no farther than half a cell beyond the box.
+      // Centres of partners are at most half a cell beyond the box.
       const double low = (static_cast<double>(small.low[k][box]) - large.origin[k]) * per_cell;
       const double high = (static_cast<double>(small.high[k][box]) - large.origin[k]) * per_cell;
       from[k] = std::max(0, static_cast<int>(std::floor(std::clamp(low - 0.51, -1.0, 1e9))));
@@ -146,7 +146,7 @@ void BroadPhase::find(std::span<const Bounds> boxes, std::vector<std::pair<int, 
   least = std::max(least, std::numeric_limits<double>::min());
   members_.clear();
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-    // The least size stands in the middle of its class: like sizes fall into one.
+    // The smallest size is in the middle of its class: similar sizes fall into one.
     const double ratio = (boxes[i].high - boxes[i].low).maxCoeff() / least;
     const auto c = static_cast<std::size_t>(std::clamp(std::log2(ratio) + 0.5, 0.0, 60.0));
     if (c >= members_.size()) members_.resize(c + 1);

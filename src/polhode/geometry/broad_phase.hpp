@@ -14,15 +14,15 @@ struct Bounds {
   Vec3 low, high;
 };
 
-/// Finds the pairs of boxes that overlap, by one grid for every class of sizes (ratio 2).
+/// Search for pairs of overlapping boxes, by one grid for every class of sizes (ratio 2).
 ///
-/// Boxes lie in the cell of their centre; a cell is as large as the largest box of its class, so
-/// partners stand in neighbouring cells. The order of the pairs depends on the boxes alone. Keeps
-/// its buffers from call to call.
+/// Boxes are stored in the cell of their centre; a cell is as large as the largest box of its
+/// class, so partners are in neighbouring cells. The order of the pairs depends on the boxes alone.
+/// Buffers are reused from call to call.
 class BroadPhase {
  public:
-  /// Pairs (i, j), i < j, of boxes that overlap or touch. Rounding may add pairs that miss each
-  /// other by a ten-millionth of the scene.
+  /// Finds pairs (i, j), i < j, of boxes that overlap or touch. Rounding may add pairs that are
+  /// apart by a ten-millionth of the scene.
   void find(std::span<const Bounds> boxes, std::vector<std::pair<int, int>>& pairs);
 
  private:

@@ -11,7 +11,8 @@ namespace polhode::contact {
 
 namespace {
 
-constexpr double kOnHull = 1e-10;  ///< Part of the size below which a point is on the hull.
+/// Distance, as a part of the size, below which a point is on the hull.
+constexpr double kOnHull = 1e-10;
 
 struct Face {
   std::array<int, 3> corners;
@@ -24,7 +25,7 @@ Face make_face(std::span<const Vec3> p, int a, int b, int c) {
   return {{a, b, c}, n, n.dot(p[a])};
 }
 
-/// Index of the point for which measure is largest, the first of equals.
+/// Index of the point with the largest measure, the first of equals.
 template <class Measure>
 int farthest(std::span<const Vec3> points, Measure&& measure) {
   int best = 0;
@@ -69,7 +70,8 @@ TriangleSurface convex_hull(std::string_view where, std::span<const Vec3> points
   std::vector<Face> faces = first_tetrahedron(where, points, size);
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     std::vector<Face> kept;
-    std::map<std::pair<int, int>, int> border;  // directed edges of the faces that see the point
+    // directed edges of the faces visible from the point
+    std::map<std::pair<int, int>, int> border;
     for (const Face& f : faces) {
       if (f.normal.dot(points[i]) - f.offset <= kOnHull * size) {
         kept.push_back(f);

@@ -8,9 +8,9 @@
 
 namespace polhode::contact {
 
-/// The convex hull of points, as outward triangles whose corners are some of the points.
+/// Convex hull of points, as outward triangles whose corners are some of the points.
 ///
-/// Points are added one after the other; each replaces the triangles that see it by a fan from
+/// Points are added one after the other; each replaces the triangles visible from it by a fan from
 /// their horizon. Points closer to the hull than 1e-10 of its size do not become corners.
 ///
 /// @param where  Path of the shape in the user's model, first part of the message.

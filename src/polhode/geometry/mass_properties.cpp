@@ -12,11 +12,11 @@
 namespace polhode {
 namespace {
 
-/// Relative excess of J₃ over J₁ + J₂ that is taken for the rounding of printed numbers.
+/// Relative excess of J₃ over J₁ + J₂ that is accepted as rounding of printed numbers.
 constexpr double kTriangleSlack = 1e-6;
-/// Below this share of the largest moment, a moment is zero to round-off.
+/// Share of the largest moment below which a moment is zero to round-off.
 constexpr double kZeroMoment = 1e-14;
-/// Relative difference of xy and yx that is taken for round-off.
+/// Relative difference of xy and yx that is accepted as round-off.
 constexpr double kSymmetrySlack = 1e-9;
 
 /// m (d² I − d⊗d), the inertia of a point mass at d.

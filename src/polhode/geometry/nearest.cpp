@@ -9,13 +9,13 @@ namespace polhode::contact {
 
 namespace {
 
-/// Steps of a root below this part of it are rounding.
+/// Relative size of root-finding steps below which they are rounding.
 constexpr double kRootDigits = 1e-15;
 
 }  // namespace
 
-/// The regions of Voronoi of a triangle, see Ericson, Real-Time Collision Detection, 5.1.5. On the
-/// boundary of regions the face is preferred.
+/// Nearest region by the Voronoi regions of a triangle, see Ericson, Real-Time Collision Detection,
+/// 5.1.5. On the boundary of regions the face is preferred.
 TriangleRegion nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d_1 = ab.dot(ap), d_2 = ac.dot(ap), d_3 = ab.dot(bp), d_4 = ac.dot(bp);
@@ -63,7 +63,7 @@ PolyhedronRegion nearest_on_polyhedron(const Shape& shape, const Vec3& p) {
   return best;
 }
 
-/// See Ericson, Real-Time Collision Detection, 5.1.9.
+/// Nearest points of two segments, see Ericson, Real-Time Collision Detection, 5.1.9.
 SegmentsRegion nearest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   SegmentsRegion r;
   const Vec3 w = p - q;
@@ -82,8 +82,8 @@ SegmentsRegion nearest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, 
   return r;
 }
 
-/// Root of Σ (aᵢ yᵢ/(aᵢ² + t))² = 1, t > −min a²: Newton's method for the root of that sum, whose
-/// inverse is nearly a straight line in t, with bisection as a guard.
+/// Root of Σ (aᵢ yᵢ/(aᵢ² + t))² = 1, t > −min a²: Newton's method for the square root of that sum,
+/// whose inverse is nearly linear in t, safeguarded by bisection.
 double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
   const double a_min = half.minCoeff(), a_max = half.maxCoeff();
   const auto sum = [&](double t, double& slope) {
@@ -104,7 +104,7 @@ double nearest_on_ellipsoid(const Vec3& half, const Vec3& y) {
     (squares > 1.0 ? low : high) = t;
     double next = 0.5 * (low + high);
     if (slope < 0.0) next = t - 2.0 * squares * (std::sqrt(squares) - 1.0) / slope;
-    // Before the guard: at the root rounding puts the next one beside the bracket.
+    // Before the safeguard: at the root rounding moves the next iterate out of the bracket.
     if (std::abs(next - t) <= kRootDigits * (a_min * a_min + std::abs(t))) return next;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     t = next;

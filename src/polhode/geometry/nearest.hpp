@@ -14,7 +14,7 @@ struct TriangleRegion {
 [[nodiscard]] TriangleRegion nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                  const Vec3& c);
 
-/// Which part of a convex polyhedron is nearest to a point; inside, the face of least depth.
+/// Part of a convex polyhedron nearest to a point; inside, the face of smallest depth.
 struct PolyhedronRegion {
   int triangle = 0;
   TriangleRegion region;
@@ -22,8 +22,8 @@ struct PolyhedronRegion {
 };
 [[nodiscard]] PolyhedronRegion nearest_on_polyhedron(const Shape& shape, const Vec3& p);
 
-/// Parameters of the nearest points of two segments p + s u and q + t v, each in [0, 1], and which
-/// of them are at an end.
+/// Parameters of the nearest points of two segments p + s u and q + t v, each in [0, 1], and
+/// whether they are at an end.
 struct SegmentsRegion {
   double s = 0.0, t = 0.0;
   bool s_free = true, t_free = true;

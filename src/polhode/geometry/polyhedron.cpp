@@ -12,8 +12,9 @@ namespace polhode::contact {
 
 namespace {
 
-/// Two faces whose normals differ by less (in sine) lie in one plane: between them an edge stands
-/// out by less than a tenth of the rounding of a mesh. Files with single precision have such.
+/// Sine of the angle between normals below which two faces lie in one plane: an edge between them
+/// protrudes by less than a tenth of the rounding of a mesh. Such edges occur in files of single
+/// precision.
 constexpr double kFlatEdge = 1e-4;
 
 Vec3 normal_of(const TriangleSurface& s, const std::array<int, 3>& t) {
@@ -41,7 +42,7 @@ TriangleSurface shrunk(const TriangleSurface& surface, double depth) {
     const Eigen::SelfAdjointEigenSolver<Mat3> e(normals[i]);
     for (int k = 0; k < 3; ++k) {
       if (e.eigenvalues()[k] < 1e-4 * e.eigenvalues()[2])
-        continue;  // nearly one plane: do not move along it
+        continue;  // nearly one plane: no displacement along it
       const Vec3 axis = e.eigenvectors().col(k);
       result.points[i] += axis.dot(wanted[i]) / e.eigenvalues()[k] * axis;
     }
@@ -80,7 +81,7 @@ void take_triangles(Shape& shape, const TriangleSurface& surface) {
     } else {
       const Vec3 n_2 = shape.planes[s.second].normal;
       e.out = (n_1 + n_2).normalized();
-      // Convex: the second triangle lies below the plane of the first.
+      // Convex if the second triangle lies below the plane of the first.
       Vec3 inside_2 = Vec3::Zero();
       for (int k : surface.triangles[s.second]) inside_2 += surface.points[k] / 3.0;
       const double height = n_1.dot(inside_2 - surface.points[e.i]);

@@ -5,9 +5,9 @@
 
 namespace polhode::contact {
 
-/// Whether a ray from the origin goes through a triangle, corners counterclockwise seen from
-/// outside: 1 on its way out, −1 on its way in, 0 beside it. Over a closed surface these sum up to
-/// how often it winds around the origin, as long as the ray meets no edge.
+/// Crossing of a triangle by a ray from the origin, corners counterclockwise seen from outside: 1
+/// on its way out, −1 on its way in, 0 for none. Over a closed surface the sum is the winding
+/// number about the origin, provided that the ray meets no edge.
 [[nodiscard]] inline int crossing(const Vec3& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const double p = ray.dot(a.cross(b)), q = ray.dot(b.cross(c)), r = ray.dot(c.cross(a));
   const double ahead = a.dot(b.cross(c));
@@ -16,7 +16,7 @@ namespace polhode::contact {
   return 0;
 }
 
-/// In line with nothing that models are made of; all its coordinates are positive.
+/// Generic direction, not aligned with typical model geometry; all its coordinates are positive.
 inline const Vec3 kAnyRay(0.3127, 0.5471, 0.7766);
 
 }  // namespace polhode::contact

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kExportAgain = "Export the file again from the program that made it";
 
-/// Words of a text file, with the line at hand.
+/// Words of a text file, with the current line.
 class Words {
  public:
   Words(const std::string& name, std::string_view text) : name_(name), text_(text) {}
@@ -42,7 +42,7 @@ class Words {
     return false;
   }
 
-  /// The next word of the line at hand; empty at its end.
+  /// Next word of the current line; empty at its end.
   std::string_view word() {
     const std::size_t begin = line_.find_first_not_of(" \t");
     if (begin == std::string_view::npos) return {};
@@ -52,7 +52,7 @@ class Words {
     return found;
   }
 
-  /// The next word, in lower case.
+  /// Next word, in lower case.
   std::string keyword() {
     std::string lower(word());
     std::transform(lower.begin(), lower.end(), lower.begin(),
@@ -137,7 +137,7 @@ TriangleSurface parse_text_stl(const std::string& name, std::string_view text) {
   TriangleSurface surface;
   Words words(name, text);
   bool in_solid = false;
-  int corners = -1;  // of the facet at hand; −1 outside of one
+  int corners = -1;  // of the current facet; −1 outside of one
   while (words.next_line()) {
     const std::string keyword = words.keyword();
     if (keyword == "solid") {
@@ -172,7 +172,7 @@ TriangleSurface parse_text_stl(const std::string& name, std::string_view text) {
 }
 
 TriangleSurface parse_stl(const std::string& name, std::string_view bytes) {
-  // Some programs begin a binary file with "solid" too, so its size decides first.
+  // Some programs begin a binary file with "solid" too, so the size is checked first.
   const bool has_count = bytes.size() >= kPreamble;
   if (has_count &&
       bytes.size() == kPreamble + kTriangle * std::size_t(little_endian(bytes, kHeader)))
@@ -219,7 +219,7 @@ TriangleSurface parse_obj(const std::string& name, std::string_view text) {
       std::vector<int> polygon;
       for (std::string_view corner = words.word(); !corner.empty() && corner.front() != '#';
            corner = words.word()) {
-        if (corner == "\\") {  // the statement goes on in the next line
+        if (corner == "\\") {  // continuation line
           if (!words.next_line()) words.refuse("the file is cut short: it ends within a face");
           continue;
         }
@@ -230,7 +230,7 @@ TriangleSurface parse_obj(const std::string& name, std::string_view text) {
       for (std::size_t i = 2; i < polygon.size(); ++i)
         surface.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
     }
-    // Normals, texture, groups, materials and lines do not matter here.
+    // Normals, texture, groups, materials and lines are ignored.
   }
   return surface;
 }

@@ -8,16 +8,16 @@
 
 namespace polhode {
 
-/// Reads a triangle surface, by the ending of its name: .stl (text or binary) or .obj.
+/// Reads a triangle surface; the format follows from the file name: .stl (text or binary) or .obj.
 ///
-/// Corners at equal coordinates are joined. Polygons of an .obj become fans of triangles. Nothing
-/// else is mended: see check_closed() and orient_outward().
+/// Corners with equal coordinates are merged. Polygons of an .obj become fans of triangles. Nothing
+/// else is repaired: see check_closed() and orient_outward().
 ///
-/// @throws InputError with the file, and its line or triangle, when the file cannot be read, is cut
-///         short, has a coordinate that is no finite number, or has no triangles.
+/// @throws InputError with the file, and its line or triangle, when the file cannot be read, is
+/// truncated, has a coordinate that is no finite number, or has no triangles.
 [[nodiscard]] TriangleSurface read_surface(const std::string& path);
 
-/// As read_surface(), from the bytes of a file already in memory.
+/// Reads a triangle surface like read_surface(), from the bytes of a file in memory.
 /// @param name  First part of messages; its ending chooses the format.
 [[nodiscard]] TriangleSurface parse_surface(const std::string& name, std::string_view bytes);
 

@@ -15,9 +15,9 @@ namespace polhode::contact {
 
 namespace {
 
-constexpr double kRounding = 1e-3;       ///< Default radius of edges, part of the size.
-constexpr int kRimPoints = 12;           ///< Fixed points on a rim, for standing on it.
-constexpr double kStandingRadius = 0.9;  ///< Of those that meet faces, part of the rim's.
+constexpr double kRounding = 1e-3;       ///< Default radius of edges, as a part of the size.
+constexpr int kRimPoints = 12;           ///< Number of fixed points on a rim, for standing on it.
+constexpr double kStandingRadius = 0.9;  ///< Radius of those against faces, as a part of the rim's.
 
 void check_positive(std::string_view where, std::string_view what, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -59,15 +59,15 @@ TriangleSurface placed(TriangleSurface surface, const ShapePlace& place) {
   return surface;
 }
 
-/// Beyond these sizes products of lengths leave the numbers [m].
+/// Sizes beyond which products of lengths overflow or underflow [m].
 constexpr double kMinSize = 1e-15, kLargestSize = 1e15;
-/// Area of a triangle over the square of its longest edge, below which its corners lie on a line.
+/// Area of a triangle over the square of its longest edge, below which its corners are collinear.
 constexpr double kNoArea = 1e-10;
 
 /// Thickness of a hull over its extent, below which it is flat.
 constexpr double kFlatShape = 1e-9;
 
-/// Refuses points of which no shape can be made. @returns their extent [m].
+/// Rejects points of which no shape can be made. @returns their extent [m].
 double check_extent(std::string_view where, std::span<const Vec3> points) {
   double size = 0.0;
   for (const Vec3& x : points) size = std::max(size, (x - points[0]).cwiseAbs().maxCoeff());
@@ -77,7 +77,7 @@ double check_extent(std::string_view where, std::span<const Vec3> points) {
   return size;
 }
 
-/// Without points that no triangle uses.
+/// Surface without unused points.
 TriangleSurface used_part(const TriangleSurface& surface) {
   TriangleSurface part;
   std::vector<int> number(surface.points.size(), -1);
@@ -121,8 +121,8 @@ Shape polyhedron(std::string_view where, const TriangleSurface& outside, double 
   return s;
 }
 
-/// Points of a rim, and those that hold it where it stands on a face: a little inside, so that a
-/// rim that leans rolls on its disc.
+/// Adds the points of a rim, and those that support it when it stands on a face: slightly inside,
+/// so that a tilted rim rolls on its disc.
 void add_rim(Shape& s, double z) {
   for (const double part : {1.0, kStandingRadius})
     for (int k = 0; k < kRimPoints; ++k) {
@@ -207,7 +207,7 @@ Shape cone(std::string_view where, double diameter, double length, const ShapePl
   const double radius = 0.5 * diameter;
   check_rounding(where, rounding, 0.25 * std::min(radius, length));
   if (rounding == 0.0) rounding = 0.5 * kRounding * std::min(radius, length);
-  // The cone whose base and flank lie deeper by the rounding.
+  // Cone whose base and lateral surface are offset inward by the rounding.
   const double above_base = rounding, below_apex = rounding * std::hypot(radius, length) / radius;
   const double core_length = length - above_base - below_apex;
   const double core_radius = radius * core_length / length;

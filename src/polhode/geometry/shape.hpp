@@ -13,26 +13,26 @@ namespace polhode::contact {
 
 class TriangleTree;
 
-/// What a shape is to a point that comes near it.
+/// Kinds of the solid of a shape for a nearby point.
 enum class Solid { ball, segment, polyhedron, cylinder, cone, ellipsoid, half_space, surface };
 
-/// Where a shape stands in its body: origin and axes in body coordinates, from the centre of mass.
+/// Placement of a shape in its body: origin and axes in body coordinates, from the centre of mass.
 struct ShapePlace {
   Vec3 origin = Vec3::Zero();
   Mat3 axes = Mat3::Identity();
 };
 
-/// A shape for contact, in the coordinates of its body (origin: the centre of mass).
+/// A contact shape, in the coordinates of its body (origin: the centre of mass).
 ///
-/// It is a core with a ball of radius `rounding` rolled around it. A sphere's core is a point, a
-/// capsule's a segment; all others are shrunk by a small rounding first, so that faces stay where
-/// they are and edges and corners are rounded off. Cores never touch, so their distance always has
-/// a direction. The core's corners and edges meet other shapes as features with an index.
+/// A shape is the Minkowski sum of a core and a ball of radius `rounding`. A sphere's core is a
+/// point, a capsule's a segment; all others are first shrunk by a small rounding, so that faces
+/// keep their position and edges and corners are rounded. Cores never touch, so their distance
+/// always has a direction. The core's corners and edges are contact features with an index.
 struct Shape {
   struct Edge {
     int i = 0, j = 0;         ///< Corners.
     Vec3 out = Vec3::Zero();  ///< Unit, outward: bisector of the two faces.
-    bool convex = true;       ///< Meets other edges; else it only corrects sums of triangles.
+    bool convex = true;       ///< Paired with other edges; else it only corrects sums of triangles.
     bool open = false;        ///< One triangle only (border of a height field).
     bool flat = false;        ///< Both faces in one plane.
   };
@@ -44,9 +44,10 @@ struct Shape {
   Solid solid = Solid::ball;
   double rounding = 0.0;  ///< ρ [m].
 
-  std::vector<Vec3> corners;                       ///< Of the core.
-  std::vector<int> points;                         ///< Corners that meet other solids ...
-  std::vector<int> face_points;                    ///< ... if they have faces; of a rim within it.
+  std::vector<Vec3> corners;  ///< Of the core.
+  std::vector<int> points;    ///< Corners against other solids ...
+  /// ... if they have faces; of a rim slightly inside it.
+  std::vector<int> face_points;
   std::vector<Edge> edges;                         ///< Of the core.
   std::vector<char> border_corner;                 ///< Of a surface: lies on an open edge.
   std::vector<std::array<int, 3>> triangles;       ///< Of polyhedron and surface, outward.
@@ -57,20 +58,20 @@ struct Shape {
   Vec3 centre = Vec3::Zero();        ///< Of sphere, cylinder, cone (mid height), ellipsoid ...
   Mat3 axes = Mat3::Identity();      ///< Columns; cylinder and cone along the third.
   Vec3 half = Vec3::Zero();          ///< Semi-axes; cylinder and cone: (R, R, half height).
-  Vec3 bound_centre = Vec3::Zero();  ///< Ball around everything; a plane has none.
+  Vec3 bound_centre = Vec3::Zero();  ///< Bounding ball; a plane has none.
   double bound_radius = 0.0;         ///< [m]; infinite for a plane.
   double size = 0.0;                 ///< L: bounding radius, of a surface its median edge [m].
   double detail = 0.0;  ///< Smallest half size, of a surface its median edge; of a plane ∞ [m].
-  double reach = 0.0;   ///< Farthest point from the centre of mass [m].
+  double reach = 0.0;   ///< Largest distance from the centre of mass [m].
 
   [[nodiscard]] bool bounded() const { return solid != Solid::half_space; }
-  /// Has a smooth convex surface of its own beside corners and edges.
+  /// Whether it has a smooth convex surface besides corners and edges.
   [[nodiscard]] bool round() const {
     return solid == Solid::cylinder || solid == Solid::cone || solid == Solid::ellipsoid;
   }
 };
 
-/// Lengths are those of the model file: diameters and full lengths; along z of the place.
+/// Lengths are those of the model file: diameters and full lengths; along z of the placement.
 /// @throws InputError if a size is not positive and finite.
 [[nodiscard]] Shape sphere(std::string_view where, double diameter, const ShapePlace& place = {});
 /// @param length  Between the centres of the end spheres.
@@ -87,7 +88,7 @@ struct Shape {
 /// @param size  Full lengths of the axes.
 [[nodiscard]] Shape ellipsoid(std::string_view where, const Vec3& size,
                               const ShapePlace& place = {});
-/// Half space below z = 0 of the place.
+/// Half space below z = 0 of the placement.
 [[nodiscard]] Shape plane(const ShapePlace& place = {});
 /// Convex hull of points, which must span a volume.
 [[nodiscard]] Shape hull(std::string_view where, std::span<const Vec3> points,

@@ -11,21 +11,21 @@
 
 namespace polhode {
 
-/// One size of a shape, as a user writes it.
+/// A size of a shape in the model file.
 struct ShapeSize {
   std::string name;     ///< e.g. "diameter"; a full length [m].
   std::string meaning;  ///< One line for the reference page.
 };
 
-/// A kind of solid that has closed formulas. Sizes are full lengths; cylinder, capsule, cone and
-/// tube lie along z; the origin is the centroid of every one.
+/// A kind of solid with closed formulas. Sizes are full lengths; cylinder, capsule, cone and tube
+/// lie along z; the origin is the centroid of each.
 struct ShapeKind {
   std::string name;
   std::string meaning;  ///< One line for the reference page.
   std::vector<ShapeSize> sizes;
 
-  /// What is wrong with sizes that are each positive, e.g. an inner diameter above the outer one;
-  /// empty if nothing is. May be null.
+  /// Error of sizes that are each positive, e.g. an inner diameter above the outer one; empty if
+  /// none. May be null.
   std::string (*misfit)(std::span<const double> sizes);
   /// Volume [m³] as mass, volume moments [m⁵] as inertia: the shape at density 1.
   MassProperties (*unit_mass_properties)(std::span<const double> sizes);
@@ -39,7 +39,7 @@ struct ShapeKind {
 /// The kind of that name, or null.
 [[nodiscard]] const ShapeKind* find_shape_kind(std::string_view name);
 
-/// Refuses a wrong number of sizes, sizes that are not positive and finite, or do not fit.
+/// Rejects a wrong number of sizes, sizes that are not positive and finite, or inconsistent sizes.
 /// @param where  Path of the shape in the user's model, first part of the message.
 /// @throws InputError
 void check_shape_sizes(std::string_view where, const ShapeKind& kind,

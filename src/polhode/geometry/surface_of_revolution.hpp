@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// A corner of a profile that turns about z.
+/// A corner of a profile that is rotated about z.
 struct ProfilePoint {
   double r;  ///< Distance from the axis [m]; not negative.
   double z;  ///< [m]

@@ -14,7 +14,7 @@ namespace {
 /// One side of a triangle, named by its lower and higher corner.
 struct HalfEdge {
   int low, high;
-  bool ascending;  ///< Whether the triangle runs from low to high.
+  bool ascending;  ///< Whether the triangle runs from the lower to the higher corner.
 };
 
 std::vector<HalfEdge> sorted_half_edges(const TriangleSurface& surface) {
@@ -36,7 +36,8 @@ std::string point_text(const Vec3& x) {
   return format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
 }
 
-/// A point in the middle of the surface, so that far coordinates cost no digits.
+/// A point in the middle of the surface, the origin that avoids loss of digits for distant
+/// coordinates.
 Vec3 middle(const TriangleSurface& surface) {
   if (surface.points.empty()) return Vec3::Zero();
   Vec3 least = surface.points.front();
@@ -101,8 +102,8 @@ void check_closed(std::string_view where, const TriangleSurface& surface) {
                       .cross(surface.points[static_cast<std::size_t>(c)] - origin)
                       .norm();
   }
-  // A solid of volume V has at least the area of the sphere of V; a sheet folded onto itself has
-  // an area and no volume.
+  // A solid of volume V has at least the area of the sphere of V; a folded sheet has area and no
+  // volume.
   if (std::abs(signed_volume(surface)) <= 1e-12 * std::pow(area, 1.5))
     throw InputError(where, format("the surface encloses no volume (its area is {:.6g} m²)", area),
                      hint);

@@ -27,7 +27,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& corners,
   build(middles, 0, static_cast<int>(order_.size()));
 }
 
-/// Halves the triangles along the longest side of the box around their middles.
+/// Splits the triangles along the longest side of the bounding box of their centres.
 void TriangleTree::build(const std::vector<Vec3>& middles, int first, int last) {
   const Vec3 far = Vec3::Constant(std::numeric_limits<double>::infinity());
   Node node{far, -far, first, last - first, 0};

@@ -9,30 +9,30 @@
 
 namespace polhode::contact {
 
-/// Boxes around triangles in a tree: which of many triangles are near a point. The answers depend
+/// Bounding volume hierarchy of triangles: a search for triangles near a point. The results depend
 /// on the triangles alone.
 class TriangleTree {
  public:
   TriangleTree(const std::vector<Vec3>& corners, const std::vector<std::array<int, 3>>& triangles);
 
-  /// The triangle nearest to a point; of several the first in the tree.
+  /// Nearest triangle of a point; of several the first in the tree.
   struct Hit {
-    int triangle = -1;  ///< None is nearer than was asked for.
+    int triangle = -1;  ///< −1: none within the limit.
     TriangleRegion region;
     double distance = std::numeric_limits<double>::infinity();  ///< [m]
   };
-  /// @param at_most  Triangles farther away do not matter [m].
+  /// Finds the nearest triangle. @param at_most  Farther triangles are ignored [m].
   [[nodiscard]] Hit nearest(const Vec3& x, double at_most) const;
 
-  /// Triangles whose boxes come as near to a point as `distance`, and perhaps others.
+  /// Triangles whose bounding boxes are within `distance` of a point, and possibly others.
   [[nodiscard]] std::vector<int> near(const Vec3& x, double distance) const;
 
-  /// How often a closed surface winds around a point: 1 within it, 0 outside, 2 where two parts of
-  /// it overlap; in its own hollows 0.
+  /// Winding number of a closed surface about a point: 1 inside, 0 outside, 2 where two parts of it
+  /// overlap; in cavities 0.
   [[nodiscard]] int winding(const Vec3& x) const;
 
-  /// Calls use(triangle) for those in leaves that, like all around them, fulfil meets(box) with the
-  /// box's `low` and `high`.
+  /// Calls use(triangle) for those in leaves that, like all their ancestors, satisfy meets(box)
+  /// with the box's `low` and `high`.
   template <class Meets, class Use>
   void visit(Meets&& meets, Use&& use) const;
 
@@ -43,13 +43,13 @@ class TriangleTree {
   struct Node {
     Vec3 low, high;
     int first = 0, count = 0;  ///< Of a leaf: into order_.
-    int second_child = 0;      ///< Else: the first one follows.
+    int second_child = 0;      ///< Otherwise; the first child follows its parent.
     [[nodiscard]] double squared_distance(const Vec3& x) const {
       return (low - x).cwiseMax(x - high).cwiseMax(0.0).squaredNorm();
     }
   };
   void build(const std::vector<Vec3>& middles, int first, int last);
-  /// Halving 2^31 triangles takes fewer levels.
+  /// Bound of the depth: 2^31 triangles need fewer levels.
   static constexpr int kDeepest = 64;
 
   std::vector<std::array<Vec3, 3>> triangles_;

@@ -6,7 +6,7 @@
 namespace polhode {
 
 /// Constant-velocity joint (Rzeppa, double cardan without length): the joint points coincide and
-/// both shafts, z of a and z of b, turn alike at any angle between them.
+/// both shafts, z of a and z of b, rotate equally at any angle between them.
 [[nodiscard]] inline JointRecipe constant_velocity_joint(const JointFrames& f,
                                                          const JointParameters&) {
   return joint_of(f, CoincidentPoints{}, EqualTurns{});

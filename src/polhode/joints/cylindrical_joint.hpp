@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Sleeve: b moves along z of a and turns about it.
+/// Cylindrical joint (sleeve): b translates along z of a and rotates about it.
 [[nodiscard]] inline JointRecipe cylindrical_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, PointInPlane{kX}, PointInPlane{kY},  //
                   OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY});

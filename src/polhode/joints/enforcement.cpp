@@ -9,14 +9,14 @@ namespace polhode {
 
 namespace {
 
-/// g of EqualTurns by a twist of aligned shafts: x_a·y_b and −y_a·x_b both grow by it.
+/// Derivative of g of EqualTurns by a twist of aligned shafts: x_a·y_b and −y_a·x_b both increase
+/// by it.
 constexpr double kEqualTurnsByTwist = 2.0;
-/// Stiffnesses of augmented joints farther apart than this are not told apart: ε times it must stay
-/// small beside the masses.
+/// Largest ratio of stiffnesses of augmented joints: ε times it must stay small compared with the
+/// masses.
 constexpr double kMaxWeight = 1e6;
 
-/// Derivative of the part's rows by the rotation that they measure; 0 for those that measure a
-/// displacement.
+/// Derivative of the part's rows by the rotation that they measure; 0 for displacements.
 template <class Part>
 constexpr double by_rotation() {
   return std::is_same_v<Part, EqualTurns>       ? kEqualTurnsByTwist
@@ -68,8 +68,9 @@ void Joint::set_enforcement(const JointEnforcement& e, double stiffest) {
   held_by_ = std::make_shared<const Held>(Held{Vec6::Zero(), weight});
 }
 
-/// A spring's force by the mean of its stretch at both ends of the step: G of the mean
-/// configuration then takes exactly the energy that the springs gain. @eq{compliance-row}
+/// Replaces rows by springs. A spring's force is computed from the mean of its deflection at both
+/// ends of the step: the work of G at the mean configuration then equals the energy of the springs
+/// exactly. @eq{compliance-row}
 void Joint::soften(const PairStep& step, PairTerms& t) const {
   t.compliance = held_by_->compliance;
   t.weight = held_by_->weight;

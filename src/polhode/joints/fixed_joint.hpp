@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Weld: nothing is free.
+/// Fixed joint (weld): no free motion.
 [[nodiscard]] inline JointRecipe fixed_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, CoincidentPoints{},  //
                   OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY}, OrthogonalAxes{kX, kY});

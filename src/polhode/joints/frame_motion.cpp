@@ -110,7 +110,7 @@ std::array<std::array<T, 3>, 3> matrix(const Quaternion<T>& q) {
            {two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)}}};
 }
 
-/// a with â the antisymmetric part of a matrix.
+/// Axial vector a of a matrix: â is its antisymmetric part.
 Vec3 axial(const Mat3& M) {
   return 0.5 * Vec3(M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1));
 }
@@ -162,7 +162,7 @@ FrameMotion::Course FrameMotion::course(double t, TimeSide side) const {
       D_ddot(i, j) = entry.second;
     }
   c.omega = axial(D_dot * c.D.transpose());
-  c.alpha = axial(D_ddot * c.D.transpose());  // the rest of it, ω̂ω̂, is symmetric
+  c.alpha = axial(D_ddot * c.D.transpose());  // the remainder, ω̂ω̂, is symmetric
   return c;
 }
 

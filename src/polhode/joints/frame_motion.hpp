@@ -11,10 +11,10 @@
 namespace polhode {
 
 /// Prescribed motion of a joint's frame on its first body, by functions of time: a displacement of
-/// its origin along the axes of that frame at rest, and a rotation about them.
+/// its origin along the axes of the frame at rest, and a rotation about them.
 struct FrameMotion {
-  /// Parameters of the rotation. An Euler sequence has three letters: small ones are turns about
-  /// the axes that turn along, capital ones about the axes at rest.
+  /// Parameters of the rotation. An Euler sequence has three letters: small ones are rotations
+  /// about body-fixed axes, capital ones about the axes at rest.
   enum class Rotation : unsigned char { none, vector, euler, quaternion };
 
   TimeVector displacement{};  ///< [m]; null is zero.
@@ -23,7 +23,7 @@ struct FrameMotion {
   std::array<TimeFunctionPtr, 4> parameters{};
   std::string sequence{};  ///< Of Euler angles.
 
-  /// Origin and axes, seen from the frame at rest.
+  /// Origin and axes relative to the frame at rest.
   struct Placement {
     Vec3 d = Vec3::Zero();
     Mat3 D = Mat3::Identity();
@@ -34,7 +34,7 @@ struct FrameMotion {
     Vec3 omega = Vec3::Zero(), alpha = Vec3::Zero();   ///< [rad/s], [rad/s²]
   };
 
-  /// @param part  Of the motion, in statics.
+  /// Placement at a time. @param part  Of the motion, in statics.
   [[nodiscard]] Placement at(double t, double part) const;
   [[nodiscard]] Course course(double t, TimeSide side) const;
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const;

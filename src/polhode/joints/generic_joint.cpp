@@ -40,7 +40,7 @@ JointRecipe generic_joint(const JointFrames& f, const JointParameters& p) {
   const int translations = is_locked(0) + is_locked(1) + is_locked(2);
   const int rotations = is_locked(3) + is_locked(4) + is_locked(5);
 
-  // The parts' z is the rotation that differs from the other two, if any.
+  // z of the parts is the rotation that differs from the other two, if any.
   int odd = 2;
   for (int k = 0; k < 3; ++k)
     if ((rotations == 1 && is_locked(3 + k)) || (rotations == 2 && !is_locked(3 + k))) odd = k;

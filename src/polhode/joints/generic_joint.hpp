@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Each of the six freedoms x, y, z, rx, ry, rz is free or locked.
+/// Generic joint: each of the six freedoms x, y, z, rx, ry, rz is free or locked.
 ///
 /// Translations are along the axes of a; when all three are locked the joint points coincide.
 /// One locked rotation keeps two axes orthogonal (rz locked: x of a and y of b, and so on in

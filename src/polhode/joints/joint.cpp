@@ -10,7 +10,7 @@ namespace polhode {
 
 namespace {
 
-/// The frame's columns turned with the body, at t_{n+αf} and t_{n+1}.
+/// The frame's columns rotated with the body, at t_{n+αf} and t_{n+1}.
 struct CarriedFrame {
   CarriedFrame(const BodyStep& body, const Mat3& R) {
     if (!body.moves) {
@@ -168,7 +168,7 @@ Work Joint::work(const PairStep& step) const {
   return work;
 }
 
-/// As the arms of a joint that the tree holds: it has no MotionBasis to tell them.
+/// Largest lever arm, as of a joint in the tree: this joint has no MotionBasis that gives it.
 double Joint::reach() const {
   if (!resistance_ && !held_by_ && switching == Switching::never) return 0.0;
   return std::max(bodies.a == kGround ? 0.0 : frames_.Z_a.norm(),
@@ -220,8 +220,8 @@ Vec6 Joint::acceleration_terms(const PairStep& step, TimeSide side) const {
   return velocity_terms(step, frame) + Rows(parts_, at_n1(step)).a * stacked(frame.a, frame.alpha);
 }
 
-/// The discrete gradient by the bodies' motion less the change of the rows' values: what is left is
-/// the frame's own. @eq{moving-frame}
+/// Increments of the drive: the discrete gradient by the bodies' motion minus the change of the
+/// rows' values; the remainder is that of the frame. @eq{moving-frame}
 Vec6 Joint::drive_increments(const PairStep& step) const {
   Configuration q_alpha, q_n1;
   arrange(step, q_alpha, q_n1);
@@ -267,10 +267,11 @@ auto Joint::with_sides(const PairStep& step, With&& with) const {
 bool Joint::acceptable(const PairStep& step) const {
   JointFrames own;
   const Mat3& R_b = anchors() ? held_frames(step, own).R_b : user_frames_.R_b;
-  // Axes held parallel by right angles could also stand antiparallel: the rows do not see it.
+  // Parallel axes, enforced by right angles, could also be antiparallel: the rows do not
+  // distinguish them.
   return with_sides(step, [&](const BodyStep& a, const BodyStep& b) {
     if (parts_.equal_turns) {
-      // Half a turn about any axis across z satisfies the row as well.
+      // A rotation by half a turn about any axis normal to z satisfies the row as well.
       const Mat3 of_a_n = a.Lambda_n * user_frames_.R_a, of_b_n = b.Lambda_n * user_frames_.R_b;
       const Mat3 of_a = a.Lambda_n1 * user_frames_.R_a, of_b = b.Lambda_n1 * user_frames_.R_b;
       const auto turned = [](const Mat3& x, const Mat3& y) {
@@ -288,8 +289,8 @@ bool Joint::acceptable(const PairStep& step) const {
 }
 
 std::optional<MotionBasis> Joint::motion_basis() const {
-  // Friction depends on the multipliers, moving frames have work of their own, and springs give
-  // way: the tree, which eliminates multipliers, leaves them to loops.
+  // Friction depends on the multipliers, moving frames do work, and springs deflect: the tree,
+  // which eliminates multipliers, treats such joints as loops.
   if (resistance_ || motion_ || held_by_ || rows_ < 3 || parts_.distance || parts_.equal_turns)
     return std::nullopt;
   MotionBasis m;
@@ -309,8 +310,8 @@ bool Joint::reversible() const {
   if (!motion_basis()) return false;
   if (parts_.coincident || parts_.axes == 3) return true;
   if (parts_.axes != 2) return false;
-  // The planes' normals turn with a: with b they are the same planes only if they are the
-  // common axis, or together span what is at right angles to it.
+  // The planes' normals rotate with a: fixed to b they are the same planes only if they are normal
+  // to the common axis, or together span the directions normal to it.
   return parts_.planes == 1 ? parts_.plane[0].normal == kZ
                             : parts_.plane[0].normal != kZ && parts_.plane[1].normal != kZ;
 }
@@ -320,7 +321,7 @@ void Joint::reverse() {
   std::swap(frames_.Z_a, frames_.Z_b);
   std::swap(frames_.R_a, frames_.R_b);
   if (parts_.axes == 1) {
-    // x_a·y_b once more: the new x is the old y, the new y the old x.
+    // x_a·y_b again: the new x is the old y, the new y the old x.
     const auto turned = [](const Mat3& R, double sign) {
       Mat3 out;
       out << sign * R.col(kY), -sign * R.col(kX), R.col(kZ);
@@ -462,10 +463,10 @@ Reaction Joint::reaction(const PairStep& step, bool joint_axes) const {
   const PairRows G{rows_a, rows_b};
   parts_.for_each([&](const auto& part, int row) { part.gradient(q, row, G); });
   const Vec6 w_b = times(rows_b, step.lambda, rows_);
-  // On the solver's b, at its joint point: what its a exerts.
+  // On the solver's b, at its joint point, by its a.
   Reaction on_b{w_b.head<3>(), w_b.tail<3>() - q.z_b.cross(w_b.head<3>())};
   if (reversed_) {
-    // The user's b is the solver's a: the opposite, moved to the joint point of that body.
+    // The user's b is the solver's a: the opposite wrench, moved to the joint point of that body.
     on_b.force = -on_b.force;
     on_b.moment = -on_b.moment + q.u.cross(on_b.force);
   }

@@ -22,13 +22,13 @@ struct JointCoordinates {
   std::array<double, 6> rate{};   ///< [rad/s] or [m/s].
 };
 
-/// What side a of a joint exerts on side b, at the joint's point on b.
+/// Wrench of side a of a joint on side b, at the joint's point on b.
 struct Reaction {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 moment = Vec3::Zero();  ///< [N m]
 };
 
-/// A joint: a few quadratic parts between two frames, held by multipliers.
+/// A joint: quadratic constraint parts between two frames, enforced by multipliers.
 ///
 /// Its rows and multipliers are in the order of MotionBasis. Bodies, frames and rows are in the
 /// solver's order, which reverse() may have changed; reports are in the user's order a → b.
@@ -46,31 +46,32 @@ class Joint : public InteractionItem {
   [[nodiscard]] const JointFrames& frames() const { return frames_; }  ///< Solver's order.
   [[nodiscard]] bool reversed() const { return reversed_; }  ///< Solver's a is the user's b.
 
-  /// Friction and stops of this joint, before the system is finished.
-  /// @throws InputError if a joint of its type takes none.
+  /// Sets friction and stops, before the system is finished.
+  /// @throws InputError if this type of joint supports none.
   void set_resistance(const JointResistance& data);
   /// Null if the joint moves freely.
   [[nodiscard]] const Resistance* resistance() const { return resistance_.get(); }
-  /// How they stand. @param step  An instant with its history; the joint must have a resistance.
+  /// Report of friction and stops. @param step  An instant with its history; the joint must have a
+  /// resistance.
   [[nodiscard]] ResistanceReport resistance_report(const PairStep& step) const;
 
-  /// Prescribes how the frame on the first body moves, before the system is finished.
+  /// Prescribes the motion of the frame on the first body, before the system is finished.
   /// @throws InputError if the joint is a distance, or has friction or stops.
   void set_motion(const FrameMotion& motion);
   [[nodiscard]] bool frame_moves() const { return motion_ != nullptr; }
-  /// Work of the prescribed motion since the start [J]. @param step  With the history at hand.
+  /// Work of the prescribed motion since the start [J]. @param step  With the current history.
   [[nodiscard]] double drive_work(const PairStep& step) const;
-  /// Its power at an instant [W].
+  /// Power of the prescribed motion at an instant [W].
   [[nodiscard]] double drive_power(const PairStep& step) const;
 
-  /// Holds the rows by a stiffness, before the system is finished.
+  /// Enforces the rows by a stiffness, before the system is finished.
   /// @param stiffest  Largest stiffness of all augmented joints [N/m or N m/rad].
-  /// @throws InputError if it has no rows, or a stiffness that they ask for is not positive.
+  /// @throws InputError if it has no rows, or a required stiffness is not positive.
   void set_enforcement(const JointEnforcement& enforcement, double stiffest);
   /// Whether springs replace its rows.
   [[nodiscard]] bool penalised() const { return held_by_ && !held_by_->compliance.isZero(0.0); }
 
-  // The contract of an interaction.
+  // Functions of an interaction item.
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int history_size() const { return anchor() + (anchors() ? kAnchorSize : 0); }
   [[nodiscard]] bool lazy_history() const { return !resistance_ && !motion_; }
@@ -94,7 +95,7 @@ class Joint : public InteractionItem {
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
   void commit_off(const PairStep& step, double* history) const { count_turns(step, history); }
-  /// A fixed joint holds its sides as they stand then.
+  /// Activates the joint; a fixed joint keeps its sides at their present relative position.
   void switch_on(const PairStep& step, double* history) const;
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const;
@@ -106,67 +107,68 @@ class Joint : public InteractionItem {
   [[nodiscard]] bool reversible() const;
   void reverse();
 
-  /// The angle about the common axis of the two sides, in the user's order; nothing if the joint
-  /// holds no two axes parallel or leaves no angle free.
+  /// Angle about the common axis of the two sides, in the user's order; nothing if the joint keeps
+  /// no two axes parallel or leaves no angle free.
   [[nodiscard]] std::optional<FreeAngle> axis_angle() const;
 
   /// A free coordinate by its name among coordinate_names(), in the user's order; "" for the only
-  /// one of its kind. Nothing if there is none such, or it is one of three free rotations.
+  /// one of its kind. Nothing if there is none, or it is one of three free rotations.
   [[nodiscard]] std::optional<FreeAngle> free_angle(const std::string& coordinate) const;
   [[nodiscard]] std::optional<FreeDisplacement> free_displacement(
       const std::string& coordinate) const;
 
-  // Reports. `step` is in the solver's order; what they read is at t_{n+1}.
-  /// Names of the free coordinates: x, y, z for displacements along the axes of a, rx, ry, rz
-  /// for rotations. Three free rotations are the components in a's axes of the rotation vector,
-  /// their rates those of the relative angular velocity; the two of equal turns are those of the
-  /// rotation vector, which has none about z. Rods have angles, a link its distance, and a
-  /// distance joint has none.
+  // Names of the free coordinates, for reports; `step` of reports is in the solver's order, values
+  // are at t_{n+1}. x, y, z are displacements along the axes of a, rx, ry, rz rotations. Three free
+  // rotations are the components in a's axes of the rotation vector, their rates those of the
+  // relative angular velocity; the two of equal turns are those of the rotation vector, whose z
+  // component is zero. Rods have angles, a link its distance, and a distance joint has none.
   [[nodiscard]] std::vector<std::string> coordinate_names() const;
-  /// Free coordinates of b's frame seen from a's. @param step  With the history at hand.
+  /// Free coordinates of b's frame relative to a's. @param step  With the current history.
   [[nodiscard]] JointCoordinates coordinates(const PairStep& step) const;
   /// Constraint values, rows() of them [m or -].
   [[nodiscard]] Vec6 residual(const PairStep& step) const;
-  /// What a exerts on b by the multipliers of `step`, at its joint point on b.
+  /// Wrench of a on b by the multipliers of `step`, at its joint point on b.
   /// @param joint_axes  Components along the axes of a's joint frame; else of the world.
   [[nodiscard]] Reaction reaction(const PairStep& step, bool joint_axes) const;
 
  private:
-  /// History of a joint that may be switched on elsewhere: whether it was, and the frame on b.
+  /// History of a joint that may be switched on at another position: whether it was, and the frame
+  /// on b.
   enum Anchor : int { kAnchored, kAnchorZ, kAnchorR = kAnchorZ + 3, kAnchorSize = kAnchorR + 9 };
   [[nodiscard]] bool anchors() const {
     return switching != Switching::never && parts_.coincident && parts_.axes == 3 && !motion_;
   }
-  /// Where the anchor is in the history.
+  /// Offset of the anchor in the history.
   [[nodiscard]] int anchor() const {
     return angles() + (resistance_ ? resistance_->memory_size() : 0) + (motion_ ? 1 : 0);
   }
-  /// Frames as they hold in this step. @param own  Room for them.
+  /// Frames valid in this step. @param own  Storage for them.
   [[nodiscard]] const JointFrames& held_frames(const PairStep& step, JointFrames& own) const;
   void count_turns(const PairStep& step, double* history) const;
-  [[nodiscard]] int angles() const;            ///< Coordinates whose turns are counted.
+  [[nodiscard]] int angles() const;            ///< Number of coordinates with counted turns.
   [[nodiscard]] FreeAngle angle(int i) const;  ///< i-th of them, user's order.
   [[nodiscard]] bool translation_free(int user_axis) const;
   [[nodiscard]] Configuration at_n1(const PairStep& step) const;
-  /// With the frame on a where its motion has it then.
+  /// Configuration at t_n, with the frame on a displaced by its motion.
   [[nodiscard]] Configuration at_n(const PairStep& step) const;
   [[nodiscard]] Vec6 residual(const Configuration& q) const;
-  /// Sides at t_{n+αf} and t_{n+1}, with what of them the parts need.
+  /// Sides at t_{n+αf} and t_{n+1}, as far as the parts need them.
   void arrange(const PairStep& step, Configuration& q_alpha, Configuration& q_n1) const;
   /// γ without the accelerations of a moving frame. @param frame  Its velocities.
   [[nodiscard]] Vec6 velocity_terms(const PairStep& step, const FrameRates& frame) const;
   /// γ of the prescribed motion.
   [[nodiscard]] Vec6 acceleration_terms(const PairStep& step, TimeSide side) const;
-  /// Rows as springs, or exact ones that are weighted.
+  /// Replaces rows by springs, or weights exact ones.
   void soften(const PairStep& step, PairTerms& terms) const;
   /// Energy of the springs at t_{n+1} [J].
   [[nodiscard]] double spring_energy(const PairStep& step) const;
   /// Work of the prescribed motion over the step by unit multipliers.
   [[nodiscard]] Vec6 drive_increments(const PairStep& step) const;
-  /// Result of with(a, b) for the sides in the user's order; a moving frame is at rest on its side.
+  /// Result of with(a, b) for the sides in the user's order; a moving frame is taken at rest on its
+  /// side.
   template <class With>
   auto with_sides(const PairStep& step, With&& with) const;
-  /// Calls what(view) with what the resistance wants to know.
+  /// Calls what(view) with the data that the resistance needs.
   template <class What>
   auto with_view(const PairStep& step, What&& what) const;
   [[nodiscard]] JointCoordinates coordinates(const BodyStep& a, const BodyStep& b,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a joint's frames stand, also those of one that was switched on where its bodies stood.
+// Frames of a joint, including one that was switched on at the present position of its bodies.
 #include <polhode/joints/joint.hpp>
 #include <polhode/joints/moving_frame.hpp>
 
@@ -51,7 +51,7 @@ Configuration Joint::at_n(const PairStep& step) const {
   return q;
 }
 
-/// The frame of a, as b sees it now.
+/// Stores the frame of a relative to b at this instant.
 void Joint::switch_on(const PairStep& step, double* history) const {
   count_turns(step, history);
   if (resistance_) resistance_->initialize(history + angles());

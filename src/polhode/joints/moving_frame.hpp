@@ -7,19 +7,19 @@
 
 namespace polhode {
 
-/// The body that the moving frame would be fixed in, were it at rest there: the first body's step
-/// with the motion on top, rates from after t_{n+1}.
+/// Virtual body to which the moving frame is fixed: the first body's step with the motion
+/// superimposed, rates from after t_{n+1}.
 [[nodiscard]] BodyStep carried_step(const FrameMotion& motion, const JointFrames& frames,
                                     const BodyStep& a, const StepContext& context);
 
-/// The sides of a joint whose frame on a moves, from the sides with the frame at rest.
+/// Sides of a joint with a moving frame on a, from the sides with the frame at rest.
 /// @param q_alpha, q_n1  At t_{n+αf} and t_{n+1}; the frame's point and axes are replaced.
 /// @eq{moving-frame}
 void move_frame(const FrameMotion& motion, const JointFrames& frames, const PairStep& step,
                 Configuration& q_alpha, Configuration& q_n1);
 
-/// Velocity and acceleration of the frame at t_{n+1} beyond those that a gives it, as of a body
-/// about the centre of mass of a, world components.
+/// Velocity and acceleration of the frame at t_{n+1} relative to a, as of a body about the centre
+/// of mass of a, world components.
 struct FrameRates {
   Vec3 omega = Vec3::Zero();  ///< [rad/s]
   Vec3 v = Vec3::Zero();      ///< [m/s]

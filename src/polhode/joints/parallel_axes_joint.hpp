@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// The z axes stay parallel; all translations and rotation about z are free.
+/// Parallel-axes joint: the z axes stay parallel; all translations and rotation about z are free.
 [[nodiscard]] inline JointRecipe parallel_axes_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY});
 }

@@ -12,8 +12,8 @@
 
 namespace polhode {
 
-/// What a joint is composed of: at most one CoincidentPoints, or two planes, and one distance,
-/// and at most three pairs of axes or one EqualTurns. Translation rows come first.
+/// Parts of a joint: at most one CoincidentPoints, or two planes, and one distance, and at most
+/// three pairs of axes or one EqualTurns. Translation rows come first.
 struct JointParts {
   bool coincident = false;
   bool equal_turns = false;
@@ -31,7 +31,7 @@ struct JointParts {
   [[nodiscard]] int rows() const {
     return (coincident ? 3 : planes) + (distance ? 1 : 0) + (equal_turns ? 1 : axes);
   }
-  /// Joint axes of both sides are needed.
+  /// Whether joint axes of both sides are needed.
   [[nodiscard]] bool turns() const { return axes > 0 || equal_turns; }
 
   /// Calls what(part, first_row) for each part, in the order of the rows.

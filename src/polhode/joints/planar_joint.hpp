@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// b slides in the x, y plane of a and turns about its normal z.
+/// Planar joint: b slides in the x, y plane of a and rotates about its normal z.
 [[nodiscard]] inline JointRecipe planar_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, PointInPlane{kZ}, OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY});
 }

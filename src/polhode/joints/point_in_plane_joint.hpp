@@ -5,7 +5,8 @@
 
 namespace polhode {
 
-/// The point of b stays in the plane through the point of a with normal z of a.
+/// Point-in-plane joint: the point of b stays in the plane through the point of a with normal z of
+/// a.
 [[nodiscard]] inline JointRecipe point_in_plane_joint(const JointFrames& f,
                                                       const JointParameters&) {
   return joint_of(f, PointInPlane{kZ});

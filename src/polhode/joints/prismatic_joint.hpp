@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Slider: the axes stay parallel, b moves along z of a only.
+/// Prismatic joint (slider): the axes stay parallel, b moves only along z of a.
 [[nodiscard]] inline JointRecipe prismatic_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, PointInPlane{kX}, PointInPlane{kY},  //
                   OrthogonalAxes{kZ, kX}, OrthogonalAxes{kZ, kY}, OrthogonalAxes{kX, kY});

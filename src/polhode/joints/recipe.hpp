@@ -10,14 +10,14 @@
 
 namespace polhode {
 
-/// Where a joint sits on its two bodies: point from the centre of mass [m] and axes (columns
-/// x, y, z), both in body components; on the ground world coordinates.
+/// Frames of a joint on its two bodies: point from the centre of mass [m] and axes (columns x, y,
+/// z), both in body components; on the ground world coordinates.
 struct JointFrames {
   Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();
 };
 
-/// What a joint is told beside its frames.
+/// Parameters of a joint besides its frames.
 struct JointParameters {
   std::vector<std::string> free;         ///< Generic joint: freedoms among x, y, z, rx, ry, rz.
   std::map<std::string, double> values;  ///< By name, SI.
@@ -25,16 +25,16 @@ struct JointParameters {
 
 /// A joint before it has a name and bodies: frames and the parts between them.
 ///
-/// The parts may count the axes from another one: axis i of the parts is axis (i + shift) mod 3
-/// of the user's frames. Reports use the user's.
+/// The parts may use permuted axes: axis i of the parts is axis (i + shift) mod 3 of the user's
+/// frames. Reports use the user's.
 struct JointRecipe {
   JointFrames frames;
   JointParts parts;
   int shift = 0;
-  RodKind rod = RodKind::none;  ///< What it reports of points that are apart.
+  RodKind rod = RodKind::none;  ///< Its report, if the points are apart.
 };
 
-/// A recipe from parts, rows in the order given.
+/// Recipe from parts, rows in the order given.
 template <class... Parts>
 [[nodiscard]] JointRecipe joint_of(const JointFrames& frames, const Parts&... parts) {
   JointRecipe recipe{.frames = frames, .parts = {}};
@@ -42,7 +42,7 @@ template <class... Parts>
   return recipe;
 }
 
-/// The same between points that are apart.
+/// Recipe between points that are apart.
 template <class... Parts>
 [[nodiscard]] JointRecipe rod_of(RodKind rod, const JointFrames& frames, const Parts&... parts) {
   JointRecipe recipe = joint_of(frames, parts...);

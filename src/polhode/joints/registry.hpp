@@ -8,15 +8,15 @@
 
 namespace polhode {
 
-/// A type of joint as users name it.
+/// A type of joint in the model file.
 struct JointKind {
   std::string name;     ///< "type" in the model file.
   std::string meaning;  ///< One line.
   std::string free;     ///< Free motions of b as seen from a: Tx Ty Tz Rx Ry Rz; "as given".
   JointRecipe (*recipe)(const JointFrames&, const JointParameters&);
   std::vector<Parameter> parameters = {};
-  bool takes_free_list = false;  ///< Wants JointParameters::free.
-  /// Its points are apart: the model file gives both, and "distance" is that at the start.
+  bool takes_free_list = false;  ///< Uses JointParameters::free.
+  /// Its points are apart: the model file gives both, and "distance" is their initial distance.
   bool points_apart = false;
 };
 

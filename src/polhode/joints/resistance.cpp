@@ -24,7 +24,7 @@ contact::ForceAndSlope stop_force(const Stop& stop, const PairStep& step) {
                                           .end_share = stop.end_share()});
 }
 
-/// x/√y, or 0 where y is none: forces that press nothing have no direction.
+/// x/√y, or 0 where y is zero: zero forces have no direction.
 Vec3 over_root(const Vec3& x, double y) { return y > 0.0 ? Vec3(x / std::sqrt(y)) : Vec3::Zero(); }
 
 const Mat3& axes_at(const Configuration& q) { return q.R_a; }
@@ -38,7 +38,7 @@ Vec3 angle_gradient(const FreeAngle& x, const PairStep& step) {
   return (x.on_b ? -1.0 : 1.0) / (C * C + S * S) * d.cross(C * f - S * e);
 }
 
-/// A body at t_n, as an instant.
+/// Body at t_n, as an instant.
 BodyStep start_of(const BodyStep& s) {
   BodyStep start = BodyStep::at_instant(s.r_n, s.Lambda_n, s.v_n, s.W_n);
   start.moves = s.moves;
@@ -59,23 +59,24 @@ double slide_rate(const Configuration& q, const BodyStep& a, const BodyStep& b, 
 /// One free coordinate over the step.
 struct Resistance::Coordinate {
   double at_n = 0.0, at_n1 = 0.0;
-  double lever = 1.0;  ///< Of the coordinate in the bristle: the sleeve's radius for its angle.
+  /// Factor of the coordinate in the bristle: for an angle the sleeve's radius.
+  double lever = 1.0;
   Vec6 on_a, on_b;     ///< Discrete gradient: wrench by generalised force.
   Vec6 by_a, by_b;     ///< Derivative of at_n1.
   double force = 0.0;  ///< Generalised, on b along +.
   Vec6 D_a, D_b;       ///< Its derivative.
   Vec6 by_lambda;      ///< Likewise, by the multipliers.
-  int angle = -1;      ///< Which of the joint's angles it is.
+  int angle = -1;      ///< Index among the joint's angles.
 };
 
 struct Resistance::Motion {
   int count = 0;
   Coordinate of[kMax];
   AngleStep angle[2];
-  int slide = -1, turn = -1;  ///< Which coordinate is which.
+  int slide = -1, turn = -1;  ///< Indices of the coordinates.
 };
 
-/// R of the bristle times its stiffness: the slip force, with its derivatives.
+/// Slip force, the cone radius of the bristle times its stiffness, with its derivatives.
 struct Resistance::Slip {
   double force = 0.0;
   Vec6 by_lambda = Vec6::Zero();
@@ -85,8 +86,8 @@ struct Resistance::Slip {
 /// The bristle over the step.
 struct Resistance::Bristle {
   Vec3 at_n = Vec3::Zero();   ///< Transported to this step.
-  Vec3 moved = Vec3::Zero();  ///< Increment of the coordinates, levers included.
-  Vec3 acting = Vec3::Zero(), at_n1 = Vec3::Zero();  ///< On the cone or in it.
+  Vec3 moved = Vec3::Zero();  ///< Increment of the coordinates, including levers.
+  Vec3 acting = Vec3::Zero(), at_n1 = Vec3::Zero();  ///< Inside the cone or on it.
   Mat3 D_acting = Mat3::Zero();                      ///< By the increment.
   Vec3 D_radius = Vec3::Zero();                      ///< By the radius of its cone.
   bool slips = false;
@@ -249,7 +250,7 @@ Resistance::Slip Resistance::slip(const View& v, int pin) const {
       add_pair(2, f.mu * across);
       break;
     case Kind::link:
-      break;  // nothing presses together
+      break;  // no normal force
   }
   return s;
 }
@@ -261,7 +262,7 @@ Resistance::Bristle Resistance::bristle(const View& v, const Motion& m) const {
   const auto memory = read_record<BristleMemory>(v.memory);
   const Vec3 kept(memory.bristle);
   b.at_n = kind_ == Kind::spherical ? Vec3(v.step.a.Lambda_n * kept) : kept;
-  if (v.step.context.dt == 0.0) {  // an instant: as the last step left it
+  if (v.step.context.dt == 0.0) {  // an instant: as left by the last step
     b.acting = b.at_n1 = b.at_n;
     b.slips = memory.slips != 0.0;
     return b;

@@ -9,19 +9,19 @@
 
 namespace polhode {
 
-/// What joints between points that are apart report of the line between these.
+/// Reported coordinates of the connecting line of joints between points that are apart.
 enum class RodKind : unsigned char {
   none,
   hinge,  ///< Angle about z of a, from x.
-  cross,  ///< Angles about x of a and about the y that this turns; none along z.
+  cross,  ///< Angles about x of a and about the rotated y; none along z.
   link    ///< Distance of the points.
 };
 
-/// Coordinates of the line u from the point of a to that of b, seen from a. Angles lie between −π
+/// Coordinates of the line u from the point of a to that of b, relative to a. Angles lie between −π
 /// and π: turns are not counted.
 struct RodCoordinates {
   int count = 0;
-  double value[2] = {}, rate[2] = {};  ///< [rad] or [m], and by the second.
+  double value[2] = {}, rate[2] = {};  ///< [rad] or [m], and per second.
 
   [[nodiscard]] static std::vector<std::string> names(RodKind kind) {
     if (kind == RodKind::hinge) return {"rz"};
@@ -30,8 +30,8 @@ struct RodCoordinates {
     return {};
   }
 
-  /// @param u      In the joint axes of a [m].
-  /// @param u_dot  Its derivative as seen from a [m/s].
+  /// @param u  In the joint axes of a [m].
+  /// @param u_dot  Its derivative relative to a [m/s].
   RodCoordinates(RodKind kind, const Vec3& u, const Vec3& u_dot) {
     const double in_plane = u.y() * u.y() + u.z() * u.z(), across = std::sqrt(in_plane);
     switch (kind) {

@@ -5,23 +5,22 @@
 
 namespace polhode {
 
-/// Massless rod on a hinge: it turns about z of a and carries the point of b on a ball.
+/// Massless rod with a revolute joint about z of a and a spherical joint at the point of b.
 /// @param p  Value "distance" [m], its length, positive.
 [[nodiscard]] inline JointRecipe revolute_spherical_joint(const JointFrames& f,
                                                           const JointParameters& p) {
   return rod_of(RodKind::hinge, f, PointInPlane{kZ}, Distance{p.values.at("distance")});
 }
 
-/// Massless rod on a cross: it turns about x of a, then about its own y, and carries the point of b
-/// on a ball. No moment reaches the rod, so it holds what a rod with two balls holds.
+/// Massless rod with a universal joint, x of a and its own y, and a spherical joint at the point of
+/// b. The rod carries no moment, so its constraint is that of a rod with two spherical joints.
 /// @param p  Value "distance" [m], its length, positive.
 [[nodiscard]] inline JointRecipe universal_spherical_joint(const JointFrames& f,
                                                            const JointParameters& p) {
   return rod_of(RodKind::cross, f, Distance{p.values.at("distance")});
 }
 
-/// Link with slack: the points come as near and as far as its limits let them, and nothing holds
-/// them between.
+/// Link with slack: the distance of the points is free between its limits.
 [[nodiscard]] inline JointRecipe slack_link_joint(const JointFrames& f, const JointParameters&) {
   return rod_of(RodKind::link, f);
 }

@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Ball: the joint points coincide; all rotations are free.
+/// Spherical joint (ball): the joint points coincide; all rotations are free.
 [[nodiscard]] inline JointRecipe spherical_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, CoincidentPoints{});
 }

@@ -11,15 +11,15 @@ using contact::ContactPhase;
 
 namespace {
 
-/// Share of the force of lasting contact that is that of the end of the step.
+/// Share of the force of resting contact that is evaluated at the end of the step.
 constexpr double kRestShare = 0.5;
-/// An impact is faster than what the acceleration adds in so many steps.
+/// Number of steps of acceleration whose speed increment is the smallest impact speed.
 constexpr double kSlowSteps = 2.0;
-/// k d̂²/(m w²) with which a barrier stops a mass at a twentieth of its band.
+/// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// An approach that would take less than this part of the tolerance in a step is no impact.
+/// Approach within a step, as a part of the tolerance, below which there is no impact.
 constexpr double kStillOfTolerance = 1e-6;
-/// Least part of the tolerance between a gap and the floor of its barrier.
+/// Smallest distance between a gap and the floor of its barrier, as a part of the tolerance.
 constexpr double kMinBand = 0.1;
 
 }  // namespace
@@ -55,7 +55,7 @@ Stop::Stop(const JointLimits& limits, const double* history, const CoordinateSte
     law_.lower = memory.lower;
     const bool lasts = phase_ == ContactPhase::rest || phase_ == ContactPhase::landing;
     if (limits.inertia > 0.0) {
-      // Pressed into its band from rest, the coordinate gets as fast as its depth under load tells.
+      // Speed of the coordinate when pressed into its band from rest, from its depth under load.
       const double a = std::abs(acceleration_);
       const double depth = std::sqrt(limits.inertia * a * tolerance / limits.law.stiffness);
       slow = std::max(slow, kSlowSteps * std::sqrt(a * depth));
@@ -77,7 +77,7 @@ Stop::Stop(const JointLimits& limits, const double* history, const CoordinateSte
     law_.stiffness = impact_stiffness();
   }
   if (!(gap_n_ < 0.0)) return;
-  // Within the band although nothing stopped it on its way there: nothing is stored.
+  // Within the band although no force acted on the path there: no energy is stored.
   closed_ = true;
   law_.lower = std::min(-tolerance, gap_n_ - kMinBand * tolerance);
   law_.stiffness *= tolerance / std::min(tolerance, gap_n_ - *law_.lower);

@@ -11,23 +11,23 @@ struct JointLimits;
 
 /// History of the stops of a coordinate.
 struct StopMemory {
-  double acceleration;  ///< Of the coordinate apart from the stop [m/s²] or [rad/s²].
+  double acceleration;  ///< Of the coordinate without the stop [m/s²] or [rad/s²].
   double phase, restitution;
   double stiffness, upper, lower;  ///< Of the law that acts.
-  double side;                     ///< +1: the lower end is touched, −1: the upper one, 0: none.
-  double pressed;                  ///< 1: the step ended under an impulse from elsewhere.
+  double side;     ///< +1: in contact at the lower end, −1: at the upper one, 0: open.
+  double pressed;  ///< 1: the step ended under an impulse from elsewhere.
 };
 
-/// A free coordinate over a step, as its stops see it.
+/// A free coordinate over a step, as seen by its stops.
 struct CoordinateStep {
   double at_n = 0.0, at_n1 = 0.0;      ///< [m] or [rad]
   double rate_n = 0.0, rate_n1 = 0.0;  ///< d/dt at both ends.
   double dt = 0.0;                     ///< 0: an instant, t_{n+1} [s].
 };
 
-/// The stop that acts in a step, of the two of a coordinate, with its phase and its law: an impact
-/// or lasting contact as between bodies, with one normal and no friction.
-/// @eq{joint-stop-exit} @eq{turn-law}
+/// Active stop of a coordinate in a step, one of two, with its phase and its law: an impact or
+/// resting contact as between bodies, with one normal and no friction. @eq{joint-stop-exit}
+/// @eq{turn-law}
 class Stop {
  public:
   /// @param history  A StopMemory of t_n.
@@ -37,24 +37,25 @@ class Stop {
   [[nodiscard]] const contact::NormalLaw& law() const { return law_; }
   [[nodiscard]] double gap_n() const { return gap_n_; }
   [[nodiscard]] double gap_n1() const { return gap_n1_; }
-  /// Share of the force that is that of the end of the step.
+  /// Share of the force that is evaluated at the end of the step.
   [[nodiscard]] double end_share() const;
-  /// The force acted in the step.
+  /// Whether the stop acted in the step.
   [[nodiscard]] bool touched() const;
-  /// The rate apart at t_{n+1} is to change.
+  /// Whether the separation rate at t_{n+1} has to change.
   [[nodiscard]] bool jumps() const;
-  /// Lasting contact that carries on what impacts elsewhere press on it. @eq{impact-carried}
+  /// Whether it is a resting contact that transmits impulses of impacts elsewhere.
+  /// @eq{impact-carried}
   [[nodiscard]] bool carries() const;
-  /// Rate apart after the step, an impact or a landing being at its turn.
+  /// Separation rate after the step, at the turn of an impact or a landing.
   [[nodiscard]] double exit_rate() const;
-  /// The law from the end of the step on.
+  /// Law from the end of the step on.
   [[nodiscard]] contact::NormalLaw law_after() const;
-  /// Its StopMemory at t_{n+1}. @param force  Of the stop over the step, apart.
+  /// Stores the StopMemory of t_{n+1}. @param force  Of the stop over the step, repulsive.
   void remember(double force, double* history) const;
 
  private:
   [[nodiscard]] bool turns() const;
-  /// A lasting contact that had to carry the impulse of an impact elsewhere in the step.
+  /// Whether a resting contact had to transmit the impulse of an impact elsewhere in the step.
   [[nodiscard]] bool pressed() const;
   [[nodiscard]] contact::ContactPhase phase_after() const;
 

@@ -5,8 +5,8 @@
 
 namespace polhode {
 
-/// Cardan: the joint points coincide and x of a stays at right angles to y of b; rotation about
-/// these two is free.
+/// Universal (cardan) joint: the joint points coincide and x of a stays orthogonal to y of b;
+/// rotation about these two is free.
 [[nodiscard]] inline JointRecipe universal_joint(const JointFrames& f, const JointParameters&) {
   return joint_of(f, CoincidentPoints{}, OrthogonalAxes{kX, kY});
 }

@@ -20,7 +20,7 @@ POLHODE_INLINE PM cayley_times(const P3& t, const PM& M) {
   return R;
 }
 
-/// Λ of a quaternion, orthogonal to rounding whatever its length: I + 2/(q·q) (w v̂ + v̂²).
+/// Λ of a quaternion, orthogonal to rounding for any length: I + 2/(q·q) (w v̂ + v̂²).
 POLHODE_INLINE PM rotation(Pack w, const P3& v) {
   const Pack s = 2.0 / (w * w + dot(v, v));
   const Pack x2 = s * v[0], y2 = s * v[1], z2 = s * v[2];
@@ -71,7 +71,7 @@ inline void predict(const BodyBlock* state, const MassBlock* mass, TrialBlock* t
 inline void commit(BodyBlock* state, const MassBlock* mass, const TrialBlock* trial, int blocks,
                    const TreeView* step, int ring) {
   const double dt = step->dt, beta = step->beta, gamma = step->gamma, c = step->c, c_A = step->c_A;
-  const bool histories = c != 2.0;  // at ρ∞ = 1 stored accelerations have no weight
+  const bool histories = c != 2.0;  // at ρ∞ = 1 stored accelerations have zero weight
   for (int b = 0; b < blocks; ++b)
     for (int at = 0; at < kLanes; at += kWidth) {
       BodyBlock& s = state[b];
@@ -98,7 +98,7 @@ inline void commit(BodyBlock* state, const MassBlock* mass, const TrialBlock* tr
       store3(s.past_v[ring], at, mean_v);
       store3(s.past_W[ring], at, mean_W);
 
-      for (int i = 0; i < 3; ++i) {  // Kahan: r_rest is what is still to be subtracted
+      for (int i = 0; i < 3; ++i) {  // Kahan: r_rest is the remaining correction, to be subtracted
         const Pack r = load(s.r[i] + at), add = u[i] - load(s.r_rest[i] + at), sum = r + add;
         store(s.r_rest[i] + at, (sum - r) - add);
         store(s.r[i] + at, sum);

@@ -7,9 +7,9 @@
 
 namespace polhode {
 
-/// While it lives, this thread's results too small to be normal numbers become zero: the far ends
-/// of long chains decay to such numbers, and arithmetic with them is a hundred times slower.
-/// (x86-64 only; other machines do without.)
+/// Scope in which denormal results of this thread are flushed to zero: the far ends of long chains
+/// decay to such numbers, and arithmetic with them is a hundred times slower. (x86-64 only; other
+/// machines do without.)
 class DenormalsAreZero {
  public:
 #if defined(__x86_64__)

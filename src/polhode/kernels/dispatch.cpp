@@ -13,7 +13,7 @@ extern const LaneKernels kAvx512Kernels;
 
 namespace {
 
-/// What this machine can run, widest first.
+/// Kernel sets that this machine supports, widest first.
 std::vector<const LaneKernels*> available() {
   std::vector<const LaneKernels*> sets;
 #if defined(__x86_64__)

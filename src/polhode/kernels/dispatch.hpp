@@ -8,10 +8,11 @@
 
 namespace polhode {
 
-/// "automatic" takes the widest this machine has; else baseline, avx2 or avx512.
+/// Kernels of an instruction set: "automatic" chooses the widest of this machine; else baseline,
+/// avx2 or avx512.
 /// @throws InputError if the machine or the build lacks it.
 [[nodiscard]] const LaneKernels& lane_kernels(const std::string& isa);
-/// The sets this machine and build offer, widest first.
+/// Instruction sets supported by this machine and build, widest first.
 [[nodiscard]] std::vector<std::string> available_instruction_sets();
 
 }  // namespace polhode

@@ -10,7 +10,7 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// The body's rows: own balance, what is attached to it, children.
+/// Collects the body's rows: own balance, off-tree interactions, children.
 POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const BlockScratch& s,
                                  Row* A) {
   EliminatedBody& e = v.body[slot];
@@ -25,17 +25,17 @@ POLHODE_INLINE void collect_rows(const TreeView& v, int slot, int lane, const Bl
   for (int i = 0; i < 6; ++i) row_store(e.A[i], A[i]);
 }
 
-/// bottom += c × top, for rows: X_lᵀ of a wrench's rows.
+/// bottom += c × top, for rows: X_lᵀ applied to the rows of a wrench.
 POLHODE_INLINE void shift_rows(const double* c, Row* M) {
   M[3] += c[1] * M[2] - c[2] * M[1];
   M[4] += c[2] * M[0] - c[0] * M[2];
   M[5] += c[0] * M[1] - c[1] * M[0];
 }
 
-/// Hands the rows M of an eliminated body to its parent.
+/// Adds the rows M of an eliminated body to its parent.
 POLHODE_INLINE void give_to_parent(const TreeView& v, int slot, int lane, const BlockScratch& s,
                                    Row* M) {
-  // The joint's force on the parent turns with its arm: arm Fᵀ − F·arm I.
+  // The joint's force on the parent rotates with its lever arm: arm Fᵀ − F·arm I.
   const double along = s.F_dot_arm[lane];
   const Row F = row_load(s.F_rows[lane]);
   for (int i = 0; i < 3; ++i) M[3 + i] += s.arm[i][lane] * F - along * unit(3 + i);
@@ -46,9 +46,9 @@ POLHODE_INLINE void give_to_parent(const TreeView& v, int slot, int lane, const 
     for (int i = 0; i < 6; ++i) row_store(p.A[i], row_load(p.A[i]) + M[i]);
 }
 
-/// Eliminates a body on a ball joint that carries no loop. Its unknowns are the displacement of the
-/// joint's point, Δx = Δr_a + Δθ_a × arm, which leads to the parent, and all of its rotation:
-/// Δr_b = Δx + z_b × Δθ_b + x_g. What is left is a 3×3 matrix at the point.
+/// Eliminates a body on a spherical joint without loops. Its unknowns are the displacement of the
+/// joint's point, Δx = Δr_a + Δθ_a × arm, which couples to the parent, and its whole rotation: Δr_b
+/// = Δx + z_b × Δθ_b + x_g. The remainder is a 3×3 matrix at the point.
 POLHODE_INLINE bool eliminate_ball(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot))
     return false;
@@ -92,12 +92,12 @@ POLHODE_INLINE bool eliminate_ball(const TreeView& v, int slot, int lane, const 
   return true;
 }
 
-/// Whether eliminate_ball() serves a body on a ball joint.
+/// Whether eliminate_ball() applies to a body on a spherical joint.
 POLHODE_INLINE bool plain_ball(const TreeView& v, int slot) {
   return v.first_open[slot] == v.first_open[slot + 1] && v.edge[slot] < 0;
 }
 
-/// Eliminates a body whose joint leaves kFree directions.
+/// Eliminates a body whose joint has kFree free directions.
 template <class S>
 bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   constexpr int nq = S::free;
@@ -106,7 +106,8 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
     if (plain_ball(v, slot)) return eliminate_ball(v, slot, lane, s);
   const double* data = v.joint_data + v.joint[slot / kLanes] + lane;
   const auto kept = [&](int field) { return data[8 * field]; };
-  // Free directions k, component i; a ball joint has only the arms z_b they come from.
+  // Free directions k, component i; a spherical joint stores only the lever arms z_b from which
+  // they follow.
   const auto turn = [](int k, int i, const auto& z) {
     if (i >= 3) return i - 3 == k ? 1.0 : 0.0;
     return i == k ? 0.0 : i == (k + 1) % 3 ? z(3 - i - k) : -z(3 - i - k);
@@ -128,7 +129,7 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   asm volatile("" ::: "memory");
 
   // M = [A X_r | A S_r | A x_g − ρ] for one free direction, [A X_r | · | A x_g − ρ] and N = A S_r
-  // else.
+  // otherwise.
   Row T[6], N[6], Sr[6];
   for (int i = 0; i < 3; ++i) {
     if constexpr (S::ball) {
@@ -264,7 +265,7 @@ bool eliminate(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   return true;
 }
 
-/// Eliminates a body that floats freely: six directions, no parent.
+/// Eliminates a free body: six directions, no parent.
 inline bool eliminate_root(const TreeView& v, int slot, int lane, const BlockScratch& s) {
   if (v.first_common[slot] != v.first_common[slot + 1] && !eliminate_common_loops(v, slot))
     return false;
@@ -289,13 +290,13 @@ inline bool eliminate_root(const TreeView& v, int slot, int lane, const BlockScr
   return true;
 }
 
-/// What a root has instead of a joint's shape.
+/// Shape of a root, which has no joint.
 struct RootShape {
   static constexpr JointLayout layout{0, 0};
   static constexpr int free = 6;
 };
 
-/// Increment of a body from its parent's, and A Δx − ρ. Loops' solutions are already there.
+/// Increment of a body from its parent's, and A Δx − ρ. Loops are already solved.
 template <class S>
 void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
   constexpr int nq = S::free;
@@ -314,7 +315,7 @@ void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
     x[2] = x_a[2] + (x_a[3] * cy - x_a[4] * cx) + kept(l.x_g() + 2);
     for (int i = 3; i < 6; ++i) x[i] = x_a[i] + kept(l.x_g() + i);
   };
-  const auto turn_about_point = [&](const double* turn) {  // of a ball joint
+  const auto turn_about_point = [&](const double* turn) {  // of a spherical joint
     const double zx = kept(l.z_b()), zy = kept(l.z_b() + 1), zz = kept(l.z_b() + 2);
     x[0] += zy * turn[2] - zz * turn[1];
     x[1] += zz * turn[0] - zx * turn[2];
@@ -367,7 +368,7 @@ void back_substitute(const TreeView& v, int slot, int lane, double* wrench) {
   if (v.first_common[slot] != v.first_common[slot + 1]) solve_common_loops(v, slot);
 }
 
-/// Most blocks a chunk can have: its bodies, and a part-filled block for each shape.
+/// Largest number of blocks of a chunk: its bodies, and a partly filled block for each shape.
 inline constexpr int kChunkBlocks = kChunkBodies / kLanes + 16;
 
 inline bool up(const TreeView* view, int* failed_slot) {
@@ -470,7 +471,7 @@ inline void check(const TreeView* view, const int* body_of_slot, LaneCheck* resu
   check_all_loop_joints(v, *result);
 }
 
-/// Blocks with a joint to the ground, summed.
+/// Sum over blocks with a joint to the ground.
 inline void ground(const TreeView* view, const int* body_of_slot, double* force, double* moment) {
   const TreeView& v = *view;
   for (int c = 0; c < v.chunks; ++c)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the joint kernels know of a joint's shape: its rows, its free directions, where it is.
+// Geometry of a joint's shape for the kernels: its rows, its free directions, its position.
 #pragma once
 
 #include <polhode/kernels/pack.hpp>
@@ -41,13 +41,13 @@ struct JointGeometry {
   Pack g[6];  ///< Translation rows, then direction rows.
 };
 
-/// Where kWidth bodies are at one time.
+/// Placement of kWidth bodies at one time.
 struct Placement {
   P3 r;
   PM L;
 };
 
-/// Of the bodies whose lanes in the trial begin at `from`, at t_{n+1} and at t_n.
+/// Placement of the bodies whose SIMD lanes in the trial begin at `from`, at t_{n+1} and at t_n.
 POLHODE_INLINE Placement gather_at_n1(const TreeView& v, const int* from) {
   const double* trial = reinterpret_cast<const double*>(v.trial);
   Placement p;
@@ -63,7 +63,7 @@ POLHODE_INLINE Placement gather_at_n(const TreeView& v, const int* from) {
   for (int i = 0; i < 9; ++i) p.L[i] = gather(trial + 8 * (12 + i), from);
   return p;
 }
-/// The same of a block's bodies and of their parents at t_n.
+/// Placement of a block's bodies and of their parents at t_n.
 POLHODE_INLINE Placement parents_at_n(const TreeView& v, int block, int at) {
   return gather_at_n(v, v.gather + block * kLanes + at);
 }
@@ -72,7 +72,7 @@ POLHODE_INLINE Placement bodies_at_n(const TreeView& v, int block, int at) {
   return {load3(t.r, at) - load3(t.u, at), load9(t.Lambda_n, at)};
 }
 
-/// @param data  Of the joints: constants and what was kept, see JointLayout.
+/// @param data  Of the joints: constants and stored values, see JointLayout.
 template <class S>
 POLHODE_INLINE JointGeometry<S> joint_geometry(const double* data, int at, const Placement& a,
                                                const Placement& b) {
@@ -93,7 +93,7 @@ POLHODE_INLINE JointGeometry<S> joint_geometry(const double* data, int at, const
   return q;
 }
 
-/// Of the joints of a block's bodies to their parents.
+/// Geometry of the joints of a block's bodies to their parents.
 template <class S>
 POLHODE_INLINE JointGeometry<S> tree_joint(const TreeView& v, int block, int at) {
   const TrialBlock& t = v.trial[block];
@@ -102,7 +102,7 @@ POLHODE_INLINE JointGeometry<S> tree_joint(const TreeView& v, int block, int at)
                            {load3(t.r, at), load9(t.Lambda, at)});
 }
 
-/// Arms, directors and slides at t_n, stored for the iterations of the step.
+/// Stores lever arms, directors and slides at t_n for the iterations of the step.
 template <class S>
 POLHODE_INLINE void joint_at_n(double* data, int at, const Placement& a, const Placement& b) {
   constexpr JointLayout l = S::layout;
@@ -116,7 +116,7 @@ POLHODE_INLINE void joint_at_n(double* data, int at, const Placement& a, const P
     put3(data, l.slide_n() + 3 * i, at, a.L * get3(data, l.slide() + 3 * i, at));
 }
 
-/// Free slides of a joint: any basis of what the slide rows leave, in world components.
+/// Free slides of a joint: any basis of the complement of the slide rows, in world components.
 template <class S>
 POLHODE_INLINE P3 tau(const P3* slide, int i) {
   if constexpr (S::T == 2) {

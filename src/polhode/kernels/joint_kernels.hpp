@@ -2,8 +2,8 @@
 // Residual and tangent of bodies and of the joints to their parents, kWidth at a time, and the
 // update of multipliers and configuration. Derivation: docs/theory/elimination_along_the_tree.md.
 //
-// Names: a is the parent, b the child. f is the joint's force on b, z_b its arm, "arm" the arm on
-// a. F = s f with s = βΔt² α_f / m_ref. "_al" is t_{n+αf}; no suffix is t_{n+1}.
+// Names: a is the parent, b the child. f is the joint's force on b, z_b its lever arm, "arm" that
+// on a. F = s f with s = βΔt² α_f / m_ref. "_al" is t_{n+αf}; no suffix is t_{n+1}.
 #pragma once
 
 #include <polhode/kernels/body_kernels.hpp>
@@ -11,21 +11,21 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// What assembly hands to elimination for a block of eight bodies.
+/// Output of assembly for the elimination of a block of eight bodies.
 struct alignas(64) BlockScratch {
   double T[3][8][8];         ///< Row i of [X_r | S_r | x_g], i = 0..2, of each body;
-                             ///< of a ball joint of [0 | ẑ_b | · | x_g].
-  double arm_rows[3][8][8];  ///< Row i of [0 | −arm^ | · | ·]: ball joints.
+                             ///< for a spherical joint of [0 | ẑ_b | · | x_g].
+  double arm_rows[3][8][8];  ///< Row i of [0 | −arm^ | · | ·]: spherical joints.
   double F_rows[8][8];       ///< [0 | F | · | ·] of each body.
   double k_rows[8][8];       ///< k_a of one free direction, likewise.
   double theta[3][8][8];     ///< Rows of the body's own moment balance [0 | A | 0 | −ρ].
   double S_rows[6][8][8];    ///< Row i of S_r padded to 8, two or more free directions.
   Lane mass;                 ///< α_m m / m_ref: the translational diagonal.
   double rhs[3][8];          ///< −ρ of the force balance.
-  double arm[3][8];          ///< Arm on the parent at t_{n+1}.
+  double arm[3][8];          ///< Lever arm on the parent at t_{n+1}.
   double F_dot_arm[8];
   double c_l[3][8];               ///< Lever of X_l.
-  double arm_l[3][8], z_l[3][8];  ///< Its arms on both bodies: ball joints.
+  double arm_l[3][8], z_l[3][8];  ///< Its lever arms on both bodies: spherical joints.
   double S_l[6][6][8];            ///< Left free directions [direction][component].
   double k_a[6][3][8];    ///< Geometric stiffness of the projected rows, on Δθ of the parent.
   double k_b[3][8];       ///< The same on Δθ of the body (universal shape's second rotation).
@@ -146,7 +146,8 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
     Pack lambda[6];
     for (int i = 0; i < S::T + S::ND; ++i) lambda[i] = load(data + 8 * (l.lambda() + i) + at);
 
-    // The joint's force turns with its arms: rows of b here, rows of a when b is eliminated.
+    // The joint's force rotates with its lever arms: rows of b here, rows of a when b is
+    // eliminated.
     P3 f = {Pack{}, Pack{}, Pack{}};
     if constexpr (S::T == 3) f = {lambda[0], lambda[1], lambda[2]};
     if constexpr (S::sliding)
@@ -164,7 +165,7 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
     store3(s.arm, at, q.arm);
     store(s.F_dot_arm + at, dot(F, q.arm));
 
-    // x_g = [z_b × w − t; w] makes the joint's rows hold.
+    // x_g = [z_b × w − t; w] satisfies the joint's rows.
     const P3 w = direction_correction<S>(q.director, q.g + S::T);
     P3 t = {Pack{}, Pack{}, Pack{}};
     if constexpr (S::T == 3) t = q.u;
@@ -256,7 +257,7 @@ void assemble_block(const TreeView& v, int block, BlockScratch& s) {
   }
 }
 
-/// A root floats freely: only its own balance.
+/// Rows of a free root: only its own balance.
 template <bool kRho1>
 void assemble_root_block(const TreeView& v, int block, BlockScratch& s) {
   for (int at = 0; at < kLanes; at += kWidth) {
@@ -295,10 +296,10 @@ POLHODE_INLINE void move_bodies(const TreeView& v, int block, int at, P3 dr, P3 
 
 /// Multipliers from the wrench on b, then the new configuration.
 ///
-/// @param X        Increments by body: [Δr, Δθ, ..], rows of 8.
-/// @param X_a      The parents' increments.
-/// @param wrench   A Δx − ρ by body: the joint's wrench on b times s_c, but for the stiffness of
-///                 its direction and slide rows.
+/// @param X  Increments by body: [Δr, Δθ, ..], rows of 8.
+/// @param X_a  The parents' increments.
+/// @param wrench  A Δx − ρ by body: the joint's wrench on b times s_c, without the stiffness of its
+/// direction and slide rows.
 template <class S>
 void update_block(const TreeView& v, int block, const double (*X)[8], const double (*X_a)[8],
                   const double (*wrench)[8], BlockMaxima& most) {

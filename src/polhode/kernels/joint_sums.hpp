@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums over the tree joints of a converged trial: how well they hold, what the ground gives.
+// Sums over the tree joints of a converged trial: constraint violations, ground reactions.
 #pragma once
 
 #include <polhode/kernels/joint_kernels.hpp>
@@ -37,7 +37,7 @@ void check_block(const TreeView& v, const int* body_of_slot, int block, LaneChec
   }
 }
 
-/// Force and moment about the world's origin that joints to the ground exert at t_{n+αf}.
+/// Force and moment about the world's origin of joints to the ground at t_{n+αf}.
 template <class S>
 void ground_block(const TreeView& v, const int* body_of_slot, int block, double* force,
                   double* moment) {

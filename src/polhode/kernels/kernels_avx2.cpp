@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// x86-64 with AVX2 and FMA: four doubles a register.
+// x86-64 with AVX2 and FMA: four doubles per register.
 #if defined(__AVX2__)
 #define POLHODE_ISA lanes_avx2
 #define POLHODE_WIDTH 4

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// x86-64 with AVX-512 (F, DQ, VL): eight doubles a register.
+// x86-64 with AVX-512 (F, DQ, VL): eight doubles per register.
 #if defined(__AVX512F__)
 #define POLHODE_ISA lanes_avx512
 #define POLHODE_WIDTH 8

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any x86-64 (SSE2) and arm64 (NEON): two doubles a register.
+// Any x86-64 (SSE2) and arm64 (NEON): two doubles per register.
 #define POLHODE_ISA lanes_baseline
 #define POLHODE_WIDTH 2
 #include <polhode/kernels/kernels.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints with coincident points that close loops, kWidth at a time: their rows and columns, what
-// they add to the rows of their bodies, their multipliers and sums over them.
-// Derivation: docs/theory/elimination_along_the_tree.md, "What the tree does not hold".
+// Loop joints with coincident points, kWidth at a time: their rows and columns, their contributions
+// to the rows of their bodies, their multipliers and sums over them. Derivation:
+// docs/theory/elimination_along_the_tree.md, "What the tree does not hold".
 //
 // Names as in joint_kernels.hpp. y_i = d_i × e_i are the directions of the couple's multipliers.
 #pragma once
@@ -10,8 +10,8 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// What assembly makes of eight loop joints, one row of eight numbers a joint: [row][joint].
-/// Only moment rows; those of forces are constant but for the force itself.
+/// Assembled data of eight loop joints, one row of eight numbers per joint: [row][joint]. Only
+/// moment rows; those of forces are constant except for the force itself.
 struct alignas(64) LoopScratch {
   double own_a[3][8][8], own_b[3][8][8];  ///< [0 | K | 0 | −ρ] of the bodies.
   double C_a[3][8][8], C_b[3][8][8];
@@ -35,8 +35,8 @@ POLHODE_INLINE void put_moment_rows(const P3& z, double sign, const P3* y, int d
   }
 }
 
-/// Joints of one shape. kCouple: between moving bodies, with direction rows; the couple is then
-/// the unknown.
+/// Joints of one shape. kCouple: between moving bodies, with direction rows; the couple is then the
+/// unknown.
 template <class S, bool kCouple>
 void assemble_loop_joints(const TreeView& v, const LoopJoints& block, LoopScratch& s) {
   constexpr JointLayout l = S::layout;
@@ -66,7 +66,7 @@ void assemble_loop_joints(const TreeView& v, const LoopJoints& block, LoopScratc
     }
     to_rows(nu, s.nu[at]);
 
-    // Wrenches at t_{n+αf}; forces turn with their arms.
+    // Wrenches at t_{n+αf}; forces rotate with their lever arms.
     const P3 f = {lambda[0], lambda[1], lambda[2]}, F = stiffness * f;
     P3 y_al[3], y[3], couple = {zero, zero, zero};
     for (int i = 0; i < S::ND; ++i) {
@@ -85,7 +85,7 @@ void assemble_loop_joints(const TreeView& v, const LoopJoints& block, LoopScratc
       own_b[i] = -q.z_b[i] * F;
       own_b[i][i] += F_b;
     }
-    if constexpr (!kCouple)  // of one body: the couple turns with its directors
+    if constexpr (!kCouple)  // on one body: the couple rotates with its directors
       for (int i = 0; i < S::ND; ++i) {
         const P3 &d = q.director[S::left(i)], &e = q.director[S::right(i)];
         const P3 &d_al = director_al[S::left(i)], &e_al = director_al[S::right(i)];
@@ -108,8 +108,8 @@ void assemble_loop_joints(const TreeView& v, const LoopJoints& block, LoopScratc
     P3 C_a[3], C_b[3], R_a[3], R_b[3];
     for (int i = 0; i < 3; ++i) C_a[i] = C_b[i] = R_a[i] = R_b[i] = {zero, zero, zero};
     if constexpr (kCouple) {
-      // Rows of the couple M = Σ Δλ̂_i y_i + σ: its multipliers' softness, and w·(M − σ) = 0 for
-      // each w at right angles to all y_i.
+      // Rows of the couple M = Σ Δλ̂_i y_i + σ: softness of its multipliers, and w·(M − σ) = 0 for
+      // each w normal to all y_i.
       P3 row[3];
       if constexpr (S::ND == 1) {
         row[0] = (v.proximal / dot(y_al[0], y_al[0])) * y_al[0];
@@ -161,8 +161,8 @@ void assemble_loop_joints(const TreeView& v, const LoopJoints& block, LoopScratc
   }
 }
 
-/// One side of a joint: its force and moment rows added to the body's, its columns and rows put
-/// where the loop begins. `sign`: of the force on this body.
+/// One side of a joint: its force and moment rows are added to the body's, its columns and rows
+/// stored where the loop begins. `sign`: of the force on this body.
 POLHODE_INLINE void put_side(const TreeView& v, int extra, int pair, int lane, double sign,
                              const Lane3& force, const double (*own)[8][8], const double (*C)[8][8],
                              const double (*R)[8][8]) {
@@ -179,7 +179,7 @@ POLHODE_INLINE void put_side(const TreeView& v, int extra, int pair, int lane, d
   }
 }
 
-/// Hands what was assembled to the loops and their bodies.
+/// Adds the assembled values to the loops and their bodies.
 POLHODE_INLINE void scatter_loop_joints(const TreeView& v, const LoopJoints& block,
                                         const LoopScratch& s) {
   for (int lane = 0; lane < block.count; ++lane) {
@@ -195,7 +195,7 @@ POLHODE_INLINE void scatter_loop_joints(const TreeView& v, const LoopJoints& blo
   }
 }
 
-/// New multipliers of a block from the loops' solutions.
+/// New multipliers of a block from the solutions of the loops.
 template <class S, bool kCouple>
 void move_loop_multipliers(const TreeView& v, const LoopJoints& block) {
   constexpr JointLayout l = S::layout;

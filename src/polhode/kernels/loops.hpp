@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops carried along the tree. A loop has unknowns y beside the bodies' increments:
+// Loops carried along the tree. A loop has unknowns y besides the bodies' increments:
 //   rows of its bodies:   ... + C y = ρ,        its own rows:   R Δx + S y = −ν.
-// Its columns C and rows R travel from its bodies towards the roots and meet at the lowest
+// Its columns C and rows R are carried from its bodies towards the roots and meet at the lowest
 // common ancestor, where the loop is eliminated; loops on the ground come last.
 #pragma once
 
@@ -15,7 +15,7 @@ POLHODE_INLINE double* pair_row(const TreeView& v, int pair, int panels, int i) 
   return v.pair_rows + 8 * (pair + panels * i);
 }
 
-/// Row c: ones where the column is beyond c.
+/// Row c: ones in the columns beyond c.
 alignas(64) inline constexpr double kBeyond[8][8] = {
     {0, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 1, 1, 1, 1},
     {0, 0, 0, 0, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 1, 1},

@@ -99,7 +99,7 @@ POLHODE_INLINE Row abs(const Row& a) {
   for (int i = 0; i < kParts; ++i) r.part[i] = abs(a.part[i]);
   return r;
 }
-/// Number i of the row in all places.
+/// Number i of the row, broadcast.
 template <int i>
 POLHODE_INLINE Row spread(const Row& a) {
   constexpr int k = i % kWidth;
@@ -179,7 +179,7 @@ POLHODE_INLINE void transpose(const Pack* a, Pack* o) {
 }
 #endif
 
-/// The sums of six rows side by side, and two zeros.
+/// Sums of six rows in one, and two zeros.
 POLHODE_INLINE Row row_sums(const Row* rows) {
   Row r;
 #if POLHODE_WIDTH == 8

@@ -6,7 +6,7 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// Inverse of a small matrix by Gauss-Jordan with row exchanges. False: a pivot vanished.
+/// Inverse of a small matrix by Gauss-Jordan elimination with pivoting. False: a zero pivot.
 template <int n>
 POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
   double a[n][n], e[n][n];
@@ -49,7 +49,7 @@ POLHODE_INLINE bool invert(const double (*D)[8], double (*inverse)[8]) {
   return true;
 }
 
-/// The same in closed form.
+/// Inverse in closed form.
 template <>
 POLHODE_INLINE bool invert<2>(const double (*D)[8], double (*inverse)[8]) {
   const double det = D[0][0] * D[1][1] - D[0][1] * D[1][0];

@@ -9,7 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// Of a symmetric matrix, by cofactors. @returns false if it is not positive.
+/// Inverse of a symmetric matrix, by cofactors. @returns false if it is not positive definite.
 bool invert(const Mat3& M, Mat3& inverse) {
   const double a = M(0, 0), b = M(1, 0), c = M(2, 0), d = M(1, 1), e = M(2, 1), f = M(2, 2);
   const double A = d * f - e * e, B = c * e - b * f, C = b * e - c * d, minor = a * d - b * b;
@@ -37,7 +37,7 @@ inline void BlockCg::add(const Spring& spring, Four arm, Block& block) {
   }
 }
 
-/// [A, Bᵀ; B, D]⁻¹ by the Schur complement of A. @returns false if it is not positive.
+/// [A, Bᵀ; B, D]⁻¹ by the Schur complement of A. @returns false if it is not positive definite.
 bool BlockCg::invert(const Block& block, Block& inverse) {
   Mat3 A, B, D, inverse_A, inverse_S;
   for (int j = 0; j < 3; ++j)
@@ -134,7 +134,8 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
       friction_.push_back(
           {four(from.friction_slope, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
   }
-  // Of springs so stiff that rounding leaves nothing of the body: any positive block will do.
+  // With springs so stiff that the body's own block is lost in rounding, any positive definite
+  // block is suitable.
   for (int k = 0; k < count; ++k)
     if (Block inverse; invert(inverse_[k], inverse))
       inverse_[k] = inverse;
@@ -142,7 +143,7 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
       inverse_[k] = own_inverse_[moving[k]];
 }
 
-/// y = A p. What stays has a part of p that is zero, and one of y that is never read.
+/// y = A p. Fixed bodies have a part of p that is zero, and a part of y that is not used.
 void BlockCg::multiply() {
   for (std::size_t k = 0; k < block_.size(); ++k) y_[k] = times(block_[k], p_[k]);
   for (const Spring& s : springs_) {
@@ -164,7 +165,7 @@ void BlockCg::multiply() {
 }
 
 double BlockCg::scale(std::span<const Vec6> rhs, double least, Vectors& b) const {
-  // Forces of any unit fit into single precision.
+  // Scaled, since forces of any unit have to fit into single precision.
   double size = least;
   for (const int body : moving_) {
     const Vec6& f = rhs[body];
@@ -276,8 +277,8 @@ void BlockCg::subtract_friction(const Vectors& p, Vectors& y) const {
   }
 }
 
-/// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993) for S − U: S z is what conjugate gradients
-/// took from v.
+/// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993) for S − U: S z is the vector v to which
+/// conjugate gradients were applied.
 int BlockCg::iterate_with_friction(double part, int most, int directions) {
   const std::size_t n = moving_.size();
   const auto product = [n](const Vectors& p, const Vectors& q) {
@@ -312,7 +313,7 @@ int BlockCg::iterate_with_friction(double part, int most, int directions) {
     subtract_friction(x_, w);
     w.resize(n);
     found_[j] = x_;
-    if (!rows_.empty()) {  // w has their multipliers, too
+    if (!rows_.empty()) {  // w includes their multipliers
       Vec of_both = carried_;
       carried_.setZero();
       project(w);

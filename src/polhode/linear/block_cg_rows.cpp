@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Added to the diagonal of D, which is one: what rounding to single precision takes from it.
+/// Addition to the unit diagonal of D, of the size of its single-precision rounding.
 constexpr double kRedundant = 1e-6;
 
 }  // namespace
@@ -54,7 +54,7 @@ bool BlockCg::set_rows(std::span<const Row> rows) {
     if (r.b != count) r.along_b = times(inverse_[r.b], r.on_b);
     const double size = dot(r.on_a, r.along_a) + dot(r.on_b, r.along_b);
     if (!std::isfinite(size)) return false;
-    r.scale = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;  // nothing moves along it
+    r.scale = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;  // no body moves along it
     const auto factor = static_cast<float>(r.scale);
     for (Pair* p : {&r.on_a, &r.on_b, &r.along_a, &r.along_b}) {
       p->moved *= factor;
@@ -70,7 +70,8 @@ bool BlockCg::set_rows(std::span<const Row> rows) {
   return factor_rows();
 }
 
-/// Rows meet in D where they share a body. Redundant ones leave it a little of its diagonal.
+/// Factors D. Rows are coupled in D if they share a body. The diagonal of redundant rows nearly
+/// vanishes.
 bool BlockCg::factor_rows() {
   const auto count = static_cast<int>(moving_.size()), n = static_cast<int>(rows_.size());
   std::vector<std::vector<int>> rows_of(static_cast<std::size_t>(count));

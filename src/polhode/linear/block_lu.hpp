@@ -9,10 +9,10 @@
 
 namespace polhode {
 
-/// Which dense blocks the factors have, and the list of block operations that makes them. Nodes
-/// are numbered in the order in which they are eliminated.
+/// Pattern of the dense blocks of the factors, and the list of block operations. Nodes are numbered
+/// in the order of elimination.
 struct BlockPlan {
-  /// Where one later neighbour of a pivot keeps its two blocks.
+  /// Positions of the two blocks of one later neighbour of a pivot.
   struct Edge {
     int node = 0;           ///< The neighbour, eliminated later.
     std::size_t upper = 0;  ///< Rows of the pivot, columns of the neighbour.
@@ -35,11 +35,11 @@ struct BlockPlan {
 
 /// Block-sparse LU with partial pivoting inside dense supernodes.
 ///
-/// A body and the rows that hold it to its parent are one node ([A −B; G ε] is regular, as one
-/// joint never holds more than its child can move); other rows are nodes of their own that wait
-/// until both their bodies are gone (their pivot is then G A⁻¹ B + ε). Order: least degree. All
-/// blocks lie in one array in the order of elimination, rows padded to 4 doubles; factor() and
-/// solve() allocate nothing. One object serves one thread.
+/// A body and the rows of the joint to its parent are one node ([A −B; G ε] is regular, as one
+/// joint never constrains more than its child can move); other rows are separate nodes that are
+/// eliminated after both their bodies (their pivot is then G A⁻¹ B + ε). Order: minimum degree. All
+/// blocks are stored in one array in the order of elimination, rows padded to 4 doubles; factor()
+/// and solve() allocate nothing. One object serves one thread.
 class BlockLu final : public LinearSolver {
  public:
   BlockLu();
@@ -51,7 +51,7 @@ class BlockLu final : public LinearSolver {
   [[nodiscard]] double factor_flops() const override { return flops_; }
 
  private:
-  /// Where the values of a pair go. Blocks are given by their first entry.
+  /// Positions of the values of a pair. Blocks are given by their first entry.
   struct PairPlace {
     int rows = 0;
     int stride_a = 0, stride_b = 0, stride_rows = 0;
@@ -69,7 +69,7 @@ class BlockLu final : public LinearSolver {
   std::vector<int> pivots_;
   mutable std::vector<double> work_;
   double flops_ = 0.0;
-  bool fused_ = false;  ///< The processor has AVX2 and fused multiply-add.
+  bool fused_ = false;  ///< The processor supports AVX2 and fused multiply-add.
 };
 
 }  // namespace polhode

@@ -5,8 +5,8 @@
 
 #include <polhode/linear/block_lu_kernels.hpp>
 
-// Four doubles side by side; the compiler splits them where registers are narrower. The same
-// source is compiled twice on x86-64: for every processor, and for those with AVX2 and FMA.
+// Vectors of four doubles; the compiler splits them for narrower registers. The same source is
+// compiled twice on x86-64: for every processor, and for those with AVX2 and FMA.
 #define POLHODE_INLINE inline __attribute__((always_inline))
 #if defined(__x86_64__)
 #define POLHODE_FUSED __attribute__((target("avx2,fma")))
@@ -55,7 +55,7 @@ POLHODE_INLINE bool factor_diagonal(double* D, int* pivots, int n) {
     double largest = std::fabs(D[c * stride + c]);
     for (int i = c + 1; i < n; ++i) {
       const double size = std::fabs(D[i * stride + c]);
-      if (!(size <= largest)) {  // a NaN wins, and is seen below
+      if (!(size <= largest)) {  // NaN is taken as the largest, and detected below
         largest = size;
         best = i;
       }
@@ -97,7 +97,7 @@ POLHODE_INLINE void solve_diagonal(const double* D, const int* pivots, int n, in
   }
 }
 
-/// One right-hand side.
+/// Solves for one right-hand side.
 POLHODE_INLINE void solve_diagonal_vector(const double* D, const int* pivots, int n, int stride,
                                           double* x) {
   for (int c = 0; c < n; ++c) std::swap(x[c], x[pivots[c]]);
@@ -133,7 +133,7 @@ POLHODE_INLINE void subtract_block_times(double* y, const double* A, const doubl
     subtract_block_times<1>(y, A, x, rows);
 }
 
-/// One pivot: its own LU, its row of the upper factor, and what it leaves to later nodes.
+/// Eliminates one pivot: its own LU, its row of the upper factor, and the updates of later nodes.
 template <int W>
 POLHODE_INLINE bool eliminate(const BlockPlan& plan, const BlockPlan::Node& k, double* values,
                               int* pivots) {

@@ -5,11 +5,11 @@
 
 namespace polhode {
 
-/// True if the processor runs the fused kernels below (AVX2 and FMA).
+/// Whether the processor supports the fused kernels below (AVX2 and FMA).
 [[nodiscard]] bool has_fused_kernels();
 
 /// Block LU in place: diagonal blocks become P L U with reciprocal pivots, upper blocks D⁻¹ A.
-/// @returns false if a pivot vanished or is not finite.
+/// @returns false if a pivot is zero or not finite.
 [[nodiscard]] bool factor_blocks(const BlockPlan& plan, double* values, int* pivots, bool fused);
 /// x: padded vector, padding zero; right-hand side in, solution out.
 void solve_blocks(const BlockPlan& plan, const double* values, const int* pivots, double* x,

@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// Joints with fewer rows hold a body too loosely to be worth a place in its node.
+/// Smallest number of rows of a joint that is combined with its body into one node.
 constexpr int kMinTreeRows = 3;
 
 void insert_sorted(std::vector<int>& list, int x) {

@@ -16,7 +16,7 @@ struct KktPair {
   int rows = 0, first_row = 0;
 };
 
-/// Which blocks the linear system has; fixed during a run.
+/// Block pattern of the linear system; fixed during a run.
 struct KktTopology {
   int bodies = 0, rows = 0;
   std::vector<KktPair> pairs;
@@ -27,9 +27,9 @@ struct KktTopology {
 ///   [ K  −B ] [ x ]   [ rhs ]      x: (Δr, Δθ) by body, 6 each;  y: one per multiplier row
 ///   [ G   C ] [ y ] = [     ]
 ///
-/// K has the bodies' 6×6 diagonal blocks (everything summed) and the pairs' off-diagonal ones;
-/// C is diagonal (proximal ε or compliance). Only the first pair.rows columns of B and rows of G
-/// count.
+/// K has the bodies' 6×6 diagonal blocks (all contributions summed) and the pairs' off-diagonal
+/// ones; C is diagonal (proximal ε or compliance). Only the first pair.rows columns of B and rows
+/// of G are used.
 struct KktValues {
   struct Pair {
     Mat6 K_ab, K_ba;
@@ -41,23 +41,23 @@ struct KktValues {
   std::vector<Pair> pairs;     ///< By pair of the topology.
 };
 
-/// A direct solver for the linear system. Symbolic work once, values often.
+/// A direct solver for the linear system, with a single symbolic analysis for many sets of values.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   virtual void analyse(const KktTopology& topology) = 0;
-  /// @returns false if a pivot vanished or a value is not finite.
+  /// @returns false if a pivot is zero or a value is not finite.
   [[nodiscard]] virtual bool factor(const KktValues& values) = 0;
   /// In place: right-hand side in, solution out; bodies (6 each), then rows.
   virtual void solve(Vec& x) const = 0;
-  /// The same with the transposed matrix (sensitivities).
+  /// Solves with the transposed matrix (sensitivities).
   virtual void solve_transposed(Vec& x) const = 0;
-  /// Multiplications and additions of one factorisation, counted at analyse().
+  /// Floating-point operations of one factorisation, counted at analyse().
   [[nodiscard]] virtual double factor_flops() const = 0;
 };
 
-/// "block_lu", "klu" or "sparse_lu". @throws InputError for any other name.
+/// Solver "block_lu", "klu" or "sparse_lu". @throws InputError for any other name.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name);
 
 }  // namespace polhode

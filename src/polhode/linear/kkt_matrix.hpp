@@ -8,7 +8,7 @@
 namespace polhode {
 
 /// The linear system as one compressed-column matrix, for general sparse solvers, for the rank
-/// report and for tests. The pattern is made once; values are put into it as often as needed.
+/// report and for tests. The pattern is built once; values may be replaced any number of times.
 class KktMatrix {
  public:
   KktMatrix() = default;

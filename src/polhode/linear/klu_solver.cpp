@@ -10,10 +10,10 @@ namespace polhode {
 
 namespace {
 
-/// Kept pivots are given up when max|A|/max|U| of some column falls below this [-].
+/// Smallest max|A|/max|U| of a column; below it reused pivots are dropped [-].
 constexpr double kMinPivotGrowth = 1e-3;
-/// A diagonal pivot is taken if it is at least this part of its column [-]: KLU's own 1e-3 saves
-/// fill and costs digits, which the polish iteration would miss.
+/// Part of its column from which on a diagonal pivot is accepted [-]: KLU's default 1e-3 reduces
+/// fill but loses digits that the extra Newton iteration needs.
 constexpr double kPivotTolerance = 0.1;
 
 class KluSolver final : public LinearSolver {
@@ -53,7 +53,7 @@ class KluSolver final : public LinearSolver {
   }
 
   KktMatrix matrix_;
-  mutable klu_common common_{};  // solving writes its status
+  mutable klu_common common_{};  // solving changes its status
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
 };

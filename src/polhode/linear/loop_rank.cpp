@@ -12,11 +12,11 @@ namespace polhode {
 
 namespace {
 
-/// A row takes part in a redundancy if its multiplier in it is at least this part of the largest.
+/// Multiplier in a redundancy, as a part of the largest, from which on its row takes part.
 constexpr double kPart = 1e-6;
 constexpr int kProbes = 2;
 
-/// Numbers between −1 and 1 that are the same in every run (splitmix64).
+/// Pseudo-random numbers between −1 and 1, the same in every run (splitmix64).
 double fixed_random(std::uint64_t n) {
   std::uint64_t x = (n + 1) * 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -51,7 +51,7 @@ class Elimination {
       queue.pop();
       const std::vector<int> others = neighbours(body);
       if (others.size() > said && !queue.empty() && queue.top().first < others.size())
-        queue.emplace(others.size(), body);  // It has got more since.
+        queue.emplace(others.size(), body);  // It has gained neighbours since then.
       else
         eliminate(body, others);
     }
@@ -62,9 +62,9 @@ class Elimination {
   struct Block {
     std::vector<int> bodies;
     Mat G;
-    std::vector<int> slots;  ///< Places of its rows among all.
+    std::vector<int> slots;  ///< Positions of its rows among all.
   };
-  /// Orthogonal transformation of some rows: new = Qᵀ old.
+  /// Orthogonal transformation of rows: new = Qᵀ old.
   struct Turn {
     std::vector<int> slots;
     Mat Q;
@@ -87,8 +87,8 @@ class Elimination {
     return list;
   }
 
-  /// Turns rows so that the first of them have all of some columns that is above the tolerance.
-  /// @returns how many have.
+  /// Transforms rows so that the first ones contain the range of some columns above the tolerance.
+  /// @returns their number.
   Eigen::Index turn(Block& front, Eigen::Index first_row, Eigen::Index columns) {
     const Eigen::Index count = front.G.rows() - first_row;
     if (count == 0 || columns == 0) return 0;
@@ -113,7 +113,7 @@ class Elimination {
       probes_.row(t.slots[i]) = part.row(static_cast<Eigen::Index>(i));
   }
 
-  /// Keeps the rows [begin, begin + count) of a front; those behind have vanished.
+  /// Keeps the rows [begin, begin + count) of a front; those after them have vanished.
   void keep(Block& front, Eigen::Index begin, Eigen::Index count) {
     for (Eigen::Index i = begin + count; i < front.G.rows(); ++i)
       vanished_[static_cast<std::size_t>(front.slots[static_cast<std::size_t>(i)])] = 1;
@@ -122,7 +122,7 @@ class Elimination {
   }
 
   void eliminate(int body, const std::vector<int>& others) {
-    // The body's columns stand first.
+    // The body's columns come first.
     std::vector<int> columns{body};
     columns.insert(columns.end(), others.begin(), others.end());
     const Eigen::Index width = 6 * static_cast<Eigen::Index>(columns.size());
@@ -142,7 +142,7 @@ class Elimination {
             block.G.middleCols(6 * static_cast<Eigen::Index>(j), 6);
       }
       front.slots.insert(front.slots.end(), block.slots.begin(), block.slots.end());
-      // Many rows on few bodies are reduced as they come.
+      // Many rows on few bodies are reduced as they are added.
       if (front.G.rows() > 2 * width + 32) keep(front, 0, turn(front, 0, width));
       forget(k, body);
     }
@@ -155,14 +155,14 @@ class Elimination {
     if (front.G.rows() > 0) add(std::move(front));
   }
 
-  /// Takes a block out of the lists of all its bodies but one.
+  /// Removes a block from the lists of all its bodies but one.
   void forget(int block, int but) {
     for (const int body : blocks_[static_cast<std::size_t>(block)].bodies)
       if (body != but) std::erase(of_body_[static_cast<std::size_t>(body)], block);
     blocks_[static_cast<std::size_t>(block)] = {};
   }
 
-  /// Rows that the projection onto what has vanished has a part in.
+  /// Rows in which the projection onto the vanished combinations is nonzero.
   std::vector<char> dependent_rows() {
     for (Eigen::Index i = 0; i < probes_.rows(); ++i)
       if (!vanished_[static_cast<std::size_t>(i)]) probes_.row(i).setZero();

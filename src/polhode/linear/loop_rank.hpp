@@ -13,25 +13,26 @@ struct BodyRows {
   Mat G;                    ///< Rows by 6·bodies.
 };
 
-/// Findings of elimination about rows that loops tie together.
+/// Rank of rows that are coupled by loops.
 struct LoopRank {
   int rank = 0;
-  std::vector<char> dependent;  ///< By row, one block after the other: it is part of a redundancy.
+  /// By row, one block after the other: whether it is part of a redundancy.
+  std::vector<char> dependent;
 };
 
 /// Rank of a sparse matrix of rows, and the rows that are combinations of others.
 ///
-/// Bodies are eliminated one after the other, that with the fewest neighbours first: an orthogonal
+/// Bodies are eliminated one after the other, that with the fewest neighbours first. An orthogonal
 /// transformation of the rows on a body leaves as many of them on it as its columns have rank, the
-/// others on its neighbours; what vanishes of these is a redundancy (row merging: A. George,
-/// M. T. Heath, Linear Algebra Appl. 34, 1980, 69-83). Time and memory are linear in the number of
-/// bodies where fronts stay small, as along a row of loops.
+/// others on its neighbours; rows that vanish are redundancies (row merging: A. George, M. T.
+/// Heath, Linear Algebra Appl. 34, 1980, 69-83). Time and memory are linear in the number of bodies
+/// if fronts stay small, as along a row of loops.
 ///
-/// A row is dependent if the projection of a vector onto the combinations that vanish has a part in
-/// it; two vectors of fixed pseudo-random numbers are projected.
-/// @param rows       Of about unit length.
-/// @param bodies     Their number.
-/// @param tolerance  Pivots below are zero [-].
+/// A row is dependent if it has a nonzero part in the projection of a vector onto the vanishing
+/// combinations; two vectors of fixed pseudo-random numbers are projected.
+/// @param rows  Of about unit length.
+/// @param bodies  Number of bodies.
+/// @param tolerance  Smaller pivots are zero [-].
 [[nodiscard]] LoopRank loop_rank(const std::vector<BodyRows>& rows, int bodies, double tolerance);
 
 }  // namespace polhode

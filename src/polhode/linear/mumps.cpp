@@ -26,17 +26,17 @@ Entry load() {
   return reinterpret_cast<Entry>(dlsym(library, "dmumps_c"));
 }
 
-/// MUMPS keeps tables in variables of its modules: one call at a time in a program.
+/// Serialises calls: MUMPS stores tables in module variables.
 void call_alone(Entry entry, DMUMPS_STRUC_C* m) {
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> alone(one_at_a_time);
   entry(m);
 }
 
-constexpr int kUseCommWorld = -987654;  // as MUMPS asks for without MPI
+constexpr int kUseCommWorld = -987654;  // value required by MUMPS without MPI
 constexpr const char* kTooLarge = "Run a coarser mesh, or on a machine with more memory";
 constexpr int kInitialise = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3;
-// Numbers of MUMPS' errors that more workspace mends, and those that say "singular".
+// Errors of MUMPS that more workspace avoids, and those of a singular matrix.
 constexpr int kWorkspaceTooSmall = -9, kIntegersTooSmall = -8, kSingular = -10, kStructural = -6;
 
 }  // namespace
@@ -129,7 +129,7 @@ bool Mumps::factor(const double* values) {
                        kTooLarge);
     s.control(14) *= 2;
   }
-  return false;  // finds hardly a pivot, and puts off the others without end
+  return false;  // hardly any pivot is found, and the others are postponed without end
 }
 
 void Mumps::solve(double* x, int count) const { impl_->solve(x, count, false); }

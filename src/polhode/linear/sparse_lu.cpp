@@ -46,8 +46,8 @@ bool SparseLu::factor(const KktValues& values) {
   if (!matrix_.set(values)) return false;
   lu_.factorize(view());
   if (lu_.info() != Eigen::Success) return false;
-  // Each pair (entry of L's column k, entry of U's row k) costs one multiplication and addition;
-  // with n columns the mean lengths are a fair estimate.
+  // Each pair (entry of L's column k, entry of U's row k) needs one multiplication and addition;
+  // with n columns the mean lengths give a sufficient estimate.
   const double n = matrix_.size();
   flops_ = 2.0 * static_cast<double>(lu_.nnzL()) / n * static_cast<double>(lu_.nnzU());
   return true;

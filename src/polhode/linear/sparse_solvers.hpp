@@ -7,13 +7,13 @@
 
 namespace polhode {
 
-/// SuiteSparse KLU: a general sparse LU whose symbolic work is done once. Pivots are kept from
-/// one factorisation to the next as long as the factors do not grow.
+/// SuiteSparse KLU: a general sparse LU with a single symbolic analysis. Pivots are reused from one
+/// factorisation to the next as long as the factors do not grow.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_klu_solver();
 
-/// Eigen's supernodal SparseLU with partial pivoting over all rows: slow and trustworthy, a
-/// reference for the others. Its factor_flops() come from the entries of the last factors: zero
-/// before the first factorisation.
+/// Eigen's supernodal SparseLU with partial pivoting over all rows: slow and reliable, a reference
+/// for the others. Its factor_flops() follow from the entries of the last factors: zero before the
+/// first factorisation.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_sparse_lu();
 
 }  // namespace polhode

@@ -8,22 +8,22 @@ namespace {
 constexpr std::array<const char*, 6> kLawNames{"law_x",  "law_y",  "law_z",
                                                "law_rx", "law_ry", "law_rz"};
 
-/// The axes of both frames at the three times of a step.
+/// Axes of both frames at the three times of a step.
 struct Axes {
   std::array<Carried, 3> a, b;
 };
 
-/// e_i of a times e_j of b, at one time.
+/// Product of e_i of a and e_j of b, at one time.
 double product(const Axes& x, Vec3 Carried::*when, int i, int j) {
   return (x.a[static_cast<std::size_t>(i)].*when).dot(x.b[static_cast<std::size_t>(j)].*when);
 }
-/// Its gradient by the turn of b; that by the turn of a is the opposite.
+/// Its gradient by the rotation of b; that by the rotation of a is the opposite.
 Vec3 gradient(const Axes& x, Vec3 Carried::*when, int i, int j) {
   return (x.b[static_cast<std::size_t>(j)].*when).cross(x.a[static_cast<std::size_t>(i)].*when);
 }
 
-/// A sum of products of axes: its value at the ends, its gradient at t_{n+αf} and t_{n+1}, and the
-/// tangents of the former by the turns of a and b.
+/// Sum of products of axes: its value at the ends, its gradient at t_{n+αf} and t_{n+1}, and the
+/// tangents of the former by the rotations of a and b.
 struct Quadratic {
   double at_n = 0.0, at_n1 = 0.0;
   Vec3 alpha = Vec3::Zero(), n1 = Vec3::Zero();
@@ -40,7 +40,7 @@ struct Quadratic {
   }
 };
 
-/// c_k = N/D over the step; the turns of a and b act oppositely.
+/// c_k = N/D over the step; rotations of a and b have opposite effects.
 CoordinateMotion cayley_component(const Quadratic& N, const Quadratic& D, double alpha_f) {
   CoordinateMotion q;
   q.at_n = N.at_n / D.at_n;
@@ -49,7 +49,7 @@ CoordinateMotion cayley_component(const Quadratic& N, const Quadratic& D, double
   const double d = (1.0 - alpha_f) * D.at_n + alpha_f * D.at_n1;
   const Vec3 mu = (N.alpha - c * D.alpha) / d;
   const Vec3 at_n1 = (N.n1 - q.at_n1 * D.n1) / D.at_n1;
-  // By the turn of b; D's own change acts through c̄ and D̄.
+  // By the rotation of b; D's own change enters through c̄ and D̄.
   const Mat3 shared = -alpha_f / d * (D.alpha * at_n1.transpose() + mu * D.n1.transpose());
   const Mat3 by_b = (N.by_b - c * D.by_b) / d + shared;
   const Mat3 by_a = (N.by_a - c * D.by_a) / d - shared;
@@ -179,7 +179,7 @@ std::vector<double> Bushing::report(const PairStep& step) const {
   evaluate(step, t);
   Vec6 end;
   for (int k = 0; k < 6; ++k) end[k] = y[static_cast<std::size_t>(k)].at_n1;
-  // On b, or the opposite of what acts on a, moved to b's point.
+  // On b, or the opposite of the wrench on a, moved to b's point.
   const bool from_b = step.b.moves;
   const Vec3 force = from_b ? Vec3(t.wrench_b.head<3>()) : Vec3(-t.wrench_a.head<3>());
   const Vec3 arm =

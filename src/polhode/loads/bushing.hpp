@@ -11,22 +11,22 @@ namespace polhode {
 /// An elastic bushing between a frame on a and one on b: y = (d, c), the displacement of b's point
 /// along a's axes and the Cayley vector of the relative rotation, 2 tan(θ/2) about its axis.
 ///
-/// The generalised force is K ȳ + C ẏ, with laws of single components beside it, by the discrete
-/// gradient of y: c is a quotient N/D of quadratic functions, so that D̄ Δc = ΔN − c̄ ΔD without
-/// error, and the potential ½ yᵀK y is given back to the last digit at ρ∞ = 1. @eq{bushing-cayley}
+/// The generalised force is K ȳ + C ẏ, plus laws of single components, by the discrete gradient of
+/// y: c is a quotient N/D of quadratic functions, so that D̄ Δc = ΔN − c̄ ΔD without error, and the
+/// potential ½ yᵀK y is exactly conserved at ρ∞ = 1. @eq{bushing-cayley}
 class Bushing : public InteractionItem {
  public:
   static constexpr const char* kKind = "bushing";
-  /// @param load  Frames; matrices stiffness_matrix and damping_matrix, or the values behind their
-  ///              diagonals; laws of the components.
+  /// @param load  Frames; matrices stiffness_matrix and damping_matrix, or the values of their
+  /// diagonals; laws of the components.
   explicit Bushing(const LoadDescription& load);
 
   [[nodiscard]] bool conservative() const { return C_.isZero(0.0); }
   [[nodiscard]] bool dissipates() const { return !C_.isZero(0.0); }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] and moment [N m] on b, at its point; displacement [m] and rotation
-  /// [-] along a's axes; energy stored [J].
+  /// Report at an instant: force [N] and moment [N m] on b, at its point; displacement [m] and
+  /// rotation [-] along a's axes; energy stored [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
 
  private:

@@ -52,7 +52,7 @@ Vec6 velocity_alpha(const BodyStep& body) {
   return (Vec6() << body.velocity_alpha(), body.omega_alpha()).finished();
 }
 
-/// μ by the tangent of the body's velocities at t_{n+αf}.
+/// μ through the tangent of the body's velocities at t_{n+αf}.
 Vec6 through_velocity(const BodyStep& body, const Vec6& mu) {
   Vec6 by;
   by << body.alpha_f * body.rate * mu.head<3>(),

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// A free coordinate of a joint: its angle, turns counted, or its displacement.
+/// A free coordinate of a joint: its angle with counted turns, or its displacement.
 using JointCoordinate = std::variant<FreeAngle, FreeDisplacement>;
 
-/// A coordinate of the relative motion of two bodies over a step, in the form that all forces along
-/// it need: μ·(Δq_a, Δq_b) is its change over the step exactly at ρ∞ = 1.
+/// A coordinate of the relative motion of two bodies over a step, with the derivatives needed by
+/// all forces along it: μ·(Δq_a, Δq_b) is its change over the step exactly at ρ∞ = 1.
 struct CoordinateMotion {
   double at_n = 0.0, at_alpha = 0.0, at_n1 = 0.0;
   Vec6 mu_a, mu_b;              ///< Discrete gradient by (r, θ) of a, of b.
@@ -20,20 +20,20 @@ struct CoordinateMotion {
   Vec6 at_n1_a, at_n1_b;        ///< D of at_n1.
   Mat6 D_aa, D_ab, D_ba, D_bb;  ///< D_ij: of mu_i by the increment of j.
 
-  /// The same with the roles of the bodies exchanged.
+  /// The coordinate motion with exchanged roles of the bodies.
   [[nodiscard]] CoordinateMotion exchanged() const {
     return {at_n,    at_alpha, at_n1, mu_b, mu_a, alpha_b, alpha_a,
             at_n1_b, at_n1_a,  D_bb,  D_ba, D_ab, D_aa};
   }
 };
 
-/// The coordinate over a step with its tangents. @eq{free-angle-gradient} @eq{joint-plane}
-/// @param at_n  Angle at t_n, turns counted; a displacement needs none.
+/// Coordinate over a step with its tangents. @eq{free-angle-gradient} @eq{joint-plane}
+/// @param at_n  Angle at t_n with counted turns; not used for a displacement.
 [[nodiscard]] CoordinateMotion coordinate_motion(const JointCoordinate& coordinate,
                                                  const BodyStep& a, const BodyStep& b, double at_n,
                                                  bool conserving);
 
-/// Value at t_{n+1}. @param near  An angle near which the turn is chosen.
+/// Value at t_{n+1}. @param near  Angle to which the number of turns is matched.
 [[nodiscard]] double coordinate_at_n1(const JointCoordinate& coordinate, const BodyStep& a,
                                       const BodyStep& b, double near);
 [[nodiscard]] double coordinate_rate_at_n1(const JointCoordinate& coordinate, const BodyStep& a,

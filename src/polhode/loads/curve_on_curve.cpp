@@ -11,10 +11,10 @@ namespace {
 using contact::Dual;
 using Vec4 = CurvePair::Vec4;
 
-/// Steps shorter than this part of the curves have the gradient of their middle: what that leaves
-/// of the work is below round-off, and quotients would lose digits.
+/// Length of steps, as a part of the curves, below which the gradient is that of the middle: the
+/// error of the work is below round-off, and quotients would lose digits.
 constexpr double kShortPart = 1e-5;
-/// c² + s² is the square of the cosine between the planes' normals where one is tilted.
+/// Smallest c² + s², the squared cosine between the planes' normals if one is tilted.
 constexpr double kMinSquare = 0.99;
 
 /// Four numbers with their derivatives.
@@ -22,7 +22,7 @@ using Dual4 = std::array<Dual, 4>;
 
 Vec4 values_of(const Dual4& q) { return {q[0].v, q[1].v, q[2].v, q[3].v}; }
 
-/// The gradient with the derivatives that it has at q.
+/// Gradient with its derivatives at q.
 Dual4 gradient_at(const CurvePair::Distance& d, const Dual4& q) {
   Dual4 result;
   for (int i = 0; i < 4; ++i) {
@@ -93,7 +93,7 @@ void CurveOnCurve::evaluate(const PairStep& step, PairTerms& t) const {
   for (std::size_t i = 0; i < 4; ++i)
     at_end += d_n1.gradient[static_cast<int>(i)] * (q[i] - q[i].v);
   Dual4 gradient = gradient_at(curves_.distance(values_of(between), near), between);
-  // Cosine and sine count as the way of a place at a distance of the curves' size.
+  // Cosine and sine count as the displacement of a point at a distance of the curves' size.
   const double weight[4] = {1.0, 1.0, size * size, size * size};
   Dual square, expected;
   for (std::size_t i = 0; i < 4; ++i) {

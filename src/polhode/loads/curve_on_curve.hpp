@@ -6,28 +6,25 @@
 
 namespace polhode {
 
-/// A cam on a cam: two curves in planes that stay parallel, one on each body, touch each other and
-/// slide freely.
+/// Cam on cam: two curves in planes that stay parallel, one on each body, in frictionless contact.
 ///
-/// Its row is their distance, a function of two displacements that are quadratic themselves and of
-/// the cosine and sine of an angle, which are products of directions: by Gonzalez its discrete
-/// gradient is that at the middle of the step and a part along the step that makes its change
-/// exact. So the force does no work, and acts on both bodies along one line. @eq{curves-distance}
-/// @eq{curves-gradient}
+/// Its row is their distance, a function of two quadratic displacements and of the cosine and sine
+/// of an angle, which are products of directions. Its discrete gradient (Gonzalez) is that at the
+/// middle of the step plus a part along the step that makes its change exact. So the force does no
+/// work, and acts on both bodies along one line. @eq{curves-distance} @eq{curves-gradient}
 class CurveOnCurve : public InteractionItem {
  public:
   static constexpr const char* kKind = "curve_on_curve";
   /// @param load  Points; x, y of the planes are those of R_a, R_b; laws curve_x, curve_y, values
-  ///              period and open for a curve with ends, each also with other_ before it; word
-  ///              side.
+  /// period and open for a curve with ends, each also with the prefix other_; word side.
   explicit CurveOnCurve(const LoadDescription& load);
 
   [[nodiscard]] int rows() const { return 1; }
-  [[nodiscard]] int history_size() const { return 2; }  ///< s of both places.
+  [[nodiscard]] int history_size() const { return 2; }  ///< s of both contact points.
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
-  /// At an instant: force on b [N], s on a's and on b's curve, force along the normal [N], speed at
-  /// which b slides along a's direction of s [m/s], where they touch [m].
+  /// Report at an instant: force on b [N], s on a's and on b's curve, force along the normal [N],
+  /// sliding speed of b along a's direction of s [m/s], contact point [m].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;

@@ -12,21 +12,23 @@ namespace {
 using Vec2 = PlanarCurve::Vec2;
 
 constexpr int kMaxPlaces = 60;
-/// Longest step of a search along the second curve, as a part of it.
+/// Longest step of the search along the second curve, as a part of it.
 constexpr double kLongestPlaceStep = 0.02;
-/// After a step of this part of the curve the search has converged, by its quadratic order.
+/// Step, as a part of the curve, after which the search has converged, by its quadratic order.
 constexpr double kLastPlaceStep = 1e-9;
-/// Relative curvature, by that of curves of their size, below which curves fit each other.
+/// Relative curvature, in units of that of curves of their size, below which the curves are
+/// conforming.
 constexpr double kFits = 1e-3;
-/// Longest way of a place in a step, as part of the curve: shorter steps make it shorter, unless it
-/// jumps.
+/// Largest displacement of a contact point in a step, as a part of the curve: a shorter step makes
+/// it shorter, unless the contact point jumps.
 constexpr double kLongestWay = 0.1;
-/// Places that are looked at between two, if these are farther apart than this part of the curve,
-/// and how much the distance may fall in between, as part of the curves' size: rounding.
+/// Number of positions tested between two contact points, if these are farther apart than this part
+/// of the curve, and decrease of the distance in between that is rounding, as a part of the curves'
+/// size.
 constexpr int kBetween = 16;
 constexpr double kNearPlaces = 1e-4, kRoundedDistance = 1e-12;
 
-/// X turned by a quarter of a turn.
+/// X rotated by a quarter of a turn.
 Vec2 quarter(const Vec2& X) { return {-X.y(), X.x()}; }
 
 }  // namespace
@@ -44,7 +46,7 @@ CurvePair::Distance CurvePair::distance(const Vec4& q, const Places& near) const
     const Vec2 slope = turned(p.slope);
     along = d.tangent.dot(slope);
     bend = d.normal.dot(turned(p.second)) + d.curvature * along * along;
-    // Where the curves fit each other, downhill at the pace of curves of their size.
+    // For conforming curves: descent with the step of curves of their size.
     const double pace = p.slope.squaredNorm() / size();
     least = kFits * pace;
     const double step = -d.normal.dot(slope) / (bend > least ? bend : pace);
@@ -88,7 +90,7 @@ bool CurvePair::leads_to(const Vec4& q, const Places& from, const Places& to) co
 
 CurvePair::Places CurvePair::first(const Vec4& q) const {
   const int count = static_cast<int>(b_.samples().size()) - 1;
-  // Every fourth sample: the search between them ends in the least distance on either side.
+  // Every fourth sample: the search between them converges to the smallest distance on either side.
   constexpr int kStride = 4;
   std::vector<Places> places;
   std::vector<double> heights;

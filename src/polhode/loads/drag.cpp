@@ -19,7 +19,7 @@ void Drag::evaluate(const PairStep& step, PairTerms& t) const {
   const double af = b.alpha_f;
   const Vec3 v = b.velocity_alpha(), omega = b.omega_alpha();
   const double size = v.norm(), c = linear_ + per_mass_ * mass_ + quadratic_ * size;
-  // The inertia as the mean of both ends: no moment ever pushes.
+  // Mean of the inertia at both ends: the moment never does positive work.
   const Mat3 J_n1 = b.Lambda_n1 * inertia_ * b.Lambda_n1.transpose();
   const Mat3 J = (1.0 - af) * b.Lambda_n * inertia_ * b.Lambda_n.transpose() + af * J_n1;
   t.wrench_b << -c * v, -turning_ * omega - per_mass_ * (J * omega);

@@ -6,8 +6,8 @@
 namespace polhode {
 
 /// Resistance of a medium at rest to a body: force −(c_1 + c_2 |v| + α m) v at its centre of mass,
-/// moment −(c_θ + α J) ω, with mean velocities of the step: it takes F·Δr + M·θ, never less than
-/// nothing. α is mass-proportional damping. @eq{drag-law}
+/// moment −(c_θ + α J) ω, with mean velocities of the step: it dissipates −(F·Δr + M·θ) ≥ 0. α is
+/// mass-proportional damping. @eq{drag-law}
 class Drag : public InteractionItem {
  public:
   static constexpr const char* kKind = "drag";
@@ -19,7 +19,7 @@ class Drag : public InteractionItem {
   [[nodiscard]] bool dissipates() const { return true; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] and moment [N m].
+  /// Report at an instant: force [N] and moment [N m].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
 
  private:
@@ -27,8 +27,8 @@ class Drag : public InteractionItem {
   Mat3 inertia_;
 };
 
-/// A damper between points that resists all of their relative velocity, and the relative rotation:
-/// force −c u̇, moment −c_θ (ω_b − ω_a). @eq{drag-law}
+/// Damper between points against all of their relative velocity, and the relative rotation: force
+/// −c u̇, moment −c_θ (ω_b − ω_a). @eq{drag-law}
 class VectorDamper : public InteractionItem {
  public:
   static constexpr const char* kKind = "vector_damper";
@@ -39,7 +39,7 @@ class VectorDamper : public InteractionItem {
   [[nodiscard]] bool dissipates() const { return true; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] and moment [N m] on b at its point.
+  /// Report at an instant: force [N] and moment [N m] on b at its point.
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
 
  private:

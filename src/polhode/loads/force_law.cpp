@@ -9,14 +9,14 @@ namespace polhode {
 
 namespace {
 
-/// Halvings that leave nothing of an interval but round-off.
+/// Number of halvings after which an interval is round-off.
 constexpr int kMaxHalvings = 44;
 /// Part of the largest value below which two estimates agree.
 constexpr double kAgree = 4e-16;
-/// Steps shorter than this part of x have no difference quotient worth the name.
+/// Length of steps, as a part of x, below which difference quotients are inaccurate.
 constexpr double kShort = 1e-6;
 
-/// Ways shorter than this part of x take the mean of V' instead of the quotient of V.
+/// Displacement, as a part of x, below which the mean of V' replaces the quotient of V.
 constexpr double kShortWay = 1e-4;
 
 /// V'(x) of a potential.
@@ -52,7 +52,7 @@ Estimate gauss(const TimeFunction& f, double p, double q) {
   return e;
 }
 
-/// @param part  Of the whole interval: what is wrong here counts so much.
+/// @param part  Of the whole interval: the weight of errors here.
 double refine(const TimeFunction& f, double p, double q, const Estimate& whole, double part,
               double size, int halvings) {
   const double m = 0.5 * (p + q);
@@ -72,7 +72,7 @@ double sign_of(double x) { return x < 0.0 ? -1.0 : 1.0; }
 double mean_value(const TimeFunction& f, double p, double q) {
   if (p == q || f.is_constant()) return f(q);
   const double low = std::min(p, q), high = std::max(p, q);
-  // A kink near the end of an interval is between Gauss's points: pieces end at kinks.
+  // A kink near the end of an interval lies between Gauss points: intervals end at kinks.
   double sum = 0.0;
   for (double from = low; from < high;) {
     const TimeBreak kink = f.next_break(from, high);
@@ -97,7 +97,7 @@ ForceLaw::ForceLaw(const LoadDescription& load, const std::string& law)
                                   : Acts::both;
 }
 
-/// k (p + q)/2 + k₂ (p² + pq + q²)/3 + K/(pq): between points of one sign.
+/// k (p + q)/2 + k₂ (p² + pq + q²)/3 + K/(pq): between points of the same sign.
 double ForceLaw::mean_on_one_side(double p, double q) const {
   const double x = p + q;
   if (!acts_on(x)) return 0.0;

@@ -11,8 +11,8 @@ struct LawValue {
   double slope = 0.0;
 };
 
-/// A force f(x) with a potential: k x + k₂ |x| x, K/x², and a table or an expression beside it, or
-/// the derivative of a given potential; on both sides of x = 0 or on one only.
+/// A force f(x) with a potential: k x + k₂ |x| x, K/x², plus a table or an expression, or the
+/// derivative of a given potential; on both sides of x = 0 or on one only.
 ///
 /// Over a step it is the mean of f from x_{n+1} − 2(1 − αf) Δx to x_{n+1}: at ρ∞ = 1 the force
 /// times Δx is the change of the potential, and at αf = 1 it is f(x_{n+1}). @eq{law-mean}
@@ -22,10 +22,10 @@ class ForceLaw {
 
   ForceLaw() = default;
   /// @param load  Values stiffness, quadratic and inverse_square, a law of this name or the law
-  ///              `energy` for the potential, the word `acts`.
+  /// `energy` for the potential, the word `acts`.
   ForceLaw(const LoadDescription& load, const std::string& law);
 
-  /// The force over a step from x_n to x_n1.
+  /// Force over a step from x_n to x_n1.
   [[nodiscard]] LawValue over_step(double x_n, double x_n1, double alpha_f) const;
   [[nodiscard]] LawValue at(double x) const;    ///< f(x) and f'(x).
   [[nodiscard]] double energy(double x) const;  ///< ∫ f from 0 to x.
@@ -40,11 +40,11 @@ class ForceLaw {
 
   double k_ = 0.0, k_2_ = 0.0, K_ = 0.0;
   TimeFunctionPtr f_;
-  TimeFunctionPtr V_;  ///< Potential of f_ if that is what is given, else null.
+  TimeFunctionPtr V_;  ///< Potential of f_ if that is given, else null.
   Acts acts_ = Acts::both;
 };
 
-/// A resistance c v with a table or an expression of v beside it, which must not push along v.
+/// A resistance c v plus a table or an expression of v, which must oppose v.
 class ResistanceLaw {
  public:
   ResistanceLaw() = default;
@@ -60,8 +60,8 @@ class ResistanceLaw {
   TimeFunctionPtr f_;
 };
 
-/// Mean of a function over [p, q] to round-off: Gauss's rule between the kinks that the function
-/// knows of, on intervals that are halved.
+/// Mean of a function over [p, q] to round-off: Gauss's rule between the kinks reported by the
+/// function, on intervals that are halved.
 [[nodiscard]] double mean_value(const TimeFunction& f, double p, double q);
 
 }  // namespace polhode

@@ -17,7 +17,7 @@ FreeDisplacement along(const GearCoordinate& c, const Vec3& direction) {
   return {c.displacement.Z_a, c.displacement.Z_b, direction};
 }
 
-/// Angle of the wheel (the first body) against the line of centres, −atan2(S, C), of constant
+/// Angle of the wheel (the first body) relative to the line of centres, −atan2(S, C), of constant
 /// length ρ: with x = ½Δ, μ = −(x/sin x)(cos φ ∇S − sin φ ∇C)/ρ is its discrete gradient.
 /// @eq{gear-angle}
 CoordinateMotion centres_step(const GearCoordinate& c, const BodyStep& a, const BodyStep& b,
@@ -61,7 +61,8 @@ CoordinateMotion centres_step(const GearCoordinate& c, const BodyStep& a, const 
   return q;
 }
 
-/// Angle against a direction that stands off the wheel's plane: its part in the plane is ρ.
+/// Angle relative to a direction outside the wheel's plane: its projection on the plane has length
+/// ρ.
 CoordinateMotion axes_step(const GearCoordinate& c, const BodyStep& a, const BodyStep& b,
                            double at_n, double rho, bool conserving) {
   CoordinateMotion q = coordinate_motion(c.angle, a, b, at_n, conserving);
@@ -113,7 +114,7 @@ struct Ends {
   const BodyStep &from, &to;
 };
 
-/// Sides of the coordinate put where its bodies are: what is on the ground goes.
+/// Coordinate with its sides assigned to bodies; the ground's side is dropped.
 CoordinateMotion placed(const GearCoordinate& c, const CoordinateMotion& q) {
   if (c.from == 1 && c.to == 2) return q;
   if (c.from == 2 && c.to == 1) return q.exchanged();
@@ -144,7 +145,8 @@ CoordinateMotion Gear::coordinate(int i, const PairStep& step) const {
       return placed(c, coordinate_motion(c.displacement, e.from, e.to, 0.0, conserving));
     case Kind::centres:
       return placed(c, centres_step(c, e.from, e.to, at_n, rho));
-    case Kind::axes:  // the angle of the other's axis, seen from the wheel, falls as it turns
+    // the angle of the other's axis relative to the wheel decreases as the wheel turns
+    case Kind::axes:
       return negative(
           placed(c, axes_step(c, e.from, e.to, -at_n, rho > 0.0 ? rho : 1.0, conserving)));
     case Kind::angle:
@@ -161,7 +163,7 @@ double Gear::rate(int i, const PairStep& step) const {
   return q.at_n1_a.dot(v_a) + q.at_n1_b.dot(v_b);
 }
 
-/// Part of the second derivative that the velocities give.
+/// Part of the second derivative due to the velocities.
 double Gear::acceleration(int i, const PairStep& step) const {
   const GearCoordinate& c = pair_.coordinate[static_cast<std::size_t>(i)];
   const Ends e(c, step);
@@ -191,7 +193,7 @@ void Gear::evaluate(const PairStep& step, PairTerms& t) const {
   add_force(y, -ratio_ * lambda, step, t);
   const double* first = step.history + kFirst;
   t.g[0] = step.history[kStarted] == 0.0
-               ? 0.0  // before the start is assembled the constant is not known
+               ? 0.0  // before assembly of the start the constant is not known
                : (x.at_n1 - first[0]) - ratio_ * (y.at_n1 - first[1]);
   t.B_a.col(0) = x.mu_a - ratio_ * y.mu_a;
   t.B_b.col(0) = x.mu_b - ratio_ * y.mu_b;

@@ -6,12 +6,12 @@
 
 namespace polhode {
 
-/// A gear: two coordinates in a ratio, turns counted, x_0 = ratio·x_1 + constant, as one row with
-/// the sum of their discrete gradients, so that it does no work at ρ∞ = 1. @eq{gear-row}
+/// A gear: two coordinates with counted turns in a ratio, x_0 = ratio·x_1 + constant, as one row
+/// with the sum of their discrete gradients, so that it does no work at ρ∞ = 1. @eq{gear-row}
 ///
-/// The coordinates are those of joints where at most two moving bodies take part. Wheels on a
-/// carrier that moves are seen from each other: their angles are counted from the line of centres
-/// or, where their axes are not parallel, from the other's axis. @eq{gear-angle}
+/// The coordinates are those of joints if at most two moving bodies take part. Wheels on a moving
+/// carrier refer to each other: their angles are counted from the line of centres or, if their axes
+/// are not parallel, from the other's axis. @eq{gear-angle}
 class Gear : public InteractionItem {
  public:
   static constexpr const char* kKind = "gear";
@@ -23,16 +23,17 @@ class Gear : public InteractionItem {
   [[nodiscard]] Coupling coupling() const { return Coupling::all; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
-  /// At an instant: force or moment on the second body along x_0, and that along x_1; x_0 and x_1
-  /// as they have grown since the start; power that flows from x_0 to x_1 [W].
+  /// Report at an instant: force or moment on the second body along x_0, and that along x_1;
+  /// changes of x_0 and x_1 since the start; power from x_0 to x_1 [W].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
-  /// Its coordinates count from where they stand then.
+  /// Activates the gear; its coordinates count from their present values.
   void switch_on(const PairStep& step, double* history) const { initialize(step, history); }
 
  private:
-  /// Coordinates at t_n and at the start, the radii they are seen at, and 1 once these are known.
+  /// Layout of the history: coordinates at t_n and at the start, the radii of their angles, and 1
+  /// once these are known.
   enum History : int { kNow = 0, kFirst = 2, kRadius = 4, kStarted = 6, kHistory };
 
   [[nodiscard]] CoordinateMotion coordinate(int i, const PairStep& step) const;

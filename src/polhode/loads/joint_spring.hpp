@@ -6,11 +6,11 @@
 
 namespace polhode {
 
-/// A spring and damper along a free coordinate q of a joint, turns counted.
+/// A spring and damper along a free coordinate q of a joint with counted turns.
 ///
-/// The force on b along q is −f(q − q_0) − d(q̇) by the discrete gradient of q: at ρ∞ = 1 the spring
-/// gives back exactly what it stored, the damper takes d(q̇) q̇ Δt. @eq{torsion-gradient}
-/// @eq{law-mean}
+/// The force on b along q is −f(q − q_0) − d(q̇) by the discrete gradient of q: at ρ∞ = 1 the
+/// spring conserves its energy exactly, and the damper dissipates d(q̇) q̇ Δt.
+/// @eq{torsion-gradient} @eq{law-mean}
 class JointSpring : public InteractionItem {
  public:
   /// @param load  Its angle or displacement; values stiffness, quadratic, damping; laws.
@@ -24,8 +24,8 @@ class JointSpring : public InteractionItem {
   }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] or moment [N m] on b, coordinate, turns counted, its rate, energy
-  /// [J].
+  /// Report at an instant: force [N] or moment [N m] on b, coordinate with counted turns, its rate,
+  /// energy [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
@@ -41,14 +41,14 @@ class JointSpring : public InteractionItem {
   ResistanceLaw damper_;
 };
 
-/// Values stiffness [N m/rad], quadratic [N m/rad²], damping [N m s/rad], free_angle [rad]; laws
-/// spring_moment, damper_moment.
+/// Torsional spring: values stiffness [N m/rad], quadratic [N m/rad²], damping [N m s/rad],
+/// free_angle [rad]; laws spring_moment, damper_moment.
 struct TorsionalSpring : JointSpring {
   static constexpr const char* kKind = "torsional_spring";
   explicit TorsionalSpring(const LoadDescription& load) : JointSpring(load, "free_angle") {}
 };
-/// Values stiffness [N/m], quadratic [N/m²], damping [N s/m], free_displacement [m]; laws
-/// spring_force, damper_force.
+/// Translational spring: values stiffness [N/m], quadratic [N/m²], damping [N s/m],
+/// free_displacement [m]; laws spring_force, damper_force.
 struct TranslationalSpring : JointSpring {
   static constexpr const char* kKind = "translational_spring";
   explicit TranslationalSpring(const LoadDescription& load)

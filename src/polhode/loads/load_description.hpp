@@ -16,13 +16,13 @@
 
 namespace polhode {
 
-/// A coordinate of a gear: that of a joint, or the angle of one wheel against the other.
+/// A coordinate of a gear: that of a joint, or the angle of one wheel relative to the other.
 struct GearCoordinate {
   enum class Kind {
     angle,         ///< `angle`, between the bodies named.
     displacement,  ///< `displacement`, likewise.
-    centres,       ///< Angle of the wheel against the line of centres.
-    axes           ///< Angle of the wheel against the other wheel's axis.
+    centres,       ///< Angle of the wheel relative to the line of centres.
+    axes           ///< Angle of the wheel relative to the other wheel's axis.
   };
   Kind kind = Kind::angle;
   int from = 0, to = 0;  ///< Its bodies: 0 the ground, 1 the gear's a, 2 its b.
@@ -30,27 +30,28 @@ struct GearCoordinate {
   FreeDisplacement displacement{};
 };
 
-/// Ratio that a gear keeps: x_0 = ratio·x_1 + constant.
+/// Ratio of a gear: x_0 = ratio·x_1 + constant.
 struct GearPair {
   std::array<GearCoordinate, 2> coordinate;
 };
 
-/// A load with its bodies numbered: what a kind of load is built from.
+/// Input for building any kind of load: a load with its bodies numbered.
 struct LoadDescription {
   std::string name;
   Participants bodies;                             ///< Single-body loads act on b.
   Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();     ///< Points from the centres of mass [m].
-  bool body_fixed = false;                         ///< Components turn with the body.
+  bool body_fixed = false;                         ///< Components rotate with the body.
   TimeVector vector{};                             ///< Force [N] or moment [N m]; empty is zero.
   std::map<std::string, double> values{};          ///< Parameters by name, SI.
   std::optional<FreeAngle> angle{};                ///< Of the joint that the load acts in.
   std::optional<FreeDisplacement> displacement{};  ///< Likewise.
   TimeFunctionPtr function{};                      ///< Of a motor.
-  std::string drive{};                             ///< What that is: key of LoadKind::drives.
-  double start_length = 0.0;                       ///< Distance of the points at the start [m].
-  std::map<std::string, TimeFunctionPtr> laws{};   ///< Functions of a coordinate or rate by key.
-  std::map<std::string, std::string> words{};      ///< Choices by key.
-  std::map<std::string, Mat6> matrices{};          ///< By key.
+  /// Kind of that function: key of LoadKind::drives.
+  std::string drive{};
+  double start_length = 0.0;                      ///< Distance of the points at the start [m].
+  std::map<std::string, TimeFunctionPtr> laws{};  ///< Functions of a coordinate or rate by key.
+  std::map<std::string, std::string> words{};     ///< Choices by key.
+  std::map<std::string, Mat6> matrices{};         ///< By key.
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing on its bodies.
   double mass_a = 0.0, mass_b = 0.0;                    ///< Of the bodies; 0 for the ground [kg].
   Mat3 inertia_b = Mat3::Zero();   ///< Of b about its centre of mass, body axes [kg m²].
@@ -85,12 +86,12 @@ struct LoadDescription {
   return v;
 }
 
-/// The vector over a step: at t_{n+αf}, times the load factor of statics.
+/// Vector over a step: at t_{n+αf}, times the load factor of statics.
 [[nodiscard]] inline Vec3 evaluate(const TimeVector& f, const StepContext& step) {
   return step.load_factor * evaluate(f, step.t_alpha());
 }
 
-/// A vector and numbers in one list: what loads report.
+/// A vector and numbers in one list, as reported by loads.
 [[nodiscard]] inline std::vector<double> numbers(const Vec3& v,
                                                  std::initializer_list<double> more = {}) {
   std::vector<double> list(v.data(), v.data() + 3);

@@ -49,7 +49,7 @@ CoordinateFunction placed(const CoordinateFunction& f, double sense) {
   CoordinateFunction g;
   g.reads_velocity = f.reads_velocity;
   g.value = [=](const CoordinateReading& x) { return sense * f.value(read(x)); };
-  if (f.derivative)  // both the coordinate and what acts along it change their signs
+  if (f.derivative)  // both the coordinate and the force along it change sign
     g.derivative = [=](const CoordinateReading& x) { return f.derivative(read(x)); };
   return g;
 }

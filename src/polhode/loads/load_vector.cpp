@@ -9,17 +9,17 @@ namespace polhode {
 
 namespace {
 
-/// A small move over a length or an angle: about the square root of round-off.
+/// Small displacement over a length, or a small angle: about the square root of round-off.
 constexpr double kSmallMove = 1e-7;
 
-/// Between two orientations; halfway it is the half turn.
+/// Interpolated orientation; at the middle half of the rotation.
 Quat mean_orientation(const Mat3& Lambda_n, const Mat3& Lambda_n1, double weight) {
   const Quat from(Lambda_n), to(Lambda_n1);
   const double sign = from.dot(to) < 0.0 ? -1.0 : 1.0;
   return Quat((1.0 - weight) * from.coeffs() + weight * sign * to.coeffs()).normalized();
 }
 
-/// How a PointReading changes with the increment (Δr, Δθ) of its body: column k is by component k.
+/// Derivative of a PointReading by the increment (Δr, Δθ) of its body: column k is by component k.
 struct ReadingTangent {
   Eigen::Matrix<double, 3, 6> position, velocity, turn, angular_velocity;
 };
@@ -67,7 +67,7 @@ LoadVector::OverStep LoadVector::over_step(const PairStep& step, const Vec3& Z) 
   OverStep s{polhode::evaluate(vector_, step.context)};
   if (function_) add_function(step, Z, s);
   if (!body_fixed_) return s;
-  // Components that turn with the body, of which the mean is taken as of any vector it carries.
+  // Components that rotate with the body are averaged like any body-fixed vector.
   const Carried carried = b.vector(s.value);
   s.value = carried.at_alpha;
   if (step.context.tangents) {

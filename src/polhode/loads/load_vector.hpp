@@ -6,9 +6,9 @@
 namespace polhode {
 
 /// Force or moment of a load on body b over a step: functions of time, and a function of the motion
-/// that code gives, with components in the world or turning with the body. Taken at t_{n+αf}: the
-/// function reads the mean point and velocities of the step and the mean orientation.
-/// @eq{callable-force}
+/// given in code, with components in the world or rotating with the body. Taken at t_{n+αf}: the
+/// arguments of the function are the mean point and velocities of the step and the mean
+/// orientation. @eq{callable-force}
 class LoadVector {
  public:
   using Mat3x6 = Eigen::Matrix<double, 3, 6>;
@@ -19,13 +19,13 @@ class LoadVector {
 
   explicit LoadVector(const LoadDescription& load);
 
-  /// @param Z  The point that a function reads, from the centre of mass, body axes [m].
+  /// @param Z  Point of the function, from the centre of mass, body axes [m].
   [[nodiscard]] OverStep over_step(const PairStep& step, const Vec3& Z) const;
   /// The value alone.
   [[nodiscard]] Vec3 value(const PairStep& step, const Vec3& Z) const;
-  /// At an instant, in full where statics counts a part of it.
+  /// Value at an instant, in full even in statics with a load factor.
   [[nodiscard]] Vec3 at_instant(const PairStep& step, const Vec3& Z) const;
-  /// A constant vector of the world: what has a potential at a point.
+  /// Whether it is a constant vector of the world, which at a point has a potential.
   [[nodiscard]] bool is_dead() const { return dead_; }
   [[nodiscard]] bool reads_velocity() const { return function_ && function_->reads_velocity; }
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const {
@@ -38,10 +38,11 @@ class LoadVector {
   TimeVector vector_;
   std::optional<PointFunction> function_;
   bool body_fixed_, dead_;
-  double length_;  ///< Radius of gyration of b [m]; 0 for point masses: what a small move is.
+  /// Radius of gyration of b [m]; 0 for point masses: the scale of small displacements.
+  double length_;
 };
 
-/// What code reads over a step of the point Z of a body.
+/// Arguments of a function over a step at the point Z of a body.
 [[nodiscard]] PointReading point_reading(const StepContext& context, const BodyStep& body,
                                          const Vec3& Z);
 
@@ -49,7 +50,7 @@ class LoadVector {
 struct CoordinateValue {
   double value = 0.0, by_value = 0.0, by_rate = 0.0;
 };
-/// @param tangents  Derivatives are wanted; by differences if the function has none.
+/// @param tangents  Computes derivatives; by differences if the function has none.
 [[nodiscard]] CoordinateValue coordinate_value(const CoordinateFunction& f,
                                                const CoordinateReading& at, bool tangents);
 

@@ -5,10 +5,10 @@
 
 namespace polhode {
 
-/// A moment on body b, with components in the world or turning with the body, taken at t_{n+αf}.
+/// A moment on body b, with components in the world or rotating with the body, taken at t_{n+αf}.
 ///
-/// Not even a constant one has a potential (turns do not commute): its work is put in.
-/// It may be a function of the motion of the centre of mass.
+/// Even a constant one has no potential (rotations do not commute): its work is external. It may be
+/// a function of the motion of the centre of mass.
 class Moment : public InteractionItem {
  public:
   static constexpr const char* kKind = "moment";

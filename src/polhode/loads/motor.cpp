@@ -71,7 +71,7 @@ void Motor::evaluate(const PairStep& step, PairTerms& t) const {
     add_force(q, rows() > 0 ? step.lambda[0] : effort(step), step, t);
   }
   if (rows() > 0) {
-    // Before the start is assembled a rate does not say where the coordinate stands.
+    // Before assembly of the start a rate does not determine the coordinate.
     const bool known = drive_ == Drive::position || step.history[kStarted] != 0.0;
     t.g[0] = known ? q.at_n1 - target(step) : 0.0;
     t.B_a.col(0) = q.mu_a;
@@ -99,7 +99,7 @@ double Motor::work_of_step(const PairStep& step) const {
   return step.lambda[0] * rows.increment[0];
 }
 
-/// Nothing for a motor with a row, whose work EnergyLedger counts.
+/// Work of the motor; zero for one with a row, whose work is counted by EnergyLedger.
 Work Motor::work(const PairStep& step) const {
   return rows() > 0 ? Work{} : Work{.put_in = work_of_step(step)};
 }

@@ -7,13 +7,12 @@
 namespace polhode {
 
 /// A motor in a joint: one of its free coordinates q has a prescribed value or rate, or a
-/// prescribed force acts along it. Forces on b act along +q, those on a against it.
+/// prescribed force acts along it. Forces on b act along +q, those on a along −q.
 ///
 /// A prescribed value c(t) is the row q − c = 0 with the discrete gradient of q, so that at ρ∞ = 1
-/// a step takes exactly λ (c_{n+1} − c_n) from the drive. A prescribed rate is integrated over each
-/// step by Gauss's rule. A force may be a function of q and its rate. @eq{drive-row}
-/// @eq{drive-work}
-/// @eq{callable-force}
+/// the drive's work in a step is exactly λ (c_{n+1} − c_n). A prescribed rate is integrated over
+/// each step by Gauss's rule. A force may be a function of q and its rate. @eq{drive-row}
+/// @eq{drive-work} @eq{callable-force}
 class Motor : public InteractionItem {
  public:
   /// Meaning of its function of time.
@@ -36,8 +35,8 @@ class Motor : public InteractionItem {
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] or moment [N m] on b, coordinate, turns counted, its rate, power [W]
-  /// and work done since the start [J].
+  /// Report at an instant: force [N] or moment [N m] on b, coordinate with counted turns, its rate,
+  /// power [W] and work since the start [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
@@ -45,12 +44,13 @@ class Motor : public InteractionItem {
   void switch_on(const PairStep& step, double* history) const { commit_off(step, history); }
 
  private:
-  /// Coordinate and prescribed value at t_n, work since the start, and 1 once these are known.
+  /// Layout of the history: coordinate and prescribed value at t_n, work since the start, and 1
+  /// once these are known.
   enum History : int { kCoordinate, kTarget, kWork, kStarted, kHistory };
 
   [[nodiscard]] CoordinateMotion coordinate(const PairStep& step) const;
   [[nodiscard]] double at_n1(const PairStep& step) const;
-  /// c(t_{n+1}).
+  /// Target value c(t_{n+1}).
   [[nodiscard]] double target(const PairStep& step) const;
   /// Prescribed force over the step [N or N m], with its derivatives.
   [[nodiscard]] CoordinateValue effort(const PairStep& step, const CoordinateMotion& q,
@@ -65,12 +65,12 @@ class Motor : public InteractionItem {
   Drive drive_;
 };
 
-/// A motor that turns.
+/// A rotary motor.
 struct RotaryMotor : Motor {
   static constexpr const char* kKind = "rotary_motor";
   using Motor::Motor;
 };
-/// A motor that pushes.
+/// A linear motor.
 struct LinearMotor : Motor {
   static constexpr const char* kKind = "linear_motor";
   using Motor::Motor;

@@ -6,8 +6,8 @@
 
 namespace polhode {
 
-/// A pair's step in numbers that know their derivatives by its twelve increments: for constraints
-/// whose tangents are long by hand.
+/// A pair's step in dual numbers with derivatives by its twelve increments, for constraints whose
+/// tangents are long by hand.
 class PairDuals {
  public:
   using Dual = contact::Dual;
@@ -34,14 +34,14 @@ class PairDuals {
   [[nodiscard]] Moved point_b(const Vec3& Z) const {
     return {step_.b.r_n + step_.b.Lambda_n * Z, b_.point(Z)};
   }
-  /// How far the material points of b and of a at the same place moved apart over the step, at
-  /// mean arms from the centres of mass.
+  /// Relative displacement over the step of the material points of b and of a at the same position,
+  /// at mean lever arms from the centres of mass.
   [[nodiscard]] Vector slip(const Vector& arm_a, const Vector& arm_b) const {
     const contact::Motion<Dual> a(step_.a, 0), b(step_.b, 6);
     return (b.u + cross(b.theta, arm_b)) - (a.u + cross(a.theta, arm_a));
   }
 
-  /// Adds a force on b at arm_b, its opposite on a at arm_a, with all its derivatives.
+  /// Adds a force on b at arm_b, and its opposite on a at arm_a, with all derivatives.
   void add(const Vector& force, const Vector& arm_a, const Vector& arm_b, PairTerms& t) const {
     add_side(force, cross(arm_b, force), 1.0, t.wrench_b, t.D_ba, t.D_bb);
     add_side(force, cross(arm_a, force), -1.0, t.wrench_a, t.D_aa, t.D_ab);
@@ -51,8 +51,8 @@ class PairDuals {
     add_side({}, moment, 1.0, t.wrench_b, t.D_ba, t.D_bb);
     add_side({}, moment, -1.0, t.wrench_a, t.D_aa, t.D_ab);
   }
-  /// Sets value, row and column of a constraint whose multiplier is a force along `direction`, and
-  /// a moment along `couple`.
+  /// Sets value, row and column of a constraint whose multiplier is a force along `direction` and a
+  /// moment along `couple`.
   void set_row(int row, const Dual& g, const Vector& direction, const Vector& arm_a,
                const Vector& arm_b, PairTerms& t, const Vec3& couple = Vec3::Zero()) const {
     const Vec3 d = contact::value(direction);

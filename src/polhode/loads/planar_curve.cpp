@@ -11,9 +11,9 @@ namespace polhode {
 
 namespace {
 
-constexpr int kSamples = 720;  ///< Of the whole curve, for sizes and first feet.
+constexpr int kSamples = 720;  ///< Of the whole curve, for sizes and initial feet.
 constexpr int kMaxSteps = 60;
-/// Longest step of a search along the curve, as a part of it.
+/// Longest step of the search along the curve, as a part of it.
 constexpr double kLongestStep = 0.02;
 
 }  // namespace
@@ -50,7 +50,7 @@ PlanarCurve::Distance PlanarCurve::distance(const Vec2& P, double near) const {
     const Vec2 d = P - p.X;
     const double first = -p.slope.dot(d), square = p.slope.squaredNorm();
     const double second = square - p.second.dot(d);
-    // Where the point is beyond the centre of curvature, downhill at the pace of a straight line.
+    // Where the point is beyond the centre of curvature: descent with the step of a straight line.
     const double step = -first / (second > 0.1 * square ? second : square);
     const double longest = kLongestStep * length_;
     s += std::clamp(step, -longest, longest);

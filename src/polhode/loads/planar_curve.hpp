@@ -17,13 +17,13 @@ class PlanarCurve {
   using Mat2 = Eigen::Matrix2d;
 
   PlanarCurve() = default;
-  /// @param x, y    Coordinates over s [m].
-  /// @param length  Where s ends, or the period of a closed curve.
-  /// @param ends    An open curve: it goes on straight beyond its ends.
-  /// @param side    +1: distances grow to the right of its direction, −1: to the left.
+  /// @param x, y  Coordinates over s [m].
+  /// @param length  Largest s, or the period of a closed curve.
+  /// @param ends  An open curve: it continues straight beyond its ends.
+  /// @param side  +1: distances are positive to the right of its direction, −1: to the left.
   PlanarCurve(TimeFunctionPtr x, TimeFunctionPtr y, double length, bool ends, double side);
 
-  /// A place of the curve.
+  /// A point of the curve.
   struct Point {
     Vec2 X, slope, second;  ///< X, X', X''.
   };
@@ -37,14 +37,14 @@ class PlanarCurve {
     double curvature = 0.0;          ///< κ/(1 + κ d) [1/m].
     double room = 1.0;               ///< 1 + κ d: 0 at the centre of curvature.
   };
-  /// @param near  s from which the foot is looked for.
+  /// @param near  s from which the search for the foot starts.
   [[nodiscard]] Distance distance(const Vec2& P, double near) const;
   /// The foot nearest to a point on the whole curve.
   [[nodiscard]] double nearest(const Vec2& P) const;
-  /// Places along the whole curve, at equal distances of s, its beginning and end among them.
+  /// Points along the whole curve, at equal intervals of s, including its ends.
   [[nodiscard]] const std::vector<Vec2>& samples() const { return samples_; }
   [[nodiscard]] double length() const { return length_; }  ///< Of s.
-  /// Within the ends of an open curve.
+  /// Whether s is within the ends of an open curve.
   [[nodiscard]] bool contains(double s) const { return !ends_ || (s >= 0.0 && s <= length_); }
   [[nodiscard]] double size() const { return size_; }  ///< Of its bounding box [m].
   [[nodiscard]] bool known() const { return x_ != nullptr; }
@@ -59,9 +59,8 @@ class PlanarCurve {
 
 struct LoadDescription;
 
-/// The curve of a load's laws curve_x and curve_y, values period and open; one that is not known
-/// where it has none.
-/// @param prefix  Before these words: "", or "other_" of a second curve.
+/// Curve from a load's laws curve_x and curve_y, values period and open; not known if it has none.
+/// @param prefix  Of these words: "", or "other_" for a second curve.
 [[nodiscard]] PlanarCurve planar_curve(const LoadDescription& load, const std::string& prefix,
                                        double side);
 

@@ -5,12 +5,12 @@
 
 namespace polhode {
 
-/// A force at a point of body b, with components in the world or turning with the body.
+/// A force at a point of body b, with components in the world or rotating with the body.
 ///
-/// It is taken at t_{n+αf}, and acts at the averaged arm, so that its work over a step at
-/// ρ∞ = 1 is exactly force times displacement of the point. A constant force in the world has
-/// the potential −f·x; any other puts work in. It may be a function of the motion of the point.
-/// @eq{ga-moment-arm}
+/// It is taken at t_{n+αf}, and acts at the averaged lever arm, so that its work over a step at ρ∞
+/// = 1 is exactly force times displacement of the point. A constant force in the world has the
+/// potential −f·x; the work of any other is external. It may be a function of the motion of the
+/// point. @eq{ga-moment-arm}
 class PointForce : public InteractionItem {
  public:
   static constexpr const char* kKind = "force";

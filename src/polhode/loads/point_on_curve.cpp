@@ -9,8 +9,8 @@ namespace {
 using contact::Dual;
 using Vec2 = PlanarCurve::Vec2;
 
-/// Steps shorter than this part of the curve have the gradient of their middle: what that leaves
-/// of the work is below round-off, and quotients would lose digits.
+/// Length of steps, as a part of the curve, below which the gradient is that of the middle: the
+/// error of the work is below round-off, and quotients would lose digits.
 constexpr double kShortStep = 1e-5;
 
 /// Two numbers with their derivatives.
@@ -18,7 +18,7 @@ struct Dual2 {
   Dual x, y;
 };
 
-/// The distance of P and its gradient with their derivatives.
+/// Distance of P and its gradient with their derivatives.
 struct DualDistance {
   DualDistance(const PlanarCurve::Distance& d, const Dual2& P) {
     const Dual dx = P.x - P.x.v, dy = P.y - P.y.v;  // no value, only derivatives

@@ -7,13 +7,13 @@
 
 namespace polhode {
 
-/// A cam: a point of b, the centre of a roller, keeps its distance from a curve in a plane that a
-/// carries.
+/// A cam: a point of b, the centre of a roller, keeps its distance from a curve in a plane fixed to
+/// a.
 ///
-/// Its row f is the signed distance of the point from the curve less the roller's radius, a
-/// function of two displacements that are quadratic themselves. By Gonzalez its discrete gradient
-/// is that at the middle of the step and a part along the step that makes its change exact.
-/// @eq{curve-distance} @eq{curve-gradient}
+/// Its row f is the signed distance of the point from the curve minus the roller's radius, a
+/// function of two quadratic displacements. Its discrete gradient (Gonzalez) is that at the middle
+/// of the step plus a part along the step that makes its change exact. @eq{curve-distance}
+/// @eq{curve-gradient}
 class PointOnCurve : public InteractionItem {
  public:
   static constexpr const char* kKind = "point_on_curve";
@@ -25,8 +25,8 @@ class PointOnCurve : public InteractionItem {
   [[nodiscard]] int history_size() const { return 1; }  ///< s of the foot.
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
-  /// At an instant: force on b [N], s of the foot, pressure angle between the force and the point's
-  /// way as seen from a's x, y, z axes: place of the point there [m].
+  /// Report at an instant: force on b [N], s of the foot, pressure angle between the force and the
+  /// point's velocity relative to a, position of the point along a's x, y, z axes [m].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// A constraint: a point of b stays on an ellipsoid that a carries, with semi-axes a_i along x, y,
-/// z of a frame; a semi-axis left out, 0, makes it a cylinder along that axis.
+/// Constraint of a point of b to an ellipsoid fixed to a, with semi-axes a_i along x, y, z of a
+/// frame; a semi-axis of 0 makes it a cylinder along that axis.
 ///
-/// Its row ½ℓ (Σ s_i²/a_i² − 1) is a sum of squares of displacements s_i, each quadratic itself: by
-/// Δ(s²) = 2 s̄ Δs its discrete gradient is ℓ Σ s̄_i ∇s_i/a_i². @eq{surface-row}
+/// Its row ½ℓ (Σ s_i²/a_i² − 1) is a sum of squares of quadratic displacements s_i: by Δ(s²) = 2 s̄
+/// Δs its discrete gradient is ℓ Σ s̄_i ∇s_i/a_i². @eq{surface-row}
 class PointOnSurface : public InteractionItem {
  public:
   static constexpr const char* kKind = "point_on_surface";
@@ -22,7 +22,7 @@ class PointOnSurface : public InteractionItem {
   [[nodiscard]] int rows() const { return 1; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
-  /// At an instant: force on b [N], place of the point along the frame's axes [m].
+  /// Report at an instant: force on b [N], position of the point along the frame's axes [m].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
 
  private:

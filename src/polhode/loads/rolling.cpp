@@ -42,8 +42,8 @@ void Rolling::evaluate(const PairStep& step, PairTerms& t) const {
   const auto mean = [](double at_n, const Dual& at_n1, double weight) {
     return (1.0 - weight) * at_n + weight * at_n1;
   };
-  // From the centre to where it touches: −R m − ρ k, with m the direction in the wheel that is
-  // nearest to k. Means of cosine and sine make it the arm of the discrete gradient.
+  // From the centre to the contact point: −R m − ρ k, with m the direction in the wheel's plane
+  // nearest to k. Means of cosine and sine make it the lever arm of the discrete gradient.
   const auto to_edge = [&](double weight) -> Vector {
     const Vector k_mean = k.mean(weight);
     Vector down = Dual(-edge_) * k_mean;
@@ -68,13 +68,13 @@ void Rolling::evaluate(const PairStep& step, PairTerms& t) const {
   clear_ground_sides(step, t);
 }
 
-/// Where it touches at an instant, and how that place moves on both bodies.
+/// Contact point at an instant, and its motion on both bodies.
 struct Rolling::Place {
   Vec3 k, point;          ///< Normal; world [m].
   Vec3 arm_a, arm_b;      ///< From the centres of mass [m].
   Vec3 along_a, along_b;  ///< Their derivatives by time [m/s].
   Vec3 slip;              ///< Of the material points [m/s].
-  double sine = 1.0;      ///< Of the angle between axle and normal.
+  double sine = 1.0;      ///< Sine of the angle between axle and normal.
 };
 
 Rolling::Place Rolling::place(const PairStep& step) const {
@@ -102,7 +102,8 @@ Rolling::Place Rolling::place(const PairStep& step) const {
   return p;
 }
 
-/// All three rows forbid the relative velocity of the points that touch, along k, e_1, e_2.
+/// Acceleration terms. All three rows forbid the relative velocity of the points in contact, along
+/// k, e_1, e_2.
 void Rolling::acceleration_terms(const PairStep& step, Vec6& gamma) const {
   const Place p = place(step);
   const Vec3 omega_a = step.a.Lambda_n1 * step.a.W_n1, omega_b = step.b.Lambda_n1 * step.b.W_n1;

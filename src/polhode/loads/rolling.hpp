@@ -5,12 +5,12 @@
 
 namespace polhode {
 
-/// A wheel that rolls without slip on a plane: a body with a round edge, b, touches a plane that a
-/// carries, and the material points of both move alike where it touches.
+/// A wheel that rolls without slip on a plane: a body b with a round edge is in contact with a
+/// plane fixed to a, without relative velocity of the material points in contact.
 ///
-/// The edge is a circle of radius R about the axle n, of a round bar of radius ρ: a knife edge at
-/// ρ = 0, a torus, a sphere at R = 0. One row keeps it on the plane and has an exact discrete
-/// gradient; two rows forbid slip over the step, at the arms that this gradient implies. So the
+/// The edge is a circle of radius R about the axle n, of a round bar of radius ρ: a knife edge at ρ
+/// = 0, a torus, a sphere at R = 0. One row keeps it on the plane and has an exact discrete
+/// gradient; two rows forbid slip over the step, at the lever arms implied by this gradient. So the
 /// force at the edge does no work, and acts on both bodies at one point. @eq{rolling-height}
 /// @eq{rolling-slip}
 class Rolling : public InteractionItem {
@@ -23,10 +23,10 @@ class Rolling : public InteractionItem {
   [[nodiscard]] int rows() const { return 3; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   void acceleration_terms(const PairStep& step, Vec6& gamma) const;
-  /// At an instant: force on b [N], where it touches [m], force along the normal [N].
+  /// Report at an instant: force on b [N], contact point [m], force along the normal [N].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
-  /// False where the wheel fell through the plane that it would lie flat on: there no point of its
-  /// edge is the lowest.
+  /// False if the wheel fell through the plane on which it would lie flat: no point of its edge is
+  /// then the lowest.
   [[nodiscard]] bool acceptable(const PairStep& step) const;
   [[nodiscard]] bool always_queried() const { return circle_ > 0.0; }
   [[nodiscard]] const char* refusal() const { return "a rolling wheel lies flat on its side"; }

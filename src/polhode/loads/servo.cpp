@@ -28,7 +28,7 @@ Servo::Command Servo::command(const PairStep& step, const CoordinateMotion& q) c
   const StepContext& c = step.context;
   const double af = step.a.alpha_f;
   const RateStep rate = rate_step(q, step.a, step.b);
-  // A target that jumps does so between steps.
+  // A target can jump only between steps.
   const bool still = c.dt == 0.0;
   const TimeRates from = function_->rates(c.t_n, TimeSide::kAfter);
   const TimeRates to = still ? from : function_->rates(c.t_n1(), TimeSide::kBefore);
@@ -46,7 +46,8 @@ Servo::Command Servo::command(const PairStep& step, const CoordinateMotion& q) c
     u.error_n1 = c.load_factor * to.value - q.at_n1;
     u.error = c.load_factor * ((1.0 - af) * from.value + af * to.value) - q.at_alpha;
   }
-  const double gain = k_ + k_i_ * af * c.dt;  // the integral up to t_{n+αf} holds the error at hand
+  // the integral up to t_{n+αf} contains the present error
+  const double gain = k_ + k_i_ * af * c.dt;
   u.force = gain * u.error + d_ * (wanted_rate - rate.value) + k_i_ * step.history[kIntegral];
   u.by_a = -gain * q.alpha_a - d_ * rate.by_a;
   u.by_b = -gain * q.alpha_b - d_ * rate.by_b;

@@ -6,13 +6,13 @@
 
 namespace polhode {
 
-/// A servo in a joint: a controller whose force along a free coordinate q, positive on b, brings it
-/// to a function of time c(t),
+/// A servo in a joint: a controller whose force along a free coordinate q, positive on b, makes it
+/// follow a function of time c(t),
 ///
 ///   F = k e + d ė + k_i ∫ e dt,   e = c − q,   |F| ≤ F_max,   @eq{servo-law}
 ///
 /// with means over the step. With a prescribed speed s it is ė = s − q̇ and e its integral. While
-/// the force is at its limit, what is integrated stands still. It puts in F Δq, exactly at ρ∞ = 1.
+/// the force is at its limit, the integral is held (anti-windup). Its work F Δq is exact at ρ∞ = 1.
 class Servo : public InteractionItem {
  public:
   /// @param load  Its angle or displacement, its function and drive; values stiffness, damping,
@@ -21,7 +21,7 @@ class Servo : public InteractionItem {
 
   [[nodiscard]] int history_size() const { return kHistory; }
   [[nodiscard]] bool conservative() const { return false; }
-  /// Runs backwards in time only without damping, memory and limit.
+  /// Steps backwards in time are possible only without damping, memory and limit.
   [[nodiscard]] bool dissipates() const {
     return of_speed_ || d_ != 0.0 || k_i_ != 0.0 || limit_ > 0.0;
   }
@@ -31,17 +31,18 @@ class Servo : public InteractionItem {
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {function_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force [N] or moment [N m] on b, coordinate, its rate, error, power [W] and work
-  /// since the start [J].
+  /// Report at an instant: force [N] or moment [N m] on b, coordinate, its rate, error, power [W]
+  /// and work since the start [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   void initialize(const PairStep& step, double* history) const;
   void commit(const PairStep& step, double* history) const;
   void commit_off(const PairStep& step, double* history) const;
-  /// What was integrated before is forgotten.
+  /// Activates the servo; its integral starts from zero.
   void switch_on(const PairStep& step, double* history) const;
 
  private:
-  /// Coordinate and, of a speed, error at t_n; integral of the error, work since the start.
+  /// Layout of the history: coordinate and, for a speed, error at t_n; integral of the error, work
+  /// since the start.
   enum History : int { kCoordinate, kError, kIntegral, kWork, kHistory };
   struct Command {
     double force = 0.0;

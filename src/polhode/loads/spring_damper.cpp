@@ -11,7 +11,7 @@ constexpr double kGravitation = 6.67430e-11;
 using Row12 = Eigen::Matrix<double, 1, 12>;  ///< Derivative by (Δr_a, Δθ_a, Δr_b, Δθ_b).
 using Mat3x12 = Eigen::Matrix<double, 3, 12>;
 
-/// Below this part of a metre a distance is round-off and has no direction.
+/// Distance, as a part of a metre, below which it is round-off and has no direction.
 constexpr double kNoLength = 1e-14;
 
 /// Velocity of a point of a body at t_{n+αf}, and its tangent.
@@ -26,7 +26,7 @@ Mat3 point_velocity_by_turn(const BodyStep& body, const Carried& z) {
 
 }  // namespace
 
-/// The connection over the step.
+/// Connection of the points over the step.
 struct SpringDamper::Stretch {
   Carried z_a, z_b;
   Vec3 u_alpha, u_n1, u_dot;
@@ -86,7 +86,7 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
       D_l = n.transpose() * D_u;
     else if (s.l_n1 > kNoLength)
       D_l = s.u_n1.transpose() * D_u / s.l_n1;
-    // The law's slope is by l_{n+1}; without the discrete gradient by l_α.
+    // The slope of the law is by l_{n+1}; without the discrete gradient by l_α.
     Row12 D_N =
         ((step.context.conserving ? spring.slope / af : spring.slope) + given.by_value) * D_l;
     if (!damper_.is_zero() || of_motion_) {
@@ -106,7 +106,7 @@ void SpringDamper::evaluate(const PairStep& step, PairTerms& t) const {
 
   t.wrench_b << F, s.z_b.at_alpha.cross(F);
   t.wrench_a << -F, -s.z_a.at_alpha.cross(F);
-  // Force and arm: @eq{ga-wrench-r-tangent} @eq{ga-moment-tangent}
+  // Force and lever arm: @eq{ga-wrench-r-tangent} @eq{ga-moment-tangent}
   const Mat3x12 D_m_b = hat(s.z_b.at_alpha) * D_F, D_m_a = -hat(s.z_a.at_alpha) * D_F;
   t.D_ba << D_F.leftCols<6>(), D_m_b.leftCols<6>();
   t.D_bb << D_F.rightCols<6>(), D_m_b.rightCols<6>();

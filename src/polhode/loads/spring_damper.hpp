@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// A spring and a damper, side by side, between a point of a and a point of b.
+/// A spring and a damper in parallel between a point of a and a point of b.
 ///
 /// In conserving form the length at t_{n+αf} is the average of the lengths at the ends of the
 /// step, not the length of the averaged offset u_α, and the force on b is
@@ -16,9 +16,9 @@ namespace polhode {
 /// With k (l_α − l_0) replaced by the mean of a law over the step where it is not linear
 /// @eq{law-mean}.
 ///
-/// Then l_{n+1} − l_n = u_α·Δu/l_α at ρ∞ = 1, so the spring gives back exactly what it stored
-/// and the damper takes c l̇_α² Δt ≥ 0. While the points coincide only a spring of free length
-/// zero has a direction to pull; others do not act.
+/// Then l_{n+1} − l_n = u_α·Δu/l_α at ρ∞ = 1, so the spring conserves its energy exactly and the
+/// damper dissipates c l̇_α² Δt ≥ 0. While the points coincide only a spring of free length zero
+/// has a defined force; others do not act.
 class SpringDamper : public InteractionItem {
  public:
   static constexpr const char* kKind = "spring_damper";
@@ -33,7 +33,7 @@ class SpringDamper : public InteractionItem {
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {pull_}; }
   void evaluate(const PairStep& step, PairTerms& terms) const;
   [[nodiscard]] Work work(const PairStep& step) const;
-  /// At an instant: force on b [N], length [m], its rate [m/s], energy stored [J].
+  /// Report at an instant: force on b [N], length [m], its rate [m/s], energy stored [J].
   [[nodiscard]] std::vector<double> report(const PairStep& step) const;
   /// Distance of the points at t_{n+1} [m].
   [[nodiscard]] double length(const PairStep& step) const;
@@ -41,7 +41,7 @@ class SpringDamper : public InteractionItem {
  private:
   struct Stretch;
   [[nodiscard]] Stretch stretch(const PairStep& step) const;
-  /// Given force that draws the points together [N], with its derivatives by length and rate.
+  /// Given attractive force between the points [N], with its derivatives by length and rate.
   [[nodiscard]] CoordinateValue pull(const PairStep& step, const Stretch& s, bool tangents) const;
   [[nodiscard]] LawValue tension(const PairStep& step, const Stretch& s) const;
 
@@ -49,12 +49,11 @@ class SpringDamper : public InteractionItem {
   double l_0_;
   ForceLaw spring_;
   ResistanceLaw damper_;
-  TimeFunctionPtr pull_;  ///< Force that draws the points together [N], or null.
+  TimeFunctionPtr pull_;  ///< Attractive force between the points [N], or null.
   std::optional<CoordinateFunction> of_motion_;  ///< Likewise, of length and rate.
 };
 
-/// A given force along the line between two points, positive where it draws them together, with a
-/// damper beside it.
+/// A given force along the line between two points, positive if attractive, plus a damper.
 struct AxialForce : SpringDamper {
   static constexpr const char* kKind = "axial_force";
   using SpringDamper::SpringDamper;
@@ -77,7 +76,7 @@ struct PotentialForce : SpringDamper {
 void add_potential_force(System& system, const LoadDescription& load);
 void add_axial_force(System& system, const LoadDescription& load);
 void add_attraction(System& system, const LoadDescription& load);
-/// Adds a SpringDamper to the system. free_length left out is the distance at the start.
+/// Adds a SpringDamper to the system. Without free_length it is the distance at the start.
 void add_spring_damper(System& system, const LoadDescription& load);
 
 }  // namespace polhode

@@ -14,7 +14,7 @@ namespace polhode {
 ///
 /// @param chi  Cayley vector χ = 2 tan(angle/2) n [-]; any finite value.
 /// @returns    Rotation matrix Λ [-]; orthogonal to rounding for every chi.
-/// @note       Smooth at χ = 0: no small-angle branch. A turn by π has no χ.
+/// @note       Smooth at χ = 0: no small-angle branch. A rotation by π has no χ.
 [[nodiscard]] inline Mat3 cay(const Vec3& chi) {
   const Mat3 chi_hat = hat(chi);
   const double half_squared = 0.25 * chi.squaredNorm();
@@ -28,7 +28,7 @@ namespace polhode {
 /// @returns       χ = 2 tan(angle/2) n [-].
 [[nodiscard]] std::optional<Vec3> try_cayley_vector(const Mat3& Lambda);
 
-/// As try_cayley_vector().
+/// Cayley vector of a rotation, see try_cayley_vector().
 /// @throws InputError if the angle is π to rounding (χ would be infinite).
 [[nodiscard]] Vec3 cayley_vector(const Mat3& Lambda);
 
@@ -48,10 +48,10 @@ namespace polhode {
   return (Mat3::Identity() - 0.5 * hat(Theta)) / (1.0 + 0.25 * Theta.squaredNorm());
 }
 
-/// Cayley vector of the product cay[b]·cay[a] [-]; infinite when that product turns by π.
-/// The Newton update of a rotation. @eq{eq:ga-Newton-iterations}
-/// Written as a plus a correction, so that a small b leaves no rounding on the length of a: over
-/// many steps that would show as a drift of momentum.
+/// Cayley vector of the product cay[b]·cay[a] [-]; infinite when that product is a rotation by π.
+/// The Newton update of a rotation. @eq{eq:ga-Newton-iterations} Written as a plus a correction, so
+/// that a small b causes no rounding of the length of a, which over many steps would show as a
+/// drift of momentum.
 [[nodiscard]] inline Vec3 compose_cayley(const Vec3& b, const Vec3& a) {
   const double q = 0.25 * a.dot(b);
   return a + (b + 0.5 * b.cross(a) + q * a) / (1.0 - q);

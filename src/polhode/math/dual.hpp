@@ -7,9 +7,8 @@
 
 namespace polhode::contact {
 
-/// A number with its derivatives by the twelve increments (Δr_a, Δθ_a, Δr_b, Δθ_b) of a pair of
-/// bodies: forward differentiation. Formulas of contact are written once, for double, Dual and
-/// Fine.
+/// Dual number with derivatives by the twelve increments (Δr_a, Δθ_a, Δr_b, Δθ_b) of a pair of
+/// bodies (forward mode). Contact formulas are written once, for double, Dual and Fine.
 struct Dual {
   static constexpr int kDirections = 12;
   double v = 0.0;
@@ -57,7 +56,7 @@ struct Dual {
   friend Dual operator/(const Dual& a, double b) { return a * (1.0 / b); }
 };
 
-/// A number with more digits, for gaps deep in the barrier: there the last digit of a double is
+/// Extended-precision number for gaps deep in the barrier: there the last digit of a double is
 /// worth energy.
 using Fine = long double;
 
@@ -71,7 +70,7 @@ using Fine = long double;
 [[nodiscard]] inline double value(Fine a) { return static_cast<double>(a); }
 [[nodiscard]] inline double value(const Dual& a) { return a.v; }
 
-/// Three numbers of one sort.
+/// Vector of three numbers of one type.
 template <class T>
 struct V3 {
   T x{}, y{}, z{};
@@ -85,7 +84,7 @@ template <class T>
 [[nodiscard]] Vec3 value(const V3<T>& a) {
   return {value(a.x), value(a.y), value(a.z)};
 }
-/// The same vector in numbers of sort T.
+/// The same vector in scalar type T.
 template <class T>
 [[nodiscard]] V3<T> constant(const Vec3& a) {
   return {T(a.x()), T(a.y()), T(a.z())};

@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Sines below this leave the first and last axis together.
+/// Sine below which the first and last axis coincide (gimbal lock).
 constexpr double kTogether = 1e-12;
 
 /// R = R_i(a) R_j(b) R_k(c).

@@ -18,8 +18,8 @@ namespace polhode {
 /// Rotation vector of a rotation, the inverse of exp_map(): angle in [0, π] [rad].
 [[nodiscard]] Vec3 log_map(const Mat3& Lambda);
 
-/// Derivative of a rotation vector by time, from the angular velocity ω in the axes that it is seen
-/// from: χ̇ = ω − ½ χ × ω + (1 − ½χ cot ½χ)/χ² χ × (χ × ω). @param chi  Shorter than 2π [rad].
+/// Time derivative of a rotation vector, from the angular velocity ω in the axes of the reference
+/// frame: χ̇ = ω − ½ χ × ω + (1 − ½χ cot ½χ)/χ² χ × (χ × ω). @param chi  Shorter than 2π [rad].
 [[nodiscard]] Vec3 rotation_vector_rate(const Vec3& chi, const Vec3& omega);
 
 }  // namespace polhode

@@ -9,7 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// Turns below this are rounding.
+/// Rotations below this are rounding.
 constexpr double kNoTurn = 1e-14;
 
 HelicalAxis of_translation(const Vec3& d) {
@@ -35,7 +35,7 @@ HelicalAxis finite_helical_axis(const Mat3& R, const Vec3& d) {
   const Vec3 n = chi / turn;
   const double slide = d.dot(n);
   const Vec3 across = d - slide * n;
-  // (I − R) p = d across the axis.
+  // (I − R) p = d normal to the axis.
   return {n, 0.5 * (across + n.cross(across) / std::tan(0.5 * turn)), turn, slide};
 }
 

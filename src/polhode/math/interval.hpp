@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// All numbers from lo to hi: what a value may be. Results are widened by some units in the last
-/// place, so that the exact ones are inside.
+/// Interval of all numbers from lo to hi. Results are widened by some units in the last place, so
+/// that they contain the exact ones.
 struct Interval {
   double lo = 0.0, hi = 0.0;
 
@@ -28,7 +28,7 @@ struct Interval {
   [[nodiscard]] double size() const { return std::max(std::abs(lo), std::abs(hi)); }
 };
 
-/// The result of an operation, widened; everything if it is no number.
+/// Result of an operation, widened; everything if it is NaN.
 [[nodiscard]] inline Interval widened(double lo, double hi) {
   constexpr double kUlps = 0x1p-50;
   if (std::isnan(lo) || std::isnan(hi)) return Interval::all();
@@ -58,7 +58,7 @@ struct Interval {
   return {x.contains(0.0) ? 0.0 : std::min(std::abs(x.lo), std::abs(x.hi)), x.size()};
 }
 
-/// Image under a function that grows everywhere.
+/// Image under an increasing function.
 template <class Function>
 [[nodiscard]] Interval growing(const Function& f, const Interval& x) {
   return widened(f(x.lo), f(x.hi));
@@ -67,7 +67,7 @@ template <class Function>
 [[nodiscard]] inline Interval sine(const Interval& x) {
   constexpr double kTurn = 2.0 * std::numbers::pi, kQuarter = 0.5 * std::numbers::pi;
   if (!x.finite() || x.hi - x.lo >= kTurn) return {-1.0, 1.0};
-  // Tops at a quarter of a turn, bottoms at three quarters.
+  // Maxima at a quarter of a turn, minima at three quarters.
   const auto meets = [&](double place) {
     const double k = std::ceil((x.lo - place) / kTurn - 1e-9);
     return place + k * kTurn <= x.hi + 1e-9;
@@ -80,7 +80,7 @@ template <class Function>
 [[nodiscard]] inline Interval cosine(const Interval& x) {
   return sine(x + Interval(0.5 * std::numbers::pi));
 }
-/// x to a constant power; everything where it is not defined.
+/// x to a constant power; everything where it is undefined.
 [[nodiscard]] inline Interval power(const Interval& x, double n) {
   if (n == 0.0) return 1.0;
   if (n < 0.0) return reciprocal(power(x, -n));

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// Unit quaternion of cay[chi]. It holds half of the angle 2 atan(χ/2), and needs no
+/// Unit quaternion of cay[chi]. It contains half of the angle 2 atan(χ/2), and needs no
 /// trigonometry: q = (1, χ/2) / sqrt(1 + χ²/4). @eq{ga-cay-as-exp}
 [[nodiscard]] inline Quat quaternion_from_cayley(const Vec3& chi) {
   const double w = 1.0 / std::sqrt(1.0 + 0.25 * chi.squaredNorm());
@@ -31,7 +31,7 @@ namespace polhode {
   return 2.0 * std::atan2(sine, sign * q.w()) / sine * sign * q.vec();
 }
 
-/// The same rotation with w >= 0, the form results are shown in.
+/// The same rotation with w >= 0, the form used in results.
 [[nodiscard]] inline Quat shown(const Quat& q) {
   return q.w() < 0.0 ? Quat(-q.w(), -q.x(), -q.y(), -q.z()) : q;
 }

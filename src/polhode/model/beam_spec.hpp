@@ -14,7 +14,7 @@
 
 namespace polhode {
 
-/// A cross-section as described, its material counted in.
+/// A cross-section with its material.
 struct SectionSpec {
   std::string name;
   SourceLocation place;
@@ -23,29 +23,29 @@ struct SectionSpec {
   double height = 0.0, width = 0.0;  ///< Extent along y and z, for pictures [m]; 0: not known.
 };
 
-/// An end of a beam that is fixed in a body.
+/// An end of a beam that is fixed to a body.
 struct BeamBondSpec {
   int body = kGround;  ///< Index into Model::bodies, or kGround.
   bool at_end = false;
 };
 
-/// How a beam touches: as a round bar about its centre line.
+/// Contact of a beam as a round bar about its centre line.
 struct BeamContactSpec {
-  double radius = 0.0;   ///< [m]; 0: half the section's height or width, whichever is less.
+  double radius = 0.0;   ///< [m]; 0: half the section's height or width, whichever is smaller.
   ContactSideSpec side;  ///< Of all its nodes.
 };
 
-/// One beam as described. add_beam() turns it into nodes, which are bodies, and elements.
+/// Description of a beam. add_beam() converts it to nodes, which are bodies, and elements.
 struct BeamSpec {
   std::string name;
   SourceLocation place;
-  /// Polyline, free of stress, world at the start [m]; corners are rigid. Or, if arc, a circle's
-  /// start, a point on it and its end.
+  /// Stress-free polyline, world at the start [m]; corners are rigid. If arc: a circle's start, a
+  /// point on it and its end.
   std::vector<Vec3> points;
   bool arc = false;
-  int elements = 1;  ///< Altogether, shared out to the pieces by length.
+  int elements = 1;  ///< Total number, distributed to the segments by length.
   SectionSpec section;
-  std::optional<Vec3> up;  ///< Where the section's y points, about, world at the start.
+  std::optional<Vec3> up;  ///< Approximate direction of the section's y, world at the start.
   bool residual_bending_flexibility = true;  ///< See BeamElementSpec.
   double consistent_mass = 0.5;  ///< Part of the mass that is consistent, the rest lumped [-].
   Vec3 velocity = Vec3::Zero();  ///< Of the first point at the start, world [m/s].
@@ -68,49 +68,50 @@ struct BeamSpec {
   }  ///< [kg]
 };
 
-/// Where a cable passes or ends.
+/// A point at which a cable is attached.
 struct AttachmentSpec {
   int body = kGround;     ///< Index into Model::bodies, or kGround.
   Vec3 Z = Vec3::Zero();  ///< From the centre of mass, body axes; ground: world [m].
 };
 
-/// How a cable touches: as a round rope about its centre line.
+/// Contact of a cable as a round rope about its centre line.
 struct CableContactSpec {
   double radius = 0.0;   ///< [m]
-  bool self = false;     ///< It touches itself.
-  ContactSideSpec side;  ///< Of all of it.
+  bool self = false;     ///< Self-contact.
+  ContactSideSpec side;  ///< Of the whole cable.
 };
 
-/// One cable, rope, rod or truss member as described: straight pieces from point to point. Each
-/// piece has its own elongation; nothing slides through the points between.
+/// Description of a cable, rope, rod or truss member: straight segments from point to point. Each
+/// segment has its own elongation, unless the cable runs over its points.
 struct CableLineSpec {
   std::string name;
   SourceLocation place;
   std::vector<AttachmentSpec> through;
   double stiffness = 0.0;             ///< EA [N].
-  std::optional<double> free_length;  ///< Of the whole [m]; left out: the length at the start.
+  std::optional<double> free_length;  ///< Of the whole [m]; if absent: the length at the start.
   double damping = 0.0;               ///< Of the whole, force per rate of elongation [N s/m].
   bool tension_only = true;
   BarStrain strain = BarStrain::engineering;
-  double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then pieces go from point to point.
-  int elements = 1;              ///< With mass: pieces from one point to the next.
+  double mass_per_length = 0.0;  ///< [kg/m]; 0: none, then segments go from point to point.
+  int elements = 1;              ///< With mass: segments from one point to the next.
   std::optional<CableContactSpec> contact;  ///< None: bodies pass through the cable.
-  /// It slides over its points: without friction one tension in all pieces.
+  /// It runs over its points: without friction one tension in all segments.
   bool slides = false;
-  double friction = 0.0;             ///< Of one that slides, on the points between the ends [-].
-  std::vector<double> wraps;         ///< Whole turns about these points beside its turn there [-].
-  TimeFunctionPtr tension;           ///< Of one that slides, beside its elastic one [N].
-  std::optional<HillMuscle> muscle;  ///< It pulls as one; slides.
+  double friction = 0.0;  ///< Of a running cable, on the points between the ends [-].
+  /// Whole turns about these points in addition to the change of direction there [-].
+  std::vector<double> wraps;
+  TimeFunctionPtr tension;           ///< Of a running cable, in addition to its elastic one [N].
+  std::optional<HillMuscle> muscle;  ///< Active force of a muscle; the cable runs over its points.
 
-  /// Filled in by add_cable(): the pieces.
+  /// Segments, filled in by add_cable().
   struct Piece {
     AttachmentSpec a, b;
     double free_length = 0.0;  ///< [m]
     double mass = 0.0;         ///< [kg]
   };
   std::vector<Piece> pieces;
-  [[nodiscard]] double length() const;  ///< Of all pieces without force [m].
-  [[nodiscard]] double mass() const;    ///< Of all pieces [kg].
+  [[nodiscard]] double length() const;  ///< Unstressed, of all segments [m].
+  [[nodiscard]] double mass() const;    ///< Of all segments [kg].
 };
 
 }  // namespace polhode

@@ -14,20 +14,20 @@
 
 namespace polhode {
 
-/// Output of a controller over the step to come: a straight line in time, within its limits.
+/// Output of a controller over the next step: linear in time, within its limits.
 struct ControllerOutput {
-  double t = 0.0;      ///< When it was made [s].
-  double value = 0.0;  ///< There.
-  double slope = 0.0;  ///< [1/s]; 0 of a sampled one.
+  double t = 0.0;      ///< Time of evaluation [s].
+  double value = 0.0;  ///< Value at that time.
+  double slope = 0.0;  ///< [1/s]; 0 for a sampled one.
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// A number that a controller sets, wherever a number over time may stand. SI units.
+/// A number set by a controller, usable as any number over time. SI units.
 class ControlledValue final : public TimeFunction {
  public:
   /// @param controller  Into Model::controllers.
-  /// @param output      Of one simulation; null in a model that does not run.
+  /// @param output  Of one simulation; null in a model that is not run.
   explicit ControlledValue(int controller, std::shared_ptr<const ControllerOutput> output = nullptr)
       : controller_(controller), output_(std::move(output)) {}
   [[nodiscard]] int controller() const override { return controller_; }
@@ -45,13 +45,13 @@ class ControlledValue final : public TimeFunction {
   std::shared_ptr<const ControllerOutput> output_;
 };
 
-/// A controller: what it makes of the error r(t) − y of a channel y. @eq{controller}
+/// Description of a controller as a function of the error r(t) − y of a channel y. @eq{controller}
 struct ControllerSpec {
   std::string name;
   SourceLocation place;
   ChannelSpec channel;
   TimeFunctionPtr setpoint;      ///< In SI; null: zero.
-  std::optional<double> sample;  ///< Time between samples [s]; nothing: continuous.
+  std::optional<double> sample;  ///< Time between samples [s]; none: continuous.
   // PID: proportional·e + integral·∫e dt + derivative·ė, ė through a lag of `filter` [s].
   double proportional = 0.0, integral = 0.0, derivative = 0.0, filter = 0.0;
   /// Or a transfer function: coefficients of polynomials in s, the highest power first.

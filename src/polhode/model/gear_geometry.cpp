@@ -12,7 +12,7 @@ namespace {
 
 using Kind = GearCoordinate::Kind;
 
-/// Sine of the angle between axes below which they are parallel.
+/// Sine of the angle below which axes are parallel.
 constexpr double kParallel = 1e-6;
 
 class GearPlanner {
@@ -117,7 +117,8 @@ class GearPlanner {
       wheels(one, two);
   }
 
-  /// Axes of a wheel across its own, so that its angle grows with the joint's coordinate.
+  /// Sets the plane of a wheel, with axes normal to its own, so that its angle increases with the
+  /// joint's coordinate.
   static void set_plane(GearCoordinate& c, const Wheel& w) {
     c.angle = {};
     c.angle.E = w.R.col(w.is_b ? 0 : 1);
@@ -153,8 +154,8 @@ class GearPlanner {
     }
   }
 
-  /// A rack does not turn against its carrier: it sees the pinion's angle as the carrier does, and
-  /// the pinion's centre move along it.
+  /// A rack does not rotate relative to its carrier: the pinion's angle is the same relative to
+  /// both, and the pinion's centre moves along the rack.
   void rack_and_pinion(const Wheel& rack, const Wheel& pinion) {
     if (joints_[0].joint->type() != "prismatic")
       throw InputError(where_ + ".joints",

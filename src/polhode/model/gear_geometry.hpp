@@ -14,10 +14,10 @@ namespace polhode {
 struct GearJoint {
   const Joint* joint = nullptr;
   std::string coordinate;        ///< As in the user's file; "" for the only one.
-  bool assembled_start = false;  ///< Bodies stand elsewhere at the start than given.
+  bool assembled_start = false;  ///< The initial positions of bodies differ from the given ones.
 };
 
-/// Where a body stands at the start; the ground is the world.
+/// Pose of a body at the start; for the ground the world.
 struct GearPose {
   Vec3 r = Vec3::Zero();
   Mat3 Lambda = Mat3::Identity();
@@ -32,7 +32,7 @@ struct GearGeometry {
 
 /// @param where  Path for messages, such as loads.train.
 /// @param poses  By body of the system.
-/// @throws InputError if the joints leave no such coordinates or share no body that carries both.
+/// @throws InputError if the joints have no such coordinates or no common carrier.
 [[nodiscard]] GearGeometry gear_geometry(const std::string& where,
                                          const std::array<GearJoint, 2>& joints,
                                          const std::vector<GearPose>& poses);

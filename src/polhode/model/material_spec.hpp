@@ -11,7 +11,7 @@
 namespace polhode {
 
 /// Kelvin-Voigt viscosity: either a relaxation time, which multiplies the elastic moduli of the
-/// undeformed material, or viscous moduli of their own. All zero: none.
+/// undeformed material, or separate viscous moduli. All zero: none.
 struct ViscositySpec {
   double relaxation_time = 0.0;  ///< [s]
   double lame = 0.0;             ///< λ_v of λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
@@ -20,14 +20,14 @@ struct ViscositySpec {
   [[nodiscard]] bool any() const { return relaxation_time > 0.0 || lame > 0.0 || shear > 0.0; }
 };
 
-/// Fibres in a material: they resist stretch only.
+/// Fibres in a material with stiffness in tension only.
 struct FibreSpec {
   std::string law;                           ///< A fibre law of the registry, e.g. exponential.
   std::map<std::string, double> parameters;  ///< By the registry's names, SI.
   Vec3 direction = Vec3::UnitX();            ///< Unit vector in the mesh's own axes [-].
 };
 
-/// A material of deformable solids as described.
+/// Description of a material of deformable solids.
 struct MaterialSpec {
   std::string name, type;  ///< type: a kind of the registry of materials.
   SourceLocation place;

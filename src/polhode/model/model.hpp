@@ -25,7 +25,7 @@
 
 namespace polhode {
 
-/// A drawable and weighable shape of a body, in body axes.
+/// Description of a shape of a body, for drawing, mass and contact, in body axes.
 struct ShapeSpec {
   /// box, sphere, cylinder, capsule, cone, ellipsoid, tube, mesh, hull, height_field, plane.
   std::string type;
@@ -43,7 +43,7 @@ struct ShapeSpec {
   SourceLocation place;
 };
 
-/// One rigid body as described; all vectors in SI.
+/// Description of a rigid body; all vectors in SI.
 struct BodySpec {
   std::string name;
   SourceLocation place;
@@ -60,12 +60,12 @@ struct BodySpec {
   ContactSideSpec contact;               ///< Of all its shapes.
 };
 
-/// Dry friction of a joint as described; what is absent is chosen from the bodies' weights.
+/// Description of a joint's dry friction; absent values are chosen from the bodies' weights.
 struct JointFrictionSpec {
   double mu = 0.0;           ///< [-]
   double radius = 0.0;       ///< Of pin, sleeve or ball; of a slider: arm of its twist [m].
   double face_radius = 0.0;  ///< Mean radius of the faces with the axial force [m].
-  double length = 0.0;       ///< Of the bearing [m]; 0: moments across the axis do not count.
+  double length = 0.0;       ///< Of the bearing [m]; 0: moments normal to the axis have no effect.
   double constant = 0.0;     ///< Slip force [N] or moment [N m] without load.
   std::optional<double> stiffness{}, damping{};  ///< Of the bristle [N/m], [N s/m] or by angle.
 };
@@ -77,7 +77,7 @@ struct JointLimitsSpec {
   std::optional<double> band{}, stiffness{};  ///< Width of the stop's barrier; [N/m] or [N m/rad].
 };
 
-/// One joint as described. Frames are body-fixed, measured from each centre of mass (ground: the
+/// Description of a joint. Frames are body-fixed, relative to each centre of mass (ground: the
 /// world).
 struct JointSpec {
   std::string name, type;
@@ -90,44 +90,45 @@ struct JointSpec {
   std::vector<std::string> free;             ///< Generic joint: subset of x, y, z, rx, ry, rz.
   std::map<std::string, double> parameters;  ///< Further values of the kind, e.g. distance.
   std::optional<JointFrictionSpec> friction;
-  std::optional<JointLimitsSpec> limits;        ///< Of the angle; with a displacement, of that.
-  std::optional<JointLimitsSpec> angle_limits;  ///< Of the angle beside a displacement.
+  std::optional<JointLimitsSpec> limits;  ///< Of the angle; with a displacement, of that.
+  /// Of the angle of a joint that also has a displacement.
+  std::optional<JointLimitsSpec> angle_limits;
   std::optional<FrameMotion> motion;            ///< Prescribed, of the frame on a.
   std::optional<JointEnforcement> enforcement;  ///< None: exact, by multipliers.
-  JointStrengthSpec breaks;                     ///< None: it never does.
+  JointStrengthSpec breaks;                     ///< None: it never breaks.
   bool assembled_start = false;  ///< Given with at_body or moving: the start must be assembled.
 };
 
-/// One load as described; which fields matter depends on the type (see loads/registry).
+/// Description of a load; the relevant fields depend on the type (see loads/registry).
 struct LoadSpec {
   std::string name, type;  ///< force, moment, spring_damper, torsional_spring, gravity ...
   SourceLocation place;
   int a = kGround, b = kGround;  ///< Bodies; single-body loads act on b.
   std::string joint;             ///< Of a torsional spring or motor.
   std::string coordinate;        ///< Of a motor: "x" ... "rz"; "": the joint's only one.
-  std::string drive;             ///< Of a motor: what `value` is, a key of LoadKind::drives.
+  std::string drive;             ///< Of a motor: meaning of `value`, a key of LoadKind::drives.
   Vec3 Z_a = Vec3::Zero(),
        Z_b = Vec3::Zero();  ///< Points from the centres of mass, body axes (ground: world) [m].
-  bool body_fixed = false;  ///< Components turn with the body (follower).
+  bool body_fixed = false;  ///< Components rotate with the body (follower).
   std::optional<TimeVector>
       vector;             ///< Force [N], moment [N m], traction [Pa] or acceleration [m/s^2].
-  TimeFunctionPtr value;  ///< Pressure [Pa], or what a motor follows.
+  TimeFunctionPtr value;  ///< Pressure [Pa], or the function of a motor.
   int solid = -1;         ///< Of a load on a solid: index into Model::solids.
   std::vector<Selection> selection;  ///< Its nodes or faces; empty: all.
-  bool follower = false;  ///< A pressure that turns with the surface and grows with its area.
-  std::string keeps = "momentum";  ///< Of a follower pressure: momentum or work is exact.
+  bool follower = false;             ///< A pressure that follows the surface and its present area.
+  std::string keeps = "momentum";    ///< Of a follower pressure: whether momentum or work is exact.
   std::map<std::string, double>
       parameters;  ///< stiffness, damping, free_length, free_angle ... SI. Absent = default.
-  /// Laws of a coordinate or a rate by key, SI: called with that instead of a time.
+  /// Laws of a coordinate or a rate by key, SI: functions of that instead of time.
   std::map<std::string, TimeFunctionPtr> laws;
   std::map<std::string, std::string> words;             ///< Choices by key.
   std::map<std::string, Mat6> matrices;                 ///< By key, SI.
   std::string joint_2, coordinate_2;                    ///< Of a gear: its second coordinate.
   Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();  ///< Axes of a bushing, as Z_a and Z_b.
-  /// From code, in addition to vector or value: of the point of a force or moment, of the
-  /// coordinate of a motor or the distance of an axial force.
+  /// Function given in code, in addition to vector or value: of the point of a force or moment, of
+  /// the coordinate of a motor or the distance of an axial force.
   LoadFunction of_motion{};
-  PartAxes part_axes{};  ///< In which of_motion counts.
+  PartAxes part_axes{};  ///< Axes of of_motion.
 };
 
 struct OutputSpec {
@@ -136,7 +137,7 @@ struct OutputSpec {
   bool paraview = false, csv = true, hdf5 = true;
 };
 
-/// What to compute and how.
+/// Type and settings of the analysis.
 struct AnalysisSpec {
   std::string type = "dynamics";    ///< dynamics | statics | modes.
   double duration = 1.0;            ///< [s]
@@ -152,18 +153,19 @@ struct AnalysisSpec {
   double newton_tolerance = 0.0;           ///< 0: default of the order [-].
   std::optional<int> max_iterations;       ///< Absent: 12; solids 30; statics 25.
   bool line_search = true;
-  double max_step_rotation = 2.0;   ///< Largest |Theta| of a step [-].
-  double assembly_tolerance = 0.0;  ///< Largest move the assembly may make [m or rad]; 0: default.
+  double max_step_rotation = 2.0;  ///< Largest |Theta| of a step [-].
+  /// Largest displacement by the assembly [m or rad]; 0: default.
+  double assembly_tolerance = 0.0;
   std::optional<double> min_step, max_step;  ///< [s]
   bool smooth_multipliers = true;            ///< Smooth-multiplier start (rigid.md 7.3).
   std::optional<int> load_steps;      ///< Statics: equal parts of the load; absent: automatic.
-  int count = 10;                     ///< Modes: how many.
+  int count = 10;                     ///< Number of modes.
   std::string about = "equilibrium";  ///< Modes: equilibrium | start.
   double checkpoint_every = 0.0;      ///< Wall-clock seconds; 0: only at the end.
   SourceLocation place;
 };
 
-/// What the user described: plain data, SI units, names and places kept.
+/// The model as described by the user: plain data, SI units, with names and source locations.
 struct Model {
   std::string title;
   std::string source_file;      ///< "" when built in code.
@@ -174,7 +176,7 @@ struct Model {
   std::vector<MaterialSpec> materials;
   std::vector<SolidSpec> solids;
   std::vector<BeamSpec> beams;        ///< Meshed: their nodes are among the bodies.
-  std::vector<CableLineSpec> cables;  ///< Divided into pieces.
+  std::vector<CableLineSpec> cables;  ///< Divided into segments.
   ContactsSpec contacts;
   std::vector<EventSpec> events;
   std::vector<ControllerSpec> controllers;
@@ -184,7 +186,7 @@ struct Model {
   [[nodiscard]] int body_index(
       const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
   [[nodiscard]] const std::string& body_name(int body) const;  ///< "ground" for kGround.
-  /// Of a side of contact.
+  /// Name of a side of contact.
   [[nodiscard]] const std::string& side_name(int side) const;
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
   [[nodiscard]] int material_index(
@@ -197,12 +199,12 @@ struct Model {
   [[nodiscard]] int probe_index(const std::string& name) const;  ///< In output.probes; likewise.
 };
 
-/// Something of a model whose numbers a run is asked for.
+/// An object of a model whose numbers are reported in a run.
 struct Reported {
-  std::string where;              ///< Path of what asks, for messages.
-  const ProbeSpec* of = nullptr;  ///< The model keeps it.
+  std::string where;              ///< Path of the request, for messages.
+  const ProbeSpec* of = nullptr;  ///< Owned by the model.
 };
-/// Probes, and what events and controllers read.
+/// Probes, and channels of events and controllers.
 [[nodiscard]] std::vector<Reported> reported(const Model& model);
 
 }  // namespace polhode

@@ -30,15 +30,15 @@ std::vector<std::string> free_coordinates(const JointSpec& joint) {
   return found;
 }
 
-/// The sign that a coordinate gets when the joint's axes become `signs` times their mirror images:
-/// a displacement goes along, a rotation against.
+/// Sign of a coordinate when the joint's axes become `signs` times their mirror images: a
+/// displacement is a polar, a rotation an axial vector.
 double sign_of(const std::string& coordinate, const Signs& signs) {
   const double along = signs[static_cast<std::size_t>(coordinate.back() - 'x')];
   return coordinate.size() == 1 ? along : -along;
 }
 
-/// Signs that make the mirror images of a joint's axes right-handed again and keep most of its free
-/// coordinates.
+/// Signs that make the mirror images of a joint's axes right-handed again and preserve most of its
+/// free coordinates.
 Signs axis_signs(const std::vector<std::string>& free) {
   constexpr std::array<Signs, 4> choices{Signs{-1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {-1, 1, 1}};
   const auto kept = [&](const Signs& s) {
@@ -74,12 +74,12 @@ class Placer {
   /// Mirror image of an axial vector: angular velocity or moment.
   [[nodiscard]] Mat3 axial() const { return mirrored_ ? Mat3(-A_) : A_; }
   [[nodiscard]] Vec3 moved(const Vec3& point) const { return r_ + A_ * point; }
-  /// From a proper rotation to that of the mirror images of its two frames.
+  /// Rotation between the mirror images of the two frames of a rotation.
   [[nodiscard]] Quat turned(const Quat& q) const {
     return Quat(Mat3(A_ * q.toRotationMatrix() * S_)).normalized();
   }
 
-  /// A point and axes that a body, or the ground, carries.
+  /// A point fixed to a body or the ground.
   [[nodiscard]] Vec3 carried(int body, const Vec3& Z) const {
     return body == kGround ? moved(Z) : Vec3(S_ * Z);
   }
@@ -143,7 +143,7 @@ class Placer {
     if (joint.motion) mirror(*joint.motion, signs);
   }
 
-  /// Sign of a joint's only displacement; of its only angle where it has none or `angle` is set.
+  /// Sign of a joint's only displacement; of its only angle if it has none or `angle` is set.
   static double sign_of_only(const std::vector<std::string>& free, bool angle, const Signs& signs) {
     for (const std::string& c : free)
       if ((c.size() == 2) == angle) return sign_of(c, signs);
@@ -192,8 +192,8 @@ class Placer {
     if (load.type == "bushing") mirror_bushing(load, where);
   }
 
-  /// The axes of a mirrored bushing point against the mirror images: displacements change their
-  /// signs, rotations do not.
+  /// Mirrors a bushing, whose new axes are opposite to the mirror images: displacements change
+  /// their signs, rotations do not.
   void mirror_bushing(LoadSpec& load, const std::string& where) const {
     for (const char* law : {"law_x", "law_y", "law_z"})
       if (load.laws.count(law) > 0)
@@ -272,8 +272,8 @@ class Placer {
   Model& part_;
   Vec3 r_;
   Mat3 Q_ = Mat3::Identity();
-  Mat3 S_ = Mat3::Identity();  ///< The mirror, in the part's axes and in those of each body.
-  Mat3 A_ = Mat3::Identity();  ///< From the part's axes to the whole's, mirrored first.
+  Mat3 S_ = Mat3::Identity();  ///< Reflection, in the part's axes and in those of each body.
+  Mat3 A_ = Mat3::Identity();  ///< From the part's axes to the whole's, including the reflection.
   bool mirrored_ = false;
 };
 

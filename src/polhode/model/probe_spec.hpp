@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// What a probe records at its own rate, or a channel reads: columns of numbers of one thing.
+/// Description of a probe or a channel: columns of numbers of one object.
 struct ProbeSpec {
   std::string name;
   SourceLocation place;
@@ -20,7 +20,7 @@ struct ProbeSpec {
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
                                 ///< solid probe: in the mesh's own coordinates [m].
   std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.
-  int element = 0;              ///< Of a beam, or piece of a cable: the first is 0.
+  int element = 0;              ///< Of a beam, or segment of a cable: the first is 0.
   std::string reaction_of;      ///< Of a solid probe: the bonded body or prescribed nodes whose
                                 ///< reaction is recorded.
   bool stress = false;          ///< Of a point or node of a solid: stress too.
@@ -30,7 +30,7 @@ struct ProbeSpec {
   std::string rotation;     ///< quaternion, vector, matrix or an Euler sequence; "" for none.
   bool angular = false;     ///< Angular velocity and acceleration.
   std::string helical;      ///< instantaneous or finite; "" for none.
-  int seen_from = kGround;  ///< Body from which all is seen: index into Model::bodies.
+  int seen_from = kGround;  ///< Reference body of relative motion: index into Model::bodies.
 };
 
 }  // namespace polhode

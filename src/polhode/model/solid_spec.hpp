@@ -14,7 +14,7 @@
 
 namespace polhode {
 
-/// Where the mesh of a solid comes from and where it stands.
+/// Source and placement of the mesh of a solid.
 struct MeshSpec {
   std::string type;  ///< file, inline, or a generator: block, cylinder, tube, sphere ...
   // From a file
@@ -27,7 +27,7 @@ struct MeshSpec {
   std::vector<Vec3> nodes;                       ///< [m]
   std::vector<std::vector<int>> elements;        ///< Indices of nodes, the first node is 0.
   std::map<std::string, std::vector<int>> sets;  ///< Nodes by name of the set.
-  // Where it stands
+  // Placement
   Vec3 position = Vec3::Zero();         ///< Of the origin of the mesh's coordinates, world [m].
   Quat orientation = Quat::Identity();  ///< From the mesh's axes to the world's.
 };
@@ -39,7 +39,7 @@ struct BondSpec {
   std::vector<Selection> nodes;
 };
 
-/// Nodes whose displacement from the start is given as a function of time.
+/// Nodes with a displacement from the start given as a function of time.
 struct PrescribedSpec {
   std::string name;
   SourceLocation place;
@@ -47,23 +47,23 @@ struct PrescribedSpec {
   TimeVector displacement;  ///< World components [m]; null: this component is free.
 };
 
-/// A deformable solid as described.
+/// Description of a deformable solid.
 struct SolidSpec {
   std::string name;
   SourceLocation place;
   MeshSpec mesh;
-  std::string element;   ///< A kind of the registry of elements; "": what suits mesh and material.
+  std::string element;   ///< A kind of the registry of elements; "": chosen by mesh and material.
   std::string material;  ///< Name of a material of the model.
   std::string stress = "conserving";  ///< conserving | midpoint.
   std::optional<double> density;      ///< Instead of the material's [kg/m^3].
   std::vector<BondSpec> bonded;
   std::vector<PrescribedSpec> prescribed;
-  ContactSideSpec contact;                 ///< How its surface takes part in contact.
-  std::vector<Selection> contact_surface;  ///< Faces that may touch; empty: the whole boundary.
-  bool self_contact = false;               ///< Its surface touches itself.
+  ContactSideSpec contact;                 ///< Contact settings of its surface.
+  std::vector<Selection> contact_surface;  ///< Contact faces; empty: the whole boundary.
+  bool self_contact = false;               ///< Its surface has self-contact.
   std::optional<Vec3> velocity;  ///< Of the centre of mass, world [m/s]; absent: see below.
-  /// World [rad/s]. Without velocity and angular_velocity a solid starts by moving rigidly with the
-  /// first body it is bonded to, or rests.
+  /// World [rad/s]. Without velocity and angular_velocity a solid initially moves rigidly with the
+  /// first body it is bonded to, or is at rest.
   std::optional<Vec3> angular_velocity;
 };
 

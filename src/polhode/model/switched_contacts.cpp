@@ -9,7 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// What keeps a pair from being switched; empty if nothing does.
+/// Reason why a pair cannot be switched; empty if it can.
 std::string not_of_bodies(const ContactPairSpec& pair) {
   if (pair.of_materials) return "is a pair of materials";
   for (const int side : {pair.a, pair.b})

@@ -10,12 +10,12 @@
 
 namespace polhode {
 
-/// Stands for all that a side meets, where a second side would stand.
+/// All opposite sides, in place of a second side.
 inline constexpr int kEverySide = std::numeric_limits<int>::max();
 
-/// The contact that an event switches by this name: the two bodies of a pair of contacts or sensor;
-/// or a body and kEverySide. A name that a pair, a joint or a load has is theirs, not a body's.
-/// None if neither a pair nor a body with shapes that touch has the name.
+/// Contact switched by this name in an event: the two bodies of a pair of contacts or sensor; or a
+/// body and kEverySide. Names of pairs, joints or loads take precedence over bodies. None if
+/// neither a pair nor a body with contact shapes has the name.
 /// @throws InputError if a pair and a joint or load have the name, or if it is no pair of bodies.
 [[nodiscard]] std::optional<std::array<int, 2>> switched_contact(const Model& model,
                                                                  const std::string& name);

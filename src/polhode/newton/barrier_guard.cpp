@@ -10,9 +10,9 @@ namespace polhode {
 
 namespace {
 
-/// What is left in front of a barrier after an iteration, of what there was before it.
+/// Part of the clearance to a barrier that an iteration must leave.
 constexpr double kLeave = 0.1;
-/// Parts are taken a little smaller, as the way to a barrier is not straight.
+/// Reduction of step fractions, as the path to a barrier is not straight.
 constexpr double kShorterWay = 0.98;
 constexpr int kGuardRepeats = 20;
 
@@ -98,7 +98,7 @@ void BarrierGuard::hold_prediction() {
 void BarrierGuard::before() {
   if (idle_) return;
   measure_start();
-  engine_.end_step(state_, trial_);  // brings the multipliers into the trial
+  engine_.end_step(state_, trial_);  // stores the multipliers in the trial
   iterate_.keep(system_, trial_);
 }
 

@@ -8,28 +8,28 @@
 
 namespace polhode {
 
-/// Keeps iterates on the allowed side of barriers, such as the stops of a joint: of an iteration
-/// that would take more than nine tenths of what is left in front of one, only a part is applied.
-/// Whatever the engine: it repeats the iteration with less.
+/// Keeps iterates on the admissible side of barriers, such as the stops of a joint: an iteration
+/// that would use more than nine tenths of a clearance is repeated with a smaller damping factor.
+/// It works with any engine.
 class BarrierGuard {
  public:
   BarrierGuard(const System& system, const State& state, Trial& trial, NewtonEngine& engine);
 
-  /// Takes back as much of the prediction as leads through a barrier; before begin_step().
+  /// Shortens a prediction that crosses a barrier; before begin_step().
   void hold_prediction();
-  /// Before an iteration: remembers where it starts.
+  /// Stores the start of an iteration.
   void before();
-  /// After an iteration that was solved: repeats it with less damping factor if need be.
+  /// After an iteration that was solved: repeats it with a smaller damping factor if necessary.
   Iteration hold(Iteration done, bool refactor, double damping);
-  /// Something is close to a barrier: increments may grow for a while.
+  /// Whether a barrier is close: increments may grow for a while.
   [[nodiscard]] bool near() const { return near_; }
 
  private:
   void measure(std::vector<double>& clearance) const;
-  /// The same with where nodes are: whence iterates go.
+  /// Measures clearances and stores node positions at the start of an iteration.
   void measure_start();
-  /// The largest part of the way to the trial that leaves a tenth of what there was, on the way and
-  /// at its end.
+  /// Largest fraction of the increment that leaves a tenth of each clearance, along it and at its
+  /// end.
   [[nodiscard]] double part() const;
 
   const System& system_;
@@ -41,7 +41,7 @@ class BarrierGuard {
     const double* history;
   };
   std::vector<Watched> points_;    ///< Groups of elements, at t_n.
-  bool idle_ = true;               ///< Nothing has barriers.
+  bool idle_ = true;               ///< There are no barriers.
   std::vector<double> from_, to_;  ///< Clearances.
   std::vector<double> from_x_;     ///< Positions of nodes [m].
   IterateSnapshot iterate_;

@@ -12,45 +12,47 @@ namespace polhode {
 
 namespace {
 
-/// An increment below this leaves a quadratic remainder below round-off: no polish is needed,
-/// unless friction depends on multipliers, whose increments are not looked at.
+/// Increment below which the quadratic remainder is below round-off. No extra iteration is needed
+/// then, unless friction depends on multipliers, whose increments are not checked.
 constexpr double kNoExtraIterationBelow = 1e-10;
-/// A polish that moves less than this leaves a quadratic remainder far below round-off. What it
-/// moved was the softness of redundant rows, given back by the proximal centre: how contraction
-/// goes on cannot be told from it, and the leak of the multipliers is measured.
+/// Increment of an extra iteration below which its quadratic remainder is far below round-off. It
+/// consists of the softness of redundant rows, returned by the proximal centre; the contraction
+/// cannot be estimated from it, so the leak of the multipliers is measured.
 constexpr double kMeasuredBelow = 1e-9;
-/// What may be left of the increments to come: the motion of the step is that close to the solution
-/// of its equations, which is what momenta and energy of the bodies hang on [-].
+/// Tolerance on the sum of further increments, the distance of the motion from the solution of its
+/// equations, which determines the errors of momenta and energy [-].
 constexpr double kLeft = 1e-13;
-/// The same where bristles and stops turn tiny ways into forces.
+/// The same for stiff bristles and stops, which turn tiny displacements into forces.
 constexpr double kLeftStiff = 1e-18;
-/// Close increments are round-off when they have not come below this part of the least one in so
-/// many iterations.
+/// Ratio to the smallest increment. Small increments are round-off when none has been below that
+/// for several iterations.
 constexpr double kGains = 0.7;
 constexpr int kStalled = 3;
-/// Out of the depth of a barrier, which falls like 1/s, increments double: that is no round-off.
+/// Growth factor of increments that leave a barrier. Deep in a barrier, which behaves like 1/s,
+/// increments double: this is not round-off.
 constexpr double kLeaves = 1.5;
-/// Increments above this part of the tolerance are no round-off [-].
+/// Part of the tolerance above which increments are not round-off [-].
 constexpr double kRoundOffBelow = 1e-2;
-/// Kept factors that contract by less than this are renewed.
+/// Contraction rate above which reused factors are renewed.
 constexpr double kSlowContraction = 0.05;
-/// Iterations that a step may take for one that is allowed to come close: beside a singular
-/// position multipliers of redundant rows come by slow, but sure, proximal repeats.
+/// Factor on the iteration limit once an increment was below the tolerance: near a singular
+/// position multipliers of redundant rows converge slowly by proximal iterations.
 constexpr int kMoreWhenClose = 3;
-/// Room made for increments at once.
+/// Initially reserved number of increments.
 constexpr std::size_t kUsualIterations = 8;
-/// An increment above this is no Newton iteration any more.
+/// Increment above which the iteration has diverged.
 constexpr double kNewtonDiverged = 1e3;
-/// With a factorisation kept from earlier steps: what later increments would add up to, as part of
-/// the tolerance.
+/// Tolerance on the sum of further increments with a reused factorisation, as a part of the
+/// tolerance.
 constexpr double kLeftByKeptFactor = 1e-4;
-/// Increments above this are watched by the line search.
+/// Increment above which the line search is active.
 constexpr double kLarge = 0.05;
-/// Leak of the multipliers, Σ|λ g|, that is asked for: part of the energy, and of round-off.
+/// Tolerated leak of the multipliers, Σ|λ g|, as a part of the energy.
 constexpr double kEnergyLeak = 1e-14;
 constexpr double kNewtonRoundOff = 4.4e-16;
 
-/// Damping: goes back to the iterate before a step that made things worse, and takes less of it.
+/// Line search: returns to the previous iterate after an increment that increased, and takes less
+/// of it.
 class LineSearch {
  public:
   LineSearch(bool active, const System& system, const State& state, Trial& trial,
@@ -59,11 +61,11 @@ class LineSearch {
 
   [[nodiscard]] double damping() const { return damping_; }
 
-  /// Before an iteration: remembers the iterate if the last increment was large.
+  /// Before an iteration: stores the iterate if the last increment was large.
   void before(double last_increment) {
     kept_ = active_ && last_increment > kLarge;
     if (!kept_) return;
-    engine_.end_step(state_, trial_);  // brings the multipliers into the trial
+    engine_.end_step(state_, trial_);  // stores the multipliers in the trial
     iterate_.keep(system_, trial_);
   }
   /// After an iteration: true if it was undone.
@@ -103,11 +105,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
 
   LineSearch search(options.line_search, system, state, trial, engine);
   bool close = false;           // an increment was below the tolerance
-  bool iterated_again = false;  // and another iteration followed
-  int slow = 0;                 // iterations in a row that hardly contracted
-  int stalled = 0;              // iterations without gain, once close
-  double least = std::numeric_limits<double>::infinity();  // increment since then
-  bool slowly_contracting = false;  // the factors that were kept contract too little
+  bool iterated_again = false;  // an extra iteration followed
+  int slow = 0;                 // consecutive iterations that hardly contracted
+  int stalled = 0;              // iterations without progress, once close
+  double least = std::numeric_limits<double>::infinity();  // smallest increment since then
+  bool slowly_contracting = false;                         // the reused factors contract too slowly
   double defect_before = 0.0;
   const auto fail = [&](std::string reason) {
     report.reason = std::move(reason);
@@ -143,7 +145,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (!guard.near() && search.undid(e, last)) continue;
     report.increments.push_back(e);
     report.rotation = done.rotation;
-    if (done.applied < 1.0) {  // held back by what lies ahead: no measure of convergence
+    if (done.applied < 1.0) {  // limited by barriers or contacts: no measure of convergence
       close = false;
       slow = 0;
       continue;
@@ -156,9 +158,9 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     if (slow >= 2) return fail("contracts too slowly"), report;
 
     iterated_again = close;
-    close = e < options.tolerance;  // it was by chance if it does not stay so
+    close = e < options.tolerance;  // the increment has to stay below
     if (!close) continue;
-    if (kept) {  // converges linearly: what is left is a geometric series
+    if (kept) {  // linear convergence: the remainder is a geometric series
       const double rate = last > 0.0 ? std::min(e / last, 0.9) : 0.1;
       if (e * rate / (1.0 - rate) > kLeftByKeptFactor * options.tolerance &&
           it + 1 < options.max_iterations)
@@ -166,8 +168,8 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     }
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
     if (!iterated_again && (e > kNoExtraIterationBelow || system.stiff()) && !kept) continue;
-    // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers come by
-    // proximal repeats, contract by a constant factor: these go on.
+    // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers converge
+    // by proximal iterations, contract by a constant factor: these need further iterations.
     const double contraction = last > 0.0 ? e / last : 1.0;
     slowly_contracting = iterated_again && contraction > kSlowContraction;
     const bool leaves = guard.near() && e > kLeaves * last;
@@ -197,7 +199,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       return report;
     }
   }
-  // Increments are small: what is left is round-off of the multipliers.
+  // Increments are small: the remainder is round-off of the multipliers.
   if (close &&
       (kept || (iterated_again && report.increments.back() < kRoundOffBelow * options.tolerance))) {
     engine.end_step(state, trial);

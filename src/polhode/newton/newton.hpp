@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// When the Jacobian is factored anew.
+/// Policies for the factorisation of the Jacobian.
 enum class JacobianPolicy { every_iteration, every_step, automatic, never };
 
 struct NewtonOptions {
@@ -17,12 +17,12 @@ struct NewtonOptions {
   int max_iterations = 12;
   JacobianPolicy jacobian = JacobianPolicy::automatic;
   bool line_search = true;
-  double max_rotation = 2.0;  ///< Largest |Θ| a body may turn in the step [-].
-  double energy_scale = 0.0;  ///< Size of the energies of the run so far [J].
+  double max_rotation = 2.0;  ///< Largest rotation |Θ| of a body in the step [-].
+  double energy_scale = 0.0;  ///< Energy scale of the run so far [J].
 };
 
-/// Newton on the predicted trial, with polish: round-off conservation is reached when the energy
-/// that multipliers may leak, Σ|λ g|, is at round-off.
+/// Solves the predicted trial by Newton's method with an extra iteration: conservation to round-off
+/// is reached when the possible energy leak of the multipliers, Σ|λ g|, is at round-off.
 [[nodiscard]] NewtonReport solve_newton(const System& system, const State& state, Trial& trial,
                                         NewtonEngine& engine, const NewtonOptions& options);
 

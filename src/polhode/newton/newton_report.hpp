@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// How a Newton solve went. Not to converge is an outcome, not an exception: the stepper may
+/// Outcome of a Newton solve. Failure to converge is an outcome, not an exception: the stepper may
 /// halve the step and try again.
 struct NewtonReport {
   bool converged = false;
@@ -16,12 +16,12 @@ struct NewtonReport {
   double dt = 0.0;  ///< [s]
   int iterations = 0;
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
-  double rotation = 0.0;           ///< Largest |Θ| of the step [-].
-  bool hard = false;   ///< Converged, but slowly: it needed more iterations than it has.
-  std::string reason;  ///< If not converged: "contracts too slowly", "turns too far" ...
-  std::string worst;   ///< Largest increment: "body 'forearm'".
+  double rotation = 0.0;           ///< Largest |Θ| in the step [-].
+  bool hard = false;               ///< Converged, but slowly: beyond its iteration limit.
+  std::string reason;  ///< If not converged: "contracts too slowly", "turns by ...", ...
+  std::string worst;   ///< Location of the largest increment: "body 'forearm'".
   ConstraintCheck constraints;
-  [[nodiscard]] std::string text() const;  ///< One paragraph, with what to try next.
+  [[nodiscard]] std::string text() const;  ///< One paragraph, with a hint what to try next.
 };
 
 }  // namespace polhode

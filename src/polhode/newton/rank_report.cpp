@@ -14,7 +14,7 @@ namespace polhode {
 
 namespace {
 
-/// The exact rows of an interaction, each scaled to length one.
+/// Exact rows of an interaction, each normalised.
 struct Rows {
   int interaction = 0, a = kGround, b = kGround;
   Eigen::Matrix<double, Eigen::Dynamic, 12> G;
@@ -56,9 +56,9 @@ std::vector<Rows> constraint_rows(const System& system, const State& state) {
   return list;
 }
 
-/// Takes out, one after the other, the joint of each body that hangs on a single one: where its
-/// rows are independent on that body alone, they are independent of all others. What is left are
-/// loops. @returns the rank of what was taken out.
+/// Removes, one after the other, the joint of each body that has only one: if its rows are
+/// independent on that body alone, they are independent of all others. The remainder are loops.
+/// @returns the rank of the removed rows.
 int take_out_branches(const System& system, double tolerance, std::vector<Rows>& rows) {
   std::vector<std::vector<int>> of_body(static_cast<std::size_t>(system.body_count()));
   for (int k = 0; k < static_cast<int>(rows.size()); ++k)
@@ -95,7 +95,7 @@ int take_out_branches(const System& system, double tolerance, std::vector<Rows>&
   return rank;
 }
 
-/// Interactions that share bodies, directly or by way of others: their places in the list.
+/// Connected components of interactions that share bodies, as positions in the list.
 std::vector<std::vector<int>> clusters(const System& system, const std::vector<Rows>& rows) {
   std::vector<int> tie(static_cast<std::size_t>(system.body_count()));
   std::iota(tie.begin(), tie.end(), 0);
@@ -113,7 +113,7 @@ std::vector<std::vector<int>> clusters(const System& system, const std::vector<R
   return list;
 }
 
-/// The rows of a cluster over its own bodies, and the interaction of each.
+/// Rows of a connected component over its own bodies, and the interaction of each.
 struct ClusterRows {
   std::vector<BodyRows> blocks;
   std::vector<int> interaction;

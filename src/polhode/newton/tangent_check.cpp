@@ -15,12 +15,12 @@ namespace polhode {
 namespace {
 
 constexpr const char* kAssembled = "assembled";
-/// Nodes of solids that are moved, evenly chosen.
+/// Largest number of displaced nodes of solids, evenly chosen.
 constexpr int kMaxNodesMoved = 24;
-/// A prediction that turns elements inside out or passes through a surface is shortened so often.
+/// Largest number of shortenings of a prediction that inverts elements or passes through a surface.
 constexpr int kShortenings = 8;
 
-/// The trial that goes on with the velocities of the state.
+/// Trial that continues with the velocities of the state.
 Trial sample_trial(const System& system, const State& state, double dt, double rho_inf) {
   Trial trial;
   trial.context.ga = GeneralizedAlpha::from_spectral_radius(rho_inf);
@@ -46,7 +46,7 @@ bool acts_by_impulses(const System& system) {
   return contacts && contacts->impulses();
 }
 
-/// The equations of a step as Newton solves them, nodes eliminated.
+/// Equations of a step as solved by Newton, with eliminated nodes.
 class WholeTangent {
  public:
   WholeTangent(const System& system, const State& state, Trial trial, MomentumRate form)
@@ -63,11 +63,11 @@ class WholeTangent {
 
   [[nodiscard]] Trial& trial() { return trial_; }
   [[nodiscard]] bool has_contacts() const { return touching_.has_value(); }
-  /// Why there is no tangent; empty if there is one.
+  /// Reason why there is no tangent; empty if there is one.
   [[nodiscard]] const std::string& fault() const { return fault_; }
 
-  /// Columns of one body's displacement and rotation: free nodes go along as their elimination
-  /// says, so that their residual stays.
+  /// Compares the columns of one body's displacement and rotation. Free nodes follow by their
+  /// elimination, so that their residual does not change.
   void move(int body) {
     const BodyStep at = body_step(system_, state_, trial_, body);
     const double length = system_.length_scale();
@@ -85,7 +85,7 @@ class WholeTangent {
       });
     }
   }
-  /// Column of a multiplier, which is linear.
+  /// Compares the column of a multiplier, which is linear.
   void pull(int row) {
     const double s = trial_.scale(system_), lambda = trial_.lambda[row];
     const int at = 6 * system_.body_count() + row;
@@ -96,7 +96,7 @@ class WholeTangent {
       return r;
     });
   }
-  /// Columns of a free node, by themselves.
+  /// Compares the columns of a free node alone.
   void move_free(int node) {
     for (int c = 0; c < 3; ++c) {
       if (system_.nodes().unknown(node, c) < 0) continue;
@@ -127,7 +127,7 @@ class WholeTangent {
  private:
   [[nodiscard]] int size() const { return matrix_.size(); }
 
-  /// Nothing may be passed through or turned inside out.
+  /// Shortens the prediction: no surface may be passed through, no element inverted.
   void hold_back() {
     if (touching_) {
       (void)touching_->begin_step(state_, trial_);
@@ -140,7 +140,7 @@ class WholeTangent {
     }
   }
   void shorten(double part) { shorten_motion(system_, state_, part, trial_); }
-  /// No point of a surface has passed through another one, or most of its way there.
+  /// Whether no point of a surface has passed, or nearly passed, through another one.
   [[nodiscard]] bool clear() const {
     std::vector<double> clearance;
     for (int g = 0; g < system_.nodes().group_count(); ++g)
@@ -183,7 +183,7 @@ class WholeTangent {
     columns_.emplace(measure_rows());
   }
 
-  /// Bodies, rows, then three a node, of which what is bonded or prescribed has none.
+  /// Residual of bodies, rows, then three per node; bonded and prescribed components have none.
   [[nodiscard]] Vec residual() {
     const double s = trial_.scale(system_);
     if (nodes_) {
@@ -200,7 +200,7 @@ class WholeTangent {
     Vec r = Vec::Zero(size() + 3 * static_cast<Eigen::Index>(system_.nodes().count()));
     r.head(size()) = -rhs;
     if (!nodes_) return r;
-    (void)condensation_->turns(trial_);  // places the bonded nodes' arms
+    (void)condensation_->turns(trial_);  // updates the lever arms of bonded nodes
     add_shares(nodes_->residual(), s, r);
     for (int i = 0; i < system_.nodes().count(); ++i)
       for (int c = 0; c < 3; ++c)
@@ -208,7 +208,7 @@ class WholeTangent {
           r[size() + 3 * i + c] = s * nodes_->residual()[static_cast<std::size_t>(3 * i + c)];
     return r;
   }
-  /// What bonded nodes hand on to their bodies.
+  /// Adds the forces that bonded nodes transmit to their bodies.
   void add_shares(const std::vector<double>& F, double s, Vec& r) const {
     std::vector<Vec6> shares(static_cast<std::size_t>(system_.body_count()), Vec6::Zero());
     condensation_->gather(F, s, shares);
@@ -216,7 +216,8 @@ class WholeTangent {
       r.segment<6>(6 * b) += shares[static_cast<std::size_t>(b)];
   }
 
-  /// How free nodes go along with an unknown of a body, bonded ones excepted; 3 a node.
+  /// Displacements of free nodes that follow an unknown of a body, bonded nodes excepted; 3 per
+  /// node.
   [[nodiscard]] std::vector<double> nodes_along(int unknown, double unit) {
     if (!nodes_) return {};
     (void)condensation_->turns(trial_);
@@ -310,7 +311,7 @@ class WholeTangent {
   std::optional<NodeSystem> nodes_;
   std::optional<NodeCondensation> condensation_;
   std::optional<BodyContactAssembler> touching_;
-  std::vector<Mat3> still_;  ///< By piece: none has turned.
+  std::vector<Mat3> still_;  ///< By connected component: identity, no rotation.
   KktMatrix matrix_;
   std::optional<TangentColumns> columns_;
   std::string fault_;
@@ -368,7 +369,7 @@ TangentReport check_tangents(const System& system, const State& state, double dt
     compare_whole(system, whole, most_bodies, report);
   else
     report.left_out.push_back(whole.fault());
-  // The assembled tangent has the faults of its parts, which tell more of them.
+  // The assembled tangent contains the errors of its parts, whose reports are more specific.
   for (const TangentPart& part : report.parts)
     if (!(part.worst.error <= report.worst.error) &&
         (part.kind != kAssembled || report.worst.error <= kTangentTolerance))

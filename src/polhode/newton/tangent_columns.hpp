@@ -12,16 +12,15 @@
 
 namespace polhode {
 
-/// Columns of a tangent, one after the other, against central differences of its residual.
+/// Columns of a tangent, one after the other, compared with central differences of its residual.
 class TangentColumns {
  public:
   /// @param row_size  Largest entry of each row of the tangent.
   explicit TangentColumns(Vec row_size) : row_size_(std::move(row_size)) {}
 
-  /// Shorter and shorter displacements are tried as long as the column does not agree: what is
-  /// stiff over tiny ways, as contacts and friction are, has no derivative over long ones. Where
-  /// one-sided differences disagree and the column is that of one side, it counts as right: there
-  /// is a kink.
+  /// Compares a column with differences of decreasing displacement until they agree: stiff forces
+  /// such as contacts and friction are differentiable only over tiny displacements. Where one-sided
+  /// differences disagree and the column is that of one side, it counts as right, at a kink.
   /// @param residual  Residual after the displacement h of this column's unknown.
   template <class Residual>
   void compare(int column, const Vec& analytic, Residual&& residual) {
@@ -49,13 +48,13 @@ class TangentColumns {
     int row = -1, column = -1;
   };
   [[nodiscard]] const Entry& worst() const { return worst_; }
-  [[nodiscard]] int kinks() const { return kinks_; }  ///< Columns at one.
+  [[nodiscard]] int kinks() const { return kinks_; }  ///< Number of columns at a kink.
 
  private:
   static constexpr double kAgrees = 0.01 * kTangentTolerance;
-  /// A one-sided difference of a smooth side is off by its curvature over the displacement.
+  /// Error of a one-sided difference of a smooth function: its curvature times the displacement.
   static constexpr double kOneSided = 1e-4;
-  /// Below this an entry of the scaled system is nothing beside inertia.
+  /// Entry of the scaled system below which it is negligible compared with inertia.
   static constexpr double kNothing = 1e-6;
 
   [[nodiscard]] static Vec noise(const Vec& ahead, const Vec& behind) {
@@ -69,7 +68,7 @@ class TangentColumns {
       const double size = std::max({row_size[i], std::abs(numeric[i]), kNothing});
       const double off = std::abs(analytic[i] - numeric[i]);
       const double error = off > noise[i] ? (off - noise[i]) / size : off <= noise[i] ? 0.0 : off;
-      if (found.row >= 0 && error <= found.error) continue;  // a NaN goes on and stays
+      if (found.row >= 0 && error <= found.error) continue;  // a NaN is kept and stays
       found = {error, analytic[i], numeric[i], i, -1};
       if (std::isnan(error)) found.error = std::numeric_limits<double>::infinity();
     }
@@ -94,27 +93,28 @@ class TangentColumns {
   return tangent.cwiseAbs().rowwise().maxCoeff();
 }
 
-/// "force y of body 'arm'": component 0 to 5 of a body; `words` for the first three and the others.
+/// Name of a component 0 to 5 of a body: "force y of body 'arm'"; `words` for the first three and
+/// the others.
 [[nodiscard]] std::string body_component(const System& system, int body, int component,
                                          const char* moved, const char* turned);
-/// "node 7 of element 3 of solid 'pad'".
+/// Name of a node: "node 7 of element 3 of solid 'pad'".
 [[nodiscard]] std::string node_name(const Nodes& nodes, int node);
-/// Every how manieth of `count` is looked at, so that at most `most` are.
+/// Stride through `count` items that visits at most `most`.
 [[nodiscard]] int stride_of(int count, int most);
-/// Moves a component of a body in the trial, 0 to 2 along an axis [m], 3 to 5 about it [-].
+/// Displaces a component of a body in the trial: 0 to 2 along an axis [m], 3 to 5 about it [-].
 void move_component(const System& system, const State& state, Trial& trial, int body,
                     const BodyStep& from, int component, double h);
-/// Moves a component of a node in the trial, with its velocity.
+/// Displaces a component of a node in the trial, with its velocity.
 void move_node(const State& state, Trial& trial, int node, int component, double h);
 
-/// Every interaction by itself: wrenches and rows by the motion of its bodies and by its
+/// Compares every interaction alone: wrenches and rows by the motion of its bodies and by its
 /// multipliers.
 void check_interactions(const System& system, const State& state, Trial& trial,
                         TangentReport& report);
-/// Every group of elements by itself: forces by the positions of nodes, internal unknowns
+/// Compares every group of elements alone: forces by the positions of nodes, with internal unknowns
 /// condensed.
 void check_elements(const System& system, const State& state, Trial& trial, TangentReport& report);
-/// Every pair of bodies in contact: wrenches by the motion of both.
+/// Compares every pair of bodies in contact: wrenches by the motion of both.
 void check_contacts(const System& system, const State& state, Trial& trial, TangentReport& report);
 
 }  // namespace polhode

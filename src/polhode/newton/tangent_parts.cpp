@@ -12,10 +12,10 @@ namespace polhode {
 
 namespace {
 
-/// At most so many interactions of a kind, nodes of a group and bodies in contact are moved.
+/// Largest numbers of displaced interactions of a kind, nodes of a group and bodies in contact.
 constexpr int kMaxItems = 1000, kMaxNodes = 24, kMaxTouching = 60;
 
-/// Two bodies, of which the ground is none, and multipliers, as columns of unknowns or as rows.
+/// Two bodies, without the ground, and multipliers, as columns of unknowns or as rows.
 struct PairUnknowns {
   int a, b, rows;
   [[nodiscard]] int size() const { return 12 + rows; }
@@ -86,7 +86,7 @@ void finish(TangentPart part, int kinks, TangentReport& report) {
   report.parts.push_back(std::move(part));
 }
 
-/// An interaction at the trial as it stands.
+/// Terms of an interaction at the present trial.
 PairTerms terms_of(const System& system, const State& state, const Trial& trial,
                    const InteractionRef& ref, bool tangents) {
   StepContext context = trial.context;
@@ -168,7 +168,7 @@ class GroupForces {
                     ElementSink{force.data(), tangent, slots_.data()});
     return force;
   }
-  /// Every node that elements of the group act on, ascending.
+  /// Nodes on which elements of the group act, ascending.
   [[nodiscard]] std::vector<int> acted_on() const {
     std::vector<int> list;
     if (moving_) {
@@ -188,7 +188,7 @@ class GroupForces {
   std::span<const int> slots_;
   const double* history_;
   std::size_t first_scratch_;
-  const ChangingSparsity* moving_;  ///< Null: slots of the graph.
+  const ChangingSparsity* moving_;  ///< Null: blocks of the graph.
   NodeBlocks blocks_;
 };
 
@@ -311,7 +311,7 @@ void check_elements(const System& system, const State& state, Trial& trial, Tang
     compare_group(system, state, trial, g, report);
 }
 
-/// All pairs are evaluated for each displacement: each body is moved once for all its pairs.
+/// Evaluates all pairs for each displacement: each body is displaced once for all its pairs.
 void check_contacts(const System& system, const State& state, Trial& trial, TangentReport& report) {
   BodyContacts& contacts = *system.contacts();
   const auto n = static_cast<std::size_t>(system.body_count());

@@ -12,7 +12,7 @@ namespace polhode {
 
 namespace {
 
-/// What of each of the interactions listed, at a state; Item is their type.
+/// A quantity of each listed interaction at a state; Item is their type.
 template <class Item, class What>
 auto of_each(const System& system, const State& state, const std::vector<int>& interactions,
              What&& what) {

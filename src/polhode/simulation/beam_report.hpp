@@ -13,7 +13,7 @@ namespace polhode {
 class RunningCable;
 class Simulation;
 
-/// What a beam is like at an instant.
+/// State of a beam at an instant.
 struct BeamReport {
   // Of the nodes.
   std::vector<Vec3> position, velocity;  ///< World [m, m/s].
@@ -24,23 +24,25 @@ struct BeamReport {
                               ///< those it has free of stress.
 };
 
-/// What a cable is like at an instant.
+/// State of a cable at an instant.
 struct CableReport {
-  /// Of the ends of its pieces, from one end to the other, world [m, m/s].
+  /// Of the ends of its segments, from one end to the other, world [m, m/s].
   std::vector<Vec3> position, velocity;
-  std::vector<double> tension;  ///< Elastic, of the pieces; of rods below zero when pressed [N].
-  std::vector<double> length;   ///< Of the pieces [m].
-  std::vector<double> strain;   ///< Of the pieces, elongation over free length [-].
-  std::optional<RunningCableReport> whole;  ///< Of one that slides.
+  /// Elastic, of the segments; negative in rods under compression [N].
+  std::vector<double> tension;
+  std::vector<double> length;               ///< Of the segments [m].
+  std::vector<double> strain;               ///< Of the segments, elongation over free length [-].
+  std::optional<RunningCableReport> whole;  ///< Of a running cable.
 };
 
-/// At the present state of a simulation. @param elements  Interactions of the beam's elements.
+/// Report of a beam at the present state of a simulation. @param elements  Interactions of the
+/// beam's elements.
 [[nodiscard]] BeamReport beam_report(const Simulation& simulation, const BeamSpec& spec,
                                      const std::vector<int>& elements);
-/// Likewise, of a cable's pieces.
+/// Report of a cable's segments.
 [[nodiscard]] CableReport cable_report(const Simulation& simulation, const CableLineSpec& spec,
                                        const std::vector<int>& pieces);
-/// Likewise, of a cable that slides. @param group  Its group of elements, `cable`.
+/// Report of a running cable. @param group  Its group of elements, `cable`.
 [[nodiscard]] CableReport running_cable_report(const Simulation& simulation,
                                                const CableLineSpec& spec, const RunningCable& cable,
                                                int group);

@@ -9,7 +9,7 @@ namespace polhode {
 
 namespace {
 
-/// A body's motion with its accelerations, seen from another one, along the axes of that.
+/// A body's motion with its accelerations relative to another one, in that one's axes.
 struct SeenMotion {
   Vec3 position, velocity, acceleration;  ///< Of the probe's point.
   Mat3 R;
@@ -29,7 +29,7 @@ SeenMotion in_the_world(const Simulation& simulation, int body, const Vec3& Z) {
 SeenMotion seen(const SeenMotion& x, const SeenMotion& from) {
   const Mat3 T = from.R.transpose();
   const Vec3 r = x.position - from.position, v = x.velocity - from.velocity;
-  const Vec3 drag = v - from.omega.cross(r);  // velocity in the turning frame
+  const Vec3 drag = v - from.omega.cross(r);  // velocity in the rotating frame
   const Vec3 a = x.acceleration - from.acceleration - from.alpha.cross(r) -
                  from.omega.cross(from.omega.cross(r)) - 2.0 * from.omega.cross(drag);
   const Vec3 omega = x.omega - from.omega;
@@ -37,7 +37,7 @@ SeenMotion seen(const SeenMotion& x, const SeenMotion& from) {
           T * x.R, T * omega, T * (x.alpha - from.alpha - from.omega.cross(omega))};
 }
 
-/// Where the body's coordinates begin: what its shape and points are measured from.
+/// Origin of the body's coordinates, to which its shape and points refer.
 Vec3 origin_of(const Simulation& simulation, int body) {
   return body == kGround ? Vec3::Zero()
                          : Vec3(-simulation.model().bodies[static_cast<std::size_t>(body)].com);
@@ -47,7 +47,7 @@ void add_vector(std::vector<double>& list, const Vec3& x) {
   list.insert(list.end(), x.begin(), x.end());
 }
 
-/// Place of a body in another one at the start, as described: x = R Z + d in coordinates of both.
+/// Pose of a body in another one at the start, as described: x = R Z + d in coordinates of both.
 std::pair<Mat3, Vec3> start_place(const Model& model, int body, int from) {
   const auto place = [&](int k) -> std::pair<Mat3, Vec3> {
     if (k == kGround) return {Mat3::Identity(), Vec3::Zero()};

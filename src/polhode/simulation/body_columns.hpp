@@ -10,7 +10,7 @@ namespace polhode {
 
 /// Names of the columns of a body's probe, without the time.
 [[nodiscard]] std::vector<std::string> body_columns(const ProbeSpec& spec);
-/// Their numbers at the present state. @param body  Index into Model::bodies.
+/// Values of these columns at the present state. @param body  Index into Model::bodies.
 [[nodiscard]] std::vector<double> body_numbers(const Simulation& simulation, const ProbeSpec& spec,
                                                int body);
 

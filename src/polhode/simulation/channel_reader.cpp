@@ -13,7 +13,7 @@ namespace polhode {
 
 namespace {
 
-/// Names that the derivative of a number may have, the first that exists.
+/// Possible names of the derivative of a number, in order of preference.
 std::vector<std::string> rates_of(const std::string& name) {
   std::vector<std::string> names = {"rate " + name};
   if (name == "x" || name == "y" || name == "z") names.push_back("v" + name);
@@ -78,7 +78,7 @@ double ChannelReader::value(const Simulation& simulation) const {
   return std::isnan(*numbers) ? far_gap(simulation) : *numbers;
 }
 
-/// Contacts know gaps of what is near only.
+/// Gap of shapes that are far apart: contacts compute gaps of nearby shapes only.
 double ChannelReader::far_gap(const Simulation& simulation) const {
   const auto [a, b] = target_.spec.pair;
   const contact::ContactSet* contacts = simulation.contact_set();

@@ -11,19 +11,19 @@ namespace polhode {
 
 class Simulation;
 
-/// One number that a simulation reports, found by the name of its column in a probe.
+/// A number reported by a simulation, identified by the name of its column in a probe.
 class ChannelReader {
  public:
   ChannelReader() = default;  ///< Reads nothing.
-  /// @param where  Path of what holds the channel, for messages.
+  /// @param where  Path of the channel's owner, for messages.
   /// @throws InputError if there is no such channel.
   ChannelReader(const Simulation& simulation, const SystemMap& map, const ChannelSpec& spec,
                 const std::string& where);
 
-  /// At the instant, in SI; a gap that is not known, of surfaces far apart, is infinite.
+  /// Value at the instant, in SI; an unknown gap, of surfaces far apart, is infinite.
   [[nodiscard]] double value(const Simulation& simulation) const;
-  /// The channel that is its derivative by time: of a coordinate its rate, of positions
-  /// velocities, of these accelerations. @throws InputError if it has none.
+  /// Channel of the time derivative: for a coordinate its rate, for positions velocities, for these
+  /// accelerations. @throws InputError if it has none.
   [[nodiscard]] ChannelReader rate(const Simulation& simulation, const std::string& where) const;
 
  private:
@@ -33,7 +33,7 @@ class ChannelReader {
   ProbeNumber column_;
   const SystemMap* map_ = nullptr;
   std::size_t coordinate_ = 0;  ///< Of a joint.
-  bool of_positions_ = false;   ///< Needs no velocities and forces.
+  bool of_positions_ = false;   ///< Independent of velocities and forces.
 };
 
 }  // namespace polhode

@@ -11,12 +11,11 @@ namespace polhode {
 
 namespace {
 
-/// Totals: what impacts and friction took, the smallest gap and impacts that steps do not resolve
-/// before those of pairs, and for each
-/// pair: impulse, energy lost, whether its sensor overlaps. With impulses, last: sweeps, and steps
-/// that did not converge.
+/// Layout of the totals: losses by impacts and friction, the smallest gap and the number of
+/// unresolved impacts; then for each pair impulse, energy loss, whether its sensor overlaps; with
+/// impulses at the end: sweeps, and steps that did not converge.
 constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kMinGap = 2, kUnresolvedTime = 3;
-/// No gap was small yet: totals are compared, which NaN would not stand.
+/// Value for no small gap so far: totals are compared, which NaN does not allow.
 constexpr double kNoGap = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -30,7 +29,7 @@ void ContactStatistics::begin(State& state) {
   totals_.assign(total_count(), 0.0);
   totals_[kMinGap] = kNoGap;
   see(state);
-  summed_ = true;  // no step was taken
+  summed_ = true;  // there was no step
   totals_[kMinGap] = seen_.least_gap;
   note_sensors(state);
   contacts_->keep_totals(state, totals_);
@@ -42,7 +41,7 @@ void ContactStatistics::resume(const State& state) {
   const std::size_t wanted = total_count();
   const ImpulseFigures search = impulse_figures();
   if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap, 0.0};
-  if (totals_.size() != wanted) totals_.resize(kHead);  // other pairs are kept now
+  if (totals_.size() != wanted) totals_.resize(kHead);  // the stored pairs have changed
   totals_.resize(wanted, 0.0);
   if (!contacts_->impulses()) return;
   totals_[wanted - 2] = search.sweeps;

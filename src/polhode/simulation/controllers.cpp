@@ -14,10 +14,10 @@ namespace polhode {
 
 namespace {
 
-/// Two times closer than this part of a step are the same.
+/// Difference of times, as a part of a step, below which they are equal.
 constexpr double kSameSampleTime = 1e-9;
 
-/// What a controller sees on one side of an instant.
+/// Control error on one side of an instant.
 struct Error {
   double value = 0.0, rate = 0.0;
 };
@@ -138,7 +138,7 @@ bool Controllers::act(const Item& item, double y, const Simulation& simulation, 
   const ControllerSpec& spec = *item.spec;
   const StateSpace& filter = item.filter;
   const double y_rate = item.rate ? item.rate->value(simulation) : 0.0;
-  const auto target = [&](TimeSide side) {  // a step ends at a break but for rounding
+  const auto target = [&](TimeSide side) {  // a step ends at a break up to rounding
     return spec.setpoint ? spec.setpoint->rates(beside(state.t, side), side) : TimeRates{};
   };
   const auto error = [&](const TimeRates& r) {
@@ -168,7 +168,7 @@ bool Controllers::act(const Item& item, double y, const Simulation& simulation, 
     const double way = 0.5 * h * (last.value + before.value), kept = integral;
     integral += way;
     const double made = made_of(before), onward = spec.integral * way;
-    // At a limit what is integrated stands still, unless it leads back.
+    // At a limit the integral is held, unless it moves back into the range (anti-windup).
     if ((made > spec.most && onward > 0.0) || (made < spec.least && onward < 0.0)) integral = kept;
     if (x.size() > 0) {
       const Mat half = 0.5 * h * filter.A, one = Mat::Identity(x.size(), x.size());

@@ -16,14 +16,14 @@ class Simulation;
 /// Outputs by controller, of one simulation.
 using ControllerOutputs = std::vector<std::shared_ptr<ControllerOutput>>;
 
-/// Gives what the loads and cables of a model follow to outputs of this model alone: copies of a
-/// model share their functions.
+/// Replaces the controller outputs that loads and cables of a model refer to by outputs of this
+/// model alone: copies of a model share their functions.
 [[nodiscard]] ControllerOutputs own_outputs(Model& model);
 
-/// The controllers of a model while it runs: they read channels at the ends of steps and set what
-/// acts over the next one. Sampled ones hold it until the next sample; continuous ones go on along
-/// the straight line through their last two outputs, and integrate their own states by the
-/// trapezoidal rule. What they remember is in the State. @eq{controller} @eq{controller-steps}
+/// Controllers of a running model: they read channels at the ends of steps and set outputs for the
+/// next one. Sampled controllers hold their output until the next sample; continuous ones
+/// extrapolate their last two outputs linearly, and integrate their own states by the trapezoidal
+/// rule. Their memory is part of the State. @eq{controller} @eq{controller-steps}
 class Controllers {
  public:
   /// @param order  Of the method.
@@ -32,18 +32,18 @@ class Controllers {
   Controllers(const Simulation& simulation, const SystemMap& map, ControllerOutputs outputs,
               int order);
 
-  /// The first time after the state's at which a step must end [s].
+  /// Next time after the state's at which a step must end [s].
   [[nodiscard]] double next_time(const State& state, double until) const;
   struct Acted {
-    bool any = false;     ///< The time of a controller has come.
-    bool jumps = false;   ///< What it sets jumps: forces before tell nothing of those to come.
-    std::string blind{};  ///< A controller whose channel is not known, in words.
+    bool any = false;     ///< A controller has acted.
+    bool jumps = false;   ///< Its output jumps: earlier forces do not predict later ones.
+    std::string blind{};  ///< Description of a controller whose channel has no value.
   };
-  /// Lets those act whose time has come.
+  /// Evaluates the controllers that are due.
   Acted act(const Simulation& simulation, State& state) const;
-  /// What a controller aims at, sees, and sets at the instant.
+  /// Target, measured value and output of a controller at the instant.
   [[nodiscard]] std::array<double, 3> report(int controller, const Simulation& simulation) const;
-  /// Puts the outputs where a state left them.
+  /// Restores the outputs stored in a state.
   void resume(const State& state) const;
 
  private:
@@ -56,13 +56,13 @@ class Controllers {
   struct Item {
     const ControllerSpec* spec = nullptr;
     ChannelReader channel;
-    std::optional<ChannelReader> rate;  ///< If the derivative counts.
+    std::optional<ChannelReader> rate;  ///< If the derivative is used.
     StateSpace filter;
     std::shared_ptr<ControllerOutput> output;
-    int memory = 0;  ///< Where its numbers are in State::history.
+    int memory = 0;  ///< Offset of its numbers in State::history.
   };
   [[nodiscard]] static StateSpace state_space(const ControllerSpec& spec);
-  /// @param y  What it reads. @returns whether its output jumps.
+  /// @param y  Measured value. @returns whether its output jumps.
   static bool act(const Item& item, double y, const Simulation& simulation, State& state);
   static void set_output(const Item& item, const double* memory);
 

@@ -15,10 +15,11 @@ namespace polhode {
 
 namespace {
 
-/// Two times closer than this part of a step are the same.
+/// Difference of times, as a part of a step, below which they are equal.
 constexpr double kSameEventTime = 1e-9;
 
-/// A body as a whole meets surfaces as well, whose contact is not switched.
+/// Rejects bodies that are also in contact with surfaces of solids, whose contact cannot be
+/// switched.
 void refuse_surfaces(const Simulation& simulation, const EventSpec& event, const std::string& name,
                      int body, int other) {
   if (other != kEverySide) return;

@@ -10,11 +10,11 @@ namespace polhode {
 
 class Simulation;
 
-/// The events of a model while it runs: which are due, and how far the conditions of others are
-/// from holding. What came is remembered in the State.
+/// Events of a running model: which are due, and the margins of the conditions of others. Past
+/// events are stored in the State.
 class EventWatch {
  public:
-  /// @throws InputError if a channel or an event is named that does not exist.
+  /// @throws InputError if a named channel or event does not exist.
   EventWatch(const Simulation& simulation, const SystemMap& map);
 
   [[nodiscard]] const std::vector<EventSpec>& events() const { return *events_; }
@@ -30,23 +30,23 @@ class EventWatch {
     return watched_[at(event)].contacts_off;
   }
 
-  /// The next time that is given for an event [s]; infinity if there is none.
+  /// Next given time of an event [s]; infinity if there is none.
   [[nodiscard]] double next_time(const State& state) const;
-  /// Whether a condition may come to hold in the next step.
+  /// Whether a condition may become true in the next step.
   [[nodiscard]] bool watches(const State& state) const;
-  /// How far the first of these conditions is beyond its level, negative before it: a continuous
+  /// Margin of the first of these conditions beyond its level, negative before it: a continuous
   /// function along the motion, whose zero is the next event.
   [[nodiscard]] double margin(const Simulation& simulation) const;
-  /// Events that come at the instant, in the order of the model.
+  /// Events at this instant, in the order of the model.
   [[nodiscard]] std::vector<int> due(const Simulation& simulation) const;
-  /// Makes repeated events ready again whose condition no longer holds.
+  /// Rearms repeated events whose condition no longer holds.
   void rearm(const Simulation& simulation, State& state) const;
-  /// Notes that an event came.
+  /// Records an event.
   void note(State& state, int event, double lost, double impulse) const;
   [[nodiscard]] double memory(const State& state, int event, EventMemory::Entry entry) const {
     return state.history[place(event, entry)];
   }
-  /// The first event that came and ends the run; −1: none.
+  /// First past event that ends the run; −1: none.
   [[nodiscard]] int stopped(const State& state) const;
 
  private:
@@ -61,7 +61,7 @@ class EventWatch {
     return at(system_->memory() + EventMemory::kSize * event + entry);
   }
   [[nodiscard]] bool ready(const State& state, int event) const;
-  /// How far the condition of an event is beyond its level.
+  /// Margin of an event's condition beyond its level.
   [[nodiscard]] double beyond(const Simulation& simulation, int event) const;
 
   const System* system_;

@@ -16,25 +16,26 @@ namespace polhode {
 
 namespace {
 
-/// Newton tolerances. The higher orders resolve smaller errors; in solids what is left of a step
-/// goes into many vibrations.
+/// Newton tolerances. Higher orders resolve smaller errors; in solids the remaining error of a step
+/// excites many vibrations.
 constexpr double kToleranceBodies = 1e-5, kToleranceSolids = 1e-6, kToleranceHighOrder = 1e-7;
-/// Iterations allowed: of bodies and joints, and of solids, which may keep a factorisation.
+/// Iteration limits: for bodies and joints, and for solids, which may reuse a factorisation.
 constexpr int kIterations = 12, kIterationsSolids = 30;
-/// Surfaces of solids in contact: forces follow from tiny ways.
+/// With surfaces of solids in contact: their forces follow from tiny displacements.
 constexpr double kToleranceSurfaces = 1e-9;
-/// Cables among them: what rounds of the length of a stiff piece moves light nodes sideways.
+/// With cables among them: the rounding of the length of a stiff segment moves light nodes
+/// sideways.
 constexpr double kToleranceCables = 1e-7;
-/// Of contact, whose stiffness turns a gap that is off by little into a force that is off by much.
+/// With contact, whose stiffness turns a small error of a gap into a large error of the force.
 constexpr double kToleranceContact = 1e-12;
 constexpr int kIterationsContact = 40;
-/// So many bodies that only contact couples are solved by conjugate gradients.
+/// Number of bodies coupled only by contact from which on conjugate gradients are used.
 constexpr int kManyBodies = 50;
-/// Error of automatic steps if the user gives none.
+/// Default tolerance of automatic steps.
 constexpr double kDefaultError = 1e-6;
-/// Below this many loops open at one body the tree is ahead whatever the rest.
+/// Number of loops open at one body below which the tree elimination is always faster.
 constexpr int kFewOpenLoops = 6;
-/// The tree does about this many times more operations a second than the block LU.
+/// Ratio of the operation rates of the tree elimination and the block LU.
 constexpr double kTreeAdvantage = 2.5;
 
 JacobianPolicy jacobian_policy(const std::string& word) {
@@ -46,7 +47,7 @@ JacobianPolicy jacobian_policy(const std::string& word) {
                    "Use one of: automatic, every_iteration, every_step, never");
 }
 
-/// Order of accuracy, with what speaks against it.
+/// Order of accuracy, and reasons against higher ones.
 int choose_order(const System& system, const AnalysisSpec& a, std::string& narration) {
   const bool composable = a.rho_inf == 1.0 && !system.dissipates() && a.momentum_rate == "momentum";
   if (system.contacts() && a.order.value_or(2) != 2)
@@ -84,7 +85,7 @@ int choose_order(const System& system, const AnalysisSpec& a, std::string& narra
   return order;
 }
 
-/// Surfaces of solids touch.
+/// Whether surfaces of solids may be in contact.
 bool has_surfaces(const System& system) {
   for (int g = 0; g < system.nodes().group_count(); ++g)
     if (system.nodes().group(g).barrier_constraint()) return true;
@@ -99,7 +100,7 @@ bool has_touching_cables(const System& system) {
   return false;
 }
 
-/// Bodies hang together by beams or cables, of which the tree makes loops.
+/// Whether bodies are connected by beams or cables, which are loops for the tree.
 bool has_elastic_pairs(const System& system) {
   for (const InteractionRef& ref : system.interactions())
     if (ref.rows == 0 && ref.a != kGround && ref.b != kGround && system.traits(ref).reach > 0.0)
@@ -194,7 +195,7 @@ Method choose_method(const System& system, const AnalysisSpec& a) {
     if (a.newton_tolerance <= 0.0) c.newton.tolerance = kToleranceContact;
     c.newton.max_iterations = a.max_iterations.value_or(kIterationsContact);
     if (a.jacobian == "automatic") c.newton.jacobian = JacobianPolicy::every_iteration;
-    c.newton.line_search = false;  // the engine has one of its own
+    c.newton.line_search = false;  // the engine has its own
   }
   if ((system.contacts() || has_surfaces(system)) && a.rho_inf < 1.0)
     m.narration += format(

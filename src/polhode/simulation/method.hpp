@@ -11,19 +11,18 @@
 
 namespace polhode {
 
-/// How a model is going to be integrated: what the user asked for, and what was chosen where the
-/// user did not.
+/// Integration method of a model: the user's settings, and choices where there are none.
 struct Method {
   GeneralizedAlpha ga;
   StepControl control;
   std::unique_ptr<NewtonEngine> engine;
   const LaneKernels* kernels = nullptr;
-  std::string narration;  ///< What was chosen and why, a sentence each.
+  std::string narration;  ///< Choices and reasons, a sentence each.
 };
 
-/// @throws InputError if what is asked for does not go together: a higher order with ρ∞ < 1 or with
-///         dampers; automatic steps of order 4; the tree with a rate of momentum
-///         or a Jacobian policy it does not have; an unknown solver.
+/// @throws InputError if settings cannot be combined: a higher order with ρ∞ < 1 or with dampers;
+/// automatic steps of order 4; the tree with an unsupported momentum rate or Jacobian policy; an
+/// unknown solver.
 [[nodiscard]] Method choose_method(const System& system, const AnalysisSpec& analysis);
 
 }  // namespace polhode

@@ -10,15 +10,16 @@ namespace polhode {
 
 namespace {
 
-/// Unbalanced forces above this part of the largest deserve a word.
+/// Unbalanced forces, as a part of the largest force, above which a warning is given.
 constexpr double kUnbalanced = 1e-6;
 
-/// A velocity of a centre of mass below this part of the size of the model times its angular
-/// velocity is rounding.
+/// Velocity of a centre of mass, relative to the size of the model times its angular velocity,
+/// below which it is rounding.
 constexpr double kStays = 1e-9;
 
-/// Angular velocities of the bodies of the system at the start, in body axes; empty if nothing
-/// turns. @throws InputError if anything moves but about its own centre of mass.
+/// Angular velocities of the bodies of the system at the start, in body axes; empty without
+/// rotation. @throws InputError if there is any motion other than rotation about a body's own
+/// centre of mass.
 std::vector<Vec3> steady_spin(const Model& model) {
   for (const SolidSpec& solid : model.solids)
     if ((solid.velocity && !solid.velocity->isZero(0.0)) ||
@@ -47,7 +48,7 @@ std::vector<Vec3> steady_spin(const Model& model) {
   return turns ? spin : std::vector<Vec3>{};
 }
 
-/// The same model at rest, for statics.
+/// Copy of the model at rest, for statics.
 Model static_model(Model model) {
   model.analysis.type = "statics";
   for (BodySpec& body : model.bodies) body.velocity = body.angular_velocity = Vec3::Zero();
@@ -67,7 +68,7 @@ ModalAnalysis::ModalAnalysis(Model model) {
   (void)build_system(simulation_->model(), &map_);
   State state = simulation_->state();
   if (analysis.about == "start") {
-    // The multipliers that carry the loads where the model is at rest.
+    // Multipliers that balance the loads with the model at rest.
     const InstantSolution now = InstantSolver(simulation_->system()).accelerations(state);
     if (now.solved) state.lambda = now.lambda;
   } else {

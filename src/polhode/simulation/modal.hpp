@@ -12,24 +12,24 @@
 
 namespace polhode {
 
-/// Natural frequencies and shapes of a model about the equilibrium that statics finds from its
-/// start, or about the start itself (analysis.about). Bodies and beams may turn steadily about axes
-/// through their centres of mass: rotors, whose gyroscopic moments count.
+/// Natural frequencies and shapes of a model about the static equilibrium found from its start, or
+/// about the start itself (analysis.about). Bodies and beams may rotate steadily about axes through
+/// their centres of mass: rotors, with gyroscopic moments.
 class ModalAnalysis {
  public:
   /// @throws InputError if the model cannot be built or its start not assembled, or if a centre of
   ///         mass or a solid has a velocity.
   explicit ModalAnalysis(Model model);
 
-  /// False if no equilibrium was found: message() says why, and there are no modes.
+  /// Whether an equilibrium was found; if not, message() tells why, and there are no modes.
   [[nodiscard]] bool converged() const { return message_.empty(); }
   [[nodiscard]] const std::string& message() const { return message_; }
   [[nodiscard]] const Model& model() const { return simulation_->model(); }
-  /// At the equilibrium.
+  /// Simulation at the equilibrium.
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] const ModesReport& report() const { return report_; }
-  /// How a body of the model moves in a mode: displacement of its centre of mass and small
-  /// rotation, world, of the mass-normalised shape. Fixed bodies do not.
+  /// Motion of a body of the model in a mode: displacement of its centre of mass and small
+  /// rotation, world, of the mass-normalised shape; zero for fixed bodies.
   /// @param imaginary  Of the imaginary part of the shape.
   [[nodiscard]] Vec6 body_shape(int mode, int body, bool imaginary = false) const;
   /// Displacements of the nodes of solids, three each, likewise.

@@ -45,7 +45,7 @@ ProbeTarget find_solid_target(const Simulation& simulation, const ProbeSpec& spe
   return target;
 }
 
-/// An element of a beam or a piece of a cable.
+/// Target of a probe at an element of a beam or a segment of a cable.
 ProbeTarget find_line_target(const Model& model, const ProbeSpec& spec, const std::string& where) {
   const bool beam = spec.kind == "beam";
   const int index = beam ? model.beam_index(spec.target) : model.cable_index(spec.target);
@@ -106,7 +106,7 @@ ProbeClock::ProbeClock(const ProbeSpec& spec, const OutputSpec& output, std::opt
 bool ProbeClock::strikes(double t, bool last) {
   if (last_ && *last_ >= t) return false;
   if (every_ > 0.0 && !last) {
-    // A step that ends within rounding of the due time ends at it.
+    // A step that ends within rounding of the due time counts as ending at it.
     if (t * (1 + 1e-12) < static_cast<double>(next_) * every_) return false;
     next_ = static_cast<std::int64_t>(std::floor(t / every_ * (1 + 1e-12))) + 1;
   }
@@ -116,7 +116,7 @@ bool ProbeClock::strikes(double t, bool last) {
 
 namespace {
 
-/// Forces are those on the first body the probe names.
+/// Adds the columns of a contact; forces are those on the first body of the probe.
 void add_contact(std::vector<double>& row, const Simulation& simulation, const ProbeTarget& probe) {
   const ContactReport c = simulation.contact(probe.index);
   const ContactMap::Pair& pair =

@@ -11,7 +11,7 @@
 
 namespace polhode {
 
-/// A probe found in its model: what it records, as numbers in columns.
+/// Resolved probe: its target and its columns.
 struct ProbeTarget {
   ProbeSpec spec{};
   int index = 0;       ///< Of the body, joint, load, solid, beam or cable, or of the pair.
@@ -20,19 +20,19 @@ struct ProbeTarget {
   std::vector<std::string> header{};  ///< Names of the columns with units, the time first.
 };
 
-/// @param where  Path of what asks, for messages; "": the probe of that name.
-/// @throws InputError if the model has no such thing.
+/// @param where  Path of the request, for messages; "": the probe of that name.
+/// @throws InputError if the model has no such object.
 [[nodiscard]] ProbeTarget probe_target(const Simulation& simulation, const ProbeSpec& spec,
                                        const std::string& where = "");
-/// Times at which a probe has rows: the first end of a step at or after each multiple of its
-/// interval, or every step.
+/// Output times of a probe: the first end of a step at or after each multiple of its interval, or
+/// every step.
 class ProbeClock {
  public:
-  /// @param last  Time of the last row of a table that is continued.
+  /// @param last  Time of the last row of a continued table.
   ProbeClock(const ProbeSpec& spec, const OutputSpec& output,
              std::optional<double> last = std::nullopt);
-  /// Whether there is a row at the end of this step; then the next one is waited for.
-  /// @param last  The run ends here before its time: there is one.
+  /// Whether there is a row at the end of this step; if so, advances to the next one.
+  /// @param last  The run ends here early: there is a row.
   [[nodiscard]] bool strikes(double t, bool last = false);
 
  private:

@@ -39,7 +39,7 @@ void extend_by_resistance(std::vector<std::string>& header, const JointResistanc
   if (resistance.turn) header.emplace_back("stop rz [N m]");
 }
 
-/// Free coordinates of a joint, whose names do not depend on where it is.
+/// Free coordinates of a joint, whose names do not depend on its position.
 std::vector<std::string> coordinates_of(const JointSpec& spec) {
   JointParameters parameters{.free = spec.free, .values = spec.parameters};
   parameters.values.try_emplace("distance", 1.0);
@@ -116,13 +116,13 @@ std::vector<std::string> cable_header(const CableLineSpec& cable) {
   return header;
 }
 
-/// A vector whose magnitude has a name of its own.
+/// A vector whose magnitude has its own name.
 struct Magnitude {
   const char *prefix, *name;
 };
 constexpr Magnitude kMagnitudes[] = {{"v", "speed"}, {"f", "force"}, {"m", "moment"}};
 
-/// What a channel is read from, in words.
+/// Description of the object of a channel.
 std::string thing_of(const Model& model, const ProbeSpec& spec) {
   return spec.kind == "contact" ? format("contact of '{}' and '{}'", model.side_name(spec.pair[0]),
                                          model.side_name(spec.pair[1]))

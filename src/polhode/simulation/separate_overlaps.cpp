@@ -11,13 +11,13 @@ namespace polhode {
 namespace {
 
 constexpr int kMaxRounds = 1000;
-/// Surfaces are looked at in full each time.
+/// Largest number of rounds with surfaces, which are checked in full each time.
 constexpr int kMaxSurfaceRounds = 50;
-/// Part of the depth by which a pair moves beyond just touching, so that rounds end.
+/// Additional displacement of a pair, as a part of the depth, so that rounds end.
 constexpr double kBeyond = 1e-6;
 
-/// What moves as one: a body, or solids with the bodies that they are bonded to. Numbers are those
-/// of the System's bodies, then those of the model's solids.
+/// Rigid groups: a body, or solids with the bodies that they are bonded to. Numbers are those of
+/// the System's bodies, then those of the model's solids.
 class Parts {
  public:
   Parts(const System& system, const SystemMap& map) : system_(system), map_(map) {
@@ -35,7 +35,8 @@ class Parts {
 
   [[nodiscard]] int number_of_solid(int solid) const { return system_.body_count() + solid; }
 
-  /// Moves two apart by some way along the unit vector in which the first goes, if one of them may.
+  /// Separates two groups by a distance along the unit vector of the first one's motion, if one of
+  /// them is movable.
   /// @param direction  Zero: not known.
   bool push(int a, int b, double way, const Vec3& direction, State& state) {
     const double sum = mobility(a) + mobility(b);
@@ -75,7 +76,7 @@ class Parts {
     if (held_[static_cast<std::size_t>(from)]) hold(to);
   }
 
-  /// @param number  Negative: of what never moves.
+  /// Inverse mass. @param number  Negative: fixed.
   [[nodiscard]] double mobility(int number) const {
     if (number < 0) return 0.0;
     const auto p = static_cast<std::size_t>(part(number));
@@ -99,8 +100,8 @@ class Parts {
 
   const System& system_;
   const SystemMap& map_;
-  std::vector<int> part_;  ///< By number: the least one of its part.
-  // By part.
+  std::vector<int> part_;  ///< By number: smallest number of its group.
+  // By group.
   std::vector<std::vector<int>> members_;
   std::vector<double> mass_;
   std::vector<bool> held_;

@@ -9,13 +9,13 @@
 
 namespace polhode {
 
-/// A body or solid that separate_overlaps() moved.
+/// A body or solid moved by separate_overlaps().
 struct StartMove {
   std::string name;
   double distance = 0.0;  ///< [m]
 };
 
-/// Bodies at a state as contacts want them: the ground last.
+/// Bodies of a state as steps for contacts: the ground last.
 [[nodiscard]] std::vector<BodyStep> instants_of(const System& system, const State& state);
 
 /// Names of the shapes that overlap at a state by more than their tolerance: "'a' in 'b' by 1 m".
@@ -24,11 +24,10 @@ struct StartMove {
                                                    contact::ContactSet& contacts,
                                                    const State& state);
 
-/// Moves bodies and solids apart until nothing overlaps, without turning them: each pair along the
-/// normal at its deepest point, the two by the inverse of their masses, round after round. Solids
-/// and what they are bonded to move as one; what is held, by bonds to the ground or prescribed
-/// nodes, and cables stay where they are. Ends after so many rounds even if something still
-/// overlaps.
+/// Separates overlapping bodies and solids by translations: each pair along the normal at its
+/// deepest point, distributed by inverse masses, in rounds. Solids and bodies bonded to them move
+/// as one; parts bonded to the ground, with prescribed nodes, and cables are fixed. Ends after a
+/// maximum number of rounds even with remaining overlaps.
 std::vector<StartMove> separate_overlaps(const Model& model, const System& system,
                                          const SystemMap& map, State& state);
 

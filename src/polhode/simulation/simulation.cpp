@@ -10,7 +10,7 @@ namespace polhode {
 
 namespace {
 
-/// Two times closer than this part of the distance between outputs are the same.
+/// Difference of times, as a part of the output interval, below which they are equal.
 constexpr double kSameTime = 1e-9;
 constexpr const char* kSeeAtStart = "Use a channel that is available at the start";
 
@@ -63,7 +63,7 @@ RunSummary Simulation::run(const std::function<void(Simulation&)>& observe,
   const double wall = wall_clock(), cpu = cpu_clock();
   const auto look = [&] {
     const double t0 = wall_clock();
-    s.at_instant();  // the velocity residual is part of the figures
+    s.at_instant();  // computes the velocity residual for the figures
     s.watch_stretches();
     watch_stress();
     if (observe) observe(*this);

@@ -28,7 +28,7 @@ CableReport Simulation::cable(std::string_view name) const {
 std::array<double, 3> Simulation::controller(std::string_view name) const {
   return controller(model().controller_index(std::string(name)));
 }
-/// Found when it is asked for first.
+/// Target of a probe, resolved at its first use.
 const ProbeTarget& Simulation::probe_target_of(std::string_view name) const {
   const int index = model().probe_index(std::string(name));
   const auto found = impl_->probes.find(index);

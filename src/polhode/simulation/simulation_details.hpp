@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulation with what its reports are made of, for code that looks inside: results, checks,
-// bindings, tests. Programs that only run models need <polhode/polhode.hpp>.
+// A simulation with the internals of its reports, for results, checks, bindings, tests. Programs
+// that only run models need <polhode/polhode.hpp>.
 #pragma once
 
 #include <polhode/compile/build_solids.hpp>

@@ -11,13 +11,13 @@ namespace polhode {
 
 namespace {
 
-/// An event that seems to come within this part of a step behind its end is looked for in a step
-/// that is longer by that: no tiny step follows.
+/// Part of a step by which it is lengthened if an event seems to follow within it: this avoids a
+/// tiny step.
 constexpr double kReach = 0.9e-3;
-/// A change between looks that seems to be bigger than it is, for good measure [-].
+/// Safety factor on the slope of a margin between evaluations [-].
 constexpr double kMoreThanSecant = 1.5;
-/// An event is found when the condition is that close to its level, as part of its change over the
-/// step, or its time is known to this part of the step.
+/// Accuracy of an event: margin as a part of its change over the step, or time as a part of the
+/// step.
 constexpr double kFound = 1e-13;
 constexpr int kMaxLooks = 60;
 
@@ -64,7 +64,7 @@ void Simulation::Impl::find_event(const Simulation& simulation, const Reached& b
   };
   double beyond = events->margin(simulation);
   if (beyond < 0.0) {
-    // What is infinitely far from its level, a gap that is not known, is not near it.
+    // An infinite margin, of an unknown gap, is not near.
     const double H = state.t - before.state.t, longer = state.t + kReach * H;
     if (std::isinf(beyond) || std::isinf(margin) ||
         beyond + kMoreThanSecant * kReach * (beyond - margin) < 0.0 || longer > limit)
@@ -78,7 +78,8 @@ void Simulation::Impl::find_event(const Simulation& simulation, const Reached& b
     report = r;
     beyond = at_end;
   }
-  // Regula falsi with the Illinois rule; the state stays on the side where the condition holds.
+  // Regula falsi with the Illinois modification; the state stays on the side where the condition
+  // holds.
   Reached found = reached();
   const double t_0 = before.state.t;
   double low = 0.0, high = state.t - t_0, at_low = margin, at_high = beyond;

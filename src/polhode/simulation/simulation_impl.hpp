@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Simulation holds; for simulation.cpp and simulation_reports.cpp only.
+// Members of a Simulation; for simulation.cpp and simulation_reports.cpp only.
 #pragma once
 
 #include <algorithm>
@@ -30,20 +30,22 @@
 
 namespace polhode {
 
-/// Above this many bodies the start does not solve for multipliers that the method does not need.
+/// Number of bodies above which multipliers at the start are not computed unless the method needs
+/// them.
 inline constexpr int kSmallSystem = 2000;
-/// Breaks of a prescribed motion that are looked at before a run.
+/// Largest number of breaks of a prescribed motion that are checked before a run.
 inline constexpr int kMaxBreaks = 10000;
-/// An estimated error of one step from which on the motion is not resolved [-].
+/// Estimated error of a step above which the motion is not resolved [-].
 inline constexpr double kUnresolved = 1e-2;
-/// Velocities normal to the constraints, over those of the rows' terms, that call for a warning.
+/// Velocities normal to the constraints, relative to the rows' terms, above which a warning is
+/// given.
 inline constexpr double kFarOff = 0.1;
-/// How far assembling the start may move a body that was said to be in place, and one that was not.
+/// Largest displacements of a body by the initial assembly: with a given position, and without.
 inline constexpr double kMoveAsGiven = 1e-4, kMoveToAssemble = 0.5;
 
-/// Strains below this are made by rounding: a solid that has no others has no stress.
+/// Strain below which it is rounding: the solid counts as unstressed.
 inline constexpr double kRoundedStrain = 1e-10;
-/// Error of a solid's stress that deserves a word [-].
+/// Error of a solid's stress above which a warning is given [-].
 inline constexpr double kUncertainStress = 0.1;
 
 struct Simulation::Impl {
@@ -59,22 +61,22 @@ struct Simulation::Impl {
   std::unique_ptr<Controllers> controllers;  ///< Likewise.
   State state;
   StartReport start_report;
-  RunSummary figures;  ///< Times, end and message; the rest is in the state.
+  RunSummary figures;  ///< Times, end and message; other figures are in the state.
   std::string narration, engine_name;
   double start_seconds = 0.0, output_seconds = 0.0;
-  // What stands at t_n is solved for once per state.
+  // Instantaneous results, computed once per state.
   std::unique_ptr<InstantSolver> instant_solver;
   InstantSolution instant;
-  State projected;  ///< The state with velocities on G v = 0: what is reported.
+  State projected;  ///< The state with velocities on G v = 0, which is reported.
   std::int64_t instant_step = -1;
-  /// Largest |G v| at output times and when [s], and the largest magnitudes of its terms.
+  /// Largest |G v| at output times, its time [s], and the largest magnitudes of its terms.
   double velocity_residual = 0.0, velocity_time = 0.0, velocity_scale = 0.0;
   /// Smallest of surfaces of solids after any step [m].
   double surface_gap = std::numeric_limits<double>::quiet_NaN();
   /// A solid's report at the instant, and the largest error of its stress.
   struct SolidWatch {
     NodalRecovery recovery;
-    double least_energy;  ///< What rounding can make [J].
+    double least_energy;  ///< Rounding of the energy [J].
     SolidReport report = {};
     std::int64_t step = -1;
     double largest_energy = 0.0, error_energy = 0.0, largest_error = 0.0, t_largest = 0.0;
@@ -86,13 +88,13 @@ struct Simulation::Impl {
       largest_error = error_energy;
       t_largest = t;
     }
-    /// √ of a part of the largest energy, which grows as the run goes on.
+    /// √ of the ratio to the largest energy, which increases during the run.
     [[nodiscard]] double part(double energy) const {
       return largest_energy > least_energy ? std::sqrt(energy / largest_energy) : 0.0;
     }
   };
-  std::map<int, ProbeTarget> probes;     ///< Those asked for by name.
-  std::deque<SolidWatch> solid_watches;  ///< Made when asked for; references to them stay.
+  std::map<int, ProbeTarget> probes;     ///< Those queried by name.
+  std::deque<SolidWatch> solid_watches;  ///< Created at first use; references to them stay valid.
   std::map<const SolidElements*, LeastStretch> least_stretches;  ///< See watch_stretches().
 
   explicit Impl(Model m)
@@ -111,7 +113,7 @@ struct Simulation::Impl {
                                         *method.kernels);
   }
 
-  /// Finds what events and controllers read among the reports of the simulation.
+  /// Resolves the channels of events and controllers.
   void watch(const Simulation& simulation) {
     if (!map.events.empty()) events = std::make_unique<EventWatch>(simulation, map);
     if (!model.controllers.empty())
@@ -133,20 +135,20 @@ struct Simulation::Impl {
     options.load_steps = model.analysis.load_steps.value_or(0);
     options.max_iterations = model.analysis.max_iterations.value_or(options.max_iterations);
     statics = std::make_unique<LoadStepper>(system, options);
-    narration.clear();  // it was about steps in time
+    narration.clear();  // it describes steps in time
   }
 
-  /// Time that the run ends at; in statics the full load.
+  /// End time of the run; in statics the full load.
   [[nodiscard]] double end() const { return statics ? 1.0 : model.analysis.duration; }
 
-  /// A step in time, to which settle_step() belongs once it stays.
+  /// Takes a step in time; settle_step() follows once it is final.
   StepReport take(double t_limit) {
     forget_reports();
     StepReport report = stepper->advance(state, t_limit);
     if (report.accepted) contacts.see(state);
     return report;
   }
-  /// What was found of the state that the simulation leaves.
+  /// Clears the reports of the state that the simulation leaves.
   void forget_reports() {
     instant_step = -1;
     for (SolidWatch& watch : solid_watches) watch.step = -1;
@@ -155,7 +157,7 @@ struct Simulation::Impl {
     contacts.after_step(state);
     watch_surfaces();
   }
-  /// A state, and what is reported of the step that ended there.
+  /// A state, and the reports of the step that ended there.
   struct Reached {
     State state;
     ContactsSeen contacts;
@@ -168,11 +170,11 @@ struct Simulation::Impl {
     stepper->leave();
     forget_reports();
   }
-  /// Goes back, if an event comes in the step just taken, to where it does.
-  /// @param before  Where the step began. @param margin  EventWatch::margin() there.
+  /// Returns to the time of an event in the step just taken, if there is one.
+  /// @param before  Start of the step. @param margin  EventWatch::margin() there.
   void find_event(const Simulation& simulation, const Reached& before, double margin, double limit,
                   StepReport& report);
-  /// Lets controllers set what acts from now on; the report says so if one cannot.
+  /// Evaluates the controllers; the report tells if one cannot act.
   void let_act(const Simulation& simulation, StepReport& report) {
     const Controllers::Acted acted = controllers->act(simulation, state);
     if (acted.any) instant_step = -1;
@@ -181,7 +183,7 @@ struct Simulation::Impl {
     report.accepted = false;
     report.message = acted.blind;
   }
-  /// What acts has changed, though positions and time have not.
+  /// Clears instantaneous results: forces have changed, though positions and time have not.
   void forget_instant() {
     instant_solver.reset();
     instant_step = -1;
@@ -207,7 +209,7 @@ struct Simulation::Impl {
         event.name, state.t, system.group(ref.group).kind(), system.name(ref), done.gap);
   }
 
-  /// An event has ended the run.
+  /// Whether an event has ended the run.
   [[nodiscard]] bool stopped() const { return events && events->stopped(state) >= 0; }
 
   StepReport advance(double t_limit) {
@@ -248,7 +250,7 @@ struct Simulation::Impl {
     refuse_bad_start();
     refuse_jumps();
     refuse_overlaps();
-    if (map.contacts && a.step) state.dt_next = *a.step;  // stiffness follows it
+    if (map.contacts && a.step) state.dt_next = *a.step;  // the stiffness depends on it
     if (statics) statics->begin(state);
     stepper->begin(state);
     contacts.begin(state);
@@ -257,7 +259,7 @@ struct Simulation::Impl {
     start_seconds = wall_clock() - t0;
   }
 
-  /// Prescribed positions that jump: no force does that.
+  /// Rejects jumps of prescribed positions, which no force can produce.
   void refuse_jumps() const {
     if (statics) return;
     for (const SolidSpec& solid : model.solids)
@@ -314,7 +316,7 @@ struct Simulation::Impl {
           "Give the body a position closer to the assembled one, or raise assembly_tolerance");
   }
 
-  /// Elements that are compressed more than their kind stands: the worst of each group is kept.
+  /// Records elements compressed beyond the limit of their kind: the worst of each group.
   void watch_stretches() {
     StepContext still;
     still.t_n = state.t;
@@ -343,7 +345,7 @@ struct Simulation::Impl {
     return solid_watches[static_cast<std::size_t>(solid)];
   }
 
-  /// Findings of steps and of watch_stretches() that deserve a look.
+  /// Conspicuous findings of steps and of watch_stretches().
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> list = stepper->warnings();
     for (const SolidMap& solid : map.solids)
@@ -379,7 +381,8 @@ struct Simulation::Impl {
     return e.node >= 0 ? "a beam or cable" : "";
   }
 
-  /// Steps that do not resolve the motion. The figures are those of the run so far.
+  /// Adds warnings of steps that do not resolve the motion. The figures are those of the run so
+  /// far.
   void warn_of_errors(std::vector<std::string>& list) const {
     if (statics) return;
     const StepErrors& e = state.ledger.errors;
@@ -402,7 +405,7 @@ struct Simulation::Impl {
                  e.hard, state.ledger.steps, e.hard_time));
   }
 
-  /// A joint that starts beyond its stops by more than their band.
+  /// Rejects a joint that starts beyond its stops by more than their band.
   void refuse_outside_limits(std::size_t index) const {
     const Joint& joint = joint_at(system, map.joint[index]);
     if (!joint.has_barrier()) return;

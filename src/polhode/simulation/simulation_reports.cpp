@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Simulation reports of the instant that it stands at.
+// Reports of a Simulation at its present instant.
 #include <algorithm>
 
 #include <polhode/dynamics/point_motion.hpp>
@@ -82,7 +82,7 @@ std::vector<double> Simulation::load(int load) const {
   const LoadKind& kind = load_kind(model().loads[load].type);
   std::vector<double> report = kind.report(system.group(ref.group), ref.item, view.step());
   if (!system.is_off(impl_->state, impl_->map.load[load])) return report;
-  // What is switched off neither acts nor stores.
+  // Interactions that are switched off neither act nor store energy.
   auto at = report.begin();
   for (const LoadChannel& channel : kind.channels) {
     if (channel.unit == "N" || channel.unit == "N m" || channel.unit == "W" ||
@@ -119,7 +119,7 @@ const std::vector<SolidMap>& Simulation::solids() const { return impl_->map.soli
 
 namespace {}  // namespace
 
-/// Velocity of a node: a bonded one has its body's, without what Newmark's adds of order Δt².
+/// Velocity of a node; for a bonded one that of its body, without Newmark's error of order Δt².
 Vec3 Simulation::node_velocity(int node) const {
   const int body = impl_->system.nodes()[node].body;
   if (body == kFreeNode) return at_node(impl_->state.node_v, node);
@@ -203,7 +203,7 @@ InterfaceReport Simulation::interface_reaction(int solid, int k) const {
   for (const int k_node : nodes) {
     const int node = map.first_node + k_node;
     Vec3 force = at_node(now.node_force, node);
-    // Free components of a prescribed node are in balance but for round-off.
+    // Free components of a prescribed node are balanced up to round-off.
     for (int c = 0; c < 3; ++c)
       if (!all.bonded(node) && all.unknown(node, c) >= 0) force[c] = 0.0;
     Vec3 arm = at_node(impl_->state.node_x, node);

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// How a deformable solid stands at the state of a simulation.
+/// Fields of a deformable solid at the state of a simulation.
 struct SolidReport {
   // By node of its mesh, world
   std::vector<Vec3> position;      ///< [m]
@@ -16,10 +16,10 @@ struct SolidReport {
   std::vector<Vec3> velocity;      ///< [m/s]
   // By element of its mesh
   std::vector<ElementSample> elements;
-  NodalFields nodal;  ///< Stresses at nodes, by what the elements have.
+  NodalFields nodal;  ///< Stresses at nodes, averaged from elements.
 };
 
-/// What a bonded body, or what prescribes nodes, exerts on a solid.
+/// Wrench of a bonded body, or of prescribed nodes, on a solid.
 struct InterfaceReport {
   Vec3 force = Vec3::Zero();   ///< World axes [N].
   Vec3 moment = Vec3::Zero();  ///< About the body's centre of mass, or the world's origin [N m].

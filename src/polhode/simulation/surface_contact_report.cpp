@@ -39,7 +39,7 @@ ContactReport surface_report(const System& system, const State& state, const Con
     report.impulse += r.impulse;
     report.energy_lost += r.friction_loss + r.normal_loss;
   }
-  if (pair.a == pair.b) {  // what a surface does to itself has no sum
+  if (pair.a == pair.b) {  // self-contact forces have no resultant
     report.force.setZero();
     report.friction.setZero();
   }

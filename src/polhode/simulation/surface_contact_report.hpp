@@ -6,14 +6,14 @@
 
 namespace polhode {
 
-/// What the surfaces of a pair of sides do to each other, at a state.
+/// Contact between the surfaces of a pair of sides, at a state.
 /// @param pair  Of ContactMap::pairs, one of its sides a solid or a cable.
 [[nodiscard]] ContactReport surface_report(const System& system, const State& state,
                                            const ContactMap& map, const ContactMap::Pair& pair);
-/// What all surfaces took since the start.
+/// Losses of all surface contacts since the start.
 [[nodiscard]] ContactLosses surface_losses(const System& system, const State& state,
                                            const ContactMap& map);
-/// The smallest gap after the last step [m], NaN without surfaces; and how many surfaces touch.
+/// Smallest gap after the last step [m], NaN without surfaces; and number of surfaces in contact.
 struct SurfaceFigures {
   double least_gap = 0.0;
   int touching = 0;

@@ -10,11 +10,11 @@
 
 namespace polhode {
 
-/// Switches contacts at the instant of a state, where velocities stay. The ledger books what they
-/// stored as dissipated, what those store that begin as put in. @eq{switch-loss}
-/// @param on, off  Numbers of the set's switches.
-/// @returns shapes that overlap though their contact would begin, in words; the state is of no use
-/// then.
+/// Switches contacts at the instant of a state; velocities are unchanged. In the ledger the energy
+/// stored by switched-off contacts counts as dissipated, that of new ones as input.
+/// @eq{switch-loss}
+/// @param on, off  Numbers of the set's switches. @returns descriptions of shapes that overlap
+/// though their contact would begin; the state is then unusable.
 [[nodiscard]] std::vector<std::string> switch_contacts(const System& system,
                                                        contact::ContactSet& contacts, State& state,
                                                        std::span<const int> on,

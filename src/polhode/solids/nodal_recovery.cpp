@@ -11,8 +11,8 @@ namespace polhode {
 
 namespace {
 
-/// ∫N_a N_b over the reference cell, as part of its volume: exact for products of two fields that
-/// the nodes carry.
+/// ∫N_a N_b over the reference cell, as a part of its volume: exact for products of two nodal
+/// fields.
 Mat mean_products(const CellShape& shape) {
   const Quadrature rule = shape.corners == 8   ? hexahedron_rule(shape.order + 1)
                           : shape.corners == 6 ? wedge_rule()
@@ -83,7 +83,7 @@ struct NodalRecovery::Impl {
     return patches->at_nodes(corners);
   }
 
-  /// Values at nodes by means over the elements around, weighed by volume.
+  /// Nodal values as volume-weighted means over the adjacent elements.
   [[nodiscard]] RecoveredValues by_means(std::span<const ElementSample> elements) const {
     const auto count = static_cast<Eigen::Index>(mesh.nodes.size());
     RecoveredValues sum = RecoveredValues::Zero(count, kRecovered), own(1, kRecovered);
@@ -126,7 +126,7 @@ NodalFields NodalRecovery::fields(std::span<const ElementSample> elements) const
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
     result.cauchy.push_back(tensor(values, i));
     result.von_mises.push_back(von_mises(result.cauchy.back()));
-    // A polynomial may fall below zero where the energy does not.
+    // A polynomial may be negative although the energy is not.
     result.strain_energy_density.push_back(std::max(0.0, values(i, 6)));
   }
   for (std::size_t e = 0; e < elements.size(); ++e) {

@@ -15,23 +15,22 @@ namespace polhode {
 /// √(3/2 s:s) of the deviator s of a stress [Pa].
 [[nodiscard]] double von_mises(const Mat3& stress);
 
-/// Stresses at the nodes of a solid from those in its elements.
+/// Recovery of nodal stresses of a solid from those in its elements.
 ///
-/// Quadratic elements and tet4: a polynomial fitted to the points of all elements around a vertex
-/// that are best known (superconvergent patch recovery; O. C. Zienkiewicz and J. Z. Zhu, Int. J.
-/// Numer. Methods Engrg. 33 (1992) 1331-1364). A vertex of the boundary takes the polynomials of
-/// its neighbours inside. @eq{stress-patch}
-/// Other elements: what the elements around a node have there, averaged by volume.
-/// @eq{nodal-stress}
+/// Quadratic elements and tet4: a polynomial fitted to the superconvergent points of all elements
+/// around a vertex (superconvergent patch recovery; O. C. Zienkiewicz and J. Z. Zhu, Int. J. Numer.
+/// Methods Engrg. 33 (1992) 1331-1364). A vertex of the boundary uses the polynomials of its
+/// interior neighbours. @eq{stress-patch}
+/// Other elements: values of the elements around a node, averaged by volume. @eq{nodal-stress}
 class NodalRecovery {
  public:
-  /// @param mesh    Outlives this.
+  /// @param mesh  Must outlive this.
   /// @param moduli  Of the material at rest [Pa], for energies; the bulk modulus is positive.
   NodalRecovery(const Mesh& mesh, LinearModuli moduli);
   ~NodalRecovery();
   NodalRecovery(NodalRecovery&&) noexcept;
 
-  /// @param elements  One sample an element of the mesh.
+  /// Recovered fields. @param elements  One sample per element of the mesh.
   [[nodiscard]] NodalFields fields(std::span<const ElementSample> elements) const;
 
  private:

@@ -221,8 +221,8 @@ class SolidGroup final : public SolidElements {
   }
 
  private:
-  /// Packs of a block's scratch that stand first and that advance() moves: enhanced modes, or the
-  /// pressures of mean dilatation.
+  /// Leading packs of a block's scratch that advance() changes: enhanced modes, or the pressures of
+  /// mean dilatation.
   [[nodiscard]] std::size_t moved_packs() const {
     return static_cast<std::size_t>(sizes_.mean_dilatation ? 2 : sizes_.modes());
   }

@@ -23,38 +23,38 @@ struct SolidElementsDescription {
   std::vector<int> connectivity;  ///< Numbers of nodes, element after element.
   std::span<const Vec3> X;        ///< Reference positions of all nodes [m].
   std::vector<Vec3> fibres =
-      {};  ///< If the material wants them: one, or one an element; any length.
+      {};  ///< If the material needs them: one, or one per element; any length.
   std::string isa = "automatic";  ///< Instruction set of the kernels: automatic, baseline, ...
 };
 
-/// The most that a principal stretch of an element fell.
+/// Smallest principal stretch of an element.
 struct LeastStretch {
   double value = 1.0;  ///< Mean over the element [-].
   int element = -1;
 };
 
-/// A group of solid elements. `scratch` must be zero when it is first used, and a first evaluation
-/// with tangents must come before one without: elements with enhanced strains condense by it.
-/// work() over a step needs the history of t_n: call it before commit().
+/// A group of solid elements. `scratch` must be zero at its first use, and a first evaluation with
+/// tangents must precede one without: elements with enhanced strains condense in it. work() over a
+/// step uses the history of t_n: call it before commit().
 class SolidElements : public ElementGroup, public InternalUnknowns {
  public:
   const InternalUnknowns* internal_unknowns() const override { return this; }
   [[nodiscard]] virtual const ElementKind& element() const = 0;
   [[nodiscard]] virtual const Material& material() const = 0;
-  /// What the user should be told of the choice of element; empty if nothing.
+  /// Warnings about the choice of element; empty if none.
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
   /// Volume in the undeformed shape [m³].
   [[nodiscard]] virtual double volume() const = 0;
-  /// Smallest principal stretch at an instant. Elements whose kind says so (ElementKind::
-  /// least_stretch) are not to be trusted below a bound; see stretch_warning().
+  /// Smallest principal stretch at an instant. Some kinds of element (ElementKind::least_stretch)
+  /// are unreliable below a bound; see stretch_warning().
   [[nodiscard]] virtual LeastStretch least_stretch(const NodeStep& instant,
                                                    const double* history) const = 0;
-  /// The sentence to tell when the stretch fell below the bound; "" otherwise.
+  /// Warning if the stretch is below the bound; "" otherwise.
   [[nodiscard]] virtual std::string stretch_warning(const LeastStretch& least) const = 0;
 };
 
 /// @throws InputError for bad numbers of nodes, a density that is not positive, missing directions
-///         of fibres, elements that are inverted or flat in the undeformed shape (which it names).
+/// of fibres, elements that are inverted or flat in the undeformed shape (which are named).
 [[nodiscard]] std::unique_ptr<SolidElements> make_solid_elements(SolidElementsDescription d);
 
 }  // namespace polhode

@@ -12,15 +12,15 @@ namespace polhode {
 
 namespace {
 
-/// Least variance that a polynomial must have over the points of a patch to be determined by them.
+/// Smallest variance of a polynomial over the points of a patch for which it is determined by them.
 /// Two elements side by side have 0.75 for the square of a direction, one has none.
 constexpr double kMinVariance = 0.05;
-/// Spread of points below which they lie in a plane, of the largest.
+/// Spread of points, as a part of the largest, below which they lie in a plane.
 constexpr double kFlat = 1e-6;
-/// Sine of the angle beyond which a face of the boundary does not continue another one: faces
-/// of a circle of ten elements do.
+/// Sine of the angle up to which a face of the boundary continues another one: faces of a circle of
+/// ten elements do.
 constexpr double kNewDirection = 0.6;
-/// Volume between directions of unit length below which they are too near to a plane.
+/// Volume of unit direction vectors below which they are nearly coplanar.
 constexpr double kFlatCorner = 0.2;
 
 /// Powers of the monomials by degree: of complete polynomials, and of all products of squares.
@@ -42,15 +42,15 @@ const CellShape& linear_shape(const CellShape& shape) {
   return cell_shape(shape.corners == 8 ? "hex8" : shape.corners == 6 ? "wedge6" : "tet4");
 }
 
-/// Points where the stress of an element is of one order better than elsewhere: those of the rule
-/// with the fewest points that leaves no false modes (J. Barlow, Int. J. Numer. Methods Engrg. 10
-/// (1976) 243-251).
+/// Superconvergent points, at which the stress of an element is one order more accurate: those of
+/// the rule with the fewest points without spurious modes (J. Barlow, Int. J. Numer. Methods Engrg.
+/// 10 (1976) 243-251).
 Quadrature best_points(const CellShape& shape) {
   if (shape.corners == 8) return hexahedron_rule(2);
   return tetrahedron_rule(shape.order == 2 ? 2 : 1);
 }
 
-/// Values at the best points by those at the nodes of another shape, points × nodes.
+/// Values at the superconvergent points from those at the nodes of another shape, points × nodes.
 Mat at_best_points(const CellShape& shape, const CellShape& nodes) {
   const Quadrature rule = best_points(shape);
   Mat N(static_cast<Eigen::Index>(rule.size()), nodes.size());
@@ -114,7 +114,7 @@ Vec CloudFit::monomials(const Vec3& X) const {
       degree += powers[c];
       weight /= kFactorial[powers[c]];
     }
-    // Multinomial, so that a turn keeps the sum of squares of a degree.
+    // Multinomial, so that a rotation preserves the sum of squares of a degree.
     if (!products_) m[k] *= std::sqrt(weight * kFactorial[degree]);
   }
   return m;
@@ -159,8 +159,8 @@ void StressPatches::place_points() {
   }
 }
 
-/// By node: how many directions the faces of the boundary at it have: 0 inside, 1 on a face, 2 on
-/// an edge, 3 at a corner.
+/// Number of independent normals of the boundary faces at each node: 0 inside, 1 on a
+/// face, 2 on an edge, 3 at a corner.
 std::vector<int> StressPatches::boundary_ranks() const {
   std::vector<std::vector<Vec3>> kept(mesh_.nodes.size());  // orthonormal directions
   for (const FaceBlock& block : boundary(mesh_).blocks) {
@@ -186,8 +186,8 @@ std::vector<int> StressPatches::boundary_ranks() const {
   return ranks;
 }
 
-/// Directions of the edges that meet in a vertex, if all elements around it are hexahedra that meet
-/// as in a lattice: of edges that go on straight beyond the vertex, the one through it.
+/// Directions of the edges at a vertex, if all elements around it are hexahedra that form a
+/// lattice: of edges that continue straight beyond the vertex, the one through it.
 std::optional<Mat3> StressPatches::directions(int vertex) const {
   const std::vector<int>& elements = around_[static_cast<std::size_t>(vertex)];
   std::map<int, std::vector<int>> neighbours;  // by node, with the elements they share
@@ -229,8 +229,8 @@ std::optional<Mat3> StressPatches::directions(int vertex) const {
   return result;
 }
 
-/// Vertices whose polynomials hold at a vertex: itself, or those of its neighbours that lie deepest
-/// inside, of these the ones with which it shares most elements.
+/// Vertices whose polynomials are used at a vertex: itself, or those of its neighbours deepest
+/// inside the solid, among these the ones with which it shares most elements.
 std::vector<int> StressPatches::donors(int vertex, const std::vector<int>& rank) const {
   std::map<int, int> shared;
   for (const int e : around_[static_cast<std::size_t>(vertex)])
@@ -264,7 +264,7 @@ void StressPatches::find_patches() {
                    place_.begin() + first_point_[static_cast<std::size_t>(e) + 1]);
     }
     const std::optional<Mat3> along = directions(vertex);
-    // On edges of tetrahedra squares would follow the errors of elements that lie on one side.
+    // On edges of tetrahedra squares would follow the errors of one-sided elements.
     if (!along && rank[static_cast<std::size_t>(vertex)] > 1) order = 1;
     patches_.push_back({elements, CloudFit(cloud, order, along ? &*along : nullptr)});
     return index;
@@ -282,7 +282,7 @@ void StressPatches::find_patches() {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       std::vector<Share>& shares = shares_[static_cast<std::size_t>(nodes[a])];
       if (!shares.empty()) continue;
-      // A node between vertices has what they have there.
+      // A node between vertices takes their interpolated values.
       const Vec N = shape_functions(linear_shape(shape), shape.nodes[a]);
       std::map<int, double> sum;
       for (int c = 0; c < shape.corners; ++c) {

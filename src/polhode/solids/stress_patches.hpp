@@ -10,50 +10,51 @@
 
 namespace polhode {
 
-/// Values that are recovered together: the six components of stress and the energy density.
+/// Number of values recovered together: six components of stress and the energy density.
 inline constexpr int kRecovered = 7;
 using RecoveredValues = Eigen::Matrix<double, Eigen::Dynamic, kRecovered, Eigen::RowMajor>;
 
-/// Polynomials that are nearest to values at points scattered in space: complete ones of up to
-/// second order, or all products of up to second powers along three directions.
+/// Least-squares polynomials for values at scattered points: complete ones of up to second order,
+/// or all products of up to second powers along three directions.
 ///
-/// Coordinates count from the points' mean along their principal axes, or the directions, in units
-/// of their spread; coefficients that the points do not determine are zero. The fit is independent
-/// of axes and units, also for flat clouds of points. @eq{stress-patch}
+/// Coordinates are relative to the points' mean along their principal axes, or the directions, in
+/// units of their spread; coefficients that the points do not determine are zero. The fit is
+/// independent of axes and units, also for flat clouds of points. @eq{stress-patch}
 class CloudFit {
  public:
   using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, kRecovered>;
 
-  /// @param order       Of complete polynomials: 1 or 2.
-  /// @param directions  Columns, of any length, not in a plane; null: complete polynomials.
+  /// @param order  Of complete polynomials: 1 or 2.
+  /// @param directions  Columns, of any length, not coplanar; null: complete polynomials.
   CloudFit(std::span<const Vec3> points, int order, const Mat3* directions = nullptr);
 
-  /// Numbers that stand for a place: polynomials are sums of them times coefficients.
+  /// Monomials at a position: polynomials are sums of them times coefficients.
   [[nodiscard]] Vec monomials(const Vec3& X) const;
   /// @param moments  Sum over the points of monomials times values.
   [[nodiscard]] Coefficients coefficients(const Coefficients& moments) const {
     return basis_ * (basis_.transpose() * moments);
   }
-  [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }   ///< Of monomials.
-  [[nodiscard]] Eigen::Index terms() const { return basis_.cols(); }  ///< Determined.
+  [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }  ///< Of monomials.
+  /// Number of determined ones.
+  [[nodiscard]] Eigen::Index terms() const { return basis_.cols(); }
 
  private:
   Vec3 mean_ = Vec3::Zero();
   Mat3 to_own_ = Mat3::Zero();
   bool products_ = false;
-  Mat basis_;  ///< Polynomials that are orthonormal over the points, by columns.
+  Mat basis_;  ///< Orthonormal polynomials over the points, by columns.
 };
 
-/// The patches of elements of a mesh by which values are taken to its nodes.
+/// Patches of elements of a mesh by which values are transferred to its nodes.
 class StressPatches {
  public:
-  /// True if the mesh has only cells that are recovered by patches: hex20, hex27, tet4, tet10.
+  /// Whether the mesh has only cells with patch recovery: hex20, hex27, tet4, tet10.
   [[nodiscard]] static bool suit(const Mesh& mesh);
-  /// @param mesh  Outlives this; suits.
+  /// @param mesh  Must outlive this and satisfy suit().
   explicit StressPatches(const Mesh& mesh);
 
   /// @param at_corners  By element and corner of it: values of the element's own polynomial.
-  /// @returns           By node of the mesh.
+  /// @returns By node of the mesh.
   [[nodiscard]] RecoveredValues at_nodes(const RecoveredValues& at_corners) const;
 
  private:

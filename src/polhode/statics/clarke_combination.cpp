@@ -17,8 +17,9 @@ void ClarkeCombination::add(const Vec& residual) {
   if (residuals_.size() > kMax) residuals_.pop_front();
 }
 
-/// Over every set of sides: where all weights of the shortest affine mixture are positive it is one
-/// of the convex ones, and the shortest of these is the shortest of all.
+/// Shortest convex combination, by enumeration of the subsets of residuals: where all weights of
+/// the shortest affine combination are positive it is a convex one, and the shortest of these is
+/// the minimum.
 Vec ClarkeCombination::shortest() const {
   const auto count = static_cast<int>(residuals_.size());
   Eigen::MatrixXd products(count, count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigenvalues of λ² M + λ C + K on the motions that constraints allow, K unsymmetric or C not zero.
+// Eigenvalues of λ² M + λ C + K on the admissible motions, for unsymmetric K or nonzero C.
 #include <Spectra/GenEigsRealShiftSolver.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -16,26 +16,26 @@ namespace polhode {
 
 namespace {
 
-/// Up to so many freedoms all eigenvalues are found at once.
+/// Number of degrees of freedom up to which all eigenvalues are computed by a dense solver.
 constexpr int kDampedDense = 240;
-/// Shift, as part of the frequency below which there are as many modes as wanted.
+/// Shift, as a part of the frequency below which the requested number of modes lies.
 constexpr double kDampedShift = 0.3;
-/// Free motions are looked for next to this part of the shift, by so many inverse iterations; their
-/// energy is below the last number, as part of what it is the sum of.
+/// Shift in the search for free motions, as a part of the main shift, for a few inverse iterations;
+/// and their largest energy, as a part of the terms of its sum.
 constexpr double kNearZero = 1e-4, kFree = 1e-13;
 constexpr int kIterations = 4;
-constexpr double kSlows = 1e-3;  ///< Part of a free motion that damping may take in that time.
-/// Freedoms without mass have eigenvalues of the inverse that are zero to rounding.
+constexpr double kSlows = 1e-3;  ///< Part of a free motion that damping may dissipate in that time.
+/// Size of rounding for eigenvalues of the inverse that belong to massless degrees of freedom.
 constexpr double kNoMass = 1e-15;
-/// |λ| below this part of the shift is rounding.
+/// |λ|, as a part of the shift, below which it is rounding.
 constexpr double kZero = 1e-7;
-/// Imaginary parts below this part of |λ| are rounding.
+/// Imaginary part, as a part of |λ|, below which it is rounding.
 constexpr double kReal = 1e-12;
 constexpr double kArnoldi = 1e-12;
 constexpr int kMaxFree = 60;
 
-/// Shift about which eigenvalues are looked for: a real number above zero, so that matrices stay
-/// real and free motions do no harm.
+/// Positive real shift of the eigenvalue search: matrices stay real and free motions do not make
+/// them singular.
 double shift_of(ModalMatrices& m, int wanted) {
   const double range = range_of(m, wanted);
   return kDampedShift * std::sqrt(range > 0.0 && std::isfinite(range) ? range : 1.0);
@@ -46,8 +46,8 @@ Complex from_inverse(Complex nu, double sigma) {
   return std::abs(lambda) <= kZero * sigma ? Complex(0.0) : lambda;
 }
 
-/// The same without damping, of σ² (K + σ²M)⁻¹M: λ² is real as long as ν is, to the last bit. Both
-/// roots, of which one grows if they are not imaginary.
+/// Eigenvalues without damping, of σ² (K + σ²M)⁻¹M: λ² is exactly real if ν is. Both roots; one
+/// grows if they are not imaginary.
 std::pair<Complex, Complex> undamped_from_inverse(Complex nu, double sigma) {
   const Complex square = sigma * sigma * (1.0 - 1.0 / nu);
   if (std::abs(square) <= kZero * kZero * sigma * sigma) return {0.0, 0.0};
@@ -67,7 +67,7 @@ CVec times(const Mat& A, const CVec& x) {
   return y;
 }
 
-/// Motions that neither stiffness nor damping resists, orthonormal in the metric of M.
+/// Motions with neither stiffness nor damping, orthonormal in the metric of M.
 Mat free_of(ModalMatrices& m, double sigma) {
   Mat V(m.n(), 0);
   if (!m.factor_quadratic(kNearZero * sigma)) return V;
@@ -87,7 +87,7 @@ Mat free_of(ModalMatrices& m, double sigma) {
       moves = clean(x) && clean(x) && x.allFinite();
     }
     if (!moves || std::abs(x.dot(m.stiffness_times(x))) > kFree * m.energy_scale(x)) break;
-    // What damping, or a gyroscopic moment, would make of it in a time 1/(kNearZero σ).
+    // Effect of damping, or of a gyroscopic moment, on it in a time 1/(kNearZero σ).
     const Vec y = m.inverse(m.damping_times(x)).head(m.n());
     if (std::sqrt(y.dot(m.mass_times(y))) * kNearZero * sigma > kSlows) break;
     V.conservativeResize(m.n(), V.cols() + 1);
@@ -107,7 +107,7 @@ std::vector<EigenPair> dense_pairs(ModalMatrices& m, const Mat& N, const ModalMa
     pairs.push_back({Complex(0.0), V.col(i).cast<Complex>()});
   const Eigen::Index p = n - V.cols();
   if (p <= 0) return pairs;
-  // The others in a space that is orthogonal to them in the metric of M.
+  // The others in the orthogonal complement in the metric of M.
   Mat W = N;
   if (V.cols() > 0) {
     const Mat M_V = N.transpose() * (d.M * V);
@@ -149,8 +149,8 @@ std::vector<EigenPair> dense_pairs(ModalMatrices& m, const Mat& N, const ModalMa
   return pairs;
 }
 
-/// σ (A − σ)⁻¹ of the first-order form with the unknowns (x, v/σ), free motions kept out; without
-/// damping σ² (K + σ²M)⁻¹M.
+/// Operator σ (A − σ)⁻¹ of the first-order form with the unknowns (x, v/σ), free motions projected
+/// out; without damping σ² (K + σ²M)⁻¹M.
 class ShiftedInverse {
  public:
   using Scalar = double;
@@ -160,7 +160,7 @@ class ShiftedInverse {
   }
   [[nodiscard]] Eigen::Index rows() const { return m_.damped() ? 2 * m_.n() : m_.n(); }
   [[nodiscard]] Eigen::Index cols() const { return rows(); }
-  void set_shift(double) const {}  // was factored with it
+  void set_shift(double) const {}  // it is already factored with it
   void perform_op(const double* in, double* out) const {
     const int n = m_.n();
     if (!m_.damped()) {
@@ -201,7 +201,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
   Spectra::GenEigsRealShiftSolver<ShiftedInverse> solver(inverse, asked, krylov, 0.0);
   Vec start(n), first(n);
   for (int i = 0; i < n; ++i) start[i] = 1.0 + std::sin(1.0 + 2.7 * i);
-  inverse.perform_op(start.data(), first.data());  // into what the constraints allow
+  inverse.perform_op(start.data(), first.data());  // projected onto the constraints
   solver.init(first.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, kArnoldi, Spectra::SortRule::LargestMagn);
   if (solver.info() != Spectra::CompInfo::Successful)
@@ -221,7 +221,7 @@ std::vector<EigenPair> arnoldi_pairs(ModalMatrices& m, int wanted) {
     pairs.push_back({lambda, std::move(x)});
   };
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const Complex nu = 1.0 / values[i];  // of which Spectra gives the inverse
+    const Complex nu = 1.0 / values[i];  // Spectra returns the inverse
     const CVec x = vectors.col(i).head(m.n());
     if (m.damped()) {
       add(from_inverse(nu, sigma), x);

@@ -14,12 +14,13 @@ namespace polhode {
 
 namespace {
 
-/// Rows of G whose part normal to the others is smaller count as redundant.
+/// Relative size of the part of a row of G normal to the others below which it is redundant.
 constexpr double kRedundant = 1e-9;
-constexpr int kSearches = 40;  ///< Factorisations that may be spent on finding a range of ω².
-/// Damping below this part of the stiffness, at frequencies of the model, is rounding.
+/// Largest number of factorisations in the search for a range of ω².
+constexpr int kSearches = 40;
+/// Damping, as a part of the stiffness at frequencies of the model, below which it is rounding.
 constexpr double kNoDamping = 1e-14;
-/// Increment of central differences, of turns and of lengths of the model [-].
+/// Increment of central differences, for rotations and relative lengths [-].
 constexpr double kDifference = 1e-5;
 
 double largest(const SaddleMatrix& A, int n) {
@@ -113,8 +114,8 @@ void ModalMatrices::put_masses(const State& state) {
   mass_.set(values, blocks, nullptr, 1.0);
 }
 
-/// G Δq + C Δλ̂ = 0 puts B C⁻¹ G into the stiffness; the row is left with Δλ̂ = 0.
-/// @eq{compliance-row}
+/// Converts compliant rows to springs: G Δq + C Δλ̂ = 0 adds B C⁻¹ G to the stiffness; the row
+/// becomes Δλ̂ = 0. @eq{compliance-row}
 void ModalMatrices::put_springs_for_compliant_rows() {
   const KktValues& given = newton_.bodies().values();
   const KktTopology& topology = newton_.bodies().topology();
@@ -146,8 +147,8 @@ void ModalMatrices::put_springs_for_compliant_rows() {
   K().combine(K(), 1.0, more);
 }
 
-/// C is what the tangent gains with a rate, at velocities of zero, and what turning adds.
-/// @eq{modes-damped} @eq{modes-gyroscopic}
+/// Computes C: the change of the tangent with a rate, at zero velocities, plus the gyroscopic
+/// terms. @eq{modes-damped} @eq{modes-gyroscopic}
 void ModalMatrices::put_damping(const State& state, const ModeOptions& options) {
   const std::vector<double> ratios = diagonal_ratios(K(), s(), mass_);
   rate_ = ratios.empty() ? 1.0 : std::sqrt(ratios[ratios.size() / 2]);
@@ -165,8 +166,9 @@ void ModalMatrices::put_damping(const State& state, const ModeOptions& options) 
   damped_ = largest(damping_, n()) > kNoDamping * std::max(largest(K(), n()), 1e-300);
 }
 
-/// The momentum about the centre of mass is L = J ω with ω = ω_0 + θ̇ + θ × ω_0 and J = J_0 turned
-/// by θ: its rate is J θ̈ − L̂ θ̇ + (ω̂ J − J ω̂) θ̇ about a steady spin. @eq{modes-gyroscopic}
+/// Adds the gyroscopic terms. The momentum about the centre of mass is L = J ω with ω = ω_0 + θ̇ +
+/// θ × ω_0 and J = J_0 rotated by θ: its rate is J θ̈ − L̂ θ̇ + (ω̂ J − J ω̂) θ̇ about a steady
+/// spin. @eq{modes-gyroscopic}
 bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& spin,
                                    SaddleMatrix& gyroscopic) const {
   KktValues values = nothing();
@@ -184,9 +186,9 @@ bool ModalMatrices::put_gyroscopic(const State& state, const std::vector<Vec3>& 
   return any;
 }
 
-/// Forces of dampers that turn with their bodies depend on the configuration as well: stiffness
-/// that does work around a loop. By central differences, of what velocities add to each wrench.
-/// @eq{modes-circulatory}
+/// Adds the circulatory stiffness. Forces of dampers that rotate with their bodies also depend on
+/// the configuration; this stiffness does work around a closed path. By central differences of the
+/// velocity-dependent part of each wrench. @eq{modes-circulatory}
 void ModalMatrices::put_circulatory(const State& state, const std::vector<Vec3>& spin) {
   KktValues values = nothing();
   const KktMap map = kkt_map(system_);
@@ -309,7 +311,7 @@ ModalMatrices::Dense ModalMatrices::dense() {
   }
   d.Gt.resize(n(), 0);
   for (int r = 0; r < rows(); ++r) {
-    if (newton_.bodies().is_spring(r)) continue;  // in K by now
+    if (newton_.bodies().is_spring(r)) continue;  // already in K
     d.Gt.conservativeResize(n(), d.Gt.cols() + 1);
     d.Gt.rightCols<1>() = Gt.col(r).normalized();
   }

@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// What to try where eigenvalues are not found.
+/// Hint for eigenvalues that are not found.
 inline constexpr const char* kFewerModes = "Ask for fewer modes (analysis.count)";
 inline constexpr const char* kHoldModel =
     "Hold the model by joints or springs, or ask for modes about the start";
@@ -17,31 +17,32 @@ inline constexpr const char* kHoldModel =
 using Complex = std::complex<double>;
 using CVec = Eigen::VectorXcd;
 
-/// An eigenvalue with its vector, in the unknowns of bodies and nodes: the motion
-/// Re(shape exp(λt)).
+/// An eigenvalue with its vector, in the unknowns of bodies and nodes: the motion Re(shape
+/// exp(λt)).
 struct EigenPair {
   Complex lambda;  ///< [rad/s]
   CVec shape;
 };
 
-/// Stiffness, damping and mass of a state, with the constraints, as sparse matrices of one pattern:
+/// Stiffness, damping and mass of a state with the constraints, as sparse matrices of one pattern:
 ///
 ///   M ẍ + C ẋ + K x − Gᵀμ = 0,  G x = 0   @eq{modes-damped}
 ///
-/// C holds what forces gain with velocities, and the gyroscopic moments of bodies that turn.
+/// C contains the derivatives of forces by velocities and the gyroscopic moments of rotating
+/// bodies.
 class ModalMatrices {
  public:
   ModalMatrices(const System& system, const State& state, const ModeOptions& options);
 
-  [[nodiscard]] SaddleMatrix& K() { return newton_.matrix(); }  ///< Times s().
+  [[nodiscard]] SaddleMatrix& K() { return newton_.matrix(); }  ///< Scaled by s().
   [[nodiscard]] const SaddleMatrix& M() const { return mass_; }
   [[nodiscard]] double s() const { return newton_.scale(); }
   [[nodiscard]] int n() const { return mass_.movable(); }
   [[nodiscard]] int rows() const { return mass_.size() - mass_.movable(); }
   [[nodiscard]] StaticNewton& statics() { return newton_; }
-  /// Unknowns that count: all but the turns of point masses.
+  /// Active unknowns: all but the rotations of point masses.
   [[nodiscard]] std::vector<int> counted() const;
-  /// Forces depend on velocities.
+  /// Whether forces depend on velocities.
   [[nodiscard]] bool damped() const { return damped_; }
   /// Asymmetry of the stiffness, before its symmetric part is taken.
   [[nodiscard]] double asymmetry() const { return asymmetry_; }
@@ -49,21 +50,21 @@ class ModalMatrices {
   /// Factors the symmetric part of s (K − σ M) with its constraints. @returns false if it is
   /// singular.
   [[nodiscard]] bool factor(double sigma);
-  /// Eigenvalues ω² of the symmetric part below the shift of the last factorisation. (Sylvester;
-  /// each constraint adds one negative pivot.)
+  /// Number of eigenvalues ω² of the symmetric part below the shift of the last factorisation
+  /// (Sylvester's law of inertia; each constraint adds one negative pivot).
   [[nodiscard]] int below() const { return solver_.negative_pivots() - rows(); }
-  /// Factors s (K + σ C + σ² M) with its constraints, whatever their symmetry.
+  /// Factors s (K + σ C + σ² M) with its constraints, for any symmetry.
   [[nodiscard]] bool factor_quadratic(double sigma);
-  /// The inverse of what was factored last times f, on motions that the constraints allow, and
-  /// scaled multipliers behind.
+  /// Product of the last factored inverse with f, on the admissible motions, followed by scaled
+  /// multipliers.
   [[nodiscard]] Vec inverse(const Vec& f) const;
   [[nodiscard]] Vec mass_times(const Vec& x) const;
   [[nodiscard]] Vec damping_times(const Vec& x) const;
   [[nodiscard]] Vec stiffness_times(const Vec& x) const;
-  /// Size of xᵀKx that rounding is measured by: |x|ᵀ|K||x|.
+  /// Scale |x|ᵀ|K||x| of the rounding of xᵀKx.
   [[nodiscard]] double energy_scale(const Vec& x) const;
 
-  /// Matrices by unknown, constraint rows that are exact in Gt, compliant ones in K as springs.
+  /// Dense matrices by unknown; exact constraint rows in Gt, compliant ones in K as springs.
   struct Dense {
     Mat K, C, M, Gt;
   };
@@ -81,7 +82,7 @@ class ModalMatrices {
 
   const System& system_;
   StaticNewton newton_;
-  SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is times s() and rate_.
+  SaddleMatrix mass_, damping_, shifted_;  ///< damping_ is scaled by s() and rate_.
   double rate_ = 1.0, asymmetry_ = 0.0;
   bool damped_ = false;
   SaddleSolver solver_;
@@ -90,14 +91,14 @@ class ModalMatrices {
 /// A value of ω² below which the symmetric part has at least `count` modes, and not many more.
 [[nodiscard]] double range_of(ModalMatrices& m, int count);
 
-/// Eigenvalues next to zero of a model whose matrices are not symmetric or that is damped; of
-/// conjugate ones that with Im λ ≥ 0. Free motions first, then by |λ|.
-/// @param wanted    How many, at least, if there are so many.
-/// @param freedoms  Set to their number where matrices are dense; else left.
+/// Eigenvalues closest to zero of a model with unsymmetric matrices or damping; of conjugate pairs
+/// the one with Im λ ≥ 0. Free motions first, then by |λ|.
+/// @param wanted  Smallest number of eigenvalues, if there are as many.
+/// @param freedoms  Set to their number where matrices are dense; otherwise unchanged.
 [[nodiscard]] std::vector<EigenPair> damped_modes(ModalMatrices& m, int wanted, int& freedoms);
 
-/// Columns: a basis of the motions that the exact constraints allow, orthonormal, without turns of
-/// point masses.
+/// Basis, as orthonormal columns, of the motions admitted by the exact constraints, without
+/// rotations of point masses.
 [[nodiscard]] Mat allowed_motions(const ModalMatrices& m, const Mat& Gt);
 
 }  // namespace polhode

@@ -17,12 +17,12 @@ namespace polhode {
 
 namespace {
 
-/// A stiffness is symmetric up to this part of its entries.
+/// Asymmetry of a stiffness, as a part of its entries, up to which it counts as symmetric.
 constexpr double kSymmetricPencil = 1e-7;
-constexpr double kResidual = 1e-6;  ///< Above it a mode is said to be inaccurate.
-/// Growth or decay below this part of |λ| is rounding.
+constexpr double kResidual = 1e-6;  ///< Residual above which a mode is reported as inaccurate.
+/// Growth or decay rate, as a part of |λ|, below which it is rounding.
 constexpr double kSteady = 1e-9;
-/// A model that is another one after turning by more than this.
+/// Relative change of a model by a rotation above which it is not steady.
 constexpr double kTurned = 1e-6;
 
 double hermitian(const ModalMatrices& m, const CVec& x) {
@@ -30,8 +30,8 @@ double hermitian(const ModalMatrices& m, const CVec& x) {
   return re.dot(m.mass_times(re)) + im.dot(m.mass_times(im));
 }
 
-/// Distance of a mode from what an inverse iteration makes of it, after factor_quadratic(σ):
-/// φ − (K + σC + σ²M)⁻¹ [(σ − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
+/// Residual of a mode by one inverse iteration after factor_quadratic(σ): φ − (K + σC + σ²M)⁻¹ [(σ
+/// − λ) C + (σ² − λ²) M] φ, in the metric of M, constraints included.
 double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smallest) {
   const Complex lambda = mode.eigenvalue;
   const Vec zero = Vec::Zero(m.n()), &re = mode.shape;
@@ -50,7 +50,7 @@ double residual_of(ModalMatrices& m, double sigma, const Mode& mode, double smal
   return size * (square + sigma * sigma) / std::max(square, smallest);
 }
 
-/// Meaning of an eigenvalue.
+/// Kind of motion of an eigenvalue.
 ModeKind kind_of(Complex lambda) {
   const double size = std::abs(lambda);
   if (size == 0.0) return ModeKind::free;
@@ -59,7 +59,7 @@ ModeKind kind_of(Complex lambda) {
   return lambda.real() > 0.0 ? ModeKind::divergence : ModeKind::overdamped;
 }
 
-/// Turned so that its largest component is real, and normalised.
+/// Stores a shape, normalised, with the phase for which its largest component is real.
 void put_shape(const ModalMatrices& m, CVec x, Mode& mode) {
   Eigen::Index top = 0;
   x.cwiseAbs().maxCoeff(&top);
@@ -107,8 +107,8 @@ std::vector<Mode> symmetric_modes(ModalMatrices& m, const ModeOptions& options,
   return modes;
 }
 
-/// Modes of the quadratic problem. Of an undamped motion that grows and its twin that decays, the
-/// former is given.
+/// Modes of the quadratic problem. Of an undamped pair of a growing and a decaying motion the
+/// growing one is returned.
 std::vector<Mode> quadratic_modes(ModalMatrices& m, const ModeOptions& options,
                                   ModesReport& report) {
   constexpr int kSpare = 4;
@@ -125,8 +125,8 @@ std::vector<Mode> quadratic_modes(ModalMatrices& m, const ModeOptions& options,
   return modes;
 }
 
-/// The first modes by |λ| that do not just decay, up to a count; behind them as many at most that
-/// do, of those below the last one. Viscous materials have one of them for each motion that they
+/// Sorts modes: up to `count` that are not overdamped, by |λ|, then at most as many overdamped ones
+/// below the last of them. Viscous materials have an overdamped mode for each motion that they
 /// overdamp, all near -1/τ.
 void put_overdamped_last(std::vector<Mode>& modes, int count) {
   const auto decays = [](const Mode& mode) { return mode.kind == ModeKind::overdamped; };
@@ -144,13 +144,13 @@ void put_overdamped_last(std::vector<Mode>& modes, int count) {
     modes.resize(static_cast<std::size_t>(kept + most));
 }
 
-/// Free motions as shifts and turns, in the place of whatever the solver has found of their space.
+/// Replaces the computed free motions by translations and rotations that span the same space.
 void name_free(const System& system, const State& state, ModalMatrices& m,
                std::vector<Mode>& modes) {
   std::vector<Vec> motions;
   for (const Mode& mode : modes)
     if (mode.rigid && mode.shape_imag.size() == 0) motions.push_back(mode.shape);
-  // Of a twofold eigenvalue the same motion may have been found twice.
+  // For a double eigenvalue the same motion may have been found twice.
   std::vector<Vec> apart;
   for (Vec x : motions) {
     const Vec before = x;
@@ -178,8 +178,8 @@ void name_free(const System& system, const State& state, ModalMatrices& m,
   modes = std::move(kept);
 }
 
-/// About a turning body a model has modes if it is the same at all times: turned a little way on,
-/// stiffness and mass must be what they were. @eq{modes-gyroscopic}
+/// Checks that a model about a rotating body is steady: after a small rotation stiffness and mass
+/// must be unchanged. @eq{modes-gyroscopic}
 void check_steady(const System& system, const State& state, const ModeOptions& options,
                   ModalMatrices& m, ModesReport& report) {
   double fastest = 0.0;
@@ -228,7 +228,7 @@ void check_steady(const System& system, const State& state, const ModeOptions& o
         "constraints of a rotating body must be symmetric about its axis");
 }
 
-/// Largest parts of translations along x, y, z, and what moves.
+/// Computes participation factors along x, y, z, and the moving mass.
 void put_participation(const System& system, ModalMatrices& m, ModesReport& report) {
   const int n = m.n();
   Mat e = Mat::Zero(n, 3);
@@ -290,7 +290,7 @@ ModesReport find_modes(const System& system, const State& equilibrium, const Mod
   std::vector<Mode> modes =
       report.symmetric ? symmetric_modes(m, options, report) : quadratic_modes(m, options, report);
   name_free(system, equilibrium, m, modes);
-  const bool asked = options.count != ModeOptions{}.count;  // else nobody wanted so many
+  const bool asked = options.count != ModeOptions{}.count;  // otherwise the default count
   if (modes.empty() || (asked && static_cast<int>(modes.size()) < options.count))
     report.warnings.push_back(
         report.freedoms == 0

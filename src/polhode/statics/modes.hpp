@@ -10,10 +10,11 @@
 namespace polhode {
 
 struct ModeOptions {
-  int count = 10;            ///< Modes wanted, those next to zero; overdamped ones come besides.
+  /// Requested number of modes, those closest to zero; overdamped ones are additional.
+  int count = 10;
   double load_factor = 1.0;  ///< Of the equilibrium.
-  /// By body: steady angular velocity in body axes, about which vibrations are looked for [rad/s].
-  /// Empty: nothing turns.
+  /// By body: steady angular velocity in body axes, about which vibrations are computed [rad/s].
+  /// Empty: nothing rotates.
   std::vector<Vec3> spin = {};
 };
 
@@ -23,25 +24,25 @@ enum class ModeKind {
   flutter,      ///< An oscillation that grows.
   divergence,   ///< Grows without oscillating: the equilibrium is unstable.
   overdamped,   ///< Decays without oscillating.
-  free          ///< Nothing resists it: λ is zero to rounding.
+  free          ///< No stiffness and no damping: λ is zero to rounding.
 };
 /// "oscillation", ...
 [[nodiscard]] const char* kind_name(ModeKind kind);
 
 /// A free vibration about an equilibrium: the motion Re((shape + i shape_imag) exp(λt)).
 struct Mode {
-  std::complex<double> eigenvalue;  ///< λ, of conjugate ones that with Im λ ≥ 0 [rad/s].
+  std::complex<double> eigenvalue;  ///< λ, of a conjugate pair the one with Im λ ≥ 0 [rad/s].
   ModeKind kind = ModeKind::oscillation;
-  double frequency = 0.0;  ///< |λ|/2π [Hz]: without damping that of the oscillation.
+  double frequency = 0.0;  ///< |λ|/2π [Hz]; without damping the frequency of the oscillation.
   double damping = 0.0;  ///< −Re λ/|λ| [-]: the damping ratio; negative: grows; of free motions 0.
   double omega_squared = 0.0;  ///< |λ|² [rad²/s²], negative of divergence.
   bool rigid = false;          ///< The kind is free.
   std::string motion;          ///< Of a free motion: "body 'bob' turns about z".
   Vec shape;  ///< (Δr, Δθ) by body, then the unknowns of nodes; mass-normalised, φᴴMφ = 1.
   Vec shape_imag;  ///< A quarter of a period later, with the other sign; empty: zero.
-  Vec3 participation = Vec3::Zero();  ///< φᵀM e for translation along x, y, z, its size [√kg].
-  Vec3 effective_mass = Vec3::Zero();  ///< Its square, as part of the mass that moves [-].
-  /// Distance that an inverse iteration moves it, in the metric of M, times (σ² + |λ|²)/|λ|² [-].
+  Vec3 participation = Vec3::Zero();   ///< Size of φᵀM e for translation along x, y, z [√kg].
+  Vec3 effective_mass = Vec3::Zero();  ///< Its square, as a part of the moving mass [-].
+  /// Change of the shape by an inverse iteration, in the metric of M, times (σ² + |λ|²)/|λ|² [-].
   double residual = 0.0;
 };
 
@@ -50,13 +51,14 @@ struct ModesReport {
                             ///< behind them what is overdamped.
   double total_mass = 0.0;  ///< [kg]
   int freedoms = -1;        ///< 6 bodies + nodes' unknowns − rank of the constraints, if known.
-  bool symmetric = true;    ///< Nothing is damped, turns or follows: λ² is real.
+  bool symmetric = true;    ///< No damping, rotation or follower forces: λ² is real.
   bool counted = false;     ///< Modes below a shift were counted, see `complete`.
   double shift = 0.0;       ///< ω² below which the modes were counted [rad²/s²].
-  int below_shift = 0;      ///< By the inertia of LDLᵀ; modes found must be as many.
-  bool complete = true;     ///< They are: no mode was missed.
-  double unbalanced = 0.0;  ///< Largest unbalanced force of the state, as part of the largest [-].
-  double asymmetry = 0.0;   ///< Of the stiffness [-].
+  int below_shift = 0;      ///< By the inertia of LDLᵀ; as many modes must be found.
+  bool complete = true;     ///< The numbers agree: no mode was missed.
+  /// Largest unbalanced force of the state, relative to the largest force [-].
+  double unbalanced = 0.0;
+  double asymmetry = 0.0;  ///< Of the stiffness [-].
   std::vector<std::string> warnings;
 };
 
@@ -64,14 +66,14 @@ struct ModesReport {
 ///
 ///   K φ − Gᵀμ = ω² M φ,   G φ = 0,   λ = iω   @eq{modes-saddle}
 ///
-/// or, where forces follow, damp or bodies turn,
+/// or, with follower forces, damping or rotating bodies,
 ///
 ///   λ² M φ + λ C φ + K φ − Gᵀμ = 0,   G φ = 0   @eq{modes-damped}
 ///
 /// K is the tangent of statics with its geometric terms and those of the multipliers. Few unknowns
-/// are solved for densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted
-/// saddle matrix.
-/// @param equilibrium  Velocities do not count, but for options.spin.
+/// are solved densely, many by Lanczos or Arnoldi iterations on the inverse of the shifted saddle
+/// matrix.
+/// @param equilibrium  Velocities are ignored, except for options.spin.
 [[nodiscard]] ModesReport find_modes(const System& system, const State& equilibrium,
                                      const ModeOptions& options = {});
 

@@ -10,15 +10,16 @@ namespace polhode {
 
 namespace {
 
-/// Loads at which stability changes are found to this part of themselves, in so many searches.
+/// Relative accuracy of loads at which stability changes, and largest number of searches.
 constexpr double kLocated = 1e-6;
 constexpr int kLocations = 40;
-/// Ends of branches, on which Newton's method is slow, are found to this part of the load.
+/// Relative accuracy of ends of branches, at which Newton's method converges slowly.
 constexpr double kEnds = 1e-5;
-/// Two equilibria hang together if an interval of an eighth has less than this part of the way.
+/// Ratio of the distances of two equilibria, for an eighth of the load interval, below which they
+/// are connected.
 constexpr double kShrinks = 0.5;
 constexpr int kTrials = 3;
-/// Left of the way where the interval is as small as it gets: a jump.
+/// Remaining part of the distance, at the smallest interval, above which there is a jump.
 constexpr double kJumps = 0.1;
 
 }  // namespace
@@ -42,8 +43,8 @@ std::optional<LimitPoint> locate_stability_change(const System& system,
   LimitPoint point;
   point.load_factor = at.high;
   point.unstable = after;
-  bool seen = false;                     // else the equilibrium above lies on another branch
-  StaticNewton finder(system, options);  // what the other one holds is asked for later
+  bool seen = false;                     // otherwise the equilibrium above lies on another branch
+  StaticNewton finder(system, options);  // the tangent of the other one is used later
   finder.assemble_at(at.above, at.high);
   SoftestMotion soft = finder.softest();
   point.motion = soft.text;
@@ -84,7 +85,7 @@ std::optional<LimitPoint> locate_jump(const System& system, const StaticOptions&
     const double factor = 0.5 * (at.low + at.high);
     State middle = at.below;
     bool found = finder.solve(middle, factor).converged;
-    if (!found) {  // nothing near below: what is there belongs to the branch above, if to any
+    if (!found) {  // no equilibrium near below: one there would belong to the branch above
       middle = at.above;
       found = finder.solve(middle, factor).converged;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids that may meet each other while an equilibrium is looked for.
+// Contact between surfaces of solids in the search for an equilibrium.
 #include <algorithm>
 
 #include <polhode/equations/node_motion.hpp>
@@ -9,10 +9,10 @@ namespace polhode {
 
 namespace {
 
-/// Parts of an increment that surfaces leave free are taken a little smaller, as bodies turn.
+/// Reduction of admissible parts of an increment, as bodies rotate.
 constexpr double kShorter = 0.98;
-/// Increments below this, in sizes of elements, that stay above this part of the one before, come
-/// no nearer to an equilibrium.
+/// Increment, in sizes of elements, and its ratio to the previous one: below the first and above
+/// the second the iteration has stalled.
 constexpr double kSmall = 1e-5, kStalls = 0.5;
 
 }  // namespace
@@ -26,8 +26,8 @@ void StaticNewton::look_for_neighbours() {
   x_before_ = trial_.node_x;
 }
 
-/// Iterates that go to and fro without coming nearer: on which sides of the kinks they are changes,
-/// and a mixture of the sides' forces balances.
+/// Whether alternating iterates are at an equilibrium on a kink: they change sides, and a convex
+/// combination of the sides' forces vanishes.
 bool StaticNewton::balanced_on_a_kink(StaticStep& step) {
   const std::size_t n = step.increments.size();
   if (meetings_.empty() || n < 3) return false;
@@ -44,8 +44,8 @@ bool StaticNewton::balanced_on_a_kink(StaticStep& step) {
   return all;
 }
 
-/// How far nodes may go on the straight way between two places: surfaces of solids are seen from
-/// one side only, so that no iterate may take them through each other.
+/// Admissible part of a straight displacement of nodes. Surfaces of solids are one-sided, so that
+/// no iterate may take them through each other.
 double StaticNewton::free_part(const State& at, const double* from, const double* to) const {
   double most = 1.0;
   NodeStep start = node_step(at, trial_), end = start;

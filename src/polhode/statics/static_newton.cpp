@@ -14,15 +14,15 @@ namespace polhode {
 namespace {
 
 constexpr double kStaticRoundOff = std::numeric_limits<double>::epsilon();
-/// Rounding of a residual, in units of the products of stiffness and position it is made of.
+/// Rounding of a residual, in units of the products of stiffness and position that it consists of.
 constexpr double kFloor = 16.0;
-/// Most a body may turn in one iteration: Cayley vector [-].
+/// Largest rotation of a body in one iteration: Cayley vector [-].
 constexpr double kRotationCap = 1.9;
-/// An increment above this, in sizes of the model, is no Newton iteration any more.
+/// Increment, in sizes of the model, above which the iteration has diverged.
 constexpr double kStaticDiverged = 1e6;
-/// An iterate that turns elements inside out is gone back from this often, half the way each time.
+/// Largest number of halvings of an increment that inverts elements.
 constexpr int kStaticHalvings = 8;
-/// Increments below this that do not fall any more are rounding if the residual is.
+/// Increment below which stagnation is rounding, if the residual is at rounding too.
 constexpr double kClose = 1e-5;
 /// Residual of a constraint that counts as satisfied [m or -].
 constexpr double kAssembled = 1e-13;
@@ -110,7 +110,7 @@ ElementReport StaticNewton::assemble() {
   rhs_.tail(system_->rows()) = -newton_.right_hand_side().tail(system_->rows());
   for (int b = 0; b < system_->body_count(); ++b) moments_[b] = -rhs_.segment<6>(6 * b);
 
-  // Rounding: products of stiffness and position, row by row; and the largest force.
+  // Rounding by products of stiffness and position, row by row; and the largest force.
   for (int b = 0; b < system_->body_count(); ++b)
     x_.segment<6>(6 * b) << system_->motion(work_, b).r, Vec3::Ones();
   for (int i = 0; i < system_->nodes().count(); ++i)
@@ -129,7 +129,7 @@ ElementReport StaticNewton::assemble() {
   return report;
 }
 
-/// s = 1/(largest stiffness): then K is of size one, as G is.
+/// Sets s = 1/(largest stiffness): K is then of the order of one, as G is.
 void StaticNewton::choose_scale() {
   trial_.compliance_scale = 1.0;
   if (!(assemble().least_volume > 0.0)) return;
@@ -162,7 +162,7 @@ void StaticNewton::measure(StaticStep& step) const {
       if (matrix_.unknown(i, c) == worst) step.worst = node_text(i);
 }
 
-/// Is every row balanced, up to the tolerance or to rounding?
+/// Whether every row is balanced, within the tolerance or to rounding.
 StaticNewton::Balance StaticNewton::balanced(StaticStep& step) const {
   measure(step);
   Balance balance = Balance::rounded;
@@ -187,7 +187,7 @@ StaticNewton::Balance StaticNewton::balanced(StaticStep& step) const {
   return balance;
 }
 
-/// What prescribed components still have to go, three a node.
+/// Remaining displacements of prescribed components, three per node.
 void StaticNewton::aim(std::vector<double>& du) const {
   const Nodes& nodes = system_->nodes();
   du.assign(work_.node_x.size(), 0.0);
@@ -303,13 +303,13 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
         std::all_of(given_.begin(), given_.end(), [](double d) { return d == 0.0; });
     const std::size_t n = step.increments.size();
     if (balance != Balance::off && arrived) {
-      // To rounding only, a slender wire may carry another load still: the iteration goes on.
+      // At rounding level a slender wire may still carry a different load: the iteration continues.
       if (n == 0 && step.residual <= options_.residual * force_) break;
       const double e = n > 0 ? step.increments[n - 1] : 1.0;
-      // With a shift in the matrix a rate near one is the rate indeed.
+      // With a shift in the matrix a rate near one is the true rate.
       const double rate = std::min(n > 1 ? e / step.increments[n - 2] : e, shifted_ ? 1.0 : 0.99);
       if (e <= options_.tolerance || e * rate <= options_.tolerance * (1.0 - rate)) break;
-      if (balance == Balance::rounded && e < kClose) break;  // nothing gets any better
+      if (balance == Balance::rounded && e < kClose) break;  // no further improvement
     }
     if (arrived && balanced_on_a_kink(step)) break;
     if (step.iterations == options_.max_iterations)
@@ -336,8 +336,8 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
   return step;
 }
 
-/// Residual and tangent at work_ with the stresses that are there, whatever Newton's iterations
-/// went by.
+/// Assembles residual and tangent at work_ with the actual stresses instead of the extrapolated
+/// ones of Newton's iterations.
 void StaticNewton::assemble_unmixed() {
   const bool mixed = mixed_;
   mixed_ = false;
@@ -347,7 +347,7 @@ void StaticNewton::assemble_unmixed() {
   nodes_.set_static(true, mixed_);
 }
 
-/// Configurations that interactions do not accept: mirror images, beams bent too far.
+/// Reason why interactions reject a configuration: mirror images, beams bent too far.
 std::string StaticNewton::refused(StaticStep& step) const {
   for (const InteractionRef& ref : system_->interactions()) {
     const InteractionGroup& group = system_->group(ref.group);
@@ -392,7 +392,8 @@ void StaticNewton::assemble_at(const State& state, double load_factor) {
   matrix_.make_hessian(moments_);
 }
 
-/// As in a step of dynamics at whose end the rate is Dv/Dx, without inertia. @eq{modes-damped}
+/// Assembles as in a dynamic step at whose end the rate is Dv/Dx, without inertia.
+/// @eq{modes-damped}
 void StaticNewton::assemble_with_rates(double rate) {
   trial_.context.ga.c = rate * trial_.context.dt;
   const bool mixed = mixed_;

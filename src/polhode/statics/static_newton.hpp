@@ -12,55 +12,58 @@
 
 namespace polhode {
 
-/// How an equilibrium is looked for.
+/// Options of the search for an equilibrium.
 struct StaticOptions {
-  int load_steps = 0;        ///< Equal parts of the load; 0: chosen by how well Newton converges.
-  int max_iterations = 25;   ///< Before a load step is cut.
-  double tolerance = 1e-10;  ///< What later increments would add up to, |Δr|/ℓ or |Δθ| [-].
-  double residual = 1e-9;    ///< Part of the largest force that may stay unbalanced [-].
+  /// Equal load increments; 0: chosen by the convergence of Newton's method.
+  int load_steps = 0;
+  int max_iterations = 25;   ///< Before a load step is reduced.
+  double tolerance = 1e-10;  ///< On the sum of further increments, |Δr|/ℓ or |Δθ| [-].
+  double residual = 1e-9;    ///< Tolerated unbalanced force, as a part of the largest force [-].
   bool mixed_point = true;   ///< Geometric stiffness by extrapolated stresses.
 };
 
-/// The motion that meets the least stiffness at an equilibrium.
+/// Motion with the smallest stiffness at an equilibrium.
 struct SoftestMotion {
   double stiffness = 0.0;  ///< xᵀKx/xᵀx; negative where the equilibrium is unstable [N/m].
   std::string text;        ///< "'leg' moves freely, most at node 4"; empty: not found.
 };
 
 /// Newton's method for the equilibrium of bodies, joints, springs, beams and solids: one matrix of
-/// all unknowns, no inertia, no velocities. Rotations are composed iteration by iteration, so that
-/// a load step may turn bodies by any angle. Derivation: docs/theory/statics_and_modes.md.
+/// all unknowns, without inertia and velocities. Rotations are composed iteration by iteration, so
+/// that a load step may rotate bodies by any angle. Derivation: docs/theory/statics_and_modes.md.
 class StaticNewton {
  public:
   StaticNewton(const System& system, const StaticOptions& options);
 
-  /// Equilibrium of the state's bodies and nodes at a load factor; starts from `start` if given
-  /// (a predicted state), else from the state itself. On failure the state is left as it was.
+  /// Solves for the equilibrium of the state's bodies and nodes at a load factor, starting from
+  /// `start` if given (a predicted state), else from the state itself. On failure the state is
+  /// unchanged.
   StaticStep solve(State& state, double load_factor, const State* start = nullptr);
 
-  /// The same by relaxation: the state creeps downhill in small steps, whatever is slack or gives
-  /// way, until Newton's method finds the equilibrium near. Derivation: @eq{statics-relaxation}
+  /// Solves by relaxation: the state moves downhill in small steps, also with slack or yielding
+  /// parts, until Newton's method finds a nearby equilibrium. Derivation: @eq{statics-relaxation}
   StaticStep relax(State& state, double load_factor);
 
-  /// The tangent and residual at a state as it stands, all loads times the load factor.
+  /// Assembles tangent and residual at a state, all loads times the load factor.
   void assemble_at(const State& state, double load_factor);
-  /// After assemble_at(): the same with K + rate·C in the place of K, C what forces gain with
-  /// velocities, at rest [N s/m], and rate in 1/s.
+  /// Replaces K by K + rate·C after assemble_at(), with C the derivative of forces by velocities,
+  /// at rest [N s/m], and rate in 1/s.
   void assemble_with_rates(double rate);
   [[nodiscard]] SaddleMatrix& matrix() { return matrix_; }  ///< Scaled by scale().
   [[nodiscard]] const SaddleMatrix& tangent() const { return matrix_; }
   [[nodiscard]] double scale() const { return trial_.compliance_scale; }
   [[nodiscard]] const NewtonSystem& bodies() const { return newton_; }
-  /// What holds bonded and prescribed nodes at the last equilibrium, three each [N].
+  /// Reaction forces on bonded and prescribed nodes at the last equilibrium, three each [N].
   [[nodiscard]] const std::vector<double>& node_residual() const { return held_; }
-  /// Part of the unbalanced forces at the last assembly: largest, and the largest force [N].
+  /// Measures the last assembly: largest unbalanced force, and the largest force [N].
   void measure(StaticStep& step) const;
   [[nodiscard]] bool has_mixed_points() const { return mixed_; }
-  /// At the equilibrium found last.
+  /// Softest motion at the last equilibrium found.
   [[nodiscard]] SoftestMotion softest();
 
  private:
-  enum class Balance { off, within, rounded };  ///< Within the tolerance, or at rounding.
+  /// Unbalanced, within the tolerance, or balanced to rounding.
+  enum class Balance { off, within, rounded };
   void enter(double load_factor);
   void start_scratch(const State& state);
   ElementReport assemble();
@@ -96,11 +99,11 @@ class StaticNewton {
   SaddleSolver solver_;
   Trial trial_;
   State work_;
-  std::vector<Mat3> here_;     ///< No piece has turned since its condensation.
-  Vec x_, rhs_, noise_;        ///< Increment; minus the residual; its rounding. All scaled.
-  std::vector<Vec6> moments_;  ///< Residual of bodies with what they carry, scaled.
+  std::vector<Mat3> here_;     ///< No connected component has rotated since its condensation.
+  Vec x_, rhs_, noise_;        ///< Increment; negative residual; its rounding. All scaled.
+  std::vector<Vec6> moments_;  ///< Residual of bodies with the nodes bonded to them, scaled.
   std::vector<double> du_, forces_, given_, held_;
-  /// Surfaces of solids that may meet each other.
+  /// A contact between surfaces of solids.
   struct Meeting {
     const ChangingSparsity* pattern;
     const BarrierConstraint* points;
@@ -109,10 +112,10 @@ class StaticNewton {
   std::vector<Meeting> meetings_;
   std::vector<double> x_before_;  ///< Of all nodes, at the last assembly of this search.
   std::vector<Vec> free_;         ///< Orthonormal, see keep_free(); of the last factorisation.
-  ClarkeCombination kinks_;       ///< Residuals of the iterates that hardly move any more.
+  ClarkeCombination kinks_;       ///< Residuals of iterates with small increments.
   double force_ = 0.0;            ///< Largest force of the last assembly [N].
-  bool resisted_ = false;         ///< Ill-conditioned in this search, but without free motions.
-  bool shifted_ = false;          ///< The last factorisation is not that of the tangent itself.
+  bool resisted_ = false;         ///< Ill-conditioned in this search, without free motions.
+  bool shifted_ = false;          ///< The last factorisation is of a shifted tangent.
   std::vector<int> turns_;        ///< Interactions whose history counts turns.
 };
 

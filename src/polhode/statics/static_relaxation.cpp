@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equilibria of what is slack or gives way at the start: downhill in small steps.
+// Equilibria with initially slack or yielding parts: descent in small steps.
 #include <algorithm>
 #include <cmath>
 
@@ -10,18 +10,19 @@ namespace polhode {
 namespace {
 
 constexpr int kMaxSteps = 2000;
-/// Every step is to move something by this part of the model's size; none moves anything by more
-/// than the second part of it, or turns it by more [-].
+/// Displacement aimed at in each step, as a part of the model's size, and largest displacement or
+/// rotation [-].
 constexpr double kMove = 0.02, kMaxMove = 0.1;
-/// Change of the resistance allowed from one step to the next.
+/// Factors by which the damping may change from one step to the next.
 constexpr double kEase = 0.5, kBrake = 1.5;
-/// Newton's method is tried when steps are below this part of the size, and every so many steps.
+/// Step size, as a part of the model's size, below which Newton's method is tried, and number of
+/// steps between trials.
 constexpr double kSmallSpeed = 1e-3;
 constexpr int kTries = 50;
 
 }  // namespace
 
-/// Stiffness of all unknowns, turns times ℓ².
+/// Stiffness of all unknowns, rotations times ℓ².
 std::vector<double> StaticNewton::all_diagonal(double stiffness) const {
   const double square = system_->length_scale() * system_->length_scale();
   std::vector<double> diagonal(static_cast<std::size_t>(matrix_.movable()), stiffness);
@@ -41,7 +42,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
   start_scratch(work_);
   choose_scale();
   const bool mixed = mixed_;
-  mixed_ = false;  // no Newton iterations: stresses are those that are there
+  mixed_ = false;  // no Newton iterations: the stresses are the actual ones
   nodes_.set_static(true, false);
   const auto leave = [&](StaticStep result) {
     mixed_ = mixed;
@@ -56,7 +57,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
     if (!(assemble().least_volume > 0.0)) break;
     aim(given_);
     ++step.iterations;
-    if (k == 0) {  // the largest force moves its place by that
+    if (k == 0) {  // the largest force causes this displacement at its node
       for (int i = 0; i < matrix_.movable(); ++i)
         resistance =
             std::max(resistance, std::abs(rhs_[i]) / (i < bodies && i % 6 >= 3 ? length : 1.0));
@@ -87,7 +88,7 @@ StaticStep StaticNewton::relax(State& state, double load_factor) {
         state = near;
         return leave(found);
       }
-      mixed_ = false;  // it went elsewhere: on from where it began
+      mixed_ = false;  // it diverged: continue from its start
       nodes_.set_static(true, false);
       work_ = here;
       start_scratch(work_);

@@ -6,43 +6,43 @@
 
 namespace polhode {
 
-/// How the search at one load factor went.
+/// Search at one load factor.
 struct StaticStep {
   bool converged = false;
   double load_factor = 0.0;
   int iterations = 0;
   std::vector<double> increments;  ///< Largest scaled increment, one per iteration [-].
   double residual = 0.0;           ///< Largest unbalanced force [N], moments over ℓ.
-  double force = 0.0;              ///< Largest force it is compared with [N].
-  int unstable = -1;     ///< Directions in which the equilibrium is unstable; −1: not known.
+  double force = 0.0;              ///< Largest force, the reference of the residual [N].
+  int unstable = -1;     ///< Number of unstable directions of the equilibrium; −1: not known.
   bool relaxed = false;  ///< Found by relaxation.
   std::string reason;    ///< If not converged: "diverges" ...
   std::string worst;     ///< Largest increment or residual: "body 'forearm'".
-  std::vector<std::string> free_motions;  ///< That met no stiffness on the way.
+  std::vector<std::string> free_motions;  ///< Motions without stiffness, found in the search.
 };
 
 /// A load at which the stability of the equilibrium changes: a limit point or a branch.
 struct LimitPoint {
   double load_factor = 0.0;
-  int unstable = -1;    ///< Directions in which equilibria beyond it are unstable; −1: not known.
-  std::string motion;   ///< That meets no stiffness there, in words.
+  int unstable = -1;    ///< Number of unstable directions of equilibria beyond it; −1: not known.
+  std::string motion;   ///< Description of the motion whose stiffness vanishes there.
   bool jump = false;    ///< The equilibrium ends there: those beyond lie on another branch.
-  double distance = 0;  ///< How far that is: lengths of the model, or rad [-].
+  double distance = 0;  ///< Distance to that branch: lengths of the model, or rad [-].
 };
 
-/// How a static analysis went.
+/// Report of a static analysis.
 struct StaticReport {
   bool converged = false;              ///< The full load is carried.
   double load_factor = 0.0;            ///< Reached, in [0, 1].
-  std::vector<StaticStep> steps;       ///< All that were tried, in order.
-  int iterations = 0;                  ///< Of them all.
+  std::vector<StaticStep> steps;       ///< All trials, in order.
+  int iterations = 0;                  ///< Of all trials.
   double residual = 0.0, force = 0.0;  ///< Largest unbalanced and largest force at the end [N].
-  int unstable = -1;  ///< Directions in which the equilibrium is unstable; −1: not known.
-  std::vector<std::string> free_motions;  ///< That nothing in the model resists.
-  std::vector<LimitPoint> limit_points;   ///< That were passed, by load factor.
-  std::vector<std::string> slack;         ///< Cables that carry nothing at the end.
-  int relaxations = 0;  ///< Equilibria that relaxation has found where Newton's method has not.
-  std::string message;  ///< If not converged: what happened, where, what to try.
+  int unstable = -1;  ///< Number of unstable directions of the equilibrium; −1: not known.
+  std::vector<std::string> free_motions;  ///< Motions without stiffness.
+  std::vector<LimitPoint> limit_points;   ///< Limit points passed, by load factor.
+  std::vector<std::string> slack;         ///< Cables without tension at the end.
+  int relaxations = 0;  ///< Equilibria found by relaxation where Newton's method failed.
+  std::string message;  ///< If not converged: what happened, where, and a hint what to try.
 };
 
 }  // namespace polhode

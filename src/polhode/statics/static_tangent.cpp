@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tangent of statics: its factors, what it leaves free, and where it is softest.
+// Tangent of statics: its factorisation, its free motions, and its softest motion.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,25 +11,26 @@ namespace polhode {
 
 namespace {
 
-/// Up to this asymmetry a matrix counts as symmetric: what is neglected slows nothing down.
+/// Asymmetry up to which a matrix is treated as symmetric: the neglected part does not slow
+/// convergence.
 constexpr double kSymmetric = 1e-7;
-/// Added to stiffnesses where a motion meets none, as part of the largest.
+/// Stiffness added where a motion has none, as a part of the largest.
 constexpr double kTangentShift = 1e-6;
-/// A solution that grows to this, out of a right-hand side of size one, may tell of a free motion.
+/// Size of a solution for a right-hand side of size one that indicates a free motion.
 constexpr double kNearlySingular = 1e10;
-/// Most free motions that are sought and supported; the first of them are named.
+/// Largest number of free motions that are sought and supported; the first ones are named.
 constexpr int kMaxSupported = 24;
-/// Corrections of a solution by its own residual.
+/// Number of iterative refinements of a solution.
 constexpr int kRefinements = 3;
 constexpr int kSoftestIterations = 6;
-/// Free motions that are named.
+/// Largest number of free motions that are named.
 constexpr int kMaxFreeMotions = 6;
 
 }  // namespace
 
-/// Increments of all unknowns; prescribed components move as they must.
+/// Solves for increments of all unknowns; those of prescribed components are given.
 bool StaticNewton::factor_and_solve(StaticStep& step) {
-  // Prescribed components move as they must: K_fp Δu_p goes to the other side.
+  // Increments of prescribed components are given: K_fp Δu_p goes to the right-hand side.
   const Nodes& nodes = system_->nodes();
   aim(given_);
   if (!nodes.prescribed().empty()) {
@@ -51,9 +52,9 @@ bool StaticNewton::factor_and_solve(StaticStep& step) {
   return x_.allFinite();
 }
 
-/// Factors the tangent. Each free motion gets a support as stiff as the stiffest part where it
-/// moves most: loads in balance leave it without force, so that it changes nothing else. A shift of
-/// all stiffnesses is left for models in which more moves freely. @eq{statics-supports}
+/// Factors the tangent. Each free motion gets a support as stiff as the stiffest part at its
+/// largest component: balanced loads cause no reaction there, so that nothing else changes. Models
+/// with more free motions get a shift of all stiffnesses. @eq{statics-supports}
 bool StaticNewton::factor(bool symmetric, StaticStep& step) {
   shifted_ = false;
   free_.clear();
@@ -79,7 +80,7 @@ bool StaticNewton::factor(bool symmetric, StaticStep& step) {
   return solver_.factor(matrix_, symmetric, shift);
 }
 
-/// Makes free motions orthonormal, turns counted times ℓ.
+/// Makes free motions orthonormal, with rotations scaled by ℓ.
 void StaticNewton::keep_free(std::vector<Vec> motions) {
   const int n = matrix_.movable();
   for (Vec& motion : motions) {
@@ -92,8 +93,8 @@ void StaticNewton::keep_free(std::vector<Vec> motions) {
   }
 }
 
-/// Takes out of the increment what moves along free motions: where supports stand, and what
-/// rounding makes of motions that nothing resists, moves nothing then. @eq{statics-deflation}
+/// Removes free motions from the increment, so that neither the position of supports nor rounding
+/// along free motions causes displacements. @eq{statics-deflation}
 void StaticNewton::leave_out_free() {
   if (free_.empty() || !x_.allFinite()) return;
   const int n = matrix_.movable();
@@ -106,7 +107,7 @@ void StaticNewton::leave_out_free() {
   scale_turns(1.0 / length);
 }
 
-/// x_ = K⁻¹ rhs_, corrected by its residual while that falls: what rounding of the factors took.
+/// x_ = K⁻¹ rhs_ with iterative refinement as long as the residual decreases.
 void StaticNewton::solve_refined() {
   x_ = rhs_;
   solver_.solve(x_);
@@ -124,8 +125,8 @@ void StaticNewton::solve_refined() {
   }
 }
 
-/// Off equilibrium the matrix of a system with a potential is symmetric with the unbalanced
-/// moments' part only. @eq{statics-hessian}
+/// Adds the part of the unbalanced moments that makes the matrix of a conservative system symmetric
+/// off equilibrium. @eq{statics-hessian}
 bool StaticNewton::make_symmetric() {
   if (matrix_.asymmetry() < kSymmetric) return true;
   matrix_.make_hessian(moments_);
@@ -136,7 +137,7 @@ bool StaticNewton::make_symmetric() {
   return false;
 }
 
-/// After a factorisation: does a solution grow beyond all bounds?
+/// Whether a solution grows beyond all bounds, after a factorisation.
 bool StaticNewton::nearly_singular() const {
   Vec probe = Vec::Zero(matrix_.size());
   for (int i = 0; i < matrix_.movable(); ++i) probe[i] = std::sin(1.0 + 3.7 * i);
@@ -158,7 +159,7 @@ std::vector<Vec> StaticNewton::name_free_motions(StaticStep& step) {
   return free;
 }
 
-/// Free motions that are left at the equilibrium, and directions in which it is unstable.
+/// Finds the free motions at the equilibrium, and the number of unstable directions.
 void StaticNewton::count_unstable(StaticStep& step) {
   step.free_motions.clear();
   if (matrix_.movable() == 0) {
@@ -175,7 +176,7 @@ void StaticNewton::count_unstable(StaticStep& step) {
   if (symmetric) step.unstable = std::max(0, solver_.negative_pivots() - system_->rows());
 }
 
-/// By inverse iterations with the factors of count_unstable().
+/// Softest motion, by inverse iterations with the factors of count_unstable().
 SoftestMotion StaticNewton::softest() {
   SoftestMotion soft;
   if (matrix_.movable() == 0) return soft;

@@ -15,16 +15,17 @@ namespace polhode {
 
 namespace {
 
-/// Up to so many iterations the next increment of the load doubles; from so many on it halves.
+/// Number of iterations up to which the next load increment doubles, and from which on it is
+/// halved.
 constexpr int kEasy = 6, kHard = 12;
-/// After a failure the increment is this part, down to the least.
+/// Factor on the increment after a failure, and its smallest value.
 constexpr double kCut = 0.25, kMinIncrement = 1e-4;
-/// Load factors closer than this are the same.
+/// Difference of load factors below which they are equal.
 constexpr double kSame = 1e-12;
-/// A load step may have left its branch if it led farther than this many times the way that was
-/// expected, or was hard to find; shorter ways than the second number are not looked at [-].
+/// Distance of a load step, relative to the expected one, above which it may have left its branch,
+/// as after many iterations; and distance below which this is not checked [-].
 constexpr double kFar = 3.0, kNear = 0.02;
-/// Interactions of this kind are loads whose potential is no strain energy.
+/// Kind of interactions that are loads, whose potential is no strain energy.
 constexpr const char* kForceKind = "force";
 constexpr const char* kCableKind = "cable";
 
@@ -45,7 +46,7 @@ struct LoadStepper::Impl {
   StaticOptions options;
   StaticNewton newton;
   StaticReport report;
-  State before;  ///< The equilibrium before the last one.
+  State before;  ///< The previous equilibrium.
   double factor_before = 0.0;
   double increment = 1.0;
   int equilibria = 0, unstable = -1;
@@ -83,18 +84,18 @@ struct LoadStepper::Impl {
     report.steps.push_back(std::move(step));
   }
 
-  /// A load step that may have left its branch.
+  /// Whether a load step may have left its branch.
   [[nodiscard]] bool suspicious(const State& old, const State& state, const StaticStep& step,
                                 double expected) const {
     const double way = state_distance(*system, old, state);
     return !step.relaxed && way > kNear && (step.iterations > kEasy || way > kFar * expected);
   }
 
-  /// Reports what changed between the last equilibrium and this one: stability, or the branch.
+  /// Reports changes between the last equilibrium and this one: of stability, or of the branch.
   void look_between(const State& old, double from, const State& state, const StaticStep& step,
                     double expected) {
     const LoadInterval interval{old, state, from, step.load_factor};
-    // First a jump: on the other branch stability may change as well, at another load.
+    // First a jump: on another branch stability may change too, at a different load.
     std::optional<LimitPoint> point;
     if (suspicious(old, state, step, expected)) {
       point = locate_jump(*system, options, interval);
@@ -105,9 +106,9 @@ struct LoadStepper::Impl {
     if (point) report.limit_points.push_back(*point);
   }
 
-  /// Cables of which pieces carry nothing and do not resist either.
+  /// Cables with segments without tension and without stiffness.
   [[nodiscard]] std::vector<std::string> slack_cables(const State& state) const {
-    std::map<std::string, std::pair<int, int>> pieces;  // slack ones, all
+    std::map<std::string, std::pair<int, int>> pieces;  // slack segments, all segments
     StepContext still;
     still.t_n = state.t;
     still.conserving = false;
@@ -153,7 +154,7 @@ struct LoadStepper::Impl {
         step = newton.solve(state, factor);
         if (!step.converged && !relaxed && !slack_cables(state).empty()) {
           take(step);
-          relaxed = true;  // once: what is slack afterwards stays so
+          relaxed = true;  // once: slack parts remain slack
           step = newton.relax(state, factor);
           if (step.converged) ++report.relaxations;
         }
@@ -166,7 +167,7 @@ struct LoadStepper::Impl {
           State unloaded = old;
           const StaticStep none = StaticNewton(*system, options).solve(unloaded, from);
           known = none.converged;
-          if (known) {  // what is stable where nothing is loaded?
+          if (known) {  // which unloaded parts are stable?
             unstable = none.unstable;
             old = unloaded;
           }
@@ -198,7 +199,7 @@ struct LoadStepper::Impl {
     }
   }
 
-  /// @param soft  The motion that meets the least stiffness at the last equilibrium.
+  /// Adds an explanation. @param soft  Motion with the smallest stiffness at the last equilibrium.
   void explain(const StaticStep& step, const std::string& soft) {
     std::string& s = report.message;
     s = format("No equilibrium was found beyond load factor {:.6g}: {}", report.load_factor,

@@ -10,21 +10,22 @@
 
 namespace polhode {
 
-/// Finds equilibria under growing loads: gravity, loads and prescribed displacements times a load
-/// factor from 0 to 1. The first increment is the whole load; increments grow and shrink with the
-/// iterations they take.
+/// Equilibria under increasing loads: gravity, loads and prescribed displacements times a load
+/// factor from 0 to 1. The first increment is the whole load; increments are adapted to the number
+/// of iterations.
 class LoadStepper {
  public:
   explicit LoadStepper(const System& system, const StaticOptions& options = {});
   ~LoadStepper();
 
-  /// Starts the analysis at a state whose velocities do not count: they become zero.
+  /// Starts the analysis at a state whose velocities are set to zero.
   void begin(State& state);
-  /// The next load step, not beyond `limit`. On failure the state is that of the last equilibrium.
+  /// Takes the next load step, not beyond `limit`. On failure the state is that of the last
+  /// equilibrium.
   /// @returns true if an equilibrium at a higher load factor was reached.
   bool advance(State& state, double limit = 1.0);
   [[nodiscard]] const StaticReport& report() const;
-  /// Stored in springs, beams and solids [J]: all potentials but those of gravity and loads.
+  /// Strain energy of springs, beams and solids [J]: all potentials but those of gravity and loads.
   [[nodiscard]] double strain_energy(const State& state) const;
   /// Tangent and residual at the last equilibrium.
   [[nodiscard]] StaticNewton& newton();
@@ -34,8 +35,8 @@ class LoadStepper {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The equilibrium under the full load; `observe` is called at every equilibrium on the way. On
-/// failure the state is that of the last equilibrium found.
+/// Solves for the equilibrium under the full load; `observe` is called at every equilibrium on the
+/// way. On failure the state is that of the last equilibrium found.
 StaticReport solve_statics(const System& system, State& state, const StaticOptions& options = {},
                            const std::function<void(const State&)>& observe = {});
 

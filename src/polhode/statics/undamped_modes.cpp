@@ -17,22 +17,22 @@ namespace polhode {
 
 namespace {
 
-/// Up to so many unknowns matrices are dense.
+/// Number of unknowns up to which matrices are dense.
 constexpr int kDense = 400;
-/// Shift of the inverse, below zero by this part of the range of ω² that is wanted, so that motions
-/// without stiffness do no harm.
+/// Negative shift of the inverse, as a part of the requested range of ω², so that free motions do
+/// not make it singular.
 constexpr double kShift = 1e-2;
-constexpr int kRuns = 12;  ///< Of Lanczos iterations, while modes are missing.
-constexpr int kSpare = 4;  ///< Modes computed beside those wanted, to have a gap to count in.
-/// Relative accuracy of eigenvalues asked of the Lanczos iterations.
+constexpr int kRuns = 12;  ///< Largest number of Lanczos runs, while modes are missing.
+constexpr int kSpare = 4;  ///< Additional modes, to find a gap for the count.
+/// Relative accuracy of eigenvalues in the Lanczos iterations.
 constexpr double kLanczos = 1e-12;
-/// ω² below the first part of the range may be rounding; it is if the energy of the motion is below
-/// the second part of what it is the sum of.
+/// ω², as a part of the range, below which it may be rounding; it is if the energy of the motion is
+/// below the second part of the terms of its sum.
 constexpr double kMayBeFree = 1e-7, kFreeEnergy = 1e-13;
-/// Or if ω² is below this part of the range: of motions that meet no stiffness of any kind.
+/// ω², as a part of the range, below which it is always rounding: of motions without any stiffness.
 constexpr double kNothing = 1e-20;
 
-/// The operations (K − σM)⁻¹ and M as Spectra wants them. Modes that are known are kept out.
+/// The operations (K − σM)⁻¹ and M in Spectra's interface, with known modes projected out.
 struct InverseOperator {
   using Scalar = double;
   ModalMatrices* matrices;
@@ -40,7 +40,7 @@ struct InverseOperator {
   const std::vector<Vec>* M_known;
   [[nodiscard]] Eigen::Index rows() const { return matrices->n(); }
   [[nodiscard]] Eigen::Index cols() const { return matrices->n(); }
-  void set_shift(double) const {}  // was factored with it
+  void set_shift(double) const {}  // it is already factored with it
   void perform_op(const double* in, double* out) const {
     Vec x = matrices->inverse(Eigen::Map<const Vec>(in, matrices->n())).head(matrices->n());
     for (std::size_t i = 0; i < known->size(); ++i) x -= (*M_known)[i].dot(x) * (*known)[i];
@@ -62,7 +62,7 @@ struct Pairs {
   std::vector<double> values;  ///< ω², ascending.
   std::vector<Vec> shapes;
   int freedoms = -1;
-  double range = 0.0;  ///< Size of ω² that rounding is measured by.
+  double range = 0.0;  ///< Size of ω² that is the reference of rounding.
 
   void sort() {
     std::vector<std::size_t> order(values.size());
@@ -77,8 +77,8 @@ struct Pairs {
   }
 };
 
-/// All modes, by a basis of the motions that the constraints allow. Of Lᵀ (K − σM)⁻¹ L, M = L Lᵀ,
-/// the lowest modes are the largest eigenvalues: slender beams lose none of their digits.
+/// All modes, by a basis of the admissible motions. Of Lᵀ (K − σM)⁻¹ L, M = L Lᵀ, the lowest modes
+/// are the largest eigenvalues: slender beams lose no digits.
 Pairs dense_modes(ModalMatrices& m, int wanted) {
   const ModalMatrices::Dense d = m.dense();
   const Mat N = allowed_motions(m, d.Gt);
@@ -104,7 +104,8 @@ Pairs dense_modes(ModalMatrices& m, int wanted) {
   return pairs;
 }
 
-/// The `count` eigenvalues nearest σ, without those known. The shift must have been factored.
+/// Computes the `count` eigenvalues nearest σ, without known ones. The shift must have been
+/// factored.
 void lanczos(ModalMatrices& m, double sigma, int count, Pairs& pairs) {
   const int n = m.n();
   std::vector<Vec> M_known;
@@ -119,7 +120,7 @@ void lanczos(ModalMatrices& m, double sigma, int count, Pairs& pairs) {
   for (int i = 0; i < n; ++i)
     start[i] = 1.0 + std::sin(1.0 + (2.7 + 0.1 * static_cast<double>(known.size())) * i);
   start = m.mass_times(start);
-  inverse.perform_op(start.data(), first.data());  // into what the constraints allow
+  inverse.perform_op(start.data(), first.data());  // projected onto the constraints
   solver.init(first.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, kLanczos);
   if (solver.info() != Spectra::CompInfo::Successful)
@@ -133,9 +134,9 @@ void lanczos(ModalMatrices& m, double sigma, int count, Pairs& pairs) {
   pairs.sort();
 }
 
-/// The place to count: the middle of the widest gap between eigenvalues from `count` on.
+/// Shift for the count: the middle of the widest gap between eigenvalues from `count` on.
 struct Gap {
-  int below = 0;  ///< Eigenvalues found below.
+  int below = 0;  ///< Number of eigenvalues found below.
   double shift = 0.0;
 };
 Gap widest_gap(const std::vector<double>& values, int count) {
@@ -147,9 +148,9 @@ Gap widest_gap(const std::vector<double>& values, int count) {
   return {last, 0.5 * (values[last - 1] + values[last])};
 }
 
-/// Lanczos iterations find one vector of each eigenvalue, and others of the same by rounding only:
-/// they are repeated without what was found until the count by inertia says that nothing is
-/// missing.
+/// Modes by Lanczos iterations. These find one vector of each eigenvalue, further ones of a
+/// multiple eigenvalue only by rounding: they are repeated with known modes projected out until the
+/// count by inertia shows that none is missing.
 Pairs lanczos_modes(ModalMatrices& m, int count, int wanted) {
   Pairs pairs;
   pairs.range = range_of(m, wanted);
@@ -178,7 +179,7 @@ UndampedModes undamped_modes(ModalMatrices& m, int count) {
     double& square = pairs.values[i];
     const Vec& x = pairs.shapes[i];
     bool free = false;
-    if (std::abs(square) <= kMayBeFree * pairs.range) {  // by energy: more digits than 1/ν − σ has
+    if (std::abs(square) <= kMayBeFree * pairs.range) {  // by energy: more accurate than 1/ν − σ
       const double energy = x.dot(m.stiffness_times(x));
       square = energy / x.dot(m.mass_times(x));
       free = std::abs(energy) <= kFreeEnergy * m.energy_scale(x) ||

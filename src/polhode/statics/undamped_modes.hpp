@@ -8,19 +8,19 @@
 
 namespace polhode {
 
-/// Eigenvalues of a model whose stiffness is symmetric and that nothing damps.
+/// Eigenvalues of a model with symmetric stiffness and no damping.
 struct UndampedModes {
   std::vector<double> omega_squared;  ///< Ascending [rad²/s²].
   std::vector<Vec> shapes;
-  std::vector<bool> free;  ///< Nothing resists the motion.
+  std::vector<bool> free;  ///< Whether the motion is free.
   int freedoms = -1;       ///< If known.
   double shift = 0.0;      ///< ω² below which modes were counted [rad²/s²].
-  int below_shift = 0;     ///< That many.
+  int below_shift = 0;     ///< Their number.
   bool counted = false, complete = true;
-  std::string warning;  ///< If some were missed.
+  std::string warning;  ///< Set if some were missed.
 };
 
-/// @param count  Modes wanted; some more may be given. @eq{modes-saddle}
+/// Computes modes. @param count  Requested number; more may be returned. @eq{modes-saddle}
 [[nodiscard]] UndampedModes undamped_modes(ModalMatrices& m, int count);
 
 }  // namespace polhode

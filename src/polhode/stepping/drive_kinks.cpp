@@ -53,7 +53,7 @@ void DriveKinks::settle(State& state) {
   for (const PrescribedComponent& p : system_->nodes().prescribed())
     state.node_a[3 * static_cast<std::size_t>(p.node) + p.component] =
         p.displacement->rates(state.t, TimeSide::kAfter).second;
-  state.past_count = 0;  // steps start best from the velocities at t_n then
+  state.past_count = 0;  // steps then start best from the velocities at t_n
 }
 
 }  // namespace polhode

@@ -9,23 +9,22 @@
 
 namespace polhode {
 
-/// Kinks of drives, which are prescribed components of nodes and rows that follow functions of
-/// time: at the end of a step their velocities jump to those of the next one, and those of free
-/// nodes and bodies with them as impulses of the drive make them. @eq{prescribed-kink}
+/// Velocity jumps at kinks of drives, which are prescribed components of nodes and rows that follow
+/// functions of time. At the end of a step their velocities jump to those of the next one, and
+/// those of free nodes and bodies follow by the impulses of the drive. @eq{prescribed-kink}
 /// @eq{drive-kink}
 class DriveKinks {
  public:
   explicit DriveKinks(const System& system) : system_(&system) {}
 
-  /// At the end of a step: makes velocities jump where drives have kinks, and adds what that puts
-  /// in to the ledger.
+  /// Applies the velocity jumps of kinks at the end of a step, and adds their work to the ledger.
   void pass(State& state, EnergyLedger& ledger);
 
  private:
-  /// Compares the velocities of drives with those that they go on with.
+  /// Compares the velocities of drives before and after the instant.
   /// @returns whether one jumps.
   [[nodiscard]] bool find(const State& state);
-  /// Makes the velocities of the state jump as found.
+  /// Applies the jumps found to the velocities of the state.
   void settle(State& state);
 
   const System* system_;

@@ -11,11 +11,11 @@ namespace polhode {
 
 namespace {
 
-/// Weights whose magnitudes add up to more than this make more of errors than they take away.
+/// Sum of the weights' magnitudes above which errors are amplified.
 constexpr double kLargestWeights = 12.0;
 constexpr std::size_t kFewestSteps = 3;
 
-/// Nodes of elements with mass that take energy: those of viscous materials.
+/// Nodes of dissipative elements with mass: those of viscous materials.
 std::vector<bool> viscous_nodes(const Nodes& nodes) {
   std::vector<bool> viscous(static_cast<std::size_t>(nodes.count()), false);
   for (int g = 0; g < nodes.group_count(); ++g) {
@@ -30,7 +30,7 @@ std::vector<bool> viscous_nodes(const Nodes& nodes) {
   return viscous;
 }
 
-/// Nodes that elements with mass connect, each solid apart; those of viscous materials.
+/// Nodes connected by elements with mass, each solid separately; only those of viscous materials.
 std::vector<std::vector<int>> nodes_by_solid(const Nodes& nodes) {
   const std::vector<bool> viscous = viscous_nodes(nodes);
   std::vector<int> solid(static_cast<std::size_t>(nodes.count()), -1);
@@ -62,8 +62,8 @@ Points points_of(const std::vector<double>& field, const std::vector<int>& list)
 
 Points about_their_mean(const Points& P) { return P.colwise() - P.rowwise().mean(); }
 
-/// Points turned as a whole so that they come nearest to others (W. Kabsch, Acta Cryst. A 32
-/// (1976) 922). Both about their means.
+/// Points rotated rigidly for the best fit to others (W. Kabsch, Acta Cryst. A 32 (1976) 922). Both
+/// relative to their means.
 Points turned_onto(const Points& others, const Points& P) {
   const Eigen::JacobiSVD<Mat3> svd(others * P.transpose(),
                                    Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -72,7 +72,7 @@ Points turned_onto(const Points& others, const Points& P) {
   return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose() * P;
 }
 
-/// The part of velocities that moves points as a whole.
+/// Rigid-body part of velocities.
 Points rigid_part(const Points& arms, const Points& v) {
   Mat3 inertia = Mat3::Zero();
   Vec3 spin = Vec3::Zero();
@@ -93,7 +93,7 @@ std::vector<double> extrapolation_weights(const std::vector<double>& dt) {
   const auto n = static_cast<Eigen::Index>(dt.size());
   if (n < static_cast<Eigen::Index>(kFewestSteps)) return {};
   Mat A(n, n);
-  double end = 0.0;  // in lengths of the last step, from t_n on
+  double end = 0.0;  // in units of the last step, from t_n
   for (Eigen::Index k = 0; k < n; ++k) {
     const double h = dt[static_cast<std::size_t>(k)] / dt[0], start = end - h;
     if (!(h > 0.0)) return {};

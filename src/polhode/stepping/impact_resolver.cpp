@@ -12,23 +12,22 @@ namespace polhode {
 
 namespace {
 
-/// Sweeps over the rows of an island end when no impulse changes by more than this part of the
-/// largest one, or after so many.
+/// Gauss-Seidel sweeps over the rows of an island end when no impulse changes by more than this
+/// part of the largest one, or after a maximum number.
 constexpr double kConverged = 1e-13;
 constexpr int kMaxSweeps = 500;
-/// Lasting contacts that impulses press on join the rows in at most so many rounds.
+/// Largest number of rounds in which resting contacts are added to the rows.
 constexpr int kMaxCarried = 30;
-/// A row that its own impulse moves by less than this part of what the most mobile one does, does
-/// not move.
+/// Mobility of a row, as a part of the largest one, below which the row cannot move.
 constexpr double kHeld = 1e-13;
-/// A speed that is wanted to change by less than this part is left as it is.
+/// Relative change of a target speed below which the speed is kept.
 constexpr double kSameSpeed = 1e-12;
 
 }  // namespace
 
 ImpactResolver::ImpactResolver(const System& system) : system_(&system) {
   const auto n = static_cast<std::size_t>(system.body_count());
-  // Behind the bodies the pieces of solids.
+  // Connected components of solids follow the bodies.
   tie_.resize(n + system.nodes().pieces().size());
   std::iota(tie_.begin(), tie_.end(), 0);
   tied_.assign(n, false);
@@ -109,8 +108,9 @@ std::vector<Vec6> ImpactResolver::velocities(const State& state, const Island& i
   return v;
 }
 
-/// Impulses press on what rests nearby, which answers in the same instant: it joins the rows, whose
-/// impulses so far it starts from, until nothing is pressed. @eq{impact-carried}
+/// Resolves all impacts. Impulses load nearby resting contacts, which react at the same instant:
+/// their rows are added, starting from the impulses so far, until no further contact is loaded.
+/// @eq{impact-carried}
 Work ImpactResolver::settle(State& state) {
   settled_.assign(rows_.size(), {});
   jumped_.clear();
@@ -226,7 +226,7 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
 
 namespace {
 
-/// The nearest point of the friction cone, an ellipse with these half axes, along the ray to p.
+/// Point of the friction cone, an ellipse with these half axes, on the ray to p.
 Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
   if (!(along > 0.0 && across > 0.0)) return Eigen::Vector2d::Zero();
   const double size = std::hypot(p.x() / along, p.y() / across);
@@ -235,8 +235,8 @@ Eigen::Vector2d in_cone(const Eigen::Vector2d& p, double along, double across) {
 
 }  // namespace
 
-/// Nearer to the impulses of friction that end a slip, as far as the cone allows: a step by the
-/// larger mobility of the two tangents. @eq{impact-friction}
+/// Updates the friction impulses towards zero slip within the cone: a step by the larger mobility
+/// of the two tangents. @eq{impact-friction}
 double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
                                       std::vector<Vec6>& v) const {
   const Impact& impact = rows_[along.impact].impact;
@@ -252,9 +252,9 @@ double ImpactResolver::apply_friction(Row& along, Row& across, double normal,
   return (after - before).lpNorm<Eigen::Infinity>();
 }
 
-/// Projected Gauss-Seidel over all impulses of an island: normals go to the speeds they want, as
-/// far as they take back no more than the step gave, friction ends the slip as far as its cone
-/// allows. @eq{impact-friction}
+/// Projected Gauss-Seidel sweeps over all impulses of an island. Normal impulses aim at the target
+/// speeds but return at most the impulse of the step; friction stops the slip within its cone.
+/// @eq{impact-friction}
 void ImpactResolver::sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const {
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0.0, largest = 0.0;
@@ -279,9 +279,9 @@ void ImpactResolver::sweep(std::vector<Row>& rows, double most, std::vector<Vec6
   }
 }
 
-/// An impact that shares its bodies with no other one, along Routh's course from the energy that it
-/// stored at t_n to the one at t_{n+1}. Without restitution a step takes energy itself: friction
-/// alone then acts until the normal velocity turns. @eq{routh}
+/// Resolves an impact that shares its bodies with no other one, by Routh's method from the energy
+/// stored at t_n to that at t_{n+1}. Without restitution the step itself dissipates: then friction
+/// alone acts until the normal velocity reverses. @eq{routh}
 void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
   const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
   if (!course->turns && course->restitution == 0.0) {
@@ -303,7 +303,7 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
   if (!(K(0, 0) > 0.0)) return;
   single.velocity = now - impact.given * K.col(0);
   if (single.restitution > 0.0) {
-    // A step without friction changes the normal velocity by what is stored and by the fall.
+    // A frictionless step changes the normal velocity by the stored energy and by gravity.
     const double square =
         now[0] * now[0] + course->fallen + 2.0 * K(0, 0) * (course->stored_n1 - course->stored_n);
     single.velocity[0] = std::copysign(std::sqrt(std::max(0.0, square)), single.velocity[0]);
@@ -323,7 +323,8 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
   rows[2].apply(friction[2], v);
 }
 
-/// Impulses that would give energy are scaled back to where they do not. @eq{turn-law}
+/// Resolves an island. Impulses that would add energy are scaled back until they do not.
+/// @eq{turn-law}
 void ImpactResolver::settle(State& state, const Island& island) {
   std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
@@ -342,7 +343,7 @@ void ImpactResolver::settle(State& state, const Island& island) {
   } else {
     sweep(rows, most, v);
   }
-  // ΔT = Σ p (J v before + J v after)/2: along the jump a parabola.
+  // ΔT = Σ p (J v before + J v after)/2: quadratic along the jump.
   double first = 0.0, second = 0.0;
   for (const Row& row : rows) {
     first += row.impulse * row.before;
@@ -388,7 +389,7 @@ double ImpactResolver::jump(State& state, const Island& island, const std::vecto
     const auto at = [](const std::vector<double>& x, int i) {
       return Eigen::Map<const Vec3>(x.data() + 3 * static_cast<std::ptrdiff_t>(i));
     };
-    // Newmark velocities of bonded nodes are not quite those of their bodies.
+    // Newmark velocities of bonded nodes differ slightly from those of their bodies.
     for (int i = 0; i < nodes.count(); ++i) {
       if (nodes[i].body < 0) continue;
       const BodyMotion m = system_->motion(state, nodes[i].body);
@@ -402,7 +403,7 @@ double ImpactResolver::jump(State& state, const Island& island, const std::vecto
     const int slot = system_->slot(island.bodies[i]), lane = slot % kLanes;
     const Vec3 dW = system_->motion(state, island.bodies[i]).q.conjugate() * jumps[i].tail<3>();
     BodyBlock& block = state.blocks[slot / kLanes];
-    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
+    for (int c = 0; c < 3; ++c) {  // positions keep their compensated rounding
       block.v[c][lane] += jumps[i][c];
       block.W[c][lane] += dW[c];
     }

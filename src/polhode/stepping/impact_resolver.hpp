@@ -10,48 +10,48 @@
 
 namespace polhode {
 
-/// Makes velocities jump at the end of a step in impacts, of contacts, of surfaces and of the stops
-/// of joints: by impulses along their normals and friction across, from bodies that are as heavy as
-/// the solids they hold make them, while G v = 0. They only take energy.
-/// @eq{turn-law} @eq{impact-friction} @eq{routh} @eq{joint-stop-exit} @eq{surface-turn}
+/// Velocity jumps by impacts at the end of a step: of contacts, of surfaces and of joint stops.
+/// Impulses act along the normals, with friction in the tangent planes, on bodies with the mass of
+/// the solids attached to them, under G v = 0. They only dissipate energy. @eq{turn-law}
+/// @eq{impact-friction} @eq{routh} @eq{joint-stop-exit} @eq{surface-turn}
 class ImpactResolver {
  public:
   explicit ImpactResolver(const System& system);
 
-  /// Finds the impacts of interactions and of surfaces in an accepted step, the state and the
-  /// histories still at t_n. Forgets those before.
+  /// Collects the impacts of interactions and of surfaces in an accepted step; state and histories
+  /// are still at t_n. Earlier ones are dropped.
   void find(const State& state, const Trial& trial);
-  /// Goes on with those of surfaces, the state having moved to t_{n+1}. Before those of contacts.
+  /// Completes those of surfaces when the state has moved to t_{n+1}. Before those of contacts.
   void find_turns(const State& state);
-  /// Adds those of contacts, the state having moved to t_{n+1}.
-  /// @returns the change of what contacts store, and what they dissipated by it.
+  /// Adds those of contacts when the state has moved to t_{n+1}.
+  /// @returns the change of the energy stored by contacts, and their dissipation.
   Work find(State& state, BodyContacts& contacts);
   [[nodiscard]] bool any() const;
   /// Changes the velocities of the state, which has moved to t_{n+1}.
-  /// @returns the change of what surfaces store, and what they dissipated by it.
+  /// @returns the change of the energy stored by surfaces, and their dissipation.
   Work settle(State& state);
 
  private:
-  /// Rows that share bodies, directly or by way of joints and solids.
+  /// Rows that share bodies, directly or through joints and solids.
   struct Island {
     std::vector<int> rows, bodies;
-    std::vector<int> nodes;  ///< Free ones that rows press on, ascending.
-    bool tied = false;       ///< Joints or solids make its bodies answer together.
+    std::vector<int> nodes;  ///< Loaded free nodes, ascending.
+    bool tied = false;       ///< Joints or solids couple its bodies.
   };
-  /// A point of a surface, and the group of elements that it belongs to, with its number.
+  /// A point of a surface with the group of elements it belongs to and its number there.
   struct Surface {
     int number = 0;
     const SurfaceImpacts* group = nullptr;
     SurfaceImpact impact;
     bool turns = false;  ///< In this step.
-    double held = 0.0;   ///< Force by which others press it on [N].
+    double held = 0.0;   ///< Force of others on it [N].
   };
   [[nodiscard]] std::vector<Island> islands() const;
   [[nodiscard]] Vec6 velocity(const State& state, int body) const;
-  /// Of an island's bodies, then of its nodes, which do not turn.
+  /// Velocities of an island's bodies, then of its nodes, which have no rotation.
   [[nodiscard]] std::vector<Vec6> velocities(const State& state, const Island& island) const;
   [[nodiscard]] Vec3 velocity_of_node(const State& state, int node) const;
-  /// Of a row of a surface; null for others.
+  /// Surface impact of a row; null for other rows.
   [[nodiscard]] const SurfaceImpact* surface(int row) const;
   [[nodiscard]] Surface& of_surface(int row) {
     return surfaces_[static_cast<std::size_t>(row) - of_joints_];
@@ -60,12 +60,12 @@ class ImpactResolver {
   template <class Use>
   void for_bodies(int row, Use&& use) const;
   struct Row;
-  /// Rows of an island: one for each normal, two more for each that rubs.
+  /// Rows of an island: one for each normal, two more for each with friction.
   [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
   void settle(State& state, const Island& island);
-  /// Islands that hold a row from that one on.
+  /// Resolves the islands that contain a row from that one on.
   void settle_from(State& state, std::size_t first);
-  /// Lasting contacts of bodies that jumped, pressed on by it, become rows.
+  /// Adds rows for the resting contacts of bodies that jumped, as far as they are loaded by it.
   void press_on(const State& state, const std::vector<Vec6>& before);
   [[nodiscard]] double speed(const State& state, const PairImpact& row) const;
   [[nodiscard]] double speed(const State& state, int row) const;
@@ -76,30 +76,30 @@ class ImpactResolver {
   double apply_friction(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
-  /// @returns the energy that nodes of solids lose by it beyond what their bodies' velocities
-  ///          tell [J].
+  /// @returns the energy loss of solids' nodes beyond that given by their bodies' velocities [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
   /// Impulses of rows on free nodes, 3 each.
   [[nodiscard]] std::vector<double> on_nodes(const Island& island, const std::vector<Row>& rows,
                                              double part) const;
 
   const System* system_;
-  std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of tied bodies on.
-  std::vector<int> tie_;    ///< By body: the first of those that joints and solids tie it to.
-  std::vector<bool> tied_;  ///< By body: something ties it, be it to the ground.
-  std::vector<int> place_;  ///< By body: in the island at hand.
-  std::vector<std::pair<int, const SurfaceImpacts*>> groups_;  ///< Of elements, with numbers.
-  std::vector<Surface> surfaces_;                              ///< In the order of their rows.
-  double dt_ = 0.0;                                            ///< Of the step [s].
+  std::unique_ptr<InstantSolver> solver_;  ///< From the first impact of coupled bodies on.
+  /// By body: the first body of its connected component by joints and solids.
+  std::vector<int> tie_;
+  std::vector<bool> tied_;  ///< By body: whether it is coupled to others or to the ground.
+  std::vector<int> place_;  ///< By body: position in the present island.
+  /// Groups of elements, with their numbers.
+  std::vector<std::pair<int, const SurfaceImpacts*>> groups_;
+  std::vector<Surface> surfaces_;  ///< In the order of their rows.
+  double dt_ = 0.0;                ///< Of the step [s].
   std::vector<PairImpact> rows_;
-  BodyContacts* contacts_ = nullptr;     ///< Whose impacts the last rows are.
-  std::size_t of_joints_ = 0;            ///< Rows of joints, the first ones.
-  std::size_t before_contacts_ = 0;      ///< Rows of joints and of surfaces.
+  BodyContacts* contacts_ = nullptr;     ///< Contacts of the last rows.
+  std::size_t of_joints_ = 0;            ///< Number of rows of joints, the first ones.
+  std::size_t before_contacts_ = 0;      ///< Number of rows of joints and of surfaces.
   std::vector<int> jumped_;              ///< Bodies of the islands so far, ascending.
-  std::vector<PairImpact> resting_;      ///< Their lasting contacts.
+  std::vector<PairImpact> resting_;      ///< Their resting contacts.
   std::vector<ResolvedImpact> settled_;  ///< Of the rows.
-  std::vector<int>
-      numbers_;  ///< Rows of contacts, in the order in which these listed them; −1: none.
+  std::vector<int> numbers_;  ///< Rows of contacts, in the order of the contacts' list; −1: none.
 };
 
 }  // namespace polhode

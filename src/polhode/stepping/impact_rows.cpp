@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Bodies that a row presses on, and pieces of solids, as they are numbered in `tie_`.
+/// Calls use for bodies and connected components of solids loaded by a row, numbered as in `tie_`.
 template <class Use>
 void ImpactResolver::for_bodies(int row, Use&& use) const {
   if (const SurfaceImpact* hit = surface(row)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows behind ImpactResolver; only its source files include this.
+// Rows of ImpactResolver; included only by its source files.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace polhode {
 
 namespace impact_rows {
 
-/// Of what is tied together the first.
+/// Representative of a connected component (union-find).
 inline int first_of(std::vector<int>& tie, int body) {
   while (tie[body] != body) body = tie[body] = tie[tie[body]];
   return body;
@@ -25,22 +25,22 @@ inline void join(std::vector<int>& tie, int a, int b) {
 
 }  // namespace impact_rows
 
-/// A relative velocity J v, and how the island answers a unit impulse along it.
+/// A relative velocity J v, and the island's response to a unit impulse along it.
 struct ImpactResolver::Row {
   int impact = 0;  ///< Its number.
-  /// J, by places in the island: of its bodies, then of its nodes, which do not turn.
+  /// J, by position in the island: of its bodies, then of its nodes, which have no rotation.
   std::vector<std::pair<int, Vec6>> on;
-  std::vector<std::pair<int, Vec6>> answer;  ///< By place: X = M⁻¹ Jᵀ under G v = 0.
+  std::vector<std::pair<int, Vec6>> answer;  ///< By position: X = M⁻¹ Jᵀ under G v = 0.
   double mobility = 0.0;                     ///< J X.
-  double before = 0.0, impulse = 0.0;        ///< J v at first [m/s]; [N s].
-  bool has_friction = false;                 ///< The first of two tangents.
+  double before = 0.0, impulse = 0.0;        ///< Initial J v [m/s]; [N s].
+  bool has_friction = false;                 ///< It is the first of two tangents.
 
   [[nodiscard]] double speed(const std::vector<Vec6>& v) const {
     double sum = 0.0;
     for (const auto& [place, J] : on) sum += J.dot(v[static_cast<std::size_t>(place)]);
     return sum;
   }
-  /// Its velocity by a unit impulse along another row of the same bodies.
+  /// Velocity by a unit impulse along another row of the same bodies.
   [[nodiscard]] double speed_by(const Row& other) const {
     double sum = 0.0;
     for (const auto& [place, x] : other.answer)

@@ -64,7 +64,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
     m.W += m.Lambda().transpose() * D_omega;
     BodyBlock& block = state.blocks[system.slot(b) / kLanes];
     const int lane = system.slot(b) % kLanes;
-    for (int i = 0; i < 3; ++i) {  // positions keep what rounding took from them
+    for (int i = 0; i < 3; ++i) {  // positions keep their compensated rounding
       block.v[i][lane] = m.v[i];
       block.W[i][lane] = m.W[i];
     }

@@ -118,7 +118,7 @@ void add_jumps(const System& system, std::span<const Vec6> bodies, std::span<con
     const Vec6& jump = bodies[static_cast<std::size_t>(b)];
     const Vec3 dW = system.motion(state, b).q.conjugate() * jump.tail<3>();
     BodyBlock& block = state.blocks[static_cast<std::size_t>(slot / kLanes)];
-    for (int c = 0; c < 3; ++c) {  // positions keep what rounding took from them
+    for (int c = 0; c < 3; ++c) {  // positions keep their compensated rounding
       block.v[c][lane] += jump[c];
       block.W[c][lane] += dW[c];
     }

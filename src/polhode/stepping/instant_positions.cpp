@@ -7,9 +7,9 @@ namespace polhode {
 namespace {
 
 constexpr int kMaxAssemblyIterations = 100;
-/// Assembly has come to a halt if |g| does not halve within so many iterations.
+/// Number of iterations within which |g| has to be halved; otherwise assembly has stalled.
 constexpr int kPatience = 12;
-/// Largest move of one assembly iteration, |Δr|/ℓ or |Δθ| [-].
+/// Largest displacement of one assembly iteration, |Δr|/ℓ or |Δθ| [-].
 constexpr double kLargestMove = 0.5;
 
 /// Constraint values of an instant.
@@ -19,7 +19,7 @@ struct PositionDefect {
   std::vector<std::pair<int, double>> by_interaction;  ///< Largest |g| of each that has rows.
 };
 
-/// Rounding of a constraint value: that of the positions and of the turned arms.
+/// Rounding of a constraint value: that of the positions and of the rotated lever arms.
 double row_noise(const PairStep& step, const PairTerms& t, int k, double length) {
   const double reach = length + std::max(step.a.r_n1.lpNorm<1>(), step.b.r_n1.lpNorm<1>());
   const double G_r =
@@ -87,8 +87,8 @@ PositionReport InstantSolver::assemble_positions(State& state, double tolerance)
       report.assembled = defect.largest <= tolerance;
       break;
     }
-    // ε falls with |g|²: steps stay bounded where rows are nearly redundant, and convergence is
-    // quadratic in the end (Levenberg-Marquardt).
+    // ε decreases with |g|²: steps stay bounded where rows are nearly redundant, and the final
+    // convergence is quadratic (Levenberg-Marquardt).
     const double epsilon = std::clamp(1e-2 * defect.largest * defect.largest, kProximal, 1e-3);
     for (std::size_t p = 0; p < s.values.pairs.size(); ++p)
       for (int k = 0; k < s.map.topology.pairs[p].rows; ++k)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear system behind InstantSolver; only its source files include this.
+// Linear system of InstantSolver; included only by its source files.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 namespace polhode {
 
 inline constexpr double kInstantRoundOff = std::numeric_limits<double>::epsilon();
-/// ε where multipliers count: rounding of the redundant part is divided by it, repeats do the rest.
+/// ε where multipliers matter: rounding of the redundant part is divided by it, iterations do the
+/// rest.
 inline constexpr double kInstantProximal = 1e-8;
 inline constexpr int kMaxInstantRepeats = 40;
 
@@ -36,8 +37,8 @@ struct InstantSolver::Impl {
   KktValues values;
   Vec rhs, x, correction;
   std::unique_ptr<NodeInertia> nodes;  ///< Of deformable solids, if there are any.
-  std::vector<Vec6> of_nodes;          ///< By body: what impulses on free nodes are there.
-  /// Positions and time that the factorisation at hand belongs to.
+  std::vector<Vec6> of_nodes;          ///< By body: condensed impulses on free nodes.
+  /// Positions and time of the present factorisation.
   std::vector<BodyBlock> factored_at;
   double factored_t = 0.0;
   Vec G_x, M_x;
@@ -90,7 +91,7 @@ struct InstantSolver::Impl {
     x = correction = rhs;
   }
 
-  /// Of the bodies; add_nodes() adds those of solids.
+  /// Sets the masses of the bodies; add_nodes() adds those of solids.
   void put_masses() {
     clear_cliques();
     const double per_mass = 1.0 / system.mean_mass();
@@ -107,7 +108,7 @@ struct InstantSolver::Impl {
         if (body != kGround)
           values.diagonal[body].topLeftCorner<3, 3>().diagonal().array() -= per_mass * m.mass;
   }
-  /// The matrix of jumps of velocities: masses of the bodies, and rows that hold.
+  /// Sets the matrix of velocity jumps: masses of the bodies, and active rows.
   void put_masses_and_rows(const State& state) {
     prepare();
     put_masses();
@@ -118,7 +119,7 @@ struct InstantSolver::Impl {
         },
         true);
   }
-  /// Blocks of the pairs of bodies that solids couple: the last ones.
+  /// Blocks of the pairs of bodies coupled by solids, which come last.
   [[nodiscard]] std::span<KktValues::Pair> cliques() {
     return std::span(values.pairs).last(nodes->pairs().size());
   }
@@ -129,11 +130,11 @@ struct InstantSolver::Impl {
       v.K_ba.setZero();
     }
   }
-  /// Adds masses and forces of the solids to the bodies'; for impulses there are no forces.
+  /// Adds masses and forces of the solids to those of the bodies; for impulses there are no forces.
   [[nodiscard]] bool add_nodes(const State& state) {
     return !nodes || (nodes->take(state) && put_nodes());
   }
-  /// The same for impulses, with jumps of prescribed components that are given.
+  /// Adds masses for impulses, with given jumps of prescribed components.
   [[nodiscard]] bool add_node_masses(const State& state, std::span<const double> given = {}) {
     return !nodes || (nodes->take_masses(state, given) && put_nodes());
   }
@@ -161,7 +162,7 @@ struct InstantSolver::Impl {
     v.B_b = v.G_b.transpose();
   }
 
-  /// Takes the rates that rows follow from numbers by row.
+  /// Subtracts the prescribed rates of rows from numbers by row.
   void subtract_rates(const State& state, TimeSide side, Eigen::Ref<Vec> rows) const {
     for (const int i : system.drives()) {
       const InteractionRef& ref = system.interactions()[i];
@@ -219,8 +220,8 @@ struct InstantSolver::Impl {
     double residual = 0.0;
     int solves = 0;
   };
-  /// Factors the matrix unless that has been done: positions and time make it. (Solids' masses
-  /// stand in that of accelerations alone.)
+  /// Factors the matrix unless positions and time are those of the factorisation. (Solids' masses
+  /// are only in that of accelerations.)
   bool factor(const State& state) {
     const auto same_positions = [](const BodyBlock& one, const BodyBlock& other) {
       return std::memcmp(&one, &other, offsetof(BodyBlock, v)) == 0;
@@ -235,7 +236,7 @@ struct InstantSolver::Impl {
     factored_t = state.t;
     return true;
   }
-  /// Solves for x with the right-hand side `rhs`, repeating until the rows hold to round-off.
+  /// Solves for x with the right-hand side `rhs`, iterating until the rows hold to round-off.
   Outcome solve(const State& state) { return factor(state) ? solve_factored() : Outcome{}; }
   Outcome solve_factored() {
     Outcome outcome;
@@ -253,11 +254,12 @@ struct InstantSolver::Impl {
       x += correction;
       if (rows == 0) return outcome;
       const double scale = rows_times(x, G_x) + rhs.lpNorm<Eigen::Infinity>();
-      G_x = rhs.tail(rows) - G_x;  // what is left
+      G_x = rhs.tail(rows) - G_x;  // the remaining residual
       outcome.residual = G_x.lpNorm<Eigen::Infinity>();
       if (outcome.residual <= 16.0 * kInstantRoundOff * scale) return outcome;
       if (outcome.residual > 0.9 * before) {
-        // What no x can satisfy adds the same redundant multipliers each time: take them out.
+        // A part that no x can satisfy adds the same redundant multipliers each time: they are
+        // removed.
         outcome.consistent = outcome.residual < 1e-6 * scale;
         if (!outcome.consistent) x.tail(rows) -= outcome.solves * correction.tail(rows);
         return outcome;
@@ -269,7 +271,7 @@ struct InstantSolver::Impl {
     }
     return outcome;
   }
-  /// The same for the bodies; zero if that cannot be solved.
+  /// Solution for the bodies; zero if it cannot be computed.
   std::vector<Vec6> solution_by_body() {
     std::vector<Vec6> by_body(static_cast<std::size_t>(system.body_count()), Vec6::Zero());
     if (!solve_factored().solved) return by_body;

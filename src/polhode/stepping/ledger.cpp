@@ -10,9 +10,9 @@ namespace polhode {
 
 namespace {
 
-/// Rounding of a sum of numbers, as a part of them.
+/// Relative rounding of a sum of numbers.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
-/// Largest drift that rounding alone reads as.
+/// Largest drift reported for rounding alone.
 constexpr double kReadsAs = 1e-10;
 
 std::vector<int> with_work(const System& system) {
@@ -76,7 +76,7 @@ BodySums EnergyLedger::sums(const State& state) const {
   for (const auto& [a, b, mass] : coupled_) {
     const Vec3 v = of(&BodyBlock::v, b) - of(&BodyBlock::v, a);
     s.kinetic -= 0.5 * mass * v.squaredNorm();
-    if (a < 0 || b < 0) continue;  // the ground's side is outside: its impulse is counted
+    if (a < 0 || b < 0) continue;  // the ground's side is external: its impulse is counted
     const Vec3 l = mass * (of(&BodyBlock::r, b) - of(&BodyBlock::r, a)).cross(v);
     for (int i = 0; i < 3; ++i) s.l[i] -= l[i];
   }

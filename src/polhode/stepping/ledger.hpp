@@ -11,49 +11,51 @@
 
 namespace polhode {
 
-/// Largest drifts over the largest magnitudes reached, and these at least so large that rounding
-/// alone does not read as a drift [-]. @eq{drift-floor}
+/// Largest drifts relative to the largest magnitudes, which have a lower bound so that rounding
+/// alone is not reported as a drift [-]. @eq{drift-floor}
 struct Drifts {
   double energy = 0.0, linear_momentum = 0.0, angular_momentum = 0.0;
 };
 [[nodiscard]] Drifts drifts(const Ledger& ledger);
 
-/// Keeps the balance of energy and momenta: what loads and ground put in over each step, and how
-/// far what the bodies hold is from that.
+/// Balance of energy and momenta: input of loads and ground over each step, and the drift of the
+/// bodies' sums from it.
 class EnergyLedger {
  public:
   EnergyLedger(const System& system, const LaneKernels& kernels, const NewtonEngine& engine);
 
   /// Starts the sums at a state.
   void begin(State& state);
-  /// Adds what an accepted step did. Call with the trial converged, before and after the state
-  /// moves to t_{n+1}.
+  /// Adds an accepted step. Call with the converged trial, before and after the state moves to
+  /// t_{n+1}.
   void before_commit(State& state, Trial& trial);
   void after_commit(State& state, const Trial& trial);
-  /// What the engine's own forces did over the step, between before_commit() and after_commit().
+  /// Adds the work of the engine's own forces over the step, between before_commit() and
+  /// after_commit().
   void add(State& state, const Work& work);
-  /// Velocities have jumped: what they lost, and what stands still took, since `before`.
+  /// Adds a velocity jump since `before`: its energy loss, and the impulse on fixed objects.
   void add_jump(State& state, const BodySums& before);
-  /// The same where a prescribed motion made them jump: what they gained is its work.
+  /// Adds a jump by a prescribed motion: the energy gain is its work.
   void add_driven_jump(State& state, const BodySums& before);
-  /// Interactions were switched: velocities that jumped lost energy, the rest that they gained is
-  /// work of drives; potential energy that is gone is lost, what came is put in. @eq{switch-loss}
-  /// @param before     Sums before.
-  /// @param lost       By impulses [J].
+  /// Adds a switch of interactions. Energy lost by impulses is dissipated, a remaining gain is work
+  /// of drives; potential energy that disappears is dissipated, new potential energy is input.
+  /// @eq{switch-loss}
+  /// @param before  Sums before.
+  /// @param lost  By impulses [J].
   /// @param potential  Change of potential energy [J].
   void add_switch(State& state, const BodySums& before, double lost, double potential);
   [[nodiscard]] BodySums sums(const State& state) const;
-  /// Stored by interactions, solids and contacts [J].
+  /// Energy stored by interactions, solids and contacts [J].
   [[nodiscard]] double potential(const State& state) const { return stored(state); }
-  /// The next call is about another state than the last one.
+  /// Must be called if the next call concerns another state than the last one.
   void forget() { sums_are_of_state_ = false; }
-  /// Compares with the start; at the end of whole steps.
+  /// Updates the drifts since the start; at the end of whole steps.
   void close_step(State& state);
   [[nodiscard]] Balance balance(const State& state) const;
 
  private:
   [[nodiscard]] double stored(const State& state) const;
-  /// Work that rows which follow functions of time put in over the step.
+  /// Adds the work of rows that follow functions of time over the step.
   void add_drives(State& state, const Trial& trial) const;
   void add_impulses(State& state, const BodySums& before, const BodySums& after);
 
@@ -62,8 +64,9 @@ class EnergyLedger {
   const NewtonEngine* engine_;
   std::vector<MassBlock> mass_;
   double total_mass_ = 0.0;
-  std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, put in.
-  std::vector<int> outside_;  ///< Interactions with one moving body that the engine does not sum.
+  std::vector<int> working_;  ///< Interactions without rows: they store, dissipate, do work.
+  /// Interactions with one moving body that are not summed by the engine.
+  std::vector<int> outside_;
   InteractionSweep outside_sweep_;
   NodeLedger nodes_;
   std::vector<int> touched_;  ///< Bodies of those.
@@ -71,7 +74,7 @@ class EnergyLedger {
     int slot_a, slot_b;  ///< −1: the ground.
     double mass;
   };
-  std::vector<CoupledMass> coupled_;  ///< Kinetic energy that interactions hold.
+  std::vector<CoupledMass> coupled_;  ///< Kinetic energy of interactions.
   std::vector<BodyStep> steps_;
   BodySums at_n_, at_n1_;                              ///< Of the state before and after the step.
   double outside_force_ = 0.0, outside_moment_ = 0.0;  ///< Over the last step [N, N m].

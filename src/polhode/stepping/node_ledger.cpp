@@ -50,8 +50,8 @@ double NodeLedger::stored(const State& state) const {
   return potential;
 }
 
-/// Excess of the mean of prescribed velocities over the mean velocity of the step: their
-/// inertia has taken the work of the one, the increments have that of the other.
+/// Adds the excess of the mean of prescribed velocities over the mean velocity of the step: the
+/// work of the inertia forces uses the former, the increments contain the latter.
 /// @eq{prescribed-work}
 void NodeLedger::add_lag(Ledger& ledger, const State& state, const Trial& trial,
                          Vec3& moment) const {

@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// The nodes' part of the balance of energy and momenta: their own Newmark velocities with the
-/// consistent mass, strain energy, and what ground, prescribed motion and loads put in.
+/// Contribution of nodes to the balance of energy and momenta: their Newmark velocities with the
+/// consistent mass, strain energy, and input of ground, prescribed motion and loads.
 class NodeLedger {
  public:
   explicit NodeLedger(const System& system);
@@ -18,7 +18,7 @@ class NodeLedger {
   void add_sums(const State& state, BodySums& sums) const;
   /// Potential energy of the elements at a state [J].
   [[nodiscard]] double stored(const State& state) const;
-  /// Adds work and dissipation of the step just solved to the ledger, and to the outside force [N]
+  /// Adds work and dissipation of the step just solved to the ledger, and to the external force [N]
   /// and moment about the origin [N m] that of loads, ground and prescribed motion at t_{n+αf}.
   /// @returns the potential energy at t_{n+1} [J].
   double close(Ledger& ledger, const State& state, Trial& trial, Vec3& force, Vec3& moment);
@@ -28,8 +28,8 @@ class NodeLedger {
 
   const System* system_;
   NodeSystem nodes_;
-  std::vector<int> held_;      ///< Nodes that the ground or a prescribed motion moves.
-  std::vector<int> external_;  ///< Groups that act from outside.
+  std::vector<int> held_;      ///< Nodes moved by the ground or a prescribed motion.
+  std::vector<int> external_;  ///< Groups of external loads.
   std::vector<double> forces_;
 };
 

@@ -16,22 +16,22 @@ namespace polhode {
 
 namespace {
 
-/// A motion of a part counts as free if it is one of those given up to this part of itself.
+/// Relative residual up to which a motion of a part lies in the space of given free motions.
 constexpr double kEqual = 1e-6;
-/// A rigid motion is free if its force is below this part of the terms it is the sum of: rounding
-/// leaves a hundredth of that, the weight of a steel block on a hinge makes a hundred thousand
+/// Force of a rigid motion, relative to the terms of its sum, below which the motion is free:
+/// rounding gives a hundredth of that, the weight of a steel block on a hinge a hundred thousand
 /// times as much.
 constexpr double kFreeRigid = 5e-13;
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
-/// Bodies and free nodes that interactions and elements connect.
+/// A connected component of bodies and free nodes.
 struct Part {
   std::vector<int> bodies, nodes;
   std::string name;
 };
 
-/// Numbers of parts: bodies first, nodes behind.
+/// Connected components: their bodies and nodes.
 std::vector<Part> parts_of(const System& system) {
   const Nodes& nodes = system.nodes();
   const int bodies = system.body_count();
@@ -87,7 +87,7 @@ std::vector<Part> parts_of(const System& system) {
   return parts;
 }
 
-/// Shifts along and turns about x, y, z of a part as columns, and its moments of inertia.
+/// Translations along and rotations about x, y, z of a part as columns, and its moments of inertia.
 struct RigidMotions {
   Mat R;
   Mat3 inertia = Mat3::Zero();
@@ -142,7 +142,7 @@ Mat null_space(const Mat& A) {
   return svd.matrixV().rightCols(A.cols() - rank);
 }
 
-/// Directions that span the columns of a matrix with three rows: along axes if they can be.
+/// Directions that span the columns of a matrix with three rows: along axes if possible.
 std::vector<Vec3> directions_of(const Mat& D, const Mat3& axes) {
   std::vector<Vec3> list;
   if (D.cols() == 0) return list;
@@ -150,7 +150,7 @@ std::vector<Vec3> directions_of(const Mat& D, const Mat3& axes) {
   Eigen::Index rank = 0;
   while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kEqual) ++rank;
   const Mat U = svd.matrixU().leftCols(rank);
-  for (int pass = 0; pass < 2; ++pass)  // axes within the space first, then what is left of others
+  for (int pass = 0; pass < 2; ++pass)  // axes inside the space first, then the remainder of others
     for (int c = 0; c < 3 && static_cast<Eigen::Index>(list.size()) < rank; ++c) {
       Vec3 d = U * (U.transpose() * axes.col(c));
       if (pass == 0 && (d - axes.col(c)).norm() > kEqual) continue;
@@ -161,7 +161,7 @@ std::vector<Vec3> directions_of(const Mat& D, const Mat3& axes) {
   return list;
 }
 
-/// Axes of inertia; those of the world where they do as well.
+/// Principal axes of inertia; those of the world if these are principal.
 Mat3 axes_of(const Mat3& inertia) {
   const double size = inertia.trace();
   Mat3 off = inertia;
@@ -179,7 +179,7 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
   if (motions.empty()) return list;
   const double length = system.length_scale();
   const int n = matrix.movable();
-  Vec weight = Vec::Ones(n);  // turns count times ℓ
+  Vec weight = Vec::Ones(n);  // rotations are scaled by ℓ
   for (int b = 0; b < system.body_count(); ++b) weight.segment<3>(6 * b + 3).setConstant(length);
   Mat left(n, static_cast<Eigen::Index>(motions.size()));
   for (std::size_t i = 0; i < motions.size(); ++i)
@@ -190,7 +190,7 @@ std::vector<PlainMotion> plain_motions(const System& system, const State& state,
     d.normalize();
     const Vec along = left.transpose() * d;
     if (left.cols() == 0 || along.norm() < 0.5) return;
-    // The space without it: reflected so that its first vector is the one that goes.
+    // Reduced space, by a reflection whose first vector is removed.
     const Eigen::HouseholderQR<Mat> qr(along);
     const Mat Q = qr.householderQ() * Mat::Identity(left.cols(), left.cols());
     left = Mat(left * Q.rightCols(left.cols() - 1));
@@ -255,7 +255,7 @@ std::vector<Vec> rigid_free_motions(const System& system, const State& state,
       if (svd.singularValues()[k] > kFreeRigid) continue;
       x << R * svd.matrixV().col(k), Vec::Zero(matrix.size() - matrix.movable());
       const double size = x.lpNorm<Eigen::Infinity>();
-      if (size > kEqual) free.push_back(x / size);  // else it is one of a point
+      if (size > kEqual) free.push_back(x / size);  // otherwise it is one of a point
     }
   }
   return free;

@@ -8,24 +8,25 @@
 
 namespace polhode {
 
-/// A free motion and what it is in words: "body 'crank' turns about z".
+/// A free motion and its description: "body 'crank' turns about z".
 struct PlainMotion {
   Vec x;
   std::string text;
 };
 
-/// Other motions of the same space, plain ones first: of each part of the model that hangs together
-/// shifts along axes and turns about axes, as far as it is free to make them; then what is left.
-/// Turns are about the centre of mass where a part may also shift.
-/// @param state    Where bodies and nodes are.
-/// @param motions  Independent, in the unknowns of bodies and nodes; what follows is left out.
+/// Another basis of a space of free motions, simple ones first: for each connected component the
+/// translations along axes and rotations about axes that are in the space, then the rest. Rotations
+/// are about the centre of mass if a part may also translate.
+/// @param state  Positions of bodies and nodes.
+/// @param motions  Independent, in the unknowns of bodies and nodes; the entries behind these are
+/// ignored.
 [[nodiscard]] std::vector<PlainMotion> plain_motions(const System& system, const State& state,
                                                      const SaddleMatrix& matrix,
                                                      const std::vector<Vec>& motions);
 
-/// Shifts and turns of parts of the model that hang together, as far as they meet no stiffness and
-/// no constraint: found without the rounding of a factorisation, so that they are told from motions
-/// that meet little. Independent, each of largest component one. @eq{statics-rigid}
+/// Translations and rotations of connected components without stiffness and without constraint.
+/// They are found without the rounding of a factorisation, so that they are distinguished from
+/// motions with a small stiffness. Independent, each with largest component one. @eq{statics-rigid}
 [[nodiscard]] std::vector<Vec> rigid_free_motions(const System& system, const State& state,
                                                   const SaddleMatrix& matrix);
 

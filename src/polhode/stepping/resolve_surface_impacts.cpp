@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Impacts of points of surfaces among those that ImpactResolver knows.
+// Surface points in the impacts of ImpactResolver.
 #include <cmath>
 
 #include <polhode/stepping/impact_rows.hpp>
@@ -8,17 +8,17 @@ namespace polhode {
 
 namespace {
 
-/// Conjugate gradients that find what presses points on end when the speeds that are left are this
-/// part of those at first, or after so many.
+/// Reduction of the residual speeds at which the conjugate gradients for held-on forces end, and
+/// the largest number of iterations.
 constexpr double kHeldConverged = 1e-10;
 constexpr int kMaxHeldSweeps = 200;
-/// An impact is over before it turns where others press the point on by this part of what it
-/// presses back, and it has no more than this part of what it stores as kinetic energy.
+/// Limits for the end of an impact before its turn: the force of others on the point reaches this
+/// part of the contact force, and its kinetic energy is below this part of the stored energy.
 constexpr double kHeldOn = 0.9, kNoImpact = 1e-2;
 
 }  // namespace
 
-/// Speed after the turn, as of bodies: what a point flew beyond its band was under gravity alone.
+/// Target speed after the turn, as for bodies: beyond its band a point moved under gravity alone.
 /// @eq{surface-turn}
 double ImpactResolver::wanted_of(const SurfaceImpact& impact, double speed) const {
   const double e = impact.restitution;
@@ -53,9 +53,9 @@ void ImpactResolver::find_turns(const State& state) {
   before_contacts_ = rows_.size();
 }
 
-/// Impulses that give rows the speeds that they had before the step, by conjugate gradients from
-/// none in the metric of what each was given: many points that no motion tells apart have parts in
-/// that proportion. @eq{surface-held}
+/// Impulses that restore the rows' speeds before the step, by conjugate gradients from zero in the
+/// metric of the given impulses: points that no motion distinguishes share an impulse in that
+/// proportion. @eq{surface-held}
 void ImpactResolver::share_held(std::vector<Row>& rows, std::vector<Vec6> v) const {
   const auto n = static_cast<Eigen::Index>(rows.size());
   Vec scale(n), residual(n), direction, moved(n);
@@ -86,8 +86,8 @@ void ImpactResolver::share_held(std::vector<Row>& rows, std::vector<Vec6> v) con
   }
 }
 
-/// Forces that hold points in place: what changed normal speeds over the step, but for the impacts.
-/// An impact is over where they press as much as the point presses back and it has little speed
+/// Forces that hold points in place: those that changed normal speeds over the step, except
+/// impacts. An impact ends where they balance the contact force and the point has little speed
 /// left. @eq{surface-held}
 void ImpactResolver::find_held(const std::vector<Row>& rows, std::vector<Vec6> v) {
   std::vector<Row> normals;

@@ -16,19 +16,19 @@ using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
-/// Part of the speed of the point at first below which its slip is over.
+/// Part of the point's initial speed below which its slip has stopped.
 constexpr double kNoSlip = 1e-12;
-/// Sine of the angle between a slip and its rate below which the slip goes straight on.
+/// Sine of the angle between a slip and its rate below which the slip is straight.
 constexpr double kStraight = 1e-12;
-/// Greatest relative change of the slip in one step along its curve.
+/// Largest relative change of the slip in one step along its curve.
 constexpr double kCurveStep = 0.04;
 constexpr int kMaxCurveSteps = 4000;
-/// Directions in which a slip that resumes is sought first.
+/// Number of directions in the first search for a resumed slip.
 constexpr int kDirections = 180;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Velocities along the normal impulse.
+/// Velocities as functions of the normal impulse.
 class Course {
  public:
   explicit Course(const SingleImpact& impact)
@@ -61,7 +61,7 @@ class Course {
 
  private:
   [[nodiscard]] Vec2 slip() const { return v_.tail<2>(); }
-  /// Friction by unit normal impulse against a slip.
+  /// Friction impulse per unit normal impulse against a slip.
   [[nodiscard]] Vec2 friction(const Vec2& s) const {
     return -s / std::hypot(s.x() / law_.mu, s.y() / law_.mu_across);
   }
@@ -69,7 +69,7 @@ class Course {
     return (law_.mobility * Vec3(1.0, f.x(), f.y())).tail<2>();
   }
 
-  /// Friction that holds the point, or else the one against the slip that sets in.
+  /// Friction that sticks, or else that against the incipient slip.
   [[nodiscard]] Vec2 friction_without_slip() const {
     const Mat2 K = law_.mobility.bottomRightCorner<2, 2>();
     const Vec2 holding =
@@ -100,7 +100,7 @@ class Course {
     return friction(best);
   }
 
-  /// From compression to restitution, once.
+  /// Switches from compression to restitution, once.
   void turn() {
     if (turned_) return;
     turned_ = true;
@@ -119,14 +119,14 @@ class Course {
     p_ += p * force;
   }
 
-  /// Normal impulse after which as much is stored as the impact is left with in compression.
+  /// Normal impulse at which the stored energy equals that left at the end of compression.
   [[nodiscard]] double filled_after(double rate) const {
     const double more = law_.until - stored_, square = v_.x() * v_.x() - 2.0 * rate * more;
     if (!std::isfinite(more) || !(square >= 0.0)) return kEndless;
     return more > 0.0 ? 2.0 * more / (std::sqrt(square) - v_.x()) : 0.0;
   }
 
-  /// Under constant friction, up to this normal impulse.
+  /// Advances under constant friction, up to this normal impulse.
   void go_straight(const Vec2& f, double most) {
     const Vec3 force(1.0, f.x(), f.y());
     const double rate = law_.mobility.row(0).dot(force);
@@ -158,13 +158,13 @@ class Course {
     if (std::isfinite(p))
       advance(force, p);
     else
-      over_ = true;  // nothing stops it: no mobility is like this
+      over_ = true;  // does not end: no mobility is like this
   }
 
   /// v, p along the tangents, p along the normal, stored energy.
   using Values = Eigen::Matrix<double, 7, 1>;
 
-  /// Rates by ∫ dp/|slip|, in which a slip dies away instead of ending.
+  /// Derivatives by ∫ dp/|slip|, in which a slip decays asymptotically instead of ending.
   [[nodiscard]] Values rates(const Values& y) const {
     const Vec2 s = y.segment<2>(1), f = friction(s);
     const Vec3 force(1.0, f.x(), f.y());
@@ -186,7 +186,7 @@ class Course {
     bool slips = true;
     for (int i = 0; i < kMaxCurveSteps && slips && !over_; ++i) {
       const double h = kCurveStep / slip_rate(friction(y.segment<2>(1))).norm();
-      // Sign change of what ends the phase at hand.
+      // The present phase ends at a sign change.
       const auto left = [&](const Values& z) {
         return turned_ ? z[6] - law_.kept : std::min(-z[0], law_.until - z[6]);
       };

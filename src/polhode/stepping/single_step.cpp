@@ -20,15 +20,15 @@ double seconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// A step that turns no body by more than this cannot turn two axes from parallel to opposite.
+/// Rotation of bodies in a step below which two axes cannot change from parallel to opposite.
 constexpr double kNoMirrorBelow = 0.8;
 /// Degree of the extrapolation of nodes' velocities.
 constexpr int kNodeDegree = 0;
-/// Turns are counted before two bodies can have turned by half a turn against each other in one
-/// more step like the last [rad].
+/// Rotation at which turns are counted, before two bodies can have a relative rotation of half a
+/// turn within one more step like the last [rad].
 constexpr double kCountTurnsBefore = 2.5;
 
-/// Weights that extrapolate the remembered mean velocities to the middle of the next step.
+/// Weights that extrapolate the stored mean velocities to the middle of the next step.
 PredictWeights extrapolation(const State& state, double middle, int degree) {
   PredictWeights w;
   const int count = std::min(state.past_count, degree + 1);
@@ -41,7 +41,7 @@ PredictWeights extrapolation(const State& state, double middle, int degree) {
       way *= middle - state.past_time[used[j]];
       spread *= state.past_time[used[k]] - state.past_time[used[j]];
     }
-    if (spread == 0.0) return {};  // two stages about the same middle: start from v_n
+    if (spread == 0.0) return {};  // two stages with the same middle: start from v_n
     w.weight[used[k]] = way / spread;
   }
   w.count = count;
@@ -77,7 +77,7 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
   const PredictWeights weights = predictor.degree < 0
                                      ? PredictWeights{}
                                      : extrapolation(state, c.t_n + 0.5 * c.dt, predictor.degree);
-  // Solids carry undamped vibrations that no polynomial of high degree follows.
+  // Solids have undamped vibrations that polynomials of high degree do not follow.
   const PredictWeights node_weights =
       predictor.degree < 0
           ? PredictWeights{}
@@ -90,7 +90,7 @@ void SingleStep::predict(const State& state, const Predictor& predictor) {
   predicted_ = trial_.blocks;
   predicted_nodes_ = trial_.node_u;
   if (weights.count < 2) return;
-  // Nodes start from another prediction than the one that their error is measured by.
+  // The prediction of nodes differs from the one that estimates their error.
   const std::size_t n = predicted_nodes_.size();
   for (std::size_t k = 0; k < n; ++k) {
     double v = 0.0;
@@ -151,7 +151,7 @@ NewtonReport SingleStep::take(State& state, double dt, const NewtonOptions& opti
   impacts_.find_turns(state);
   if (BodyContacts* contacts = engine_->contacts(); contacts && contacts->touched()) {
     ledger_.add(state, impacts_.find(state, *contacts));
-    state.past_count = 0;  // measured: steps start best from the velocities at t_n then
+    state.past_count = 0;  // measured: steps then start best from the velocities at t_n
   }
   jumped_ = impacts_.any();
   if (jumped_) {
@@ -195,7 +195,7 @@ void SingleStep::commit_histories(State& state, double rotation) {
   };
   for (int i : eager_) commit(i);
   if (lazy_.empty()) return;
-  state.turned += 2.0 * rotation;  // two bodies may turn against each other
+  state.turned += 2.0 * rotation;  // two bodies may rotate in opposite directions
   if (state.turned + 2.0 * rotation <= kCountTurnsBefore) return;
   for (int i : lazy_) commit(i);
   state.turned = 0.0;

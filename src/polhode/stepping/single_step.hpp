@@ -12,26 +12,26 @@
 
 namespace polhode {
 
-/// Takes single steps of generalised-α: predict, solve, accept, commit. What compositions and step
-/// control are made of.
+/// Single steps of generalised-α: predict, solve, accept, commit. Compositions and step control are
+/// built on them.
 class SingleStep {
  public:
   SingleStep(const System& system, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
              const LaneKernels& kernels, bool conserving);
 
-  /// How the next trial is predicted from the mean velocities of past steps.
+  /// Prediction of the next trial from the mean velocities of past steps.
   struct Predictor {
     int degree = 3;         ///< Of the extrapolation in time; −1: the velocities at t_n.
-    bool remember = false;  ///< Keep the prediction for predictor_difference().
+    bool remember = false;  ///< Store the prediction for predictor_difference().
   };
-  /// One step of length dt. On failure the state is as it was.
+  /// Takes one step of length dt. On failure the state is unchanged.
   NewtonReport take(State& state, double dt, const NewtonOptions& options, Predictor predictor);
-  /// Largest difference of the last accepted trial from its prediction, with the phase error of
-  /// the Cayley transform: an estimate of the step's error at order 2 [-].
+  /// Largest difference of the last accepted trial from its prediction, with the phase error of the
+  /// Cayley transform: an estimate of the step's error at order 2 [-].
   [[nodiscard]] double error_estimate() const { return error_; }
-  /// Velocities jumped at the end of the last accepted trial, in an impact of a joint's stop.
+  /// Whether velocities jumped at the end of the last accepted trial, in an impact of a joint stop.
   [[nodiscard]] bool jumped() const { return jumped_; }
-  /// A stop of a joint acted in the last accepted trial.
+  /// Whether a joint stop was active in the last accepted trial.
   [[nodiscard]] bool stopped() const { return stopped_; }
 
   EnergyLedger& ledger() { return ledger_; }
@@ -41,7 +41,7 @@ class SingleStep {
 
  private:
   void predict(const State& state, const Predictor& predictor);
-  /// Whether an interaction does not accept the configuration reached; says which and why.
+  /// Whether an interaction rejects the configuration reached; reports which and why.
   [[nodiscard]] bool refused(const State& state, NewtonReport& report) const;
   void commit_histories(State& state, double rotation);
   void estimate_error();
@@ -56,8 +56,9 @@ class SingleStep {
   std::vector<TrialBlock> predicted_;
   std::vector<double> predicted_nodes_;
   std::vector<MassBlock> mass_;
-  std::vector<int> eager_, lazy_;    ///< Interactions with a history of either sort.
-  std::vector<int> always_queried_;  ///< Whether they accept what was reached.
+  /// Interactions whose history is committed in every step, and those that only count turns.
+  std::vector<int> eager_, lazy_;
+  std::vector<int> always_queried_;  ///< Interactions whose acceptance is always queried.
   double error_ = 0.0;
   bool jumped_ = false, stopped_ = false;
   double seconds_[3] = {0, 0, 0};  ///< Predictor, Newton, acceptance.

@@ -34,14 +34,14 @@ Rates rates(const System& system, InstantSolver& solver, const State& state) {
   return rates;
 }
 
-/// The state a short time later or earlier, by Taylor: enough for rates of accelerations.
+/// State a short time later or earlier, by Taylor expansion: sufficient for rates of accelerations.
 State taylor(const System& system, const State& state, const Rates& now, double tau) {
   State later = state;
   later.t += tau;
   for (int b = 0; b < system.body_count(); ++b) {
     BodyMotion m = system.motion(state, b);
     m.r += tau * m.v + 0.5 * tau * tau * now.a[b];
-    // Body axes: the mean angular velocity, right to order τ³.
+    // Body axes: the mean angular velocity, accurate to order τ³.
     m.q = (m.q * quaternion_from_rotation_vector(tau * m.W + 0.5 * tau * tau * now.A[b]))
               .normalized();
     m.v += tau * now.a[b];
@@ -56,7 +56,7 @@ State taylor(const System& system, const State& state, const Rates& now, double 
   return later;
 }
 
-/// A time in which little happens: for steps that are not yet known [s].
+/// A time with little motion, for steps that are not yet known [s].
 double short_time(const System& system, const State& state, const Rates& now) {
   constexpr double kLittle = 1e-3;  // of a radian, or of the mechanism's size
   const double per_length = 1.0 / system.length_scale();
@@ -69,8 +69,8 @@ double short_time(const System& system, const State& state, const Rates& now) {
   return fastest > 0.0 ? kLittle / fastest : kLittle;
 }
 
-/// Rates of the accelerations by a central difference over t ± Δt; over t and t + Δt where drives
-/// begin, which may have a kink there.
+/// Rates of the accelerations by a central difference over t ± Δt; over t and t + Δt at the start
+/// of drives, which may have a kink there.
 Rates jerks(const System& system, InstantSolver& solver, const State& state, const Rates& now,
             double dt) {
   Rates plus = rates(system, solver, taylor(system, state, now, dt));
@@ -133,9 +133,9 @@ void start_smooth_multipliers(const System& system, InstantSolver& solver, State
   for (int b = 0; b < system.body_count(); ++b) {
     const BodyMotion m = system.motion(state, b);
     w[b].head<3>() = kappa_v * dt * dt * change.a[b];
-    const Vec3 w_W =
-        kappa_v * dt * dt * change.A[b] +
-        dt * dt / 12.0 * (m.W.cross(now.A[b]) + m.W.squaredNorm() * m.W);  // the Cayley phase
+    const Vec3 w_W = kappa_v * dt * dt * change.A[b] +
+                     // phase error of the Cayley transform
+                     dt * dt / 12.0 * (m.W.cross(now.A[b]) + m.W.squaredNorm() * m.W);
     w[b].tail<3>() = m.q * w_W;
   }
   admissible = w;

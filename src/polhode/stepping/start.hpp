@@ -11,7 +11,8 @@
 namespace polhode {
 
 struct StartOptions {
-  double load_factor = 1.0;           ///< Of drives while positions are assembled: 0 in statics.
+  /// Factor of drives while positions are assembled: 0 in statics.
+  double load_factor = 1.0;
   double position_tolerance = 1e-10;  ///< |g| that counts as assembled [m or -].
   /// Solve for accelerations and multipliers even where the method does not need them (ρ∞ = 1).
   bool multipliers = true;
@@ -20,28 +21,28 @@ struct StartOptions {
 };
 
 /// Makes a state consistent before its first step: positions on g = 0, velocities on G v = 0,
-/// histories of interactions, accelerations and multipliers; stops after the positions if they
+/// histories of interactions, accelerations and multipliers; ends after the positions if they
 /// cannot be assembled.
 StartReport start(const System& system, State& state, const GeneralizedAlpha& ga, double dt,
                   const StartOptions& options = {});
 
-/// Lets every interaction write the history it begins with (turns of an angle, ...).
+/// Initialises the histories of all interactions (turns of an angle, ...).
 void initialize_histories(const System& system, State& state);
 
-/// Sets a, A, ḣ of the first step and the multipliers. Generalized-α wants accelerations of the
-/// time t + δΔt: they are taken there by their rate, a central difference over t ± Δt.
-/// @returns false if the velocities fit no motion.
+/// Computes a, A, ḣ of the first step and the multipliers. Generalized-α needs accelerations at the
+/// time t + δΔt: they are extrapolated by their rate, a central difference over t ± Δt.
+/// @returns false if the velocities are not compatible with any motion.
 bool start_accelerations(const System& system, State& state, const GeneralizedAlpha& ga, double dt);
 
-/// At ρ∞ < 1, after a time at which forces jump: a, A, ḣ become those that the forces just after it
-/// give; before, they told of other forces. Velocities stay. Without contacts between bodies.
+/// Replaces a, A, ḣ at ρ∞ < 1 after a time at which forces jump: they become those by the forces
+/// just after it. Velocities are unchanged. Without contacts between bodies.
 /// @param t  Just after the jump [s].
 void restart_accelerations(const System& system, State& state, const GeneralizedAlpha& ga,
                            double t);
 
-/// Adds to the velocities the constraint-normal part of what the method's smooth solution differs
-/// by from the true one (of order Δt²). Without it, multipliers at ρ∞ = 1 carry an undamped
-/// alternating error of order Δt. Energy changes by O(Δt⁴).
+/// Adds to the velocities the constraint-normal difference between the method's smooth solution and
+/// the true one (of order Δt²). Without it, multipliers at ρ∞ = 1 have an undamped alternating
+/// error of order Δt. Energy changes by O(Δt⁴).
 void start_smooth_multipliers(const System& system, State& state, const GeneralizedAlpha& ga,
                               double dt);
 

@@ -9,8 +9,8 @@ namespace polhode {
 
 namespace {
 
-/// So many tolerances may the errors of all steps add up to: at order 2, which spreads it over the
-/// run, and at the others, which hold each step to it.
+/// Sum of the errors of all steps, in tolerances, above which a warning is given: at order 2, which
+/// spreads the tolerance over the run, and at the others, which apply it to each step.
 constexpr double kClearly = 2.0, kClearlyComposed = 200.0;
 
 }  // namespace
@@ -25,7 +25,7 @@ void StepReach::count(double t, double error, double asked, bool noise) {
 
 std::vector<std::string> StepReach::warnings(double tolerance, int order) const {
   const bool adds_up = sum_ > (order == 2 ? kClearly : kClearlyComposed) * tolerance;
-  // Order 2 spreads the tolerance over the run; small steps may be below round-off without harm.
+  // Order 2 spreads the tolerance over the run; small steps may be below round-off harmlessly.
   if (beyond_ == 0 || (order == 2 && !adds_up)) {
     if (!adds_up) return {};
     return {

@@ -7,10 +7,10 @@
 
 namespace polhode {
 
-/// Distance of the estimated errors of automatic steps from what was asked for.
+/// Comparison of the estimated errors of automatic steps with the requested ones.
 class StepReach {
  public:
-  /// An accepted step. @param noise  It was accepted as no shorter one errs by less.
+  /// Adds an accepted step. @param noise  Accepted because shorter steps have no smaller error.
   void count(double t, double error, double asked, bool noise);
   /// Nothing, or one sentence with what to do.
   [[nodiscard]] std::vector<std::string> warnings(double tolerance, int order) const;

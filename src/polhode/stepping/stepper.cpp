@@ -30,7 +30,7 @@ struct Stepper::Impl {
   std::vector<double> check2, check4;  ///< Of the companions of orders 2 and 4.
   State before, companion;             ///< Copies to return to and to compare with.
   StepReach reach;
-  double least_error = kMinError;  ///< What rounding of positions leaves [-].
+  double least_error = kMinError;  ///< Rounding of positions [-].
 
   Impl(const System& s, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& g,
        const StepControl& c, const LaneKernels& kernels)
@@ -48,8 +48,8 @@ struct Stepper::Impl {
                   (c.order > 2 ? kRoundOffComposed : 1.0);
     const bool doubled = c.order > 4 && s.rows() > 0;
     stages = composition_stages(c.order, doubled);
-    // Companions have their stages doubled too: an odd number of single steps would end with the
-    // constraint-normal velocity turned round, and the difference would tell of that alone.
+    // Companions have doubled stages too: an odd number of single steps would end with the
+    // constraint-normal velocity reversed, which would dominate the difference.
     check2 = doubled ? std::vector<double>{0.5, 0.5} : std::vector<double>{1.0};
     check4 = composition_stages(4, doubled);
   }
@@ -65,7 +65,7 @@ struct Stepper::Impl {
     return control.max_step > 0.0 ? control.max_step : control.horizon;
   }
 
-  /// A first guess of an automatic step: a small part of the run, and of the fastest turn.
+  /// Initial length of an automatic step: a small part of the run, and of the fastest rotation.
   [[nodiscard]] double first_step(const State& state) const {
     double omega = 0.0;
     for (int b = 0; b < system.body_count(); ++b)
@@ -74,14 +74,14 @@ struct Stepper::Impl {
     return std::min({most_step(), control.horizon / 50.0, turn / std::max(omega, 1e-12)});
   }
 
-  /// At most so long that the loads are sampled on the way.
+  /// Longest step of at most dt for which loads are sampled often enough.
   [[nodiscard]] double sampled(const State& state, double dt) const {
     if (!automatic() || breaks.empty()) return dt;
     return breaks.sampled_length(state.t, dt, composed() ? kSamplesComposed : 1.0);
   }
 
-  /// The step to try from t: not beyond the limit and the break ahead; a fixed step that was cut
-  /// returns to its grid.
+  /// Length of the next trial from t: not beyond the limit and the next break; a fixed step that
+  /// was cut returns to its grid.
   [[nodiscard]] double next_length(const State& state, double t_limit, double at_break) const {
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most_step()) : most_step();
     if (automatic()) {
@@ -97,29 +97,30 @@ struct Stepper::Impl {
     return std::abs(way - dt) <= kSameTime * dt && !looks_at_end() ? dt : way;
   }
 
-  /// A length of at most dt, or a thousandth more, equal parts of which make up the way to a time
-  /// that is near: what is left is never a tiny step, in which multipliers, of the size of
-  /// round-off/Δt², would leak energy.
+  /// Length of at most dt, or a thousandth more, that divides a short remaining time into equal
+  /// parts. A tiny remainder is thus avoided, in which multipliers of the size of round-off/Δt²
+  /// would leak energy.
   static double part_of(double way, double dt) {
     if (way > 2.0 * dt || std::abs(way - dt) <= kSameTime * dt) return dt;
     const double parts = std::ceil(way / dt - kStretch);
     const double part = parts > 1.0 ? way / parts : way;
-    return std::abs(part - dt) <= kSameTime * dt ? dt : part;  // to the last bit, wherever it ends
+    // equal to the last bit at any end time
+    return std::abs(part - dt) <= kSameTime * dt ? dt : part;
   }
 
-  /// The break of a function of time that comes next; one that falls on the grid has passed there.
+  /// Next break of a function of time; one that falls on the grid is over there.
   [[nodiscard]] TimeBreak next_break(const State& state) {
     if (breaks.empty()) return {};
     return breaks.next(automatic() ? state.t : state.t + kSameTime * *control.step);
   }
   [[nodiscard]] bool looks_at_end() const { return ga.alpha_f > kLooksAtEnd; }
-  /// End of the step before a break: a method that looks at the end of a step must not see
-  /// what comes after it.
+  /// End of the step before a break: a method that evaluates the end of a step must not use values
+  /// beyond the break.
   [[nodiscard]] double landing(const TimeBreak& at) const {
     return looks_at_end() ? at.t * (1.0 - kJustBeside) : at.t;
   }
 
-  /// A start without a past: after a jump of accelerations or velocities.
+  /// Drops the past steps: after a jump of accelerations or velocities.
   void begin_anew(State& state) const {
     state.past_count = 0;
     state.error_last = 0.0;
@@ -162,7 +163,7 @@ struct Stepper::Impl {
     if (std::abs(t - grid) < kSameTime * H) state.t = grid;
   }
 
-  /// The way of a companion that starts where the step did; nothing if it does not converge.
+  /// Difference by a companion from the same start; nothing if it does not converge.
   std::optional<double> difference_of(const std::vector<double>& list, const State& from,
                                       const State& reached, double H, double of_velocities) {
     companion = from;
@@ -174,8 +175,8 @@ struct Stepper::Impl {
     return state_difference(system, companion, reached, of_velocities);
   }
 
-  /// Estimate of the error of a composed step from cheap companions of orders 2 and 4: y4 − y and
-  /// y2 − y shrink by known powers of H, so their ratio leads from one order to the next.
+  /// Error estimate of a composed step from cheap companions of orders 2 and 4: y4 − y and y2 − y
+  /// decrease by known powers of H, so their ratio extrapolates from one order to the next.
   std::optional<double> composed_error(const State& from, const State& reached, double H) {
     const auto e2 = difference_of(check2, from, reached, H, H);
     const auto e4 = e2 ? difference_of(check4, from, reached, H, H) : std::nullopt;
@@ -185,16 +186,16 @@ struct Stepper::Impl {
     return control.order == 6 ? kErrorOfSix * *e4 * ratio : kErrorOfEight * *e4 * ratio * ratio;
   }
 
-  /// Estimate of the error of a plain step from its two halves, which hangs on nothing that lies
-  /// behind: they err by a quarter. @eq{step-halves}
+  /// Error estimate of a single step from its two halves, whose error is a quarter; it does not use
+  /// past steps. @eq{step-halves}
   std::optional<double> error_by_halves(const State& from, const State& reached, double H) {
     const auto difference = difference_of({0.5, 0.5}, from, reached, H, 0.0);
     if (!difference) return std::nullopt;
     return 4.0 / 3.0 * *difference;
   }
 
-  /// Adds an estimate of the accepted step's error to the ledger. Of fixed steps of higher order
-  /// some are taken again in two halves. @eq{step-error}
+  /// Adds an estimate of the accepted step's error to the ledger. Some fixed steps of higher order
+  /// are repeated in two halves. @eq{step-error}
   void record(State& state, double H, double verdict) {
     if (!composed()) return record_last_step(system, state);
     if (automatic()) return record_error(state, {verdict, -1, -1});
@@ -211,8 +212,8 @@ struct Stepper::Impl {
 
   std::int64_t companion_iterations = 0;
 
-  /// Finds an automatic step of order 2 whose estimate, known after three steps, is fine: at the
-  /// start and where what lies behind says nothing. @param way  Up to the next break [s].
+  /// Finds an automatic step of order 2 whose estimate, known after three steps, is acceptable: at
+  /// the start and where past steps give no information. @param way  Time to the next break [s].
   void find_length(State& state, double way) {
     const double most = sampled(state, std::min(first_step(state), way / 3.0));
     double dt = state.dt_next > 0.0 ? std::min(state.dt_next, most) : most, good = 0.0;
@@ -241,18 +242,18 @@ struct Stepper::Impl {
     single.ledger().forget();
   }
 
-  /// The least error that a step can have, as was found: State::error_last keeps it at order 2, and
-  /// where it is above the tolerance at the others, which else keep their last estimate there.
+  /// Smallest attainable error of a step, as found: State::error_last stores it at order 2, and if
+  /// it is above the tolerance at the others, which otherwise store their last estimate there.
   [[nodiscard]] double noise(const State& state) const {
     return !composed() || state.error_last > control.tolerance ? state.error_last : 0.0;
   }
-  /// Order 2 spreads the tolerance over the run, error per unit of time; the higher orders take
-  /// it per step.
+  /// Requested error of a step. Order 2 spreads the tolerance over the run, error per unit of time;
+  /// the higher orders apply it per step.
   [[nodiscard]] double requested_error(double dt) const {
     return control.order == 2 ? control.tolerance * std::abs(dt) / control.horizon
                               : control.tolerance;
   }
-  /// The same, but no less than what noise leaves.
+  /// Requested error, but not below the noise.
   [[nodiscard]] double allowed_error(const State& state, double dt) const {
     return std::max({least_error, requested_error(dt), kNoiseAllowed * noise(state)});
   }
@@ -260,24 +261,24 @@ struct Stepper::Impl {
   /// Verdict of an estimate on a step that converged.
   struct Verdict {
     bool fine = true;
-    double factor = 1.0;  ///< Of the length, for the next one or another trial.
+    double factor = 1.0;  ///< Of the length, for the next step or another trial.
     double error = 0.0;
-    bool noise = false;  ///< It is accepted as no shorter step does better.
+    bool noise = false;  ///< Accepted because shorter steps have no smaller error.
   };
-  /// The last trial that was measured and refused: another one is compared with it.
+  /// The last rejected trial with an estimate, for comparison.
   struct Refused {
     double H = 0.0, error = 0.0;
     int count = 0;
 
-    /// Shorter, the step hardly errs by less: that is no error of the step.
+    /// Whether a shorter step has hardly a smaller error, which then is not the step's own.
     [[nodiscard]] bool leaves_noise(double length, double now) const {
       return H > 0.0 && now > error * std::pow(length / H, kFalls);
     }
   };
 
   Verdict judge(const State& from, State& reached, double H, bool fresh, Refused& refused);
-  /// A step in which a stop acts: what it does may come anywhere within the step, and that hardly
-  /// matters if the step is short enough.
+  /// Verdict on a step in which a stop is active. Its time within the step is arbitrary, which
+  /// hardly matters if the step is short enough.
   [[nodiscard]] Verdict judge_stop(const State& from, const State& reached, double H) const;
   void accept(State& state, double H, const Verdict& verdict, int iterations, double kept);
   StepReport advance(State& state, double t_limit);
@@ -290,10 +291,10 @@ Stepper::Impl::Verdict Stepper::Impl::judge_stop(const State& from, const State&
   const double allowed = kImpactError * control.tolerance;
   v.fine = v.error <= allowed || H <= least_step();
   const double wanted = v.error > 0.0 ? kSafety * allowed / v.error : kMaxFactor;
-  // After an impact steps grow from the one that held it.
+  // After an impact steps grow from the one that contained it.
   v.factor = v.fine ? std::clamp(wanted, 1.0, single.jumped() ? 1.0 : kMaxFactor)
                     : std::clamp(wanted, kMinImpactFactor, 0.9);
-  if (v.fine) v.error = 0.0;  // that was a bound for one impact, no error of each of its steps
+  if (v.fine) v.error = 0.0;  // a bound for one impact, not an error of every step
   return v;
 }
 
@@ -312,17 +313,17 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
     power = 1.0 / (control.order + 1.0);
     safety = kSafetyComposed;
   } else if (from.past_count < 2 && !fresh) {
-    // find_length() has tried these steps, or they are as short as the impact's. Where bodies touch
-    // there is no estimate at all.
+    // find_length() has tried these steps, or they are as short as the impact's. With contacts
+    // there is no estimate.
     if (system.contacts()) v.factor = std::clamp(first_step(reached) / H, 1.0, kMaxFactor);
     return v;
   } else {
     if (!fresh) error = single.error_estimate();
-    // The past may be noise, or say nothing: then the step is measured by itself.
+    // Past steps may be noise, or give no information: then the step is measured by itself.
     if (!system.contacts() && (fresh || (*error > allowed && refused.count > 0))) {
       const auto halves = error_by_halves(from, reached, H);
       error = halves && error ? std::min(*error, *halves) : halves;
-      longest = 1.0;  // the past would refuse a longer one
+      longest = 1.0;  // the past would reject a longer one
     }
     reached.error_last = kNoiseFades * from.error_last;
   }
@@ -338,7 +339,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   const double most_noise = composed() ? kMaxNoiseComposed : kMaxNoise;
   if (shortest || (v.error < most_noise && refused.leaves_noise(H, v.error))) {
     v.fine = v.noise = true;
-    // The longer one was as good.
+    // The longer one was equally good.
     v.factor = shortest ? 1.0 : refused.H / H;
     reached.error_last = std::clamp(refused.error, std::min(v.error, most_noise), most_noise);
   }
@@ -346,7 +347,7 @@ Stepper::Impl::Verdict Stepper::Impl::judge(const State& from, State& reached, d
   return v;
 }
 
-/// After an accepted step: what the next one is to be. @param kept  No less than this [s].
+/// Plans the next step after an accepted one. @param kept  Lower bound of its length [s].
 void Stepper::Impl::accept(State& state, double H, const Verdict& verdict, int iterations,
                            double kept) {
   if (automatic()) {
@@ -382,7 +383,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     const double H = wanted;
     if (composed() || automatic()) before = state;
     report.newton = run_stages(state, stages, H, fresh);
-    // Contacts have steps of their own in which velocities jump.
+    // Contacts handle velocity jumps themselves.
     const bool stopped = !composed() && !system.contacts() && single.stopped();
     const bool impact = stopped && single.jumped();
     Verdict verdict{.fine = report.newton.converged, .factor = 0.5};
@@ -397,7 +398,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       land(state, at_limit ? limit : t);
       report.t = state.t;
       report.dt = H;
-      // A step cut short by a limit does not make the next one short.
+      // A step cut short by a limit does not shorten the next one.
       const double kept = refused.count == 0 && verdict.factor >= 1.0 && !impact ? planned : 0.0;
       accept(state, H, verdict, report.newton.iterations, kept);
       if (report.newton.hard) record_hard(state);
@@ -409,7 +410,7 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
       single.ledger().close_step(state);
       return report;
     }
-    // Refused: back to t_n with a shorter step; the past says little about the next trial.
+    // Rejected: back to t_n with a shorter step; past steps are of little use for the next trial.
     const std::int64_t iterations = state.ledger.iterations;
     if (composed() || automatic()) {
       state = before;

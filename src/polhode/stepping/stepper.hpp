@@ -15,7 +15,7 @@
 
 namespace polhode {
 
-/// How steps are chosen.
+/// Choice of steps.
 struct StepControl {
   int order = 2;               ///< 2, 4, 6 or 8.
   std::optional<double> step;  ///< Fixed step H [s]; absent: automatic.
@@ -30,27 +30,27 @@ struct StepControl {
 /// Advances a state: predictor, Newton, acceptance, step control, compositions of higher order.
 class Stepper {
  public:
-  /// @param kernels  Vector kernels for predictor and end of step; the same whatever the engine.
+  /// @param kernels  SIMD kernels for predictor and end of step; the same for every engine.
   Stepper(const System& system, std::unique_ptr<NewtonEngine> engine, const GeneralizedAlpha& ga,
           const StepControl& control, const LaneKernels& kernels);
   ~Stepper();
 
-  /// Starts the ledger; once, at the consistent start.
+  /// Starts the ledger; once, at the consistent initial state.
   void begin(State& state);
-  /// One accepted step of the chosen order, ending at t_limit at the latest. On failure the state
-  /// is left as it was.
+  /// Takes one accepted step of the chosen order, ending at t_limit at the latest. On failure the
+  /// state is unchanged.
   StepReport advance(State& state, double t_limit);
-  /// Switches interactions between two steps; the next one starts without a past.
+  /// Switches interactions between two steps; the next one starts without past steps.
   SwitchReport switch_over(State& state, std::span<const int> on, std::span<const int> off);
-  /// What sets forces made them jump at the state: as switch_over().
+  /// Must be called after forces jumped at the state: restarts as switch_over().
   void forces_jump(State& state);
-  /// The next step starts at another state than the last one ended at.
+  /// Must be called before a step from another state than the last one ended at.
   void leave();
   [[nodiscard]] const NewtonEngine& engine() const;
   [[nodiscard]] Balance balance(const State& state) const;
-  /// Goals that automatic steps could not reach, in plain words.
+  /// Warnings: goals that automatic steps could not reach.
   [[nodiscard]] std::vector<std::string> warnings() const;
-  /// Seconds spent in phases since construction.
+  /// Time spent in phases since construction [s].
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
 
  private:

@@ -6,10 +6,10 @@ namespace polhode {
 
 namespace {
 
-/// Part of the rate that the last step renews.
+/// Weight of the last step in the updated rate.
 constexpr double kFresh = 0.25;
 
-/// Calls visit(number in the state, kept number, its rate) for every number of a, A and ḣ.
+/// Calls visit(number in the state, stored number, its rate) for every number of a, A and ḣ.
 template <class Visit>
 void for_each_number(State& state, const Visit& visit) {
   const auto lanes = [&](Lane3& x, Lane3& kept, Lane3& rate) {

@@ -9,8 +9,8 @@ namespace polhode {
 
 namespace {
 
-/// How far rows may be from holding when they are switched on, over the mechanism's size, or in
-/// radians: they keep that.
+/// Largest violation of rows when they are switched on, over the mechanism's size, or in radians;
+/// it is kept.
 constexpr double kOpen = 1e-4;
 
 double* history_of(State& state, const InteractionRef& ref) {
@@ -67,7 +67,7 @@ SwitchReport switch_interactions(const System& system, State& state, std::span<c
     for (std::size_t k = 0; k < closed.size(); ++k)
       if (closed[k] != 0) report.impulse = std::max(report.impulse, std::abs(impulses[k]));
   }
-  // What went is lost, what came is put in: they do not make up for one another.
+  // Lost and new potential energy are separate: they do not compensate each other.
   ledger.add_switch(state, sums, report.lost, kept - potential);
   ledger.add_switch(state, ledger.sums(state), 0.0, ledger.potential(state) - kept);
   return report;

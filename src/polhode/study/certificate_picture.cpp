@@ -30,7 +30,7 @@ struct Range {
     low = std::min(low, y);
     high = std::max(high, y);
   }
-  /// The same with a little room, or 0 to 1 where there is nothing.
+  /// Range with a margin, or 0 to 1 if it is empty.
   [[nodiscard]] Range roomy() const {
     if (!(high >= low)) return {0.0, 1.0};
     const double room = 0.06 * (high - low);
@@ -49,7 +49,7 @@ std::vector<double> logarithms(const std::vector<double>& values) {
   return logs;
 }
 
-/// Place of a quantity, and what its panels share.
+/// Position of a quantity, and common data of its panels.
 struct Row {
   const CertifiedQuantity& q;
   double y, duration;

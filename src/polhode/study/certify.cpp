@@ -16,22 +16,22 @@ namespace polhode {
 namespace {
 
 constexpr std::size_t kMaxSamples = 1000;
-/// Common times of automatic steps whose model asks for no output times.
+/// Number of common times of automatic steps for models without output times.
 constexpr int kAutomaticSamples = 100;
-/// Automatic steps above this part of the distance of common times are those that fit into it, as
-/// much as those that the tolerance asks for; the next run's are then shorter by this factor.
+/// Part of the distance of common times above which automatic steps are determined by these times
+/// as well as by the tolerance; and the factor by which the next run's steps are then shortened.
 constexpr double kLanding = 0.125, kShorter = 1.5;
-/// Two times closer than this part of their distance are the same.
+/// Difference of times, as a part of their distance, below which they are equal.
 constexpr double kSameTime = 1e-9;
-/// Tolerance of automatic steps if the model gives none, and the least a run may be given.
+/// Default tolerance of automatic steps, and the smallest one of a run.
 constexpr double kStandardTolerance = 1e-6, kMinTolerance = 1e-14;
-/// Differences below this part of what is large in a model are those of iterations that stop.
+/// Difference, as a part of the model's scale, below which it is due to terminated iterations.
 constexpr double kNegligible = 1e-9;
-/// Differences above this part of what moves in a model, and not smaller with the step, are another
-/// motion.
+/// Difference, as a part of the range of motion, above which runs that do not converge are
+/// different motions.
 constexpr double kMatters = 0.05;
 constexpr double kMinShown = 0.5;
-/// Columns that count or mark and are no measure of anything.
+/// Columns of counts or flags, which are not compared.
 constexpr std::array<const char*, 3> kMarks = {"points", "status", "slips"};
 
 /// Name and unit of a column "vx [m/s]".
@@ -46,7 +46,7 @@ Column column_of(const std::string& head, std::size_t index) {
   return {head.substr(0, at), head.substr(at + 2, head.size() - at - 3), index};
 }
 
-/// Columns that belong together: neighbours of one unit that differ in a last x, y or z.
+/// Groups of columns: neighbours of one unit that differ in a final x, y or z.
 std::vector<std::vector<Column>> groups_of(const std::vector<std::string>& header) {
   std::vector<std::vector<Column>> groups;
   const auto stem = [](const std::string& name) {
@@ -103,7 +103,7 @@ class Sampler {
   std::size_t next_ = 0;
 };
 
-/// Multiples of a distance up to the end, every so-manieth if there are too many, and the end.
+/// Multiples of an interval up to the end, thinned if there are too many, and the end.
 std::vector<double> common_times(double distance, double end) {
   const double count = std::floor(end / distance * (1.0 + kSameTime));
   const double stride = std::max(1.0, std::ceil(count / static_cast<double>(kMaxSamples)));
@@ -135,7 +135,7 @@ void add_probes(Model& model, std::vector<std::string>& notes) {
                       : "The model has no probes: its moving bodies are compared.");
 }
 
-/// True of motions that jump or slide, which lowers the order in time to one.
+/// Whether motions jump or slide, which lowers the order in time to one.
 bool has_impacts(const Simulation& simulation) {
   const std::vector<JointSpec>& joints = simulation.model().joints;
   return simulation.has_contacts() || std::any_of(joints.begin(), joints.end(), [](const auto& j) {
@@ -143,7 +143,7 @@ bool has_impacts(const Simulation& simulation) {
          });
 }
 
-/// Large values in each unit, by the model's size, weight and time.
+/// Scales of each unit, from the model's size, weight and time.
 std::map<std::string, double> model_scales(const Simulation& simulation, double duration) {
   double mass = 0.0;
   for (const BodySpec& body : simulation.model().bodies) mass += body.fixed ? 0.0 : body.mass;
@@ -157,7 +157,7 @@ std::map<std::string, double> model_scales(const Simulation& simulation, double 
           {"1/m", 1 / length}, {"N s", force * duration}};
 }
 
-/// Diagonal of the box in which values lie.
+/// Diagonal of the bounding box of values.
 double range_of(const Mat& values) {
   double square = 0.0;
   for (Eigen::Index c = 0; c < values.cols(); ++c) {

@@ -20,37 +20,38 @@ struct CertifiedRun {
   RunSummary summary;
 };
 
-/// Columns of a probe that belong together, and what the runs say of them.
+/// A group of columns of a probe, and the results of the comparison.
 struct CertifiedQuantity {
   std::string probe;
   std::vector<std::string> columns;  ///< Names without units: x, y, z.
   std::string unit;
   double scale = 0.0;       ///< Largest size of the quantity [unit].
-  double negligible = 0.0;  ///< Part of what is large in this unit that counts as noise [unit].
-  RefinedSeries series;     ///< Up to the time that all runs reached.
+  double negligible = 0.0;  ///< Part of the scale of this unit that counts as noise [unit].
+  RefinedSeries series;     ///< Up to the time reached by all runs.
   ConvergenceReport report;
 
   [[nodiscard]] std::string name() const;  ///< "tip x y z".
-  /// "2.01", "below 0.5" where differences do not fall, "rounding" where there is no more to see.
+  /// Text of the order: "2.01", "below 0.5" where differences do not decrease, "rounding" where
+  /// they are noise.
   [[nodiscard]] std::string order_text() const;
-  /// The time at which the bar is as large as the quantity itself and larger than anywhere: about
-  /// an impact, whose instant the steps do not resolve. Nothing where it never is.
+  /// Time at which the error bar is as large as the quantity itself and at its maximum: near an
+  /// impact whose time the steps do not resolve. Nothing if there is none.
   [[nodiscard]] std::optional<double> unresolved_at() const;
 };
 
-/// Error of a model's results as three runs show it.
+/// Error of a model's results, estimated from three runs.
 struct Certificate {
   std::string title;
-  bool automatic = false;      ///< Tolerances were refined, not a step.
-  std::vector<double> orders;  ///< That the method may show.
+  bool automatic = false;      ///< Tolerances were refined instead of a step.
+  std::vector<double> orders;  ///< Possible orders of the method.
   double duration = 0.0;       ///< [s]
   std::array<CertifiedRun, 3> runs;
   std::vector<CertifiedQuantity> quantities;
-  std::vector<std::string> notes;  ///< What was chosen for the model, a sentence each.
+  std::vector<std::string> notes;  ///< Choices for the model, a sentence each.
 
-  /// Every run came to its end.
+  /// Whether every run was finished.
   [[nodiscard]] bool finished() const;
-  /// Every run came to its end and every quantity converges all the time.
+  /// Whether every run was finished and every quantity converges at all times.
   [[nodiscard]] bool converges() const;
 };
 
@@ -65,21 +66,21 @@ struct CertifyHooks {
 };
 
 /// Runs a model with its step, half and a quarter of it (automatic steps: its tolerance, a tenth
-/// and a hundredth) and compares all probes at common times; a model without probes is given one
-/// of each moving body, up to kMaxOwnProbes.
+/// and a hundredth) and compares all probes at common times; a model without probes gets one for
+/// each moving body, up to kMaxOwnProbes.
 ///
-/// Automatic steps end at the common times in all runs. Where these landings rather than the
-/// tolerance choose the steps, each run's are made shorter than those of the one before: else all
-/// would agree on one wrong answer.
+/// Automatic steps end at the common times in all runs. Where these times rather than the tolerance
+/// determine the steps, each run's are shortened relative to the previous one: otherwise all runs
+/// could agree on one wrong result.
 /// @param model  Of type dynamics.
-/// @throws InputError if the model is no motion over time, has nothing to compare, or a tolerance
-///         that leaves no room below.
+/// @throws InputError if the model is no motion over time, has nothing to compare, or its tolerance
+/// is too small to be refined.
 [[nodiscard]] Certificate certify(const Model& model, const CertifyHooks& hooks = {});
 
-/// @throws InputError as certify() would before it begins.
+/// Checks a model. @throws InputError as certify() would at its start.
 void check_certifiable(const Model& model);
 
-/// Probes that a model without any is given.
+/// Largest number of probes added to a model without any.
 inline constexpr std::size_t kMaxOwnProbes = 20;
 
 }  // namespace polhode

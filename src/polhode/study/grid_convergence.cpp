@@ -13,7 +13,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMinOrder = -4.0, kMaxOrder = 20.0;
-/// Steps that shorten by less than this from run to run tell nothing.
+/// Refinement ratio between runs below which they give no information.
 constexpr double kMinRefinement = 1.05;
 
 /// Sizes of the differences of two runs at each time; NaN where one of them has no value.
@@ -24,7 +24,7 @@ std::vector<double> sizes(const Mat& a, const Mat& b) {
   return list;
 }
 
-/// Mean and largest of those entries of a part of two lists that both exist.
+/// Mean and maximum of the entries of a part of two lists that exist in both.
 struct Part {
   double coarse = 0.0, fine = 0.0, most = 0.0, most_fine = 0.0;
   std::size_t count = 0;
@@ -47,7 +47,7 @@ Part part_of(const std::vector<double>& coarse, const std::vector<double>& fine,
   return part;
 }
 
-/// The part within that many entries of one.
+/// Part of the lists within that many entries of one.
 Part part_about(const std::vector<double>& coarse, const std::vector<double>& fine, std::size_t i,
                 std::size_t reach) {
   return part_of(coarse, fine, i - std::min(i, reach), std::min(fine.size(), i + reach + 1));
@@ -58,7 +58,7 @@ std::size_t samples_of(double part, std::size_t n) {
       1, static_cast<std::size_t>(std::lround(part * static_cast<double>(n))));
 }
 
-/// Error that an observed order makes of a difference.
+/// Error estimate of a difference with an observed order.
 struct Trust {
   double order = 0.0, safety = 0.0;
   bool expected = false;
@@ -82,7 +82,7 @@ void check(const RefinedSeries& series, const RefinementRule& rule) {
   if (rule.orders.empty()) throw std::invalid_argument("no order of the method is given");
 }
 
-/// The first time from which on most windows are lost; the number of times if there is none.
+/// First time from which on most windows are lost; the number of times if there is none.
 std::size_t first_lost(const std::vector<char>& lost, std::size_t least) {
   std::size_t count = 0, first = lost.size();
   for (std::size_t i = lost.size(); i-- > 0;) {
@@ -107,7 +107,7 @@ std::optional<double> median(const std::vector<double>& list, std::size_t count)
 
 double observed_order(double coarse, double fine, const std::array<double, 3>& h) {
   const double a = std::log(h[0] / h[1]), b = std::log(h[1] / h[2]), wanted = coarse / fine;
-  // Grows with p: the ratio of the differences that an error C hᵖ makes.
+  // Increases with p: the ratio of the differences caused by an error C hᵖ.
   const auto ratio = [&](double p) {
     return std::abs(p) < 1e-9 ? a / b : std::expm1(p * a) / -std::expm1(-p * b);
   };
@@ -150,7 +150,7 @@ ConvergenceReport estimate_error(const RefinedSeries& series, const RefinementRu
     const Part part = part_about(coarse, fine, i, half), here = part_about(coarse, fine, i, near);
     lost[i] = !refined;
     if (part.count == 0 || part.most == 0.0) continue;
-    // Differences that are all zero between two of the runs have no order.
+    // Differences that are zero between two of the runs have no order.
     const bool known = part.fine > 0.0 && part.coarse > 0.0;
     const double order = order_or_limit(part);
     const bool noise = report.noise || part.most <= rule.negligible;

@@ -9,49 +9,52 @@
 
 namespace polhode {
 
-/// One quantity of three runs, each finer than the one before, at common times.
+/// One quantity of three runs of increasing refinement, at common times.
 struct RefinedSeries {
-  std::vector<double> t;      ///< Common times, increasing [s].
-  std::array<Mat, 3> values;  ///< Coarse, middle, fine: a row a time, a column a component. A NaN
-                              ///< is a value that does not exist, such as the gap of far bodies.
+  std::vector<double> t;  ///< Common times, increasing [s].
+  /// Coarse, middle, fine: a row per time, a column per component. NaN: no value, such as the gap
+  /// of distant bodies.
+  std::array<Mat, 3> values;
 };
 
-/// Facts of the runs that are known beforehand.
+/// Known properties of the runs.
 struct RefinementRule {
-  std::array<double, 3> h{};   ///< Lengths of a step, or their means, of the three runs [s].
-  std::vector<double> orders;  ///< Orders that the method may show: 2, or 1 and 2 with impacts.
+  std::array<double, 3> h{};   ///< Step lengths, or their means, of the three runs [s].
+  std::vector<double> orders;  ///< Possible orders of the method: 2, or 1 and 2 with impacts.
   double floor = 0.0;          ///< Size of rounding, in the quantity's unit; part of every bar.
-  double negligible = 0.0;     ///< Differences below are noise and need not fall.
-  double matters = 0.0;        ///< Differences that do not fall are small below this: they have a
-                               ///< wide bar; above, nothing is certain.
-  double window = 0.05;        ///< Part of the time over which an order is observed [-].
-  double bar_window = 0.01;    ///< The same for the largest difference that makes a bar [-].
-  double least_order = 0.5;    ///< Below, differences do not fall [-].
-  double close = 0.1;          ///< How far, of an order, an observed one may be from it [-].
-  double safety_close = 1.25;  ///< Factor of the bar where the order is as expected [-].
-  double safety_far = 3.0;     ///< Factor of the bar elsewhere [-].
+  double negligible = 0.0;     ///< Smaller differences are noise and need not decrease.
+  /// Threshold for differences that do not decrease: smaller ones get a wide error bar; above, the
+  /// result is not reliable.
+  double matters = 0.0;
+  double window = 0.05;      ///< Part of the time over which an order is observed [-].
+  double bar_window = 0.01;  ///< The same for the largest difference that determines a bar [-].
+  double least_order = 0.5;  ///< Smaller orders mean no convergence [-].
+  /// Largest relative deviation of an observed from an expected order [-].
+  double close = 0.1;
+  double safety_close = 1.25;  ///< Safety factor where the order is as expected [-].
+  double safety_far = 3.0;     ///< Safety factor elsewhere [-].
 };
 
-/// Error of the finest of three runs as they show it, and the time from which on they show nothing.
+/// Error estimate of the finest of three runs, and the time from which on it is lost.
 struct ConvergenceReport {
-  std::optional<double> order;      ///< Observed: median over the time that converges [-].
+  std::optional<double> order;      ///< Observed: median over the converging time [-].
   bool as_expected = false;         ///< It is one of RefinementRule::orders.
-  bool noise = false;               ///< All differences are negligible: there is no order to see.
-  std::optional<double> lost_from;  ///< First time from which on differences do not fall [s].
-  std::vector<double> order_at;  ///< Observed about each time; NaN where there is nothing to see.
+  bool noise = false;               ///< All differences are negligible: no order can be observed.
+  std::optional<double> lost_from;  ///< First time from which on differences do not decrease [s].
+  std::vector<double> order_at;     ///< Observed near each time; NaN if there is none.
   std::vector<double> bar;   ///< Bound of |fine − exact| at each time; infinite where it is lost.
   Mat extrapolated;          ///< Richardson's value, by time and component.
-  double largest_bar = 0.0;  ///< Of the time that converges.
-  /// Bound of |coarse − exact| over the same time: what the model's own step is good for.
+  double largest_bar = 0.0;  ///< Over the converging time.
+  /// Bound of |coarse − exact| over the same time: the accuracy of the model's own step.
   double largest_own = 0.0;
 };
 
-/// The order p by which differences of three runs fall.
+/// Order p by which differences of three runs decrease.
 ///
 /// @eq{certify-order}
 /// @param coarse  Size of the difference of the coarse and the middle run, above zero.
-/// @param fine    The same of the middle and the fine run, above zero.
-/// @param h       Lengths of a step of the three runs, falling.
+/// @param fine  The same of the middle and the fine run, above zero.
+/// @param h  Step lengths of the three runs, decreasing.
 /// @returns p between -4 and 20 [-]
 [[nodiscard]] double observed_order(double coarse, double fine, const std::array<double, 3>& h);
 

@@ -6,7 +6,7 @@ namespace polhode {
 namespace {
 
 constexpr int kLengths = NearestFour::kLengths;
-/// Changes of squared lengths below this part of them have no direction.
+/// Relative change of squared lengths below which it has no direction.
 constexpr double kNoCentralChange = 1e-14;
 
 template <int kMaxSets>
@@ -69,7 +69,7 @@ CentralGapOf<kMaxSets>::CentralGapOf(const Over& over, double alpha_f, bool cons
   g_ = mean_;
   sign_ = mean_.unaryExpr([](double g) { return g < 0.0 ? -1.0 : 1.0; });
   change_squared_ = mean_.cwiseAbs().dot(change_.cwiseAbs2());
-  // Off the middle of the step ḡ is not the mean that tangential moves drop out of.
+  // Away from the midpoint ḡ is not the mean for which tangential displacements cancel.
   if (!conserving || alpha_ != 0.5 ||
       !(change_squared_ > kNoCentralChange * kNoCentralChange * size * size)) {
     change_squared_ = 0.0;
@@ -79,7 +79,7 @@ CentralGapOf<kMaxSets>::CentralGapOf(const Over& over, double alpha_f, bool cons
   g_ += kappa_ * mean_.cwiseAbs().cwiseProduct(change_);
 }
 
-/// ∂s/∂x by point.
+/// ∂s/∂x of each point.
 template <int kMaxSets>
 typename CentralGapOf<kMaxSets>::Slopes CentralGapOf<kMaxSets>::slopes(
     const Vec3 (&x)[kMaxPoints]) const {

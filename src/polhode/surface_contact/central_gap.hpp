@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// Four points over a step.
+/// Positions and displacements of four points over a step.
 struct FourMoves {
   Vec3 x_n1[4];  ///< [m]
   Vec3 u[4];     ///< x_{n+1} − x_n [m].
@@ -16,16 +16,16 @@ struct FourMoves {
   }
 };
 
-/// A distance over a step, between features that are the nearest ones at t_n and others, or the
-/// same, that are at t_{n+1}. A force λ along it acts between pairs of points along their averaged
-/// connections, so that it has neither sum nor moment, and does the work λ Δd exactly:
+/// Distance over a step, between the nearest features at t_n and those, possibly others, at
+/// t_{n+1}. A force λ conjugate to it acts between pairs of points along their averaged connecting
+/// lines, so that its resultant and moment vanish and its work is exactly λ Δd:
 ///
 ///   q = λ/(d_n + d_{n+1}) (ḡ + κ |ḡ| Δs),   κ = (Δ(d²) − ḡ·Δs)/Σ|ḡ| Δs²
 ///
 /// with s the squared lengths between the points of both features, ḡ the mean of ∂d²/∂s at both
 /// ends, and the force of length (i, j) on i 2 q_ij (x̄_i − x̄_j). Weighted by |ḡ| the correction
-/// knows only lengths that the distance depends on: it goes over from a face to its edges and
-/// corners without a jump, whichever of the faces around these is looked at. @eq{central-gap}
+/// involves only lengths on which the distance depends: from a face to its edges and corners it is
+/// continuous, whichever adjacent face is evaluated. @eq{central-gap}
 /// @tparam kMaxSets  Sets of four points, each with six lengths.
 template <int kMaxSets>
 class CentralGapOf {
@@ -38,7 +38,7 @@ class CentralGapOf {
   using Lengths = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxLengths, 1>;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxLengths, kMaxLengths>;
 
-  /// A distance of several sets of four points over a step.
+  /// Distance of several sets of four points over a step.
   struct Over {
     int sets = 0;
     FourMoves moves[kMaxSets];
@@ -52,7 +52,7 @@ class CentralGapOf {
     }
   };
   CentralGapOf(const Over& over, double alpha_f, bool conserving);
-  /// @param to  The features at t_{n+1}; null: those at t_n are.
+  /// @param to  The features at t_{n+1}; null: equal to those at t_n.
   CentralGapOf(const FourMoves& from, const NearestFour& at_n, const FourMoves* to,
                const NearestFour& at_n1, double alpha_f, bool conserving);
 
@@ -76,16 +76,16 @@ class CentralGapOf {
   Vec3 x_alpha_[kMaxPoints], x_n1_[kMaxPoints];
   int ends_[kMaxLengths][2];
   Lengths change_;                             ///< Δs
-  Lengths sign_;                               ///< Of ḡ: pushed apart or drawn together.
+  Lengths sign_;                               ///< Of ḡ: repulsion or attraction.
   Lengths g_n1_, g_;                           ///< ∂d²/∂s at t_{n+1}; ḡ + κ |ḡ| Δs
   Lengths mean_;                               ///< ḡ
   double kappa_ = 0.0, change_squared_ = 0.0;  ///< The latter: Σ|ḡ| Δs².
   Square H_n1_;                                ///< ∂g_n1/∂s_n1
 };
 
-/// Between one feature at each end of the step.
+/// Distance with one feature at each end of the step.
 using CentralGap = CentralGapOf<2>;
-/// Triangles about one point, at both ends of a step together.
+/// Largest number of triangles about one point, at both ends of a step together.
 inline constexpr int kMaxTriangles = 8;
 
 }  // namespace polhode

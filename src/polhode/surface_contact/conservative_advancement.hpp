@@ -5,16 +5,16 @@
 
 namespace polhode {
 
-/// What is left in front of a surface at the end of a way, of what there was at its start.
+/// Part of the initial clearance that remains in front of a surface at the end of a displacement.
 inline constexpr double kLeave = 0.1;
-/// Ways are followed by advances of the distance's own size, at most so many.
+/// Largest number of advances along a displacement, each as long as the distance allows.
 inline constexpr int kMaxAdvances = 200;
 
-/// The part of a way, at most `most`, on which features do not come nearer than `least`, followed
-/// by advances of their distance.
-/// @param distance  At the start of the way [m].
-/// @param length    They come nearer by no more than this on all of it [m].
-/// @param room      (part of the way) → distance there.
+/// Largest part of a displacement, at most `most`, on which features do not come nearer than
+/// `least`, by conservative advancement.
+/// @param distance  At the start of the displacement [m].
+/// @param length  Upper bound of the approach on all of it [m]. @param clearance  (part of the
+/// displacement) → distance there.
 template <class Clearance>
 [[nodiscard]] double conservative_advancement(double most, double distance, double least,
                                               double length, Clearance&& clearance) {

@@ -8,11 +8,11 @@ namespace polhode {
 
 namespace {
 
-/// What is near is looked for as far as this part of an edge, at least, ...
+/// Search radius, at least this part of an edge, ...
 constexpr double kLook = 0.3;
-/// ... and as far as surfaces went against each other in this many steps like the last one.
+/// ... and at least the relative displacement of the surfaces in this many steps like the last one.
 constexpr double kLookSteps = 5.0;
-/// It is looked for again if fewer steps like the last one are left.
+/// Number of steps like the last one that must remain; with fewer the search is repeated.
 constexpr double kStepsLeft = 2.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the potential of contact between two meshes is looked at.
+// Quadrature points of the contact potential between two meshes.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,17 +16,17 @@ namespace {
 using Point2 = Eigen::Vector2d;
 using Polygon = std::vector<Point2>;
 
-/// A face is flat if no corner is farther from its plane, of its size.
+/// Largest distance of a corner from the plane of a flat face, over the face's size.
 constexpr double kFlat = 1e-9;
-/// Parallel: sine of the angle between normals.
+/// Sine of the angle between normals up to which faces are parallel.
 constexpr double kParallelNormals = 1e-6;
-/// Opposite: distance, of the face's size.
+/// Largest distance of opposite faces, over the face's size.
 constexpr double kNear = 0.1;
-/// Overlaps smaller than this part of the face are rounding.
+/// Area of an overlap, as a part of the face, below which it is rounding.
 constexpr double kNothing = 1e-12;
-/// Area of a face that is left for its nodes, as a part of it: less is rounding.
+/// Area of a face left for its nodes, as a part of it, below which it is rounding.
 constexpr double kCovered = 1e-9;
-/// Corners and middle of a triangle: exact for quadratic functions.
+/// Weights at the corners and in the middle of a triangle: exact for quadratic functions.
 constexpr double kAtCorner = 1.0 / 12.0, kInMiddle = 0.75;
 
 double cross(const Point2& a, const Point2& b) { return a[0] * b[1] - a[1] * b[0]; }
@@ -37,7 +37,7 @@ double area(const Polygon& p) {
   return 0.5 * sum;
 }
 
-/// What of a convex polygon lies left of the line from a to b (Sutherland and Hodgman 1974).
+/// Part of a convex polygon left of the line from a to b (Sutherland and Hodgman 1974).
 Polygon left_of(const Polygon& p, const Point2& a, const Point2& b) {
   Polygon kept;
   for (std::size_t k = 0; k < p.size(); ++k) {
@@ -50,7 +50,7 @@ Polygon left_of(const Polygon& p, const Point2& a, const Point2& b) {
   return kept;
 }
 
-/// A face with straight edges in its own plane.
+/// A face with straight edges, in its own plane.
 class FlatFace {
  public:
   FlatFace(const CellShape& shape, std::span<const int> nodes, const std::vector<Vec3>& X)
@@ -178,7 +178,7 @@ class PointMaker {
       const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
       if (n.dot(face.normal) > 0.0 || n.cross(face.normal).norm() > kParallelNormals) continue;
       Polygon cell = face.outline;
-      // Seen along the face's own normal the triangle runs the other way round.
+      // In the direction of the face's normal the triangle has the opposite orientation.
       for (int k = 3; k > 0 && !cell.empty(); --k)
         cell = left_of(cell, face.flat(corner(k % 3)), face.flat(corner(k - 1)));
       if (cell.size() < 3 || !(area(cell) > least)) continue;
@@ -206,8 +206,8 @@ class PointMaker {
   const MeshSurface* other_;
   std::vector<Vec3> vertices_;
   std::vector<MeshPoint> points_;
-  std::vector<double> covered_;  ///< By node of a face: its share of the area that is cut out.
-  std::map<int, double> nodal_;  ///< What is left, by node.
+  std::vector<double> covered_;  ///< By node of a face: its share of the covered area.
+  std::map<int, double> nodal_;  ///< Remaining area by node.
 };
 
 }  // namespace

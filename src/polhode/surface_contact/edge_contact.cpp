@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lines of edges do to each other, remember and tell. The search is in edge_search.cpp.
+// Forces, history and reports of contact between lines of edges. The search is in edge_search.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -70,7 +70,8 @@ int EdgeContact::slot_of_second(int f) const {
 
 std::size_t EdgeContact::history_size() const { return totals() + kNumbersOf<Totals>; }
 
-/// With what the history keeps of it. Where all of it closes within a step, an impact begins.
+/// Pair of edges over a step, with its history. If its whole potential closes within the step, an
+/// impact begins.
 EdgeContact::Touch EdgeContact::touch(const NodeStep& step, const double* history, int e,
                                       int f) const {
   FourMoves moves;
@@ -118,7 +119,7 @@ std::vector<EdgeContact::Touch> EdgeContact::touches(const NodeStep& step, const
   const auto stays = [&](const Touch& t) { return t.pair.gap_n1() < law_.normal.reach(); };
   for (const auto& [e, f] : search(history).pairs) {
     Touch t = touch(step, history, e, f);
-    // What a pair that has opened remembers goes on until it is out of the band of all.
+    // The history of an opened pair is kept until it has left the band of all its terms.
     if (t.pair.acts() || (t.slot_n >= 0 && stays(t))) list.push_back(std::move(t));
   }
   std::vector<char> taken(static_cast<std::size_t>(slots()), 0);
@@ -193,7 +194,7 @@ Work EdgeContact::work(const NodeStep& step, const double* history,
 
 double EdgeContact::taken_by_pressure(const NodeStep& step, const Touch& t) const {
   if (!(t.phase.law(law_, with_band_lowered).end_share > 0.0) && step.alpha_f == 0.5) return 0.0;
-  // Of pairs that share a node only the sum is not negative.
+  // For pairs that share a node only the sum is nonnegative.
   return of_cables() ? t.pair.dissipated() : std::max(0.0, t.pair.dissipated());
 }
 
@@ -212,7 +213,7 @@ void EdgeContact::commit(const NodeStep& step, double* history, const double* /*
     const double normal = sides_.area * std::max(0.0, t.pair.pressure());
     sums.friction_loss += sides_.area * t.by_friction;
     sums.normal_loss += sides_.area * taken_by_pressure(step, t);
-    if (step.x_n != step.x_n1) sums.impulse += normal * step.context.dt;  // else statics
+    if (step.x_n != step.x_n1) sums.impulse += normal * step.context.dt;  // otherwise statics
     if (normal > 0.0) {
       sums.normal_force += normal;
       (slips ? sums.slipping : sums.sticking) += 1.0;

@@ -16,11 +16,11 @@
 
 namespace polhode {
 
-/// Lines of edges against others: sharp edges of two solids, or of one, that may cross between
-/// their nodes, and cables, which are round edges. See EdgePair for what two of them do.
+/// Contact of lines of edges: sharp edges of two solids, or of one, that may cross between their
+/// nodes, and cables, which are round edges. See EdgePair for the force between two of them.
 ///
-/// Each edge remembers the bristles with one other edge; a pair that neither of its edges remembers
-/// rubs all the same, but begins anew in each step. @eq{edge-potential}
+/// Each edge stores the friction bristle with one other edge; a pair that neither edge stores has
+/// friction as well, but with a new bristle in each step. @eq{edge-potential}
 class EdgeContact final : public ElementGroup,
                           public BarrierConstraint,
                           public ChangingSparsity,
@@ -28,13 +28,13 @@ class EdgeContact final : public ElementGroup,
                           public SurfaceImpacts {
  public:
   struct Sides {
-    EdgeLines first, second;  ///< Of one surface with itself: the same twice.
-    double area = 1.0;        ///< That a crossing stands for [m²].
-    /// Sum of the radii around the edges; 0: sharp ones, which the tolerance keeps apart [m].
+    EdgeLines first, second;  ///< One surface with itself: the same lines twice.
+    double area = 1.0;        ///< Area represented by a crossing [m²].
+    /// Sum of the radii of the edges; 0: sharp edges, separated by the tolerance [m].
     double radius = 0.0;
     double retreat = 0.0, behind = 0.0;  ///< Of round edges, as of EdgePairData.
-    /// Of round edges, by edge of the first lines: ranges of edges of the second that it does not
-    /// meet, first and last.
+    /// For round edges, by edge of the first lines: excluded ranges of edges of the second, first
+    /// and last.
     std::vector<std::vector<std::array<int, 2>>> left_out = {};
   };
   EdgeContact(std::string name, Sides sides, const SurfaceLaw& law, const SolidContactStart& start);
@@ -72,7 +72,7 @@ class EdgeContact final : public ElementGroup,
 
   const SurfaceLaw& law() const override { return law_; }
   std::size_t places() const override { return sides_.first.edges.size(); }
-  /// Pairs of edges that are looked at.
+  /// Number of candidate pairs of edges.
   [[nodiscard]] int candidates(const double* history) const;
   void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
@@ -87,17 +87,17 @@ class EdgeContact final : public ElementGroup,
                double* history) const override;
 
  private:
-  /// Behind the edges.
+  /// History behind that of the edges.
   struct Totals {
     SurfaceTotals sums;
-    double lowered;  ///< The band of all of it ends lower by that: some of it started within [m].
+    double lowered;  ///< Distance by which the common band ends lower: a pair started in it [m].
   };
   struct Search {
-    std::vector<double> key;  ///< The part of the history that it follows from.
+    std::vector<double> key;  ///< Part of the history that determines the result.
     std::vector<std::pair<int, int>> pairs;
     ContactNeighbours::Blocks blocks;
   };
-  /// A pair that acts over a step.
+  /// A pair that is active over a step.
   struct Touch;
 
   [[nodiscard]] const Search& search(const double* history) const;
@@ -123,17 +123,17 @@ class EdgeContact final : public ElementGroup,
   [[nodiscard]] double lowered(const double* history) const {
     return read_record<Totals>(history + totals()).lowered;
   }
-  /// Of a pair by its slot: its own band may end lower still.
+  /// Phase of a pair by its slot; its own band may end lower still.
   [[nodiscard]] PointPhase phase_of(const double* history, int slot) const {
     PointPhase phase = slot < 0 ? PointPhase{} : memory_of(history, slot).phase;
     phase.lowered = std::max(phase.lowered, lowered(history));
     return phase;
   }
-  /// Of all terms of the potential the least; ∞ if none is near [m].
+  /// Smallest gap of all terms of the potential; ∞ if none is near [m].
   [[nodiscard]] double least_of_terms(const double* x, const double* history) const;
   void write_start(double* history) const;
   [[nodiscard]] double least_gap(const double* x, const double* history) const;
-  /// How far two edges may come nearer, at least; ∞ if they do not meet where they are.
+  /// Lower bound of the clearance of two edges; ∞ if they are not in reach where they are.
   [[nodiscard]] double clearance(int e, int f, const Vec3 (&x)[4]) const;
 
   std::string name_;
@@ -144,7 +144,7 @@ class EdgeContact final : public ElementGroup,
   std::vector<double> shared_first_, shared_second_;  ///< By vertex.
   std::vector<double> square_first_, square_second_;  ///< |e|² at the start, by edge [m²].
   ContactNeighbours nodes_;
-  mutable Search search_;  ///< Of the last history asked for.
+  mutable Search search_;  ///< For the last history queried.
 };
 
 }  // namespace polhode

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction of two edges that cross.
+// Friction of two crossing edges.
 #include <polhode/surface_contact/edge_pair.hpp>
 #include <polhode/surface_contact/nearest_weights.hpp>
 
@@ -9,8 +9,8 @@ namespace {
 
 using contact::V3;
 
-/// Squared sines of the angles from which round edges rub across their mean direction, and do so
-/// fully: 10 and 30 degrees.
+/// Squared sines of the angles at which friction across the mean direction of round edges begins
+/// and is complete: 10 and 30 degrees.
 constexpr double kRolls = 0.03015, kSlidesAcross = 0.25;
 
 template <class T>
@@ -19,8 +19,8 @@ struct EdgeOnEdge {
   PlaneSliding<T> sliding;
 };
 
-/// What round edges take of a vector in the plane of contact: the less they cross, the more they
-/// roll on each other instead, all but along their mean direction.
+/// Frictional part of a vector in the contact plane for round edges. The less they cross, the more
+/// they roll on each other except along their mean direction.
 template <class T>
 struct Rolling {
   V3<T> t;
@@ -44,12 +44,12 @@ struct Rolling {
   }
 };
 
-/// The nearest points of the middle of the step slide on each other in the plane of both edges; how
-/// they move as the two edges turn is taken off, with the rotation of the pair
+/// Sliding of the nearest points at the middle of the step in the plane of both edges. The
+/// displacement due to the rotation of the two edges is subtracted, with the rotation of the pair
 ///
 ///   ω = ((n·Δf) e − (n·Δe) f + ½ (f·Δe − e·Δf) n)/|e × f|
 ///
-/// so that what turns as a whole does not slide, and the forces conjugate to that leave no moment.
+/// so that a rotation of the whole causes no slip, and the conjugate forces have no moment.
 /// @eq{edge-friction}
 template <class T>
 EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
@@ -93,8 +93,9 @@ EdgeOnEdge<T> edge_friction(const FourMoves& moves, double alpha, const SurfaceL
 
 }  // namespace
 
-/// Along the mean direction t of round edges that hardly cross it is the rate of t·y, as in
-/// cable-along, which has no use for the rotation of the pair. @eq{cable-impact}
+/// Slip rates of the nearest points. Along the mean direction t of nearly parallel round edges the
+/// rate is that of t·y, as in cable-along, which does not need the rotation of the pair.
+/// @eq{cable-impact}
 std::array<Mat3, 4> EdgePair::slip_rates(const Vec3& n) const {
   const Vec3(&x)[4] = moves_.x_n1;
   const Vec3 e = x[1] - x[0], f = x[3] - x[2];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pairs of edges do in an impact, between closing and turning.
+// Impacts of pairs of edges, from closing to the turn.
 #include <algorithm>
 #include <cstddef>
 
@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// The normal rate is that of what the pair stores, over the resultant on the first edge; where it
-/// stores nothing, that of the distance. @eq{surface-turn} @eq{cable-impact}
+/// Adds the impacts of pairs. The normal rate is that of the stored energy over the resultant on
+/// the first edge; without stored energy that of the distance. @eq{surface-turn} @eq{cable-impact}
 void EdgeContact::impacts(const NodeStep& step, const double* history,
                           std::vector<SurfaceImpact>& list) const {
   if (!step.context.conserving || !(step.context.dt > 0.0)) return;

@@ -8,7 +8,7 @@ namespace polhode {
 
 namespace {
 
-/// Cosine of the angle between the normals of faces at a sharp edge, at most: of 30 degrees.
+/// Largest cosine of the angle between face normals at a sharp edge: 30 degrees.
 constexpr double kSharp = 0.8660254037844387;
 
 }  // namespace

@@ -12,9 +12,10 @@ namespace {
 using contact::Dual;
 using contact::V3;
 
-/// Squared sines of the angles at which edges begin to count, and count fully: 3 and 10 degrees.
+/// Squared sines of the angles at which a crossing begins to count, and counts fully: 3 and 10
+/// degrees.
 constexpr double kFrom = 0.00274, kTo = 0.03015;
-/// Changes below this have no quotient: a derivative does.
+/// Smallest change for a difference quotient; below it the derivative is used.
 constexpr double kNoChange = 1e-14;
 
 double blend(double c) {
@@ -22,7 +23,7 @@ double blend(double c) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// (m(c_1) − m(c_0))/(c_1 − c_0), without 0/0.
+/// (m(c_1) − m(c_0))/(c_1 − c_0), evaluated without 0/0.
 template <class T>
 T blend_quotient(double c_0, const T& c_1) {
   const auto inside = [](double c) { return c > kFrom && c < kTo; };
@@ -36,7 +37,7 @@ T blend_quotient(double c_0, const T& c_1) {
   return sum * (t_1 - t_0) / (c_1 - c_0);
 }
 
-/// Squared lengths of e and f and their product, which squared lengths between the four ends give:
+/// Squared lengths of e and f and their scalar product, from squared lengths between the four ends:
 /// 2 e·f = s_03 + s_12 − s_02 − s_13.
 template <class T>
 struct Products {
@@ -87,7 +88,7 @@ void EdgePair::add_edges(const Vec3 (&x_n)[4]) {
     }
 }
 
-/// Where edges cross they keep their points farther apart than these can feel.
+/// Adds the point terms of round edges. Crossing edges are kept apart beyond the range of these.
 void EdgePair::add_points(const Vec3 (&x_n)[4]) {
   if (m_n_ == 1.0 && m_n1_ == 1.0) return;
   for (int side = 0; side < 2; ++side) {
@@ -152,9 +153,9 @@ EdgePair::Force EdgePair::gap_slope(const Part& part) const {
   return part.gap.slope() - data_.retreat * m_slope();
 }
 
-/// What changing m by the angle takes: −B̄ Δm/Δc times the derivative of c, which in squared lengths
-/// is quadratic, so that in the middle of the step it is exact. Of round edges the force of the
-/// gap that m draws back stands in the place of B̄.
+/// Force due to the change of m with the angle: −B̄ Δm/Δc times the derivative of c, which is
+/// quadratic in squared lengths, so that at the midpoint it is exact. For round edges B̄ is
+/// replaced by the force of the gap that m retracts.
 EdgePair::Force EdgePair::by_angle(Stiffness* K) const {
   Force f = Force::Zero(12);
   const bool moves = std::max(c_n_, c_n1_) > kFrom && std::min(c_n_, c_n1_) < kTo;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which edges may cross, and how far they may go.
+// Search for edges that may cross, and limits of their displacements.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace polhode {
 
 namespace {
 
-/// Clearances beyond this many bands are all alike.
+/// Clearance, in bands, above which all are equal.
 constexpr double kFarEdge = 10.0;
-/// As two edges of lengths a and b go against each other by a way, the part of its retreat that
-/// their potential comes forward is less than that way times so many times 1/a + 1/b.
+/// Factor of 1/a + 1/b for edges of lengths a and b: times their relative displacement it bounds
+/// the part of the retraction that their potential advances.
 constexpr double kTurn = 25.0;
 
 }  // namespace
@@ -55,8 +55,8 @@ bool EdgeContact::may_meet(int e, int f) const {
                             kTogether * law_.normal.tolerance;
 }
 
-/// Of sharp edges that are not along each other; of round ones to where the potential of the edges
-/// and that of their points is infinite.
+/// Clearance of two edges: of sharp edges that are not parallel; for round ones to where the
+/// potential of the edges and that of their points is infinite.
 double EdgeContact::clearance(int e, int f, const Vec3 (&x)[4]) const {
   const EdgePairData own = data(e, f);
   const double m = crossing(x[1] - x[0], x[3] - x[2], own.squares);
@@ -122,7 +122,7 @@ void EdgeContact::begin_at(const NodeStep& instant, double* history) const {
   write_start(history);
 }
 
-/// Where nodes were looked at last. @eq{surface-start}
+/// Writes the start of a history: the node positions of the search. @eq{surface-start}
 void EdgeContact::write_start(double* history) const {
   const std::vector<double> x = nodes_.positions(history);
   auto t = read_record<Totals>(history + totals());
@@ -141,7 +141,7 @@ double EdgeContact::least_of_terms(const double* x, const double* history) const
   return least;
 }
 
-/// Of round edges, and of sharp ones that are not along each other; NaN if none is near.
+/// Smallest gap of round edges, and of sharp edges that are not parallel; NaN if none is near.
 double EdgeContact::least_gap(const double* x, const double* history) const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [e, f] : search(history).pairs) {
@@ -165,8 +165,8 @@ void EdgeContact::clearances(const NodeStep& step, const double* history,
   }
 }
 
-/// The distance of two edges changes by no more than the largest way of an end of one against one
-/// of the other.
+/// Admissible part of a displacement. The distance of two edges changes by at most the largest
+/// relative displacement of an end of one and one of the other.
 double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
                               const double* history) const {
   double most = nodes_.free_part(from.x_n1, to.x_n1, history);
@@ -188,7 +188,7 @@ double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
     double length = 0.0;
     for (int i = 0; i < 2; ++i)
       for (int j = 2; j < 4; ++j) length = std::max(length, (way[i] - way[j]).norm());
-    // What a sharp edge meets only at the end of its way is kept away from at once.
+    // A sharp edge that becomes active only at the end of the displacement is kept away at once.
     const auto clearance_at = [&](const Vec3(&at)[4]) {
       return sharp ? nearest_of_edges(at).distance - centre_ + law_.normal.tolerance
                    : clearance(e, f, at);

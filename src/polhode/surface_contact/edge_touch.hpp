@@ -6,10 +6,10 @@
 
 namespace polhode {
 
-/// A pair of edges that acts over a step, or remembers its impact.
+/// A pair of edges that is active over a step, or stores its impact.
 struct EdgeContact::Touch {
   int e, f;
-  int slot_n = -1, slot_n1 = -1;  ///< Where its bristle is kept; −1: nowhere.
+  int slot_n = -1, slot_n1 = -1;  ///< Slot of its bristle; −1: none.
   PointPhase phase;               ///< In the step.
   EdgePair pair;
   FourSlide slide;

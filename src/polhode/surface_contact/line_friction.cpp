@@ -15,7 +15,7 @@ struct Along {
   bool slips = false;
 };
 
-/// A deflection of the bristle, no longer than it may be.
+/// Deflection of the bristle, limited to its largest length.
 template <class T>
 T held(const T& s, const T& most) {
   const double v = contact::value(s), m = contact::value(most);
@@ -35,7 +35,7 @@ Along<T> sliding(const FourMoves& moves, double alpha, const SurfaceLaw& law, co
   const V3<T> t = per_both * both;
   const V3<T> y = 0.5 * (at.x[0] + at.x[1] - at.x[2] - at.x[3]);
   const V3<T> across = per_both * (y - dot(t, y) * t);
-  // ∂q/∂e and ∂q/∂f, by way of t.
+  // ∂q/∂e and ∂q/∂f, through t.
   const V3<T> by_e = per_e * (across - dot(on_e, across) * on_e);
   const V3<T> by_f = per_f * (across - dot(on_f, across) * on_f);
   const V3<T> slope[4] = {0.5 * t - by_e, 0.5 * t + by_e, -0.5 * t - by_f, -0.5 * t + by_f};

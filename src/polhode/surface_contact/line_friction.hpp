@@ -6,11 +6,11 @@
 
 namespace polhode {
 
-/// Friction lengthwise between two round edges that lie along each other, over a step, per area.
+/// Friction lengthwise between two parallel round edges over a step, per area.
 ///
 /// With t the mean of both directions and y from the middle of one to that of the other, they are
-/// shifted by q = t·y. As q does not know how the pair stands in space, forces along ∂q/∂x have
-/// neither sum nor moment: across t the edges roll over each other. @eq{cable-along}
+/// shifted by q = t·y. As q is invariant under rigid motions, forces along ∂q/∂x have neither
+/// resultant nor moment: across t the edges roll on each other. @eq{cable-along}
 struct LineSlide {
   double friction = 0.0;    ///< Along t on the first edge.
   double slid = 0.0;        ///< Change of q [m].

@@ -12,12 +12,12 @@ namespace polhode {
 /// Kind of the element groups that are contacts of cables.
 inline constexpr const char* kCableContact = "cable contact";
 
-/// What is round about points of a line, such as a cable.
+/// A round cross-section about points of a line, such as a cable.
 struct RoundLine {
   double radius = 0.0;  ///< 0: none [m].
-  /// Points farther apart than this would let something pass between them [m].
+  /// Largest distance of points; through a wider one something could pass [m].
   double most_apart = std::numeric_limits<double>::infinity();
-  /// Two nodes, and the part of the piece between them that lies before the next point.
+  /// Two nodes, and the part of the segment between them that lies before the next point.
   struct Span {
     int a = 0, b = 0;
     double part = 0.0;
@@ -25,11 +25,11 @@ struct RoundLine {
   std::vector<Span> spans;  ///< By point.
 };
 
-/// What is drawn out as far as it may be goes on by this factor at a time.
+/// Factor by which a segment that is already overstretched may stretch further per iterate.
 inline constexpr double kMoreStretch = 1.1;
 
-/// Of the way from one iterate to another, the part on which points come no farther apart than they
-/// may.
+/// Part of the displacement between two iterates on which points stay within their largest
+/// distance.
 [[nodiscard]] inline double free_of_stretch(const RoundLine::Span& span, double most_apart,
                                             const NodeStep& from, const NodeStep& to) {
   const auto apart = [&](const NodeStep& step) {

@@ -5,8 +5,8 @@ namespace polhode {
 
 namespace {
 
-/// Nearer to the end of the barrier than this part of its band, which only iterates get, the
-/// nearest feature is all that counts.
+/// Height above the end of the barrier, as a part of its band, below which only the nearest feature
+/// counts. Only iterates get there.
 constexpr double kDeepInMesh = 1e-9;
 
 /// Corners of the surface that a feature has, ascending; −1 where it has none.
@@ -16,7 +16,7 @@ struct Feature {
   Corners corners;
   int triangle;
   NearestFour four;
-  int count = 0;  ///< How often it counts.
+  int count = 0;  ///< Multiplicity.
 };
 
 Corners corners_of(const TriangleAt& t, const NearestFour& four) {
@@ -27,8 +27,9 @@ Corners corners_of(const TriangleAt& t, const NearestFour& four) {
   return own;
 }
 
-/// Every triangle, edge and corner counts where its nearest point is: most cancel. Each of them is
-/// to count once in all, so one with others around it counts once less what these count.
+/// Multiplicities of features. Every triangle, edge and corner counts at its nearest point, and
+/// most cancel. Each has to count once in total, so one with others around it counts once less
+/// their multiplicities.
 std::vector<Feature> features(const std::vector<TriangleAt>& near) {
   std::vector<Feature> list;
   const auto count = [&](const TriangleAt& t, const NearestFour& four, int weight) {
@@ -43,8 +44,8 @@ std::vector<Feature> features(const std::vector<TriangleAt>& near) {
   struct Around {  // an edge, or a corner with b = −1
     int a, b;
     const TriangleAt* triangle;
-    int i, j;       // places of the corners in it
-    int times = 0;  // triangles that have it
+    int i, j;       // corners by position in the list
+    int times = 0;  // number of triangles that contain it
     int weight = 1;
   };
   std::vector<Around> edges, corners;
@@ -108,7 +109,7 @@ MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& 
   double V = 0.0;
   Vec3 force = Vec3::Zero();
   std::vector<double> forces;
-  int open = 0, places = 0;  // by the features so far, and of these what counts
+  int open = 0, places = 0;  // of the features so far, and of the counted ones
   for (const Feature& f : list) {
     open += f.count;
     const int w = std::max(1, open) - places;
@@ -137,8 +138,8 @@ MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& 
   return gap;
 }
 
-/// With D² the derivative is 2D Σ p ∂d, p the shares, and that of D bends by
-/// Σ (w f′(d)/f(D) ∂d∂d + p ∂²d) − f′(D)/f(D) ∂D∂D.
+/// Derivatives of the combined distance. D² has 2D Σ p ∂d with shares p, and D the second
+/// derivative Σ (w f′(d)/f(D) ∂d∂d + p ∂²d) − f′(D)/f(D) ∂D∂D.
 void MeshGapStep::fill(const MeshGap& at_n, const MeshGap& at_n1) {
   constexpr int kLengths = NearestFour::kLengths;
   over.d_n = at_n.distance;

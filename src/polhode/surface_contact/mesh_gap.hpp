@@ -10,13 +10,13 @@
 
 namespace polhode {
 
-/// The distance of a point from triangles that move.
+/// Distance of a point from moving triangles.
 ///
-/// What is round about the point has a gap to each triangle, edge and corner near by, and the
-/// distance that is told has the potential of their sum, see RigidMesh: in a valley of the surface,
-/// such as a cable presses into it, both slopes push. @eq{surface-feature-sum}
+/// A round section about the point has a gap to each triangle, edge and corner nearby; the reported
+/// distance has the potential of their sum, see RigidMesh. In a valley of the surface, such as a
+/// cable presses into it, both slopes exert force. @eq{surface-feature-sum}
 struct MeshGap {
-  /// A face, edge or corner, as four points of a triangle that has it.
+  /// A face, edge or corner, as four points of a triangle that contains it.
   struct Part {
     int triangle = -1;
     NearestFour four;
@@ -26,7 +26,7 @@ struct MeshGap {
   std::vector<Part> parts;
   double distance = 0.0;   ///< D [m]
   double bend = 0.0;       ///< f′(D)/f(D)
-  double resultant = 1.0;  ///< |∂D/∂p|: of all forces over that of D.
+  double resultant = 1.0;  ///< |∂D/∂p|: resultant of all forces over that of D.
 
   [[nodiscard]] static MeshGap of(int triangle, const NearestFour& four) {
     MeshGap gap;
@@ -37,26 +37,26 @@ struct MeshGap {
   [[nodiscard]] bool single() const { return parts.size() == 1; }
 };
 
-/// A triangle near a point: x_0, and x_1 to x_3.
+/// A triangle near a point: the point x_0, the corners x_1 to x_3.
 struct TriangleAt {
   int triangle = -1;
   std::array<int, 3> corners{};
   Vec3 x[4];
 };
 
-/// @param near    All triangles nearer than `centre` and the reach of the law, at least one: the
-///                nearest one alone if none is.
+/// @param near  All triangles within `centre` and the activation distance of the law, at least one:
+/// the nearest one alone if none is.
 /// @param centre  Distance at which the gap is zero [m].
 [[nodiscard]] MeshGap mesh_gap(const std::vector<TriangleAt>& near, const contact::NormalLaw& law,
                                double centre);
 
-/// The distance over a step, by the lengths between the points of all its features.
+/// Distance over a step, by the lengths between the points of all its features.
 struct MeshGapStep {
   CentralGapOf<kMaxTriangles>::Over over;
   std::vector<int> triangles;  ///< Of its sets of points.
 
-  /// Features beyond kMaxTriangles triangles have no part in the direction of the force; its work
-  /// is exact all the same.
+  /// Adds the features at both ends. Those beyond kMaxTriangles triangles do not contribute to the
+  /// direction of the force; its work is exact all the same.
   /// @param moves  (triangle) → FourMoves.
   template <class Moves>
   MeshGapStep(const MeshGap& at_n, const MeshGap& at_n1, Moves&& moves) {

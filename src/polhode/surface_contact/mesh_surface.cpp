@@ -20,7 +20,7 @@ void MeshPoint::add(int number, double weight) {
 
 namespace {
 
-/// The node in the middle of a face without one, by its corners and the middles of its edges.
+/// Shape functions at the centre of a face without a centre node: corners and midside nodes.
 constexpr double kCorner4 = 0.25, kCorner8 = -0.25, kEdge8 = 0.5;
 
 class Triangulation {

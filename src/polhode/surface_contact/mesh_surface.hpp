@@ -16,9 +16,9 @@ struct MeshPoint {
   int count = 0;
   int node[kMaxNodes]{};
   double N[kMaxNodes]{};
-  double area = 0.0;  ///< Its share of the reference area [m²].
+  double area = 0.0;  ///< Tributary reference area [m²].
 
-  /// Weights that are zero add nothing.
+  /// Adds a node; zero weights are skipped.
   void add(int number, double weight);
   [[nodiscard]] Vec3 at(const double* field) const {
     Vec3 sum = Vec3::Zero();
@@ -27,23 +27,22 @@ struct MeshPoint {
   }
 };
 
-/// Faces of a solid as triangles: quadrilaterals are parted in four about their middle, so that a
-/// pressure which is uniform reaches the corners of a parallelogram as it should; faces with nodes
-/// on their edges in as many triangles as these nodes ask for.
+/// Faces of a solid as triangles. Quadrilaterals are split in four about their centre, so that a
+/// uniform pressure gives the consistent corner forces of a parallelogram; faces with midside nodes
+/// in as many triangles as these require.
 struct MeshSurface {
   std::vector<MeshPoint> vertices;
   std::vector<std::array<int, 3>> triangles;  ///< Counterclockwise seen from outside.
 };
 [[nodiscard]] MeshSurface triangulated(const std::vector<LoadedFaces>& faces);
 
-/// Where the potential of contact is looked at: the nodes of faces with straight edges, each with
-/// its share of the area, and Gauss points of curved faces.
+/// Quadrature points of the contact potential: the nodes of faces with straight edges with their
+/// tributary areas, and Gauss points of curved faces.
 ///
-/// Where a flat face lies at the start opposite to triangles of `other`, parallel to them and no
-/// farther away than a tenth of its own size, the overlap of the two is cut out instead, and each
-/// triangle of it has points at its corners and in its middle (weights 1/12 and 3/4, exact for
-/// quadratic functions): a pressure that is uniform then loads both meshes exactly, whatever their
-/// sizes.
+/// Where a flat face is at the start opposite to triangles of `other`, parallel to them and at most
+/// a tenth of its own size away, the overlap of the two is used instead. Each triangle of the
+/// overlap has points at its corners and in its middle (weights 1/12 and 3/4, exact for quadratic
+/// functions): a uniform pressure then loads both meshes exactly, whatever their sizes.
 /// @param X  Positions at the start by number [m].
 [[nodiscard]] std::vector<MeshPoint> contact_points(const std::string& where,
                                                     const std::vector<LoadedFaces>& faces,

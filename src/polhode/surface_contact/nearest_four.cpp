@@ -8,12 +8,12 @@ namespace polhode {
 
 namespace {
 
-/// Edges with a smaller squared sine between them have no unique nearest points.
+/// Squared sine of the angle between edges below which they have no unique nearest points.
 constexpr double kParallelEdges = 1e-8;
 
 void measure(const Vec3 (&x)[4], NearestFour& n) {
   Vec3 y = Vec3::Zero();
-  // From the last point on, so that what is far from the origin does not round.
+  // Relative to the last point, to avoid rounding far from the origin.
   for (int i = 0; i < 3; ++i) y += n.c[i] * (x[i] - x[3]);
   n.distance = y.norm();
 }
@@ -27,7 +27,8 @@ NearestFour::Lengths NearestFour::gradient() const {
   return g;
 }
 
-/// Where c is free, Zᵀ S c = 0 with S_ij = s_ij and Z the free directions: so Zᵀ S Z δη = −Zᵀ δS c.
+/// Hessian of |y|². Where c is free, Zᵀ S c = 0 with S_ij = s_ij and Z the free directions: so Zᵀ S
+/// Z δη = −Zᵀ δS c.
 Eigen::Matrix<double, NearestFour::kLengths, NearestFour::kLengths> NearestFour::hessian(
     const Vec3 (&x)[4]) const {
   Eigen::Matrix<double, kLengths, kLengths> H = Eigen::Matrix<double, kLengths, kLengths>::Zero();
@@ -112,13 +113,13 @@ NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place, double f_place)
   const Vec3 e = x[1] - x[0], f = x[3] - x[2];
   double a = e_place, b = f_place;
   bool a_free = false, b_free = false;
-  // The part of an edge of squared length l, from `from` along `to`, that is nearest to p.
+  // Position on an edge of squared length l, from `from` along `to`, that is nearest to p.
   const auto project = [](const Vec3& p, const Vec3& from, const Vec3& along, double& part) {
     const double t = (p - from).dot(along) / along.squaredNorm();
     part = std::clamp(t, 0.0, 1.0);
     return part == t;
   };
-  // Ends are taken as they are.
+  // Ends are returned exactly.
   const auto on = [](const Vec3& from, const Vec3& to, double part) -> Vec3 {
     if (part == 0.0) return from;
     return part == 1.0 ? to : Vec3((1.0 - part) * from + part * to);

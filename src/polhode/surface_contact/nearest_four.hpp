@@ -5,12 +5,12 @@
 
 namespace polhode {
 
-/// The vector y = Σ c_i x_i between the nearest points of two features with four points in all:
-/// a point and a triangle, c = (1, −w), or two edges, c = (1 − a, a, b − 1, −b).
+/// The vector y = Σ c_i x_i between the nearest points of two features with four points in total: a
+/// point and a triangle, c = (1, −w), or two edges, c = (1 − a, a, b − 1, −b).
 ///
 /// With s_ij = |x_i − x_j|² the distance is |y|² = −Σ_{i<j} c_i c_j s_ij. As the c of the nearest
-/// points make it least, its derivative by s_ij is −c_i c_j alone: forces between the four points
-/// along their connections. @eq{four-point-distance}
+/// points minimise it, its derivative by s_ij is only −c_i c_j: forces between the four points
+/// along their connecting lines. @eq{four-point-distance}
 struct NearestFour {
   static constexpr int kLengths = 6;
   /// The two points of each length.
@@ -25,20 +25,20 @@ struct NearestFour {
 
   /// ∂|y|²/∂s.
   [[nodiscard]] Lengths gradient() const;
-  /// ∂²|y|²/∂s², as the nearest points move: of the four points as they are.
+  /// ∂²|y|²/∂s² including the motion of the nearest points, at the present four points.
   [[nodiscard]] Eigen::Matrix<double, kLengths, kLengths> hessian(const Vec3 (&x)[4]) const;
 };
 
-/// x_0 and the triangle of the others.
+/// Nearest points of x_0 and the triangle of the others.
 [[nodiscard]] NearestFour nearest_of_triangle(const Vec3 (&x)[4]);
 
-/// x_0 and the edge x_a x_b.
+/// Nearest points of x_0 and the edge x_a x_b.
 [[nodiscard]] NearestFour nearest_of_edge(const Vec3 (&x)[4], int a, int b);
-/// x_0 and x_a.
+/// The points x_0 and x_a.
 [[nodiscard]] NearestFour nearest_of_corner(const Vec3 (&x)[4], int a);
 
-/// The edges x_0 x_1 and x_2 x_3, or one place on them.
-/// @param e_place, f_place  From 0 to 1: only this place on the first, the second edge; −1: all.
+/// Nearest points of the edges x_0 x_1 and x_2 x_3, or of given points on them.
+/// @param e_place, f_place  From 0 to 1: only this point of the first, the second edge; −1: all.
 [[nodiscard]] NearestFour nearest_of_edges(const Vec3 (&x)[4], double e_place = -1.0,
                                            double f_place = -1.0);
 

@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// c of the nearest points in numbers of sort T: where it is free, the derivatives of |Σ c x|² by
-/// its directions vanish.
+/// Weights c of the nearest points in scalar type T: where they are free, the derivatives of |Σ c
+/// x|² by their directions vanish.
 template <class T>
 void nearest_weights(const NearestFour& nearest, const contact::V3<T> (&x)[4], T (&c)[4]) {
   for (int k = 0; k < 4; ++k) c[k] = T(nearest.c[k]);
@@ -24,7 +24,7 @@ void nearest_weights(const NearestFour& nearest, const contact::V3<T> (&x)[4], T
     const contact::V3<T> y = sum(c);
     contact::V3<T> way[2];
     for (int i = 0; i < nearest.free_count; ++i) way[i] = sum(nearest.free[i]);
-    // One Newton step from values that already solve it leaves them and gives the derivatives.
+    // One Newton step from the solution leaves the values and gives the derivatives.
     T step[2];
     if (nearest.free_count == 1) {
       step[0] = -dot(way[0], y) / dot(way[0], way[0]);

@@ -9,8 +9,8 @@
 
 namespace polhode {
 
-/// Two directions that span the plane in which something slides, such as two sides of a triangle,
-/// and the vectors dual to them: grad_e·e = 1, grad_e·f = 0.
+/// Two directions that span the sliding plane, such as two sides of a triangle, and their dual
+/// vectors: grad_e·e = 1, grad_e·f = 0.
 template <class T>
 struct SlidePlane {
   contact::V3<T> e, f, grad_e, grad_f;
@@ -20,7 +20,7 @@ struct SlidePlane {
     grad_e = scale * (ff * e - ef * f);
     grad_f = scale * (ee * f - ef * e);
   }
-  /// A vector given by its parts along e and f, as long as `length`.
+  /// Vector with given components along e and f, scaled to `length`.
   [[nodiscard]] contact::V3<T> along(double on_e, double on_f, double length) const {
     const contact::V3<T> s = on_e * e + on_f * f;
     const T square = dot(s, s);
@@ -32,13 +32,13 @@ struct SlidePlane {
   }
 };
 
-/// Four points in numbers of sort T, in the middle of a step and how they moved.
+/// Four points in scalar type T: positions at the middle of a step and displacements.
 template <class T>
 struct FourPoints {
   contact::V3<T> x[4], u[4];
   Vec3 x_n[4];
 
-  /// @param seeded  With the derivatives by x_{n+1}.
+  /// @param seeded  With derivatives by x_{n+1}.
   FourPoints(const FourMoves& moves, double alpha, bool seeded) {
     for (int k = 0; k < 4; ++k) {
       x[k] = contact::constant<T>(moves.x_n1[k] - (1.0 - alpha) * moves.u[k]);
@@ -53,16 +53,15 @@ struct FourPoints {
   }
 };
 
-/// A bristle in a plane over a step, per area. @eq{contact-bristle}
+/// A friction bristle in a plane over a step, per area. @eq{contact-bristle}
 template <class T>
 struct PlaneSliding {
   contact::V3<T> bristle, friction;
   bool slips = false;
-  double parts[2]{};  ///< Of the bristle along the plane's directions.
+  double parts[2]{};  ///< Components of the bristle along the plane's directions.
 
-  /// @param kept  The bristle at t_n, in the plane `before` of t_n; it turns with the directions
-  /// and
-  ///              keeps its length.
+  /// @param kept  The bristle at t_n, in the plane `before` of t_n; it rotates with the directions
+  /// and keeps its length.
   PlaneSliding(const SlidePlane<T>& here, const SlidePlane<double>& before, const SurfaceLaw& law,
                const T& pressure, const Vec3& kept, const contact::V3<T>& slid, double alpha) {
     const contact::V3<double> s = contact::v3(kept);
@@ -80,7 +79,7 @@ struct PlaneSliding {
 
 /// Friction between four points over a step, per area.
 struct FourSlide {
-  Vec3 friction = Vec3::Zero();    ///< On what slides.
+  Vec3 friction = Vec3::Zero();    ///< On the sliding side.
   Vec3 slid = Vec3::Zero();        ///< Tangential displacement.
   Vec3 bristle = Vec3::Zero();     ///< In the middle of the step.
   Vec3 bristle_n1 = Vec3::Zero();  ///< In the axes of its end.
@@ -89,10 +88,9 @@ struct FourSlide {
   Eigen::Matrix<double, 12, 12> K = Eigen::Matrix<double, 12, 12>::Zero();    ///< By x_{n+1}.
   Eigen::Matrix<double, 12, 1> by_pressure = Eigen::Matrix<double, 12, 1>::Zero();
 
-  /// @param rub  (pressure in numbers of sort T, seeded) → what has force[4], slid and a
-  /// PlaneSliding
-  ///             `rub`, all of sort T.
-  /// @param end  The plane, or what else bristles are told in, at t_{n+1}.
+  /// @param rub  (pressure in scalar type T, seeded) → an object with force[4], slid and a
+  /// PlaneSliding `rub`, all of type T.
+  /// @param end  The plane or other frame of bristles at t_{n+1}.
   template <class Sliding, class End>
   FourSlide(Sliding&& sliding, const End& end, double pressure, bool tangent) {
     const auto values = sliding(pressure, false);

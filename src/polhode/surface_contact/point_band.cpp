@@ -10,9 +10,9 @@ namespace {
 using contact::ContactPhase;
 using contact::NormalPotential;
 
-/// Part of its band that is left to what starts at the lower end of it.
+/// Part of its band that remains for a point that starts at the lower end of it.
 constexpr double kLeftOfBand = 0.05;
-/// Part that is left to what an impact pressed down there: what is nearer to the floor keeps a
+/// Part that remains for a point that an impact pressed down there; one nearer to the floor keeps a
 /// little of its energy.
 constexpr double kLeftAfterImpact = 1e-4;
 constexpr int kHalvings = 60;
@@ -54,7 +54,7 @@ double force_of(const contact::NormalLaw& law, std::span<const GapTerm> terms) {
   return sum;
 }
 
-/// Of the deepest one that counts, from the floor; the band if none does.
+/// Height above the floor of the deepest term that counts; the whole band if none does.
 double least_height(const SurfaceLaw& law, std::span<const GapTerm> terms) {
   double least = law.normal.band();
   for (const GapTerm& t : terms)
@@ -64,7 +64,7 @@ double least_height(const SurfaceLaw& law, std::span<const GapTerm> terms) {
 
 }  // namespace
 
-/// b(g) grows with the gap where it begins.
+/// b(g) at a fixed gap increases with the upper end of the band.
 double lowered_to_store(const SurfaceLaw& law, std::span<const GapTerm> terms, double energy,
                         double least, LoweredLaw own) {
   const double x = least_height(law, terms), whole = law.normal.band();
@@ -76,7 +76,7 @@ double lowered_to_store(const SurfaceLaw& law, std::span<const GapTerm> terms, d
   return high;
 }
 
-/// So does f(g).
+/// f(g) at a fixed gap does so too.
 double lowered_to_press(const SurfaceLaw& law, std::span<const GapTerm> terms, double pressure,
                         double least, LoweredLaw own) {
   const double whole = law.normal.band();

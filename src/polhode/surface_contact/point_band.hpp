@@ -9,31 +9,31 @@
 
 namespace polhode {
 
-/// By how much lower a barrier begins to press on what starts at a gap: there, so that nothing is
-/// stored at the start, but a twentieth of the band is left. Zero outside of the band, and for NaN,
-/// where nothing is near [m]. @eq{surface-start}
+/// Distance by which a barrier starts lower for a point that starts at a gap. Force begins at that
+/// gap, so that no energy is stored at the start, but a twentieth of the band remains. Zero outside
+/// of the band, and for NaN, where nothing is near [m]. @eq{surface-start}
 [[nodiscard]] double lowered_for(const SurfaceLaw& law, double gap_at_start);
-/// The law of meshes on each other with a band that ends lower; the pressure in its middle stays.
+/// Law between meshes with a band that ends lower; the pressure in its middle is unchanged.
 [[nodiscard]] SurfaceLaw with_band_lowered(const SurfaceLaw& law, double by);
-/// The law of points on rigid shapes with the same band, in which force begins lower; deeper down
-/// it is nearly the same. @eq{contact-later}
+/// Law of points on rigid shapes with the same band, in which force begins lower; deeper down it is
+/// nearly unchanged. @eq{contact-later}
 [[nodiscard]] SurfaceLaw beginning_later(const SurfaceLaw& law, double by);
 /// One of these two.
 using LoweredLaw = SurfaceLaw (*)(const SurfaceLaw& law, double by);
-/// By how much lower it begins to store this energy at gaps within, per area [m].
-/// @param least  Lower than this at least: the law at hand [m].
-/// @eq{surface-turn}
+/// Distance by which the band starts lower so that it stores this energy at the given gaps, per
+/// area [m].
+/// @param least  Smallest value: that of the present law [m]. @eq{surface-turn}
 [[nodiscard]] double lowered_to_store(const SurfaceLaw& law, std::span<const GapTerm> terms,
                                       double energy, double least, LoweredLaw own);
-/// By how much lower it begins to press so much at gaps within [m]; `least` as above.
-/// @eq{surface-held}
+/// Distance by which the band starts lower so that it exerts this pressure at the given gaps [m];
+/// `least` as above. @eq{surface-held}
 [[nodiscard]] double lowered_to_press(const SurfaceLaw& law, std::span<const GapTerm> terms,
                                       double pressure, double least, LoweredLaw own);
 
-/// What a point, or a pair of edges, remembers of closing and opening, as numbers of its history.
+/// Closing and opening of a point, or a pair of edges, as numbers of its history.
 struct PointPhase {
-  double lowered = 0.0;      ///< It begins to press lower by that [m].
-  double phase = 0.0;        ///< 0: it is open; else 1 and the number of its ContactPhase.
+  double lowered = 0.0;      ///< Distance by which its band starts lower [m].
+  double phase = 0.0;        ///< 0: open; else 1 and the number of its ContactPhase.
   double restitution = 0.0;  ///< e of its impact.
 
   [[nodiscard]] bool open() const { return phase == 0.0; }
@@ -44,24 +44,23 @@ struct PointPhase {
     return is(contact::ContactPhase::compression) || is(contact::ContactPhase::restitution);
   }
   void set(contact::ContactPhase p) { phase = 1.0 + static_cast<double>(p); }
-  /// In a step from a gap at which the point has a speed: what closes begins an impact.
+  /// Phase in a step from a gap with a normal speed: closing begins an impact.
   [[nodiscard]] PointPhase in_step(const SurfaceLaw& law, double gap, double speed,
                                    LoweredLaw own = beginning_later) const;
-  /// At the end of a step in which it had this phase.
+  /// Phase at the end of a step in which this phase held.
   [[nodiscard]] PointPhase at_end(const SurfaceLaw& law, double gap) const;
-  /// After its turn: the part e² is still stored, or as much as presses back on what holds it
-  /// there; then it parts, or rests.
-  /// @param terms  What it stores at the end of the step.
-  /// @param held   Pressure by which others press it on [Pa].
-  /// @returns what it stores no more, per area.
+  /// Turn of an impact: the part e² of the energy remains stored, or as much as balances the
+  /// pressure on the point; then it separates, or rests.
+  /// @param terms  Terms of its potential at the end of the step.
+  /// @param held  Pressure on it by others [Pa]. @returns the released energy per area.
   double turn(const SurfaceLaw& law, std::span<const GapTerm> terms, double held,
               LoweredLaw own = beginning_later);
-  /// At a gap.
+  /// Turn at a single gap.
   double turn(const SurfaceLaw& law, double gap, double held) {
     const GapTerm one{1.0, gap};
     return turn(law, std::span(&one, 1), held);
   }
-  /// The law of a step in this phase.
+  /// Law of a step in this phase.
   [[nodiscard]] SurfaceLaw law(const SurfaceLaw& law, LoweredLaw own = beginning_later) const;
 };
 

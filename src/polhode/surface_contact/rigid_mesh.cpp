@@ -13,12 +13,12 @@ namespace {
 using contact::TriangleRegion;
 using contact::TriangleTree;
 
-/// Nearer to the end of the barrier than this part of its band, which only iterates get, the
-/// nearest feature is all that counts.
+/// Height above the end of the barrier, as a part of its band, below which only the nearest feature
+/// counts. Only iterates get there.
 constexpr double kDeepInRigid = 1e-9;
-/// By this part of the rounding a point is looked at beside itself, to find out which features are
-/// nearest. Where it stands over an edge or corner exactly, as points of meshes like to do,
-/// neighbours agree on it all the same; a gap is off by the square of it.
+/// Offset, as a part of the rounding, at which the nearest features of a point are determined.
+/// Points of meshes often lie exactly over an edge or corner; with the offset neighbouring points
+/// still agree on the features. The gap error is of second order in it.
 constexpr double kAside = 1e-7;
 
 Vec3 normal_on(const Vec3& from, double distance) {
@@ -45,14 +45,15 @@ RigidMesh::RigidMesh(contact::Shape surface)
                           [](const contact::Shape::Edge& e) { return e.open; });
 }
 
-/// In the box around the surface; of one with a border, which has no lower side, or below that.
+/// Whether the point lies in the bounding box of the surface, or, for one with a border, which has
+/// no lower side, below that.
 bool RigidMesh::may_be_behind(const Vec3& y) const {
   const Vec3 low = tree_.low(), high = tree_.high();
   return (y.array() <= high.array()).all() &&
          (y.head<2>().array() >= low.head<2>().array()).all() && (bordered_ || y[2] >= low[2]);
 }
 
-/// What lies within is as near to the surface as it is, however far that may be.
+/// Nearest point of the surface. Enclosed points have their nearest point at any distance.
 TriangleTree::Hit RigidMesh::nearest(const Vec3& y, double at_most, bool sided) const {
   const bool any = sided && may_be_behind(y);
   return tree_.nearest(y, any ? std::numeric_limits<double>::infinity() : at_most);
@@ -65,9 +66,9 @@ RigidMesh::Feature RigidMesh::feature(int triangle, const TriangleRegion& region
   return {region.kind, surface_.triangles[t][k], 0};
 }
 
-/// Seen from the nearest point, by the normals of the triangles that meet there: their sum, by
-/// their angles, tells the side of any point. (Baerentzen, Aanaes 2005.) Beside a border nothing
-/// is behind.
+/// Whether a point is behind the surface at its nearest point, by the normals of the triangles that
+/// meet there: the sign of their sum weighted by angles decides for any point (Baerentzen, Aanaes
+/// 2005). At a border nothing is behind.
 bool RigidMesh::behind(const Vec3& y, const TriangleTree::Hit& hit) const {
   if (!may_be_behind(y)) return false;
   const Feature f = feature(hit.triangle, hit.region);
@@ -98,7 +99,7 @@ double RigidMesh::distance(const Vec3& y, double at_most, bool sided) const {
   return std::min(at_most, signed_distance - surface_.rounding);
 }
 
-/// @eq{surface-gap} with a triangle, edge or corner for the core.
+/// Gap with a triangle, edge or corner as the core. @eq{surface-gap}
 SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y, double round) const {
   const auto i = static_cast<std::size_t>(feature.index);
   if (feature.kind == TriangleRegion::face) {
@@ -108,7 +109,7 @@ SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y, double round
     return {side * height - round, side * plane.normal, Mat3::Zero()};
   }
   Vec3 from;
-  Mat3 fixed = Mat3::Identity();  // I less what the nearest point follows
+  Mat3 fixed = Mat3::Identity();  // I without the directions that the nearest point follows
   if (feature.kind == TriangleRegion::edge) {
     const contact::Shape::Edge& edge = surface_.edges[i];
     const Vec3& p = surface_.corners[static_cast<std::size_t>(edge.i)];
@@ -125,7 +126,8 @@ SurfaceGap RigidMesh::gap_of(const Feature& feature, const Vec3& y, double round
   return {d - round, n, (fixed - n * n.transpose()) / d};
 }
 
-/// Every triangle, edge and corner counts where its nearest point is: most cancel.
+/// Multiplicities of the features near a point. Every triangle, edge and corner counts at its
+/// nearest point, and most cancel.
 RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance) const {
   const Vec3 y = point + kAside * surface_.rounding * Vec3(0.618, -0.325, 0.716);
   Features list;
@@ -170,8 +172,8 @@ RigidMesh::Features RigidMesh::features_near(const Vec3& point, double distance)
   return list;
 }
 
-/// With V = Σ w β(gᵢ) and f = −β′ the gap g = β⁻¹(V) has the gradient n = Σ w f(gᵢ) nᵢ / f(g).
-/// @eq{surface-feature-sum} @eq{surface-feature-holes}
+/// Combined gap. With V = Σ w β(gᵢ) and f = −β′ the gap g = β⁻¹(V) has the gradient n = Σ w f(gᵢ)
+/// nᵢ / f(g). @eq{surface-feature-sum} @eq{surface-feature-holes}
 SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
                           const GapQuery& question) const {
   const contact::NormalLaw& law = question.law;
@@ -189,7 +191,7 @@ SurfaceGap RigidMesh::sum(const Vec3& y, const SurfaceGap& nearest,
   double V = 0.0;
   Vec3 force = Vec3::Zero();
   Mat3 stiffness = Mat3::Zero();
-  int open = 0, places = 0;  // by the features so far, and of these what counts
+  int open = 0, places = 0;  // of the features so far, and of the counted ones
   for (const auto& [g, count] : near) {
     open += count;
     const int w = std::max(1, open) - places;

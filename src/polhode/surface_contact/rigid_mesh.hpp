@@ -17,44 +17,46 @@ struct SurfaceGap {
   Mat3 curvature = Mat3::Zero();
 };
 
-/// What is asked about a gap.
+/// Parameters of a gap query.
 struct GapQuery {
-  const contact::NormalLaw& law;  ///< Which makes one gap of those of several features.
-  double at_most = std::numeric_limits<double>::infinity();  ///< Larger gaps are told as this [m].
+  const contact::NormalLaw& law;  ///< Combines the gaps of several features.
+  double at_most = std::numeric_limits<double>::infinity();  ///< Upper limit of reported gaps [m].
   bool sided = false;   ///< Gaps within surfaces of triangles are negative, see RigidMesh.
-  double radius = 0.0;  ///< Of a ball about the point: the gap is that of the ball [m].
+  double radius = 0.0;  ///< Of a ball about the point: the gap of the ball is computed [m].
 };
 
-/// A rigid surface of triangles that points of solids meet.
+/// A rigid surface of triangles in contact with points of solids.
 ///
-/// A point has a gap to each triangle, edge and corner. What they do to it together is the sum of
-/// their potentials, for each triangle, less each edge that two of them share, plus each corner
-/// inside: what neighbours have in common counts once. The gap with the potential of that sum is
-/// the one that is told, so a triangulated plane has the gap of the plane. @eq{surface-feature-sum}
+/// A point has a gap to each triangle, edge and corner. Their combined potential is the sum over
+/// triangles, minus each edge shared by two of them, plus each inner corner: common parts of
+/// neighbours count once. The reported gap has the potential of that sum, so a triangulated plane
+/// has the gap of the plane. @eq{surface-feature-sum}
 ///
-/// In order of their gaps the features that count so far sum up to the number of places at which a
-/// growing ball touches the surface, less its holes. Over a hole or a pit that is narrower than a
-/// ball this would be none: one place counts always, so nothing is pushed by less than by what is
-/// nearest. @eq{surface-feature-holes}
+/// In order of their gaps the multiplicities of the features so far sum to the number of places at
+/// which a growing ball touches the surface, minus its holes. Over a hole or a pit narrower than
+/// the ball this would be zero: one place always counts, so the force is never less than that of
+/// the nearest feature. @eq{surface-feature-holes}
 ///
-/// Triangles have two sides: no step takes a point from one to the other, and none starts within.
-/// Where points may get there all the same, as iterates of statics, the question asks for `sided`.
+/// Triangles have two sides: no step takes a point from one to the other, and no point starts
+/// inside. Where points may get inside all the same, as in iterates of statics, the query sets
+/// `sided`.
 class RigidMesh {
  public:
-  /// @param surface  A Solid::surface; one with a border is free above, towards +z.
+  /// @param surface  A Solid::surface; one with a border is open above, towards +z.
   explicit RigidMesh(contact::Shape surface);
 
   [[nodiscard]] SurfaceGap gap(const Vec3& y, const GapQuery& question) const;
-  /// The least of the gaps to features.
+  /// Smallest of the gaps to features.
   [[nodiscard]] double distance(const Vec3& y, double at_most, bool sided) const;
-  /// No point of it, nor what is behind it, is farther from the origin [m]; infinite with a border.
+  /// Radius about the origin that contains the surface and what is behind it [m]; infinite with a
+  /// border.
   [[nodiscard]] double extent() const;
 
  private:
   struct Feature {
     contact::TriangleRegion::Kind kind;
     int index = 0;  ///< Of a triangle, edge or corner.
-    int count = 0;  ///< How often it counts.
+    int count = 0;  ///< Multiplicity.
   };
   using Features = std::vector<Feature>;
 
@@ -62,7 +64,7 @@ class RigidMesh {
   [[nodiscard]] contact::TriangleTree::Hit nearest(const Vec3& y, double at_most, bool sided) const;
   [[nodiscard]] Feature feature(int triangle, const contact::TriangleRegion& region) const;
   [[nodiscard]] bool behind(const Vec3& y, const contact::TriangleTree::Hit& hit) const;
-  /// @param round  Of what is round about both, the feature and the point [m].
+  /// @param round  Rounding of feature and point together [m].
   [[nodiscard]] SurfaceGap gap_of(const Feature& feature, const Vec3& y, double round) const;
   [[nodiscard]] Features features_near(const Vec3& point, double distance) const;
   [[nodiscard]] SurfaceGap sum(const Vec3& y, const SurfaceGap& nearest,
@@ -70,7 +72,8 @@ class RigidMesh {
 
   contact::Shape surface_;
   contact::TriangleTree tree_;
-  std::vector<Vec3> outward_;  ///< By corner: of its triangles, weighted by their angles.
+  /// By corner: mean normal of its triangles, weighted by their angles.
+  std::vector<Vec3> outward_;
   bool bordered_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace polhode {
 
 namespace {
 
-/// The nearest point of a core, and its derivative.
+/// Nearest point of a core, and its derivative.
 struct Nearest {
   Vec3 point = Vec3::Zero();
   Mat3 D = Mat3::Zero();
@@ -21,7 +21,7 @@ void clamp_along(const Vec3& y, int axis, double half, Nearest& n) {
   if (std::abs(y[axis]) < half) n.D(axis, axis) = 1.0;
 }
 
-/// The disc or tube about z.
+/// Nearest point of the disc or tube about z.
 void clamp_radially(const Vec3& y, double radius, Nearest& n) {
   const double rho = std::hypot(y[0], y[1]);
   if (rho <= radius) {
@@ -36,7 +36,7 @@ void clamp_radially(const Vec3& y, double radius, Nearest& n) {
   n.D += radius / rho * t * t.transpose();
 }
 
-/// Inside a core, where no contact should ever get: out by the nearest face.
+/// Gap inside a core, which no contact should reach: exit through the nearest face.
 RigidSurface::Gap inside(const Vec3& depth, const Vec3 (&normals)[3], double offset) {
   Eigen::Index face = 0;
   const double least = depth.minCoeff(&face);
@@ -77,8 +77,8 @@ double RigidSurface::distance(const Vec3& y, double at_most, bool sided) const {
       .distance;
 }
 
-/// With c the nearest point of the core, d = |y − c|, n = (y − c)/d: the gap d
-/// − radius has the Hessian (I − Dc − n nᵀ)/d. @eq{surface-gap}
+/// Gap to a core. With c the nearest point of the core, d = |y − c|, n = (y − c)/d: the gap d −
+/// radius has the Hessian (I − Dc − n nᵀ)/d. @eq{surface-gap}
 RigidSurface::Gap RigidSurface::plain_gap(const Vec3& y) const {
   Nearest core;
   double offset = radius;

@@ -7,11 +7,11 @@
 
 namespace polhode {
 
-/// A rigid surface that points of solids meet, in coordinates y of its own.
+/// A rigid surface in contact with points of solids, in its own coordinates y.
 ///
-/// Gaps are distances to a convex core (plane, point, segment, disc, box) less
-/// a radius, so they and their gradients are continuous; edges are rounded by
-/// `rounding`. What is not convex is a surface of triangles, see RigidMesh.
+/// Gaps are distances to a convex core (plane, point, segment, disc, box) minus a radius, so they
+/// and their gradients are continuous; edges are rounded by `rounding`. Nonconvex shapes are
+/// surfaces of triangles, see RigidMesh.
 struct RigidSurface {
   enum class Kind : unsigned char {
     plane,          ///< z = 0, the free side above.
@@ -19,9 +19,9 @@ struct RigidSurface {
     capsule,        ///< About the z axis, ends of its axis at ±half[2].
     cylinder,       ///< About the z axis, from −half[2] to half[2].
     box,            ///< From −half to half.
-    hollow_sphere,  ///< What lies inside a sphere about the origin is free.
+    hollow_sphere,  ///< About the origin; its inside is free.
     convex,         ///< `solid`: an ellipsoid, cone or convex hull.
-    mesh            ///< `triangles`: of a closed surface or a field of heights.
+    mesh            ///< `triangles`: of a closed surface or a height field.
   };
   Kind kind = Kind::plane;
   double radius = 0.0;       ///< [m]
@@ -32,12 +32,12 @@ struct RigidSurface {
 
   using Gap = SurfaceGap;
   [[nodiscard]] Gap gap(const Vec3& y, const GapQuery& question) const;
-  /// How far the surface is: the gap, of several features the least one.
+  /// Distance to the surface: the gap, of several features the smallest one.
   /// @param at_most  As in GapQuery, like `sided`.
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;
-  /// No point of it is farther from the origin [m]; infinite for planes, fields of heights and
+  /// Radius about the origin that contains the surface [m]; infinite for planes, height fields and
   /// where it is not known.
   [[nodiscard]] double extent() const;
 

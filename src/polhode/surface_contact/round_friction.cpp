@@ -8,7 +8,7 @@ namespace {
 
 using contact::V3;
 
-/// Two sides of a triangle and its normal, in which what turns with it is told.
+/// Two sides of a triangle and its normal, the frame of vectors that rotate with it.
 template <class T>
 struct Sides : SlidePlane<T> {
   V3<T> normal;
@@ -18,7 +18,7 @@ struct Sides : SlidePlane<T> {
     per = 1.0 / norm(across);
     normal = per * across;
   }
-  /// A vector given by its parts, as long as `length`.
+  /// Vector with given components, scaled to `length`.
   [[nodiscard]] V3<T> along(const double (&parts)[3], double length) const {
     const V3<T> s = parts[0] * this->e + parts[1] * this->f + parts[2] * normal;
     return scaled(s, length);
@@ -48,7 +48,7 @@ Sides<T> sides_at(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
   return {b - a, c - a};
 }
 
-/// What turns with the triangle does not slide: ω is its rotation, exact if it turns as a whole.
+/// Slip relative to the triangle. ω is the triangle's rotation, exact for rigid rotations.
 template <class T>
 RoundPoint<T> round_point_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                                    const T& pressure, const Vec3& kept, bool seeded) {

@@ -5,10 +5,10 @@
 
 namespace polhode {
 
-/// Friction of what is round about a point, such as a cable, on a triangle: across the way to the
-/// nearest place of the triangle, be that on its face, an edge or a corner.
+/// Friction of a round section about a point, such as a cable, on a triangle: normal to the
+/// connection with the nearest point of the triangle, be that on its face, an edge or a corner.
 /// @eq{cable-mesh-friction}
-/// @param kept  The bristle at t_n; it turns with the triangle.
+/// @param kept  The bristle at t_n; it rotates with the triangle.
 [[nodiscard]] FourSlide round_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                                        double pressure, const Vec3& kept, bool tangent);
 

@@ -12,7 +12,7 @@ std::array<Mat3, 4> slip_rates(const Vec3 (&x)[4], const Eigen::Vector4d& c, con
   const Vec3 m = per * across;
   Vec3 y = Vec3::Zero();
   for (int k = 1; k < 4; ++k) y += c[k] * (x[k] - x[0]);
-  // ω by the rates of both edges.
+  // Derivatives of ω by the rates of both edges.
   const Mat3 turn = hat(y), by_e = turn * (per * (0.5 * m * f.transpose() - f * m.transpose())),
              by_f = turn * (per * (e * m.transpose() - 0.5 * m * e.transpose()));
   std::array<Mat3, 4> rates;

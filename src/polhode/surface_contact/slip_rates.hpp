@@ -10,14 +10,13 @@ namespace polhode {
 /// Two edges among four points, by the numbers of their ends.
 using TwoEdges = std::array<int, 4>;
 
-/// Velocity of the nearest points of two features against each other in the plane across n, by the
+/// Relative velocity of the nearest points of two features in the plane normal to n, by the
 /// velocities of their four points,
 ///
 ///   v_T = (I − n nᵀ)(Σ c_k v_k − ω × y),   y = Σ c_k x_k
 ///
-/// with the rotation ω of two edges that are told: what turns as a whole does not slide.
-/// @param n  Unit, along y.
-/// @eq{edge-friction} @eq{mesh-friction}
+/// with the rotation ω of the two given edges: a rotation of the whole causes no slip.
+/// @param n  Unit, along y. @eq{edge-friction} @eq{mesh-friction}
 [[nodiscard]] std::array<Mat3, 4> slip_rates(const Vec3 (&x)[4], const Eigen::Vector4d& c,
                                              const Vec3& n, const TwoEdges& edges);
 

@@ -16,16 +16,16 @@
 
 namespace polhode {
 
-/// Points of the surface of a solid against the triangles of another one's, or of its own: the
+/// Contact of points of a solid's surface with the triangles of another surface, or of its own: the
 /// potential Σ A β(d − g_tol), with d the distance of a point to the nearest triangle.
 ///
-/// d is never negative: surfaces keep apart, by 2 g_tol where they do not press. Forces act along
-/// the connections of points, see CentralGap, so energy and both momenta are kept exactly at
-/// ρ∞ = 1, whatever triangle is the nearest one. Each point knows the triangles that it may meet,
-/// see ContactNeighbours. @eq{mesh-contact}
+/// d is never negative: surfaces are kept apart, by 2 g_tol where they exert no pressure. Forces
+/// act along connecting lines of points, see CentralGap, so energy and both momenta are conserved
+/// exactly at ρ∞ = 1, whichever triangle is the nearest one. Each point has a list of candidate
+/// triangles, see ContactNeighbours. @eq{mesh-contact}
 ///
-/// Points of a cable keep its radius away, and what they have to triangles is a MeshGap: the gap is
-/// the distance less the radius. @eq{cable-on-mesh}
+/// Points of a cable stay its radius away, and their distance to triangles is a MeshGap: the gap is
+/// the distance minus the radius. @eq{cable-on-mesh}
 class SolidContact final : public ElementGroup,
                            public BarrierConstraint,
                            public ChangingSparsity,
@@ -66,12 +66,12 @@ class SolidContact final : public ElementGroup,
   const SurfaceLaw& law() const override { return law_; }
   std::size_t places() const override { return points_.size(); }
   [[nodiscard]] bool of_cable() const { return cable_.radius > 0.0; }
-  /// Of each point at the start, behind the nearest triangle less than zero; NaN where nothing is
+  /// Gaps of the points at the start, negative behind the nearest triangle; NaN where nothing is
   /// near [m].
   [[nodiscard]] std::vector<double> gaps_at_start() const;
   [[nodiscard]] const std::vector<MeshPoint>& points() const { return points_; }
   [[nodiscard]] double radius() const { return cable_.radius; }  ///< About its points [m].
-  /// Pairs of a point and a triangle that are looked at.
+  /// Number of candidate pairs of a point and a triangle.
   [[nodiscard]] int candidates(const double* history) const;
   void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
@@ -89,9 +89,9 @@ class SolidContact final : public ElementGroup,
   struct Field;
   struct Slide;
 
-  /// Triangles by point, found where nodes were; and the blocks of the tangent.
+  /// Triangles by point at the positions of a search, and the blocks of the tangent.
   struct Search {
-    std::vector<double> key;  ///< The part of the history that it follows from.
+    std::vector<double> key;  ///< Part of the history that determines the result.
     std::vector<int> first, triangle;
     ContactNeighbours::Blocks blocks;
   };
@@ -100,11 +100,11 @@ class SolidContact final : public ElementGroup,
     int triangle = -1;
     NearestFour four;
   };
-  /// A point that acts, over a step.
+  /// An active point over a step.
   struct Action {
     MeshGap at_n, at_n1;
     contact::ForceAndSlope pressure;      ///< Conjugate to the distance.
-    contact::ForceAndSlope normal_force;  ///< Of what acts on the point: the resultant.
+    contact::ForceAndSlope normal_force;  ///< Resultant on the point.
     double gap_n = 0.0, gap_n1 = 0.0;     ///< [m]
     PointPhase phase;                     ///< In the step.
     bool acts = false;
@@ -141,13 +141,13 @@ class SolidContact final : public ElementGroup,
                                        int point, const Nearest& nearest) const;
   [[nodiscard]] Vec3 way_out(const Field& field, const Nearest& nearest, int point,
                              double signed_distance) const;
-  /// A point and the triangles around it on a straight way.
+  /// A point and its nearby triangles on a straight displacement.
   struct Way;
   [[nodiscard]] FourMoves moves(const Field& x_n1, const Field& u, int point, int triangle) const;
   template <class Use>
   void with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point, const Action& a,
                 Use&& use) const;
-  /// How far a point at a distance may come nearer.
+  /// Distance by which a point may come nearer.
   [[nodiscard]] double clearance(double distance) const {
     return distance - centre_ + law_.normal.tolerance;
   }
@@ -155,7 +155,7 @@ class SolidContact final : public ElementGroup,
   [[nodiscard]] Action act(const NodeStep& step, const Field& x_n, const Field& x_n1,
                            std::span<const int> triangles, int point,
                            const PointMemory& memory) const;
-  /// Of the gap at t_n.
+  /// Rate of the gap at t_n.
   [[nodiscard]] double rate_n(const NodeStep& step, const Field& x_n, const Nearest& nearest,
                               int point) const;
   void add_rates(const Field& x, const MeshGap& gap, int point, SurfaceImpact& impact) const;
@@ -176,7 +176,7 @@ class SolidContact final : public ElementGroup,
   RoundLine cable_;
   double centre_ = 0.0;  ///< Distance at which the gap is zero [m].
   ContactNeighbours nodes_;
-  mutable Search search_;  ///< Of the last history asked for.
+  mutable Search search_;  ///< For the last history queried.
 };
 
 }  // namespace polhode

@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// Positions, or moves, of nodes and of the vertices of a surface.
+/// Positions, or displacements, of nodes and of the vertices of a surface.
 struct SolidContact::Field {
   const double* nodes;
   std::vector<Vec3> vertices;
@@ -17,8 +17,8 @@ struct SolidContact::Field {
   }
 };
 
-/// Calls use(gap, at) with the CentralGapOf of what a point has over a step, and the MeshPoint of
-/// each of its points.
+/// Calls use(gap, at) with the CentralGapOf of a point over a step and the MeshPoint of each point
+/// in it.
 template <class Use>
 void SolidContact::with_gap(const NodeStep& step, const Field& x_n1, const Field& u, int point,
                             const Action& a, Use&& use) const {

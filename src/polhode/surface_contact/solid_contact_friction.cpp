@@ -13,10 +13,10 @@ namespace {
 
 using contact::V3;
 
-/// Distances that differ by less are alike: the first triangle counts.
+/// Relative difference below which distances are equal: the first triangle counts.
 constexpr double kAlike = 1e-9;
 
-/// What acts on the point and on the corners of the triangle.
+/// Forces on the point and on the corners of the triangle.
 template <class T>
 struct PointOnTriangle {
   V3<T> force[4], slid;
@@ -28,8 +28,7 @@ SlidePlane<T> slide_plane(const V3<T>& a, const V3<T>& b, const V3<T>& c) {
   return {b - a, c - a};
 }
 
-/// @param seeded  Derivatives by x_{n+1}; else those of the pressure.
-/// @eq{mesh-friction}
+/// @param seeded  Derivatives by x_{n+1}; else by the pressure. @eq{mesh-friction}
 template <class T>
 PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const SurfaceLaw& law,
                                      const T& pressure, const Vec3& kept, bool seeded) {
@@ -57,8 +56,8 @@ PointOnTriangle<T> triangle_friction(const FourMoves& moves, double alpha, const
 SolidContact::Slide SolidContact::slide(const NodeStep& step, const Field& x_n1, const Field& u,
                                         std::span<const int> triangles, int point, double pressure,
                                         const PointMemory& memory, bool tangent) const {
-  // The triangle at t_n: where another one came next in the middle of the step, the plane of
-  // friction would jump, and with it a force that increments follow.
+  // The triangle at t_n is used: a change of the nearest triangle within the step would make the
+  // friction plane jump, and with it a force that depends on the iterate.
   Slide slide;
   FourMoves moves;
   double least = std::numeric_limits<double>::infinity();

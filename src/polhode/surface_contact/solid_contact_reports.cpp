@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What contact of solids takes, remembers and tells.
+// Losses, history and reports of the contact of solids.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -133,13 +133,14 @@ Vec3 SolidContact::normal(const Field& field, const MeshGap& gap, int point) con
   return sum.normalized();
 }
 
-/// Where what is round about a point is nearest to the surface.
+/// Point of the round section about a point that is nearest to the surface.
 Vec3 SolidContact::foot(const Field& field, const MeshGap& gap, int point) const {
   const Vec3 at = points_[static_cast<std::size_t>(point)].at(field.nodes);
   return of_cable() ? Vec3(at - cable_.radius * normal(field, gap, point)) : at;
 }
 
-/// Where nodes were looked at last; NaN where nothing is near. @eq{surface-start}
+/// Writes the start of a history: the node positions of the search; NaN where nothing is near.
+/// @eq{surface-start}
 void SolidContact::write_start(double* history) const {
   const std::vector<double> x = nodes_.positions(history);
   const Search& s = search(history);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a point of a solid's surface may meet, and how far nodes may move until these
-// have to be looked for again.
+// Search for the triangles near points of a solid's surface, and limits of node displacements until
+// the search has to be repeated.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,13 +16,14 @@ namespace polhode {
 
 namespace {
 
-/// Less deep than this part of the tolerance is rounding: surfaces touch.
+/// Depth, as a part of the tolerance, below which surfaces count as in contact, not as overlapping.
 constexpr double kRounding = 1e-6;
-/// Clearances beyond this many bands are all alike.
+/// Clearance, in bands, above which all are equal.
 constexpr double kFar = 10.0;
-/// Of the radius of a cable: what comes nearer on the straight way of a step goes through.
+/// Part of a cable's radius: a smaller distance on the straight displacement of a step is a
+/// pass-through.
 constexpr double kThrough = 0.5;
-/// Part of an increment that is left where it would lead around.
+/// Part of an increment that remains where it would lead around.
 constexpr double kShorter = 0.25;
 
 double distance_to(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -53,8 +54,8 @@ const SolidContact::Search& SolidContact::search(const double* history) const {
   return search_;
 }
 
-/// Not a triangle that it belongs to, nor one that moves with it, nor, of one surface, what was
-/// together from the start.
+/// Whether a point and a triangle may be in contact: not if it belongs to the triangle or moves
+/// with it, nor, on one surface, if they are near at the start.
 bool SolidContact::may_meet(int point, int triangle) const {
   const MeshPoint& p = points_[static_cast<std::size_t>(point)];
   const auto corner = [&](int k) -> const MeshPoint& { return this->corner(point, triangle, k); };
@@ -89,7 +90,7 @@ void SolidContact::find(Search& s) const {
   std::vector<Vec3> at;
   for (const MeshPoint& p : points_) {
     at.push_back(place(p));
-    // Boxes of points are small, but not so small that they would want a grid of their own.
+    // Bounding boxes of points are small, but not so small that they need a grid of their own.
     const Vec3 half = Vec3::Constant(1e-3 * size);
     boxes.push_back({at.back() - half, at.back() + half});
   }
@@ -158,7 +159,7 @@ struct SolidContact::Way {
   };
   Corner point;
   std::vector<std::array<Corner, 3>> triangles;
-  double length = 0.0;  ///< No corner goes farther against the point.
+  double length = 0.0;  ///< Largest relative displacement of a corner and the point.
 
   Way(const SolidContact& c, const Field& from, const Field& to, std::span<const int> list, int p) {
     const MeshPoint& own = c.points_[static_cast<std::size_t>(p)];
@@ -181,7 +182,7 @@ struct SolidContact::Way {
       least = std::min(least, distance_to(at(point), at(t[0]), at(t[1]), at(t[2])));
     return least;
   }
-  /// Whether the point comes nearer than this, as far as one of its moves may take it.
+  /// Whether the point comes nearer than this on the displacement.
   [[nodiscard]] bool comes_nearer(double least) const {
     if (length < least) return false;
     double part = 0.0;
@@ -194,9 +195,9 @@ struct SolidContact::Way {
   }
 };
 
-/// The distance of a point to a triangle changes by no more than the largest way of one of the
-/// triangle's corners against the point. A cable has no inside that iterates could not be led
-/// around, see SurfaceContact.
+/// Admissible part of a displacement. The distance of a point to a triangle changes by at most the
+/// largest relative displacement of a corner and the point. For cables the displacement of the
+/// whole step is checked as well, since iterates could be led around them, see SurfaceContact.
 double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
                                const double* history) const {
   double most = nodes_.free_part(from.x_n1, to.x_n1, history);
@@ -224,10 +225,11 @@ double SolidContact::free_part(const NodeStep& from, const NodeStep& to,
   return most;
 }
 
-/// A point that is behind the triangle nearest to it is in the other solid: less than zero.
+/// Signed distance of a point, negative if it is behind its nearest triangle, inside the other
+/// solid.
 double SolidContact::signed_distance(const Field& field, std::span<const int> triangles, int point,
                                      const Nearest& nearest) const {
-  // Of triangles with the same nearest point, the one that is seen most from the front.
+  // Of triangles with the same nearest point, the one most nearly facing the point decides.
   double side = -std::numeric_limits<double>::infinity();
   for (const int t : triangles) {
     Vec3 at[4];
@@ -238,7 +240,7 @@ double SolidContact::signed_distance(const Field& field, std::span<const int> tr
   return side < 0.0 ? -nearest.four.distance : nearest.four.distance;
 }
 
-/// Along the distance, or where that is none along the normal of the triangle.
+/// Direction of exit along the distance, or, where that is zero, along the normal of the triangle.
 Vec3 SolidContact::way_out(const Field& field, const Nearest& nearest, int point,
                            double signed_distance) const {
   if (nearest.four.distance > kRounding * law_.normal.tolerance)

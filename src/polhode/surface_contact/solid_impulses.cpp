@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What points of a mesh do in an impact on another one, between closing and turning.
+// Impacts of points of a mesh on another one, from closing to the turn.
 #include <cmath>
 #include <cstddef>
 
@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// From the triangle to the point.
+/// Vector from the triangle to the point.
 Vec3 way_between(const Vec3 (&x)[4], const NearestFour& four) {
   Vec3 y = Vec3::Zero();
   for (int k = 1; k < 4; ++k) y += four.c[k] * (x[k] - x[0]);
@@ -29,8 +29,9 @@ double SolidContact::rate_n(const NodeStep& step, const Field& x_n, const Neares
   return way_between(x, nearest.four).normalized().dot(v);
 }
 
-/// The normal rate is that of the distance of all features near by, over the resultant that they
-/// exert on the point; the point slides on the nearest one. @eq{mesh-impact}
+/// Adds the rates of a point. The normal rate is that of the combined distance of all nearby
+/// features over their resultant on the point; the point slides on the nearest one.
+/// @eq{mesh-impact}
 void SolidContact::add_rates(const Field& x, const MeshGap& gap, int point,
                              SurfaceImpact& impact) const {
   const auto add = [&](int triangle, int k, const Mat3& J) {
@@ -83,7 +84,7 @@ void SolidContact::impacts(const NodeStep& step, const double* history,
     const double all = law.force(a.gap_n1);
     for (const MeshGap::Part& part : a.at_n1.parts) {
       const double own = part.four.distance - centre_;
-      // Features count a whole number of times.
+      // Multiplicities of features are integers.
       const double weight = a.at_n1.single() ? 1.0 : std::round(part.share * all / law.force(own));
       impact.terms.push_back({weight, own});
     }

@@ -8,9 +8,9 @@ namespace polhode {
 
 namespace {
 
-/// Of the longest edge of a triangle; see overlap().
+/// Smallest overlap, as a part of the longest edge of a triangle; see overlap().
 constexpr double kLess = 0.1;
-/// Likewise: how far outside a face it is looked whether another part of the solid is there.
+/// Distance outside a face at which another part of the solid is searched for, in the same unit.
 constexpr double kAbove = 1e-6;
 
 std::vector<Vec3> places(const std::vector<MeshPoint>& vertices, const double* x) {
@@ -48,7 +48,7 @@ std::optional<SurfaceOverlap> SolidInside::overlap(const Vec3& centre, double ra
   return found;
 }
 
-/// To triangles without a corner in common with this one.
+/// Distance to triangles without a common corner with this one.
 double SolidInside::distance_to_others(const Vec3& x, const std::array<int, 3>& face) const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& t : triangles_) {

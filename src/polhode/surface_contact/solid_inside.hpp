@@ -9,21 +9,20 @@
 
 namespace polhode {
 
-/// The inside of a solid at an instant, however far that is from its surface.
+/// Interior of a solid at an instant, at any distance from its surface.
 class SolidInside {
  public:
-  /// @param boundary  All of it, closed.
-  /// @param x         Positions of nodes.
+  /// @param boundary  The whole boundary, closed.
+  /// @param x  Positions of nodes.
   SolidInside(const MeshSurface& boundary, const double* x);
 
-  /// How a ball lies in the solid. What reaches through a face by less than a tenth of the face is
-  /// not in it: triangles are no nearer to curved faces, and points of contact no nearer to each
-  /// other.
+  /// Overlap of a ball with the solid. Penetration of a face by less than a tenth of the face's
+  /// size is ignored: triangles and contact points are no closer to curved faces than that.
   /// @param radius  [m]; 0: a point.
   [[nodiscard]] std::optional<SurfaceOverlap> overlap(const Vec3& centre, double radius) const;
 
-  /// The deepest face that lies in another part of the solid, if any does, as overlap() has it. The
-  /// way out is not known.
+  /// Overlap of the deepest face that lies in another part of the solid, if any does; see
+  /// overlap(). The direction of exit is not known.
   [[nodiscard]] std::optional<SurfaceOverlap> overlap_with_itself() const;
 
   /// Median of the triangles' longest edges [m].

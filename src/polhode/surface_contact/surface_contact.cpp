@@ -13,7 +13,7 @@ namespace {
 using contact::Dual;
 using contact::V3;
 
-/// Displacements below this part of the band leave no direction to correct.
+/// Displacement, as a part of the band, below which it has no direction to correct.
 constexpr double kNoDirection = 1e-6;
 
 Vec3 at(const double* x, int node) { return NodeStep::at(x, node); }
@@ -56,7 +56,7 @@ RigidSurface::Gap SurfaceContact::gap(const Vec3& y, const GapQuery& question) c
 double SurfaceContact::distance(const Vec3& y, double at_most, bool sided) const {
   if (is_far(y, at_most)) return at_most;
   const double limit = at_most + radius(), found = surface_.distance(y, limit, sided);
-  return found < limit ? found - radius() : at_most;  // to the last digit, where nothing is near
+  return found < limit ? found - radius() : at_most;  // exact where nothing is near
 }
 
 Vec3 SurfaceContact::foot(const double* x, int point) const {
@@ -99,7 +99,7 @@ Vec3 SurfaceContact::local_rate(const double* x, const double* v, int point) con
   return y_dot;
 }
 
-/// Of the surface, columns.
+/// Axes of the surface as columns.
 Mat3 SurfaceContact::axes(const double* x) const {
   if (frame_ == 0) return place_.axes;
   Mat3 R;
@@ -111,7 +111,7 @@ Mat3 SurfaceContact::axes(const double* x) const {
 
 namespace {
 
-/// A vector at t_{n+1} with its derivative by y_{n+1}.
+/// Vector at t_{n+1} with its derivative by y_{n+1}.
 template <class T>
 V3<T> with_derivative(const Vec3& value, const Mat3& D) {
   if constexpr (std::is_same_v<T, double>) {
@@ -134,11 +134,11 @@ T with_derivative(double value, const Vec3& D) {
 
 namespace {
 
-/// Weights of forces this close to the end of the barrier, as part of its band, are those there:
-/// only iterates get nearer.
+/// Height above the end of the barrier, as a part of its band, below which the weights of forces
+/// are constant. Only iterates get there.
 constexpr double kDeepInSurface = 1e-9;
 
-/// The force at the end of a step as a weight for its direction.
+/// Force at the end of a step, as a weight for its direction.
 template <class T>
 T weight(const contact::NormalLaw& law, double gap, const Vec3& normal) {
   const double least = law.floor() + 2.0 * kDeepInSurface * law.tolerance;
@@ -146,8 +146,8 @@ T weight(const contact::NormalLaw& law, double gap, const Vec3& normal) {
   return with_derivative<T>(f.value, gap < least ? Vec3(Vec3::Zero()) : Vec3(f.slope * normal));
 }
 
-/// The mean of the gap's gradients at both ends by the forces there. An end where nothing acts
-/// does not matter: what is nearest there may be another part of the surface.
+/// Mean of the gap's gradients at both ends, weighted by the forces there. An end without force
+/// does not contribute: its nearest feature may be another part of the surface.
 template <class T>
 V3<T> mean_normal(const contact::NormalLaw& law, double alpha, const RigidSurface::Gap& g_n,
                   const RigidSurface::Gap& g_n1) {
@@ -160,7 +160,7 @@ V3<T> mean_normal(const contact::NormalLaw& law, double alpha, const RigidSurfac
 
 }  // namespace
 
-/// Everything that depends on y_{n+1}, with or without its derivatives.
+/// All quantities that depend on y_{n+1}, with or without their derivatives.
 template <class T>
 struct SurfaceContact::Terms {
   V3<T> h, friction, bristle, slid;
@@ -187,7 +187,7 @@ struct SurfaceContact::Terms {
       N = N + ((change - dot(middle, u)) / dot(u, u)) * u;
     }
     h = lambda * N;
-    if (!(contact::value(mean).norm() > 0.0)) return;  // round a sharp edge, from front to back
+    if (!(contact::value(mean).norm() > 0.0)) return;  // around a sharp edge, from front to back
     const T length = norm(mean);
     pressure = lambda * length;
     if (law.mu == 0.0 || context.dt == 0.0) return;
@@ -213,7 +213,7 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point,
   const double reach = law.normal.reach();
   const LocalMotion place = this->place(step, point);
   const Vec3 way = place.at_n1 - place.at_n;
-  // Of a gap that acts at the other end of the step only, the value matters as well.
+  // The value matters also where the gap is active only at the other end of the step.
   const GapQuery question{law.normal, law_.normal.reach() + way.norm(), sided(step)};
   const RigidSurface::Gap g_n1 = gap(place.at_n1, question);
   const RigidSurface::Gap g_n = way.isZero(0.0) ? g_n1 : gap(place.at_n, question);
@@ -256,16 +256,14 @@ SurfaceContact::Action SurfaceContact::act(const NodeStep& step, int point,
 
 namespace {
 
-/// Forces and stiffness between the point p and the four nodes of the frame: p
-/// first.
+/// Forces and stiffness between the point p and the four nodes of the frame, p first.
 struct Central {
   Eigen::Matrix<double, 15, 1> f = Eigen::Matrix<double, 15, 1>::Zero();
   Eigen::Matrix<double, 15, 15> K = Eigen::Matrix<double, 15, 15>::Zero();
 };
 
-/// y_k = (|p − x_0|² − |p − x_k|² + ℓ²)/(2ℓ): force Σ h_k ∂y_k at averaged
-/// distances.
-/// @eq{surface-squared-distances}
+/// Central forces of y_k = (|p − x_0|² − |p − x_k|² + ℓ²)/(2ℓ): force Σ h_k ∂y_k at averaged
+/// distances. @eq{surface-squared-distances}
 Central central_forces(const Vec3& h, const Mat3* D, const Vec3 (&d_alpha)[4],
                        const Vec3 (&d_n1)[4], double size, double alpha_f) {
   using Columns = Eigen::Matrix<double, 15, 3>;

@@ -16,11 +16,11 @@
 
 namespace polhode {
 
-/// Where the rigid surface stands.
+/// Placement of the rigid surface.
 ///
-/// On a body it is carried by four nodes bonded to it: the origin of the
-/// surface's coordinates, and its distance `size` along each of the axes.
-/// Positions of nodes alone then tell everything.
+/// On a body it is carried by four nodes bonded to it: the origin of the surface's coordinates, and
+/// points at the distance `size` along each of the axes. The placement then follows from node
+/// positions alone.
 struct SurfacePlace {
   Vec3 origin = Vec3::Zero();                ///< On the ground: world [m].
   Mat3 axes = Mat3::Identity();              ///< Columns, world.
@@ -33,20 +33,19 @@ struct SurfacePlace {
 /// Faces of a solid, or a cable, against a rigid surface: the potential ∫ β(g) dA over the
 /// reference area.
 ///
-/// The forces of a point are functions of its coordinates y in the surface's
-/// axes, and y of squared distances between nodes: central forces, so that
-/// energy and both momenta are kept exactly at ρ∞ = 1.
-/// @eq{surface-squared-distances}
+/// The forces of a point are functions of its coordinates y in the surface's axes, and y of squared
+/// distances between nodes: central forces, so that energy and both momenta are conserved exactly
+/// at ρ∞ = 1. @eq{surface-squared-distances}
 ///
-/// The history holds, for each point, bristle, slip and what acted in the last
-/// step, and then sums over the run: all that reports tell goes with the state.
+/// The history holds, for each point, bristle, slip and forces of the last step, and then sums over
+/// the run: all that reports contain is part of the state.
 class SurfaceContact final : public ElementGroup,
                              public BarrierConstraint,
                              public SurfaceContactInterface,
                              public SurfaceImpacts {
  public:
-  /// @param X  Positions at the start by the system's node numbers; of a moving surface the nodes
-  ///           that carry it are among them.
+  /// @param X  Positions at the start by the system's node numbers, including the nodes that carry
+  /// a moving surface.
   SurfaceContact(std::string name, SurfacePoints points, const std::vector<Vec3>& X,
                  const RigidSurface& surface, const SurfacePlace& place, const SurfaceLaw& law);
 
@@ -77,7 +76,7 @@ class SurfaceContact final : public ElementGroup,
   const SurfaceLaw& law() const override { return law_; }
   std::size_t places() const override { return points_.points.size(); }
   [[nodiscard]] bool of_cable() const { return points_.radius > 0.0; }
-  /// Of each point [m]. @param X  See the constructor.
+  /// Gaps of the points [m]. @param X  See the constructor.
   [[nodiscard]] std::vector<double> gaps(const std::vector<Vec3>& X) const;
   void begin_at(const NodeStep& instant, double* history) const override;
   [[nodiscard]] SurfaceReport report(const double* history) const override;
@@ -96,10 +95,10 @@ class SurfaceContact final : public ElementGroup,
   struct LocalMotion {
     Vec3 at_n, at_n1;
   };
-  /// What acts at a point over a step, conjugate to y, per unit of area.
+  /// Force of a point over a step, conjugate to y, per unit of area.
   struct Action {
     Vec3 h = Vec3::Zero();
-    Mat3 D = Mat3::Zero();         ///< By y_{n+1}.
+    Mat3 D = Mat3::Zero();         ///< Derivative by y_{n+1}.
     Vec3 friction = Vec3::Zero();  ///< Part of h.
     Vec3 slid = Vec3::Zero();      ///< Tangential displacement.
     Vec3 bristle = Vec3::Zero();   ///< At t_{n+1}.
@@ -110,25 +109,26 @@ class SurfaceContact final : public ElementGroup,
     PointPhase phase;            ///< In the step.
     bool acts = false, slips = false;
   };
-  /// Energy per unit of area: stored at the end, taken over the step.
+  /// Energy per unit of area: stored at the end, dissipated over the step.
   struct Energies {
     double stored = 0.0, by_friction = 0.0, by_pressure = 0.0;
   };
   template <class T>
   struct Terms;
 
-  /// Between what is round about a point and the surface.
+  /// Gap between the round section about a point and the surface.
   [[nodiscard]] RigidSurface::Gap gap(const Vec3& y, const GapQuery& question) const;
   [[nodiscard]] double distance(const Vec3& y,
                                 double at_most = std::numeric_limits<double>::infinity(),
                                 bool sided = false) const;
   [[nodiscard]] double radius() const { return points_.radius; }
-  /// Of a cable most is far from most shapes.
+  /// Whether the point is far from the surface: a quick test, as most of a cable is far from most
+  /// shapes.
   [[nodiscard]] bool is_far(const Vec3& y, double at_most) const {
     return of_cable() && y.norm() - extent_ - radius() > at_most;
   }
   [[nodiscard]] Vec3 position(const double* x, int point) const;
-  /// Where what is round about a point is nearest to the surface.
+  /// Point of the round section about a point that is nearest to the surface.
   [[nodiscard]] Vec3 foot(const double* x, int point) const;
   [[nodiscard]] Vec3 local(const double* x, int point) const;
   [[nodiscard]] Mat3 axes(const double* x) const;
@@ -147,7 +147,7 @@ class SurfaceContact final : public ElementGroup,
   }
   /// Where the totals begin, behind the points.
   [[nodiscard]] std::size_t totals() const { return place_of(size()); }
-  /// At an instant.
+  /// Law at an instant.
   [[nodiscard]] SurfaceLaw law_of(const PointMemory& memory) const {
     return beginning_later(law_, memory.phase.lowered);
   }
@@ -169,7 +169,7 @@ class SurfaceContact final : public ElementGroup,
   SurfacePoints points_;
   double extent_ = 0.0;                ///< Of the surface about its origin [m].
   std::vector<int> nodes_;             ///< Of each point: of its face, then of the frame.
-  std::vector<double> gaps_at_start_;  ///< Of each point [m].
+  std::vector<double> gaps_at_start_;  ///< Of each point, at the start [m].
 };
 
 }  // namespace polhode

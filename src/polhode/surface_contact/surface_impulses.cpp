@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What points of a surface do in an impact, between closing and turning.
+// Impacts of points of a surface, from closing to the turn.
 #include <algorithm>
 
 #include <polhode/surface_contact/surface_contact.hpp>
 
 namespace polhode {
 
-/// Both sides at the place where the point is, so that impulses leave neither sum nor moment.
-/// @eq{surface-turn}
+/// Adds the impacts of points. Both sides act at the position of the point, so that impulses have
+/// neither resultant nor moment. @eq{surface-turn}
 void SurfaceContact::impacts(const NodeStep& step, const double* history,
                              std::vector<SurfaceImpact>& list) const {
   if (!step.context.conserving || !(step.context.dt > 0.0)) return;
@@ -24,7 +24,7 @@ void SurfaceContact::impacts(const NodeStep& step, const double* history,
     for (int k = 0; k < n_; ++k)
       if (point.N[k] != 0.0) s.add(own[static_cast<std::size_t>(k)], point.N[k] * Mat3::Identity());
     if (frame_ > 0) {
-      // Its place on the body is affine in the nodes of the frame.
+      // Its position on the body is affine in the nodes of the frame.
       const Vec3 y = local(step.x_n1, i) / place_.size;
       s.add(place_.nodes[0], (y.sum() - 1.0) * Mat3::Identity());
       for (std::size_t k = 0; k < 3; ++k)

@@ -9,32 +9,32 @@
 
 namespace polhode {
 
-/// How the surface of a solid and another one act on each other, per
-/// reference area.
+/// Contact law of the surface of a solid with another one, per reference area.
 struct SurfaceLaw {
   contact::NormalLaw normal;  ///< Stiffness in Pa/m.
-  double end_share = 0.0;     ///< Part of the pressure that is that of the step's
-                              ///< end: takes energy.
-  double mu = 0.0;            ///< Coefficient of friction [-].
-  double bristle = 0.0;       ///< Stiffness of the friction bristle [Pa/m].
+  /// Part of the pressure that is evaluated at the end of the step: dissipative.
+  double end_share = 0.0;
+  double mu = 0.0;       ///< Coefficient of friction [-].
+  double bristle = 0.0;  ///< Stiffness of the friction bristle [Pa/m].
 };
 
-/// What the contact did over the last step, and since the start.
+/// Results of the contact over the last step, and since the start.
 struct SurfaceReport {
-  double least_gap = 0.0;          ///< At the end of the step [m].
-  double normal_force = 0.0;       ///< Sum of pressure times area [N].
-  Vec3 force = Vec3::Zero();       ///< On the solid, friction included [N], world.
-  Vec3 friction = Vec3::Zero();    ///< Its tangential part [N].
-  Vec3 point = Vec3::Zero();       ///< Mean of the points, by normal force [m]; zero if none acts.
-  double area = 0.0;               ///< Of points that act [m²], reference.
+  double least_gap = 0.0;        ///< At the end of the step [m].
+  double normal_force = 0.0;     ///< Sum of pressure times area [N].
+  Vec3 force = Vec3::Zero();     ///< On the solid, friction included [N], world.
+  Vec3 friction = Vec3::Zero();  ///< Its tangential part [N].
+  /// Mean of the points, weighted by normal force [m]; zero if none acts.
+  Vec3 point = Vec3::Zero();
+  double area = 0.0;               ///< Reference area of active points [m²].
   double largest_pressure = 0.0;   ///< [Pa]
-  int sticking = 0, slipping = 0;  ///< Points that act.
+  int sticking = 0, slipping = 0;  ///< Numbers of active points.
   double impulse = 0.0;            ///< Of the normal force since the start [N s].
-  double friction_loss = 0.0;      ///< Energy that friction took since the start [J].
-  double normal_loss = 0.0;        ///< Likewise the normal force, see SurfaceLaw::end_share [J].
+  double friction_loss = 0.0;      ///< Energy dissipated by friction since the start [J].
+  double normal_loss = 0.0;        ///< Likewise by the normal force, see SurfaceLaw::end_share [J].
 };
 
-/// A point that acts, over the last step.
+/// An active point over the last step.
 struct SurfacePointReport {
   Vec3 point = Vec3::Zero();                           ///< World [m].
   Vec3 normal = Vec3::UnitZ();                         ///< Towards the solid, world.
@@ -43,27 +43,28 @@ struct SurfacePointReport {
   double pressure = 0.0;                               ///< [Pa]
 };
 
-/// How a surface lies in what it may touch.
+/// Overlap of a surface with another object.
 struct SurfaceOverlap {
-  double depth = 0.0;       ///< [m]; 0: they touch.
-  Vec3 out = Vec3::Zero();  ///< Unit, world: where the surface goes to leave; zero if not known.
+  double depth = 0.0;       ///< [m]; 0: in contact.
+  Vec3 out = Vec3::Zero();  ///< Unit, world: direction of exit; zero if not known.
 };
 
-/// The surface of a solid that touches something: what is told of it.
+/// Reporting interface of a contact on the surface of a solid.
 class SurfaceContactInterface {
  public:
   virtual ~SurfaceContactInterface() = default;
   [[nodiscard]] virtual const SurfaceLaw& law() const = 0;
-  [[nodiscard]] virtual std::size_t places() const = 0;  ///< Points or edges that may touch.
-  /// Begins anew where nodes stand at an instant before the first step, if that is not where they
-  /// were built.
+  /// Points or edges that may be in contact.
+  [[nodiscard]] virtual std::size_t places() const = 0;
+  /// Restarts from the node positions of an instant before the first step, if they differ from
+  /// those at construction.
   virtual void begin_at(const NodeStep& instant, double* history) const = 0;
   [[nodiscard]] virtual SurfaceReport report(const double* history) const = 0;
-  /// Points that acted in the last step, where they are at its end.
+  /// Points that were active in the last step, at its end.
   [[nodiscard]] virtual std::vector<SurfacePointReport> point_reports(
       const NodeStep& instant, const double* history) const = 0;
-  /// Where it is deepest at an instant in what it touches, if that is beyond what its law lets
-  /// pass. What is far from any surface may not be found, see SolidInside.
+  /// Deepest overlap at an instant, if it exceeds what the law allows. An overlap far from any
+  /// surface may not be found, see SolidInside.
   [[nodiscard]] virtual std::optional<SurfaceOverlap> overlap(const NodeStep& instant) const = 0;
 };
 

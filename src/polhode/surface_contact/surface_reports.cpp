@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface contact lets pass, what it takes, and what it remembers and tells.
+// Admissible displacements, losses, history and reports of a surface contact.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,9 +12,9 @@ namespace polhode {
 
 namespace {
 
-/// Clearances beyond this many bands are all alike.
+/// Clearance, in bands, above which all are equal.
 constexpr double kFarReport = 10.0;
-/// A way shorter than so many times the depth that counts as through does not get so deep.
+/// Displacement, over the pass-through depth, below which it cannot pass through.
 constexpr double kThroughBeam = 2.0;
 constexpr int kHalvings = 6;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -29,7 +29,8 @@ void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
     list.push_back((distance(local(step.x_n1, i), floor + kFarReport * band) - floor) / band);
 }
 
-/// Pieces of a cable that an iterate draws out would let the shape pass between points.
+/// Admissible part of a displacement for stretched segments of a cable: between their points the
+/// shape could pass.
 double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to) const {
   double most = 1.0;
   if (std::isinf(points_.most_apart)) return most;
@@ -41,8 +42,8 @@ double SurfaceContact::free_of_stretch(const NodeStep& from, const NodeStep& to)
   return most;
 }
 
-/// Whether the straight way of a step goes through the shape. A cable has no inside that iterates
-/// could not be led around: one after the other they might find the far side.
+/// Whether the straight displacement of a step passes through the shape. The iterates of a step
+/// could be led around a cable to its far side, since a cable has no inside.
 bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
   const Vec3 way = to - from;
   const double length = way.norm();
@@ -56,7 +57,8 @@ bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
   return false;
 }
 
-/// The gap changes by no more than the way in the surface's coordinates.
+/// Admissible part of a displacement. The gap changes by at most the displacement in the surface's
+/// coordinates.
 double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
                                  const double* /*history*/) const {
   if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;

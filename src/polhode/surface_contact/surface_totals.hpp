@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// History of the contact of a surface as a whole, behind that of its points: sums since the start,
-/// then what the last step did. All that its report tells.
+/// History of a surface contact behind that of its points: sums since the start, then results of
+/// the last step. Its report needs no others.
 struct SurfaceTotals {
   double impulse, friction_loss, normal_loss;  // since the start
   double gap, normal_force, area, pressure, sticking, slipping;
@@ -42,7 +42,7 @@ struct SurfaceTotals {
     r.normal_loss = t.normal_loss;
     return r;
   }
-  /// An impulse at the end of the last step counts as a force over it.
+  /// Adds an impulse at the end of the last step as its mean force over it.
   static void add_impulse(const Vec3& normal, const ResolvedImpact& settled, double dt,
                           double* history) {
     auto t = read_record<SurfaceTotals>(history);

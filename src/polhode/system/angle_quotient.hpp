@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// The angle plus the whole turns that bring it nearest to another one [rad].
+/// Angle plus the whole turns that bring it nearest to another one [rad].
 inline double nearest_turn(double angle, double near) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   return angle + kTurn * std::round((near - angle) / kTurn);

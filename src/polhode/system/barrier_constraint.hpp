@@ -7,19 +7,19 @@
 
 namespace polhode {
 
-/// A group of elements with configurations that no step may reach, such as points of a surface that
-/// would pass through another one.
+/// Interface of a group of elements with inadmissible configurations, such as points of a surface
+/// that would pass through another one.
 class BarrierConstraint {
  public:
   virtual ~BarrierConstraint() = default;
-  /// Appends how far the points at t_{n+1} are from such configurations: 0 there, 1 where they
-  /// begin to be felt.
+  /// Appends the clearances of the points at t_{n+1}: 0 at such a configuration, 1 where the
+  /// barrier becomes active.
   /// @param history  Of the group, at t_n.
   virtual void clearances(const NodeStep& step, const double* history,
                           std::vector<double>& list) const = 0;
-  /// The largest part, at most 1, of the straight way from x_n1 of one step to that of the other
-  /// on which no point comes nearer than a tenth of its clearance at the start: points that would
-  /// leave on the far side are stopped, too.
+  /// Largest part, at most 1, of the straight displacement from x_n1 of one step to that of the
+  /// other on which no point comes nearer than a tenth of its clearance at the start. Points that
+  /// would exit on the far side are stopped too.
   [[nodiscard]] virtual double free_part(const NodeStep& from, const NodeStep& to,
                                          const double* history) const = 0;
 };

@@ -13,20 +13,20 @@ struct NodeBlocks {
   bool operator==(const NodeBlocks&) const = default;
 };
 
-/// A group of elements whose nodes meet others from time to time: surfaces of solids that touch one
-/// another. Its tangent goes to blocks of its own behind those of the graph of nodes, which stand
-/// one after the other where its sink points; slots it has none.
+/// Interface of a group of elements whose nodes act on changing other nodes: contact between
+/// surfaces of solids. Its tangent has its own blocks behind those of the graph of nodes,
+/// consecutive from the pointer of its sink; it has no slots.
 class ChangingSparsity {
  public:
   virtual ~ChangingSparsity() = default;
-  /// All nodes that it may ever act on, ascending.
+  /// All nodes on which it may ever act, ascending.
   [[nodiscard]] virtual const std::vector<int>& reach() const = 0;
-  /// The blocks it may fill during a step. They follow from the group's history alone, so that a
-  /// run that goes on from a saved state factors the same matrix.
+  /// Blocks it may fill during a step. They depend on the group's history alone, so that a
+  /// restarted run factors the same matrix.
   [[nodiscard]] virtual const NodeBlocks& blocks(const double* history) const = 0;
-  /// Looks anew for what may meet, if nodes have gone far since that was done: beside at the end of
-  /// a step, in statics after every iteration.
-  /// @param step  From where nodes were before the last move to where they are.
+  /// Renews the neighbour list if nodes have moved far since the last search: at the end of a step,
+  /// in statics after every iteration.
+  /// @param step  From the positions before the last displacement to the present ones.
   virtual void renew(const NodeStep& step, double* history) const = 0;
 };
 

@@ -8,18 +8,19 @@
 
 namespace polhode {
 
-/// How the force at a point that a and b share changes as they move: as if by a spring C between
-/// the points of both bodies there, symmetric and without negative eigenvalue, and by the friction
-/// that follows the normal force where the point slides. The rest of the tangent is left out.
+/// Equivalent spring of a contact point: the change of its force as a and b move, by a spring C
+/// between the points of both bodies, symmetric positive semidefinite, and by the friction that
+/// follows the normal force where the point slides. The rest of the tangent is left out.
 struct ContactSpring {
   int a = kGround, b = kGround;
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass, world [m].
   Mat3 C = Mat3::Zero();                            ///< World, symmetric [N/m].
-  /// Force on a by the displacement of a against b along the normal: rub (normal·u) [N/m].
+  /// Force on a by the displacement of a relative to b along the normal: friction_slope (normal·u)
+  /// [N/m].
   Vec3 friction_slope = Vec3::Zero(), normal = Vec3::Zero();
 };
 
-/// A point that acts.
+/// An active contact point.
 struct ActingPoint {
   int point = 0;  ///< Its number, ascending.
   ContactSpring spring;
@@ -27,18 +28,19 @@ struct ActingPoint {
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< [N m]
 };
 
-/// Contacts seen by iterative solvers: forces by body and springs by point.
+/// Interface of contacts for iterative solvers: forces by body and springs by point.
 class PointwiseContacts {
  public:
   virtual ~PointwiseContacts() = default;
-  /// The points that act, until the next call.
-  /// @param moved  By body, the ground last: what has moved since the last call of this step; empty
-  ///               for all. Forces between others are those of that call.
+  /// Active points, valid until the next call.
+  /// @param moved  By body, the ground last: which bodies have moved since the last call of this
+  /// step; empty for all. Forces between others are those of that call.
   virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
                                                           const StepContext& context,
                                                           std::span<const char> moved) = 0;
-  /// Holds back predicted increments, pair by pair, about where impacts in the step will stop them.
-  /// @param steps  Nobody has moved yet.
+  /// Limits predicted increments, pair by pair, near the positions at which impacts in the step
+  /// will stop them.
+  /// @param steps  Without any motion yet.
   virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
                              std::span<Vec6> increments) const = 0;
 };

@@ -17,10 +17,10 @@ class InternalUnknowns;
 class ChangingSparsity;
 class SurfaceImpacts;
 
-/// Where elements put the forces they exert on nodes, and the derivatives of these.
+/// Output arrays of elements: forces on nodes, and their derivatives.
 struct ElementSink {
   double* force;     ///< By node, three each: at t_{n+αf} [N].
-  double* tangent;   ///< 3×3 blocks, row by row, of the graph of nodes; null: not wanted.
+  double* tangent;   ///< 3×3 blocks, row by row, of the graph of nodes; null: not needed.
   const int* slots;  ///< Of this group: block of (element, i, j) is slots[(element·n + i)·n + j].
 
   void add_force(std::span<const int> nodes, const double* f) const {
@@ -39,7 +39,7 @@ struct ElementSink {
   }
 };
 
-/// How the elements of a group fared in an evaluation.
+/// Outcome of an evaluation of the elements of a group.
 struct ElementReport {
   double least_volume = 1.0;  ///< Smallest det F at t_{n+1} [-]; must be positive.
   int worst_element = -1;
@@ -48,12 +48,13 @@ struct ElementReport {
   }
 };
 
-/// Elements of one type, material and solid, or a load on nodes: what acts on nodes meets the
-/// integrator through this. One virtual call per group.
+/// Interface of elements of one type, material and solid, or of a load on nodes, to the integrator.
+/// One virtual call per group.
 ///
-/// Three buffers: `history` is part of the State and holds what t_n has left; `scratch` belongs to
-/// the solver and holds what lives during a step: internal unknowns such as enhanced strains, and
-/// their condensation. Internal unknowns are condensed here, by element; nobody else knows of them.
+/// Three buffers: `history` is part of the State and holds what was committed at t_n; `scratch`
+/// belongs to the solver and holds data of a step: internal unknowns such as enhanced strains, and
+/// their condensation. Internal unknowns are condensed here, by element; they are not visible
+/// elsewhere.
 class ElementGroup {
  public:
   virtual ~ElementGroup() = default;
@@ -63,23 +64,24 @@ class ElementGroup {
   [[nodiscard]] virtual int nodes_per_element() const = 0;
   [[nodiscard]] virtual std::span<const int> nodes(int element) const = 0;
   [[nodiscard]] virtual bool has_tangent() const { return true; }
-  [[nodiscard]] virtual bool conservative() const { return true; }  ///< Stores all it takes.
+  [[nodiscard]] virtual bool conservative() const { return true; }  ///< Stores all its work.
   [[nodiscard]] virtual bool dissipates() const { return false; }
-  /// Acts from outside: its forces need not cancel, and the ledger counts their impulse.
+  /// Whether it is an external load: its forces need not cancel, and the ledger counts their
+  /// impulse.
   [[nodiscard]] virtual bool external() const { return false; }
-  /// The functions of time that its forces follow; null where there is none.
+  /// Functions of time of its forces; null entries are ignored.
   [[nodiscard]] virtual std::vector<TimeFunctionPtr> time_functions() const { return {}; }
   [[nodiscard]] virtual std::size_t history_size() const { return 0; }  ///< Of the whole group.
   [[nodiscard]] virtual std::size_t scratch_size() const { return 0; }
 
-  // What a group may be besides; null where it is not.
+  // Further interfaces of a group; null if not available.
   [[nodiscard]] virtual const BarrierConstraint* barrier_constraint() const { return nullptr; }
   [[nodiscard]] virtual const InternalUnknowns* internal_unknowns() const { return nullptr; }
   [[nodiscard]] virtual const ChangingSparsity* changing_sparsity() const { return nullptr; }
   [[nodiscard]] virtual const SurfaceImpacts* surface_impacts() const { return nullptr; }
 
   /// Consistent mass of element, n × n numbers (per direction), row by row; returns false if this
-  /// group carries no mass. [kg]
+  /// group has no mass. [kg]
   virtual bool mass(int /*element*/, double* /*M*/) const { return false; }
 
   /// History at the start, nodes at their reference positions.
@@ -87,22 +89,22 @@ class ElementGroup {
   /// Once per trial step, before the first evaluation.
   virtual void begin_step(const double* /*history*/, double* /*scratch*/) const {}
   /// Forces on the nodes at t_{n+αf}, and tangents if sink.tangent. Without tangents an element
-  /// with internal unknowns uses its last condensation, turned by `turn` since it was made.
+  /// with internal unknowns uses its last condensation, rotated by `turn` since then.
   virtual ElementReport evaluate(const NodeStep& step, const double* history, double* scratch,
                                  const Mat3& turn, const ElementSink& sink) const = 0;
-  /// After the nodes moved by du (3 each): moves the internal unknowns.
-  /// @returns the largest move of one [m].
+  /// Updates the internal unknowns after the nodes moved by du (3 each).
+  /// @returns the largest change [m].
   virtual double advance(const double* /*du*/, const Mat3& /*turn*/, double* /*scratch*/) const {
     return 0.0;
   }
   /// History at t_{n+1}.
   virtual void commit(const NodeStep& /*step*/, double* /*history*/,
                       const double* /*scratch*/) const {}
-  /// Over the step; at an instant (x_n = x_n1) only `stored` is asked for. `scratch` may be null
-  /// at an instant: internal unknowns are those of the history then.
+  /// Work over the step; at an instant (x_n = x_n1) only `stored` is used. `scratch` may be null at
+  /// an instant: internal unknowns are then those of the history.
   [[nodiscard]] virtual Work work(const NodeStep& step, const double* history,
                                   const double* scratch) const = 0;
-  /// What stands at an instant, one sample an element; false if there is nothing to show.
+  /// Samples fields at an instant, one sample per element; false if there are none.
   virtual bool sample(const NodeStep& /*instant*/, const double* /*history*/,
                       std::span<ElementSample> /*samples*/) const {
     return false;

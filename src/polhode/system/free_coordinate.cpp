@@ -15,7 +15,7 @@ struct Directions {
   [[nodiscard]] double cosine() const { return e.dot(d); }
   [[nodiscard]] double sine() const { return f.dot(d); }
   [[nodiscard]] double angle() const { return std::atan2(sine(), cosine()); }
-  /// ∂φ = gradient·(∂θ_other − ∂θ_base) when d is carried by the other body.
+  /// ∂φ = gradient·(∂θ_other − ∂θ_base) when d is fixed to the other body.
   [[nodiscard]] Vec3 gradient() const {
     const double C = cosine(), S = sine();
     return d.cross(C * f - S * e) / (C * C + S * S);
@@ -56,7 +56,7 @@ Gradient plain_gradient(const Directions& q_alpha, const Directions& q_n1, doubl
   out.alpha = nearest_turn(std::atan2(S, C), (1.0 - alpha_f) * phi_n + alpha_f * phi_n1);
   out.mu = q_alpha.gradient();
   const Vec3 n = C * q_alpha.f - S * q_alpha.e;
-  // Dot products of averaged directions: D(x_α·y_α) by the turn of x is α_f x_{n+1} × y_α.
+  // Dot products of averaged directions: D(x_α·y_α) by the rotation of x is α_f x_{n+1} × y_α.
   const Vec3 C_other = alpha_f * q_n1.d.cross(q_alpha.e),
              C_base = alpha_f * q_n1.e.cross(q_alpha.d);
   const Vec3 S_other = alpha_f * q_n1.d.cross(q_alpha.f),

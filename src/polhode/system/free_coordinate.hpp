@@ -5,27 +5,27 @@
 
 namespace polhode {
 
-/// The angle by which body b is turned against body a about an axis that both carry.
+/// Rotation angle of body b relative to body a about an axis fixed to both.
 ///
 ///   φ = atan2(f·d, e·d) + 2π·turns,   e, f on one body, d on the other, all ⟂ to the axis.
 ///
 /// On a revolute axis e, f are the joint's x, y on a and d is its x on b. When the angle is
-/// measured the other way round (`on_b`: e, f on b, d on a), choose e × f against the axis, so
-/// that φ still grows as b turns about +axis.
+/// measured in the other sense (`on_b`: e, f on b, d on a), choose e × f opposite to the axis, so
+/// that φ still increases as b rotates about +axis.
 struct FreeAngle {
   Vec3 E = Vec3::UnitX(), F = Vec3::UnitY();  ///< Body components, unit.
   Vec3 D = Vec3::UnitX();                     ///< Of the other body.
   bool on_b = false;                          ///< E, F belong to b and D to a.
 
-  /// At t_{n+1}, the turn chosen nearest to `near` [rad].
+  /// Angle at t_{n+1}, with the number of turns that brings it nearest to `near` [rad].
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b, double near) const;
   /// dφ/dt at t_{n+1} [rad/s].
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;
-  /// Part of d²φ/dt² that the bodies' velocities give, beside ∂φ·(α_b − α_a) [rad/s²].
+  /// Part of d²φ/dt² due to the bodies' velocities, in addition to ∂φ·(α_b − α_a) [rad/s²].
   [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
 
-/// What a moment about the axis has to know of an angle over the step.
+/// Angle over the step with the derivatives that a moment about the axis needs.
 ///
 /// mu is its discrete gradient: μ·(θ_b − θ_a) = φ_{n+1} − φ_n exactly at α_f = ½ when d lies
 /// in the plane of e and f at both ends of the step; so a moment M μ does exactly M Δφ.
@@ -44,19 +44,19 @@ struct AngleStep {
 [[nodiscard]] AngleStep angle_step(const FreeAngle& angle, const BodyStep& a, const BodyStep& b,
                                    double at_n, bool conserving);
 
-/// The displacement of a point of b along a direction of a: s = d·(x_b − x_a).
+/// Displacement of a point of b along a direction of a: s = d·(x_b − x_a).
 struct FreeDisplacement {
   Vec3 Z_a = Vec3::Zero(), Z_b = Vec3::Zero();  ///< Points from the centres of mass [m].
   Vec3 D = Vec3::UnitZ();                       ///< Direction, body-a components, unit.
 
   [[nodiscard]] double at_n1(const BodyStep& a, const BodyStep& b) const;       ///< [m]
   [[nodiscard]] double rate_at_n1(const BodyStep& a, const BodyStep& b) const;  ///< [m/s]
-  /// Part of d²s/dt² that the bodies' velocities give, beside ∂s·(accelerations) [m/s²].
+  /// Part of d²s/dt² due to the bodies' velocities, in addition to ∂s·(accelerations) [m/s²].
   [[nodiscard]] double acceleration_at_n1(const BodyStep& a, const BodyStep& b) const;
 };
 
-/// A displacement over the step, as a force along it needs it: quadratic, so that its
-/// gradient at averaged positions does exactly the work F Δs at α_f = ½.
+/// Displacement over the step with the derivatives that a force along it needs. It is quadratic, so
+/// that its gradient at averaged positions does exactly the work F Δs at α_f = ½.
 struct DisplacementStep {
   double at_n1 = 0.0;           ///< At t_{n+1} [m].
   Vec6 mu_a, mu_b;              ///< Gradient at t_{n+αf}, by (r, θ) of a, of b.
@@ -64,7 +64,7 @@ struct DisplacementStep {
   Mat6 D_aa, D_ab, D_ba, D_bb;  ///< D_ij: of mu_i by the increment of j.
 };
 
-/// The displacement over a step with its tangents. @eq{joint-plane}
+/// Displacement over a step with its tangents. @eq{joint-plane}
 [[nodiscard]] DisplacementStep displacement_step(const FreeDisplacement& displacement,
                                                  const BodyStep& a, const BodyStep& b);
 

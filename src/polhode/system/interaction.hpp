@@ -11,8 +11,8 @@
 
 namespace polhode {
 
-/// Entries behind the item's own history, of one that may be switched: 1 while it is off, and the
-/// values of its rows when it was switched on, which they keep. @eq{switch-rows}
+/// Entries behind the history of a switchable item: 1 while it is off, and the values of its rows
+/// when it was switched on, which are kept. @eq{switch-rows}
 struct SwitchMemory {
   enum Entry : int { kOff, kHeld };
   [[nodiscard]] static int size(int rows) { return kHeld + rows; }
@@ -30,7 +30,7 @@ class Group final : public InteractionGroup {
  public:
   Group() : InteractionGroup(Item::kKind, kTypeTag<Item>) {}
 
-  /// Appends an item, made from these.
+  /// Appends an item constructed from these arguments.
   template <class... Arguments>
   Item& add(Arguments&&... arguments) {
     items_.emplace_back(std::forward<Arguments>(arguments)...);
@@ -49,7 +49,7 @@ class Group final : public InteractionGroup {
     t.rows = item.rows();
     t.off = switches ? item.history_size() + SwitchMemory::kOff : -1;
     t.history_size = item.history_size() + (switches ? SwitchMemory::size(t.rows) : 0);
-    // The couple's own elimination asks for rows that hold.
+    // Elimination with a couple needs exact rows.
     t.coupling = item.coupling();
     if (switches && t.coupling == Coupling::couple) t.coupling = Coupling::all;
     t.switching = item.switching;
@@ -157,8 +157,8 @@ class Group final : public InteractionGroup {
   std::vector<Item> items_;
 };
 
-/// The items of a group of interactions of this type.
-/// @throws std::logic_error if they are of another one.
+/// Items of a group of interactions of this type.
+/// @throws std::logic_error if the group has another type.
 template <class Item>
 [[nodiscard]] const std::vector<Item>& items_of(const InteractionGroup& group) {
   if (!group.is_of(kTypeTag<Item>))

@@ -12,18 +12,19 @@
 
 namespace polhode {
 
-/// What does not change about an interaction while it runs; see the functions of InteractionItem
-/// of the same names. Read once, when the system is finished.
+/// Constant properties of an interaction; see the functions of InteractionItem of the same names.
+/// Read once, when the system is finished.
 struct InteractionTraits {
   std::string name;  ///< As in the user's file.
   Participants bodies;
   int rows = 0;
-  int history_size = 0;  ///< With the entries of one that may be switched.
-  int off = -1;          ///< Entry of the history that is 1 while it is switched off; -1: none.
+  int history_size = 0;  ///< Including the entries of a switchable item.
+  /// Index of the history entry that is 1 while it is switched off; -1: none.
+  int off = -1;
   Coupling coupling = Coupling::all;
   Switching switching = Switching::never;
   bool lazy_history = false, conservative = true, dissipates = false;
-  bool works = false;  ///< work() is asked for.
+  bool works = false;  ///< work() must be called.
   bool prescribes = false, has_barrier = false, always_queried = false, reversible = false;
   bool compliant = false;
   double coupled_mass = 0.0;  ///< [kg]
@@ -32,21 +33,21 @@ struct InteractionTraits {
   const char* refusal = "";
 };
 
-/// Traits with what is asked for only where engines are made.
+/// Traits and further properties that are needed only when engines are constructed.
 struct InteractionDescription {
   InteractionTraits traits;
   std::optional<MotionBasis> motion_basis;
-  std::vector<TimeFunctionPtr> time_functions;  ///< Null where a component has none.
+  std::vector<TimeFunctionPtr> time_functions;  ///< Null for components without one.
 };
 
-/// Address that stands for a type.
+/// Address that identifies a type.
 template <class Type>
 inline constexpr char kTypeTag = 0;
 
-/// All interactions of one type, in one contiguous array: the assembler makes one virtual call
-/// per group, never per item.
+/// All interactions of one type in a contiguous array: the assembler makes one virtual call per
+/// group, not per item.
 ///
-/// An item that is switched off has no wrench, no work and rows λ = 0. It has no place in the tree.
+/// An item that is switched off has no wrench, no work and rows λ = 0. It is not part of the tree.
 class InteractionGroup {
  public:
   virtual ~InteractionGroup() = default;
@@ -55,15 +56,15 @@ class InteractionGroup {
 
   [[nodiscard]] const std::string& kind() const { return kind_; }  ///< "joint", "force" ...
   [[nodiscard]] int size() const { return size_; }
-  /// @param type  kTypeTag of an item's type: is it this group's?
+  /// Whether the group's items are of a type. @param type  kTypeTag of the type.
   [[nodiscard]] bool is_of(const char& type) const { return &type == type_; }
-  /// Reads the traits of all items; System::finish() does.
+  /// Reads the traits of all items; called by System::finish().
   void finish();
-  /// After finish(). @param i  Item.
+  /// Traits of an item, after finish(). @param i  Item.
   [[nodiscard]] const InteractionTraits& traits(int i) const {
     return traits_[static_cast<std::size_t>(i)];
   }
-  /// @param history  Of the item.
+  /// Whether an item is switched off. @param history  Of the item.
   [[nodiscard]] bool is_off(int i, const double* history) const {
     const int off = traits(i).off;
     return off >= 0 && history[off] != 0.0;
@@ -73,10 +74,10 @@ class InteractionGroup {
   [[nodiscard]] virtual InteractionDescription describe(int i) const = 0;
   virtual void set_switching(int i, Switching how) = 0;  ///< Before finish().
   virtual void reverse(int i) = 0;                       ///< Likewise.
-  /// Limits from one side of t_{n+1}.
+  /// Prescribed values with limits from one side of t_{n+1}.
   [[nodiscard]] virtual PrescribedRows prescribed(int i, const PairStep& step,
                                                   TimeSide side) const = 0;
-  /// Wrench, constraint values and tangents of the items listed, into terms[k] for items[k].
+  /// Wrenches, constraint values and tangents of the listed items, into terms[k] for items[k].
   virtual void evaluate(std::span<const int> items, std::span<const PairStep> steps,
                         std::span<PairTerms> terms) const = 0;
   virtual void acceleration_terms(int i, const PairStep& step, Vec6& gamma) const = 0;
@@ -88,7 +89,7 @@ class InteractionGroup {
                            double* history) const = 0;
   [[nodiscard]] virtual double clearance(int i, const PairStep& step) const = 0;
   virtual void impacts(int i, const PairStep& step, std::vector<Impact>& list) const = 0;
-  /// Makes an item act from an instant on; its rows keep the values that they have there.
+  /// Activates an item at an instant; its rows keep their present values.
   /// @returns the largest of these [m or -].
   virtual double switch_on(int i, const PairStep& step, double* history) const = 0;
 

@@ -12,72 +12,74 @@
 
 namespace polhode {
 
-/// Defaults for items: an item derives from this and hides what it needs (no virtual calls).
+/// Defaults for items: an item derives from this and hides the functions it needs (no virtual
+/// calls).
 struct InteractionItem {
   std::string name;  ///< As in the user's file.
   Participants bodies;
   Switching switching = Switching::never;
 
-  /// History that goes on while the item is switched off, such as turns counted.
+  /// Updates history that continues while the item is switched off, such as counted turns.
   void commit_off(const PairStep&, double* /*history*/) const {}
-  /// Begins to act at an instant, where its bodies stand.
+  /// Activates the item at an instant, at the present position of its bodies.
   void switch_on(const PairStep&, double* /*history*/) const {}
 
   [[nodiscard]] int rows() const { return 0; }
   [[nodiscard]] int history_size() const { return 0; }
-  /// The history only counts turns: it may be committed after several steps, before the bodies
-  /// have turned by half a turn against each other.
+  /// Whether the history only counts turns: it may then be committed after several steps, before
+  /// the bodies have a relative rotation of half a turn.
   [[nodiscard]] bool lazy_history() const { return false; }
-  /// Stores all the energy it takes: neither dissipates nor puts in work.
+  /// Whether all work is stored: no dissipation and no external work.
   [[nodiscard]] bool conservative() const { return true; }
-  /// Takes energy for good: does not go with steps that run backwards in time.
+  /// Whether energy is dissipated: not allowed in steps backwards in time.
   [[nodiscard]] bool dissipates() const { return false; }
-  /// m_ab of a mass matrix that couples the centres of mass of a and b [kg]: besides what the
-  /// bodies hold, there is the kinetic energy −½ m_ab |v_a − v_b|², and evaluate() exerts its
+  /// m_ab of a mass matrix that couples the centres of mass of a and b [kg]. In addition to the
+  /// bodies' own, there is the kinetic energy −½ m_ab |v_a − v_b|², and evaluate() exerts its
   /// forces (system/mass_coupling.hpp).
   [[nodiscard]] double coupled_mass() const { return 0.0; }
-  /// How far it reaches from its bodies [m]: for scales of length.
+  /// Largest distance of its points from its bodies [m]: for length scales.
   [[nodiscard]] double reach() const { return 0.0; }
-  /// The functions of time that its force follows; components that are not there may be null.
+  /// Functions of time of its force; absent components may be null.
   [[nodiscard]] std::vector<TimeFunctionPtr> time_functions() const { return {}; }
-  /// Which derivative of the motion these functions are: 0 a position, 1 a speed, 2 a force.
+  /// Order of the derivative of the motion that these functions give: 0 a position, 1 a velocity, 2
+  /// a force.
   [[nodiscard]] int time_order() const { return 2; }
-  /// True if some of its rows follow functions of time, which prescribed() gives.
+  /// Whether some of its rows follow functions of time, given by prescribed().
   [[nodiscard]] bool prescribes() const { return false; }
   void prescribed(const PairStep&, TimeSide, PrescribedRows& /*rows*/) const {}
   /// γ in G q̈ + γ = 0 at an instant, one value per row.
   void acceleration_terms(const PairStep&, Vec6& /*gamma*/) const {}
   [[nodiscard]] Work work(const PairStep&) const { return {}; }
-  /// An item with rows has a work() of its own: friction, stops.
+  /// Whether an item with rows has its own work(): friction, stops.
   [[nodiscard]] bool works() const { return false; }
-  /// Whether its rows have a compliance while they act.
+  /// Whether its rows have a compliance while they are active.
   [[nodiscard]] bool compliant() const { return false; }
-  /// Has a configuration that no step may reach: clearance() and impacts() are asked.
+  /// Whether it has an inadmissible configuration: clearance() and impacts() are then used.
   [[nodiscard]] bool has_barrier() const { return false; }
-  /// How far t_{n+1} is from that configuration: 0 there, 1 where it begins to be felt.
+  /// Clearance to that configuration at t_{n+1}: 0 there, 1 where the barrier becomes active.
   [[nodiscard]] double clearance(const PairStep&) const { return 1.0; }
-  /// Velocities that jump at the end of the step, which is accepted but not yet committed.
+  /// Appends velocity jumps at the end of the step, which is accepted but not yet committed.
   void impacts(const PairStep&, std::vector<Impact>& /*list*/) const {}
   void initialize(const PairStep&, double* /*history*/) const {}  ///< History at the start.
   void commit(const PairStep&, double* /*history*/) const {}      ///< History at t_{n+1}.
-  /// Mirror images: does the accepted configuration still have the assembled orientation?
+  /// Whether the accepted configuration still has the assembled orientation, no mirror image.
   [[nodiscard]] bool acceptable(const PairStep&) const { return true; }
-  /// acceptable() is asked after every step, not only where rows may have met a mirror image.
+  /// Whether acceptable() is called after every step, not only where rows may have a mirror image.
   [[nodiscard]] bool always_queried() const { return false; }
-  /// What is wrong where acceptable() says no.
+  /// Reason if acceptable() is false.
   [[nodiscard]] const char* refusal() const { return "reached the mirror image of a joint"; }
-  /// Mixed-point iterations of statics: writes to the history the stress that the linear model at
-  /// this iterate expects after the increments (Δr, Δθ) of a and b.
+  /// Mixed-point iterations of statics: stores in the history the stress that the linear model at
+  /// this iterate predicts for the increments (Δr, Δθ) of a and b.
   void extrapolate(const PairStep&, const Vec6& /*of_a*/, const Vec6& /*of_b*/,
                    double* /*history*/) const {}
   [[nodiscard]] std::optional<MotionBasis> motion_basis() const { return std::nullopt; }
   [[nodiscard]] Coupling coupling() const { return Coupling::all; }
-  /// An equivalent constraint exists with a and b exchanged; reverse() makes it so.
+  /// Whether an equivalent constraint exists with a and b exchanged, made by reverse().
   [[nodiscard]] bool reversible() const { return false; }
   void reverse() {}
 };
 
-/// Which functions of InteractionItem a type has of its own.
+/// Functions of InteractionItem that a type defines itself.
 template <class Item>
 struct OwnFunctions {
   using Base = InteractionItem;
@@ -155,7 +157,7 @@ struct OwnFunctions {
   };
 };
 
-/// An item whose functions have the signatures that the integrator calls.
+/// Concept of an item whose functions have the signatures that the integrator calls.
 template <class Item>
 concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
     requires(const Item item, const PairStep& step, PairTerms& terms, Vec6& gamma, double* history,
@@ -177,20 +179,20 @@ concept HasInteractionFunctions = std::derived_from<Item, InteractionItem> &&
   { item.motion_basis() } -> std::same_as<std::optional<MotionBasis>>;
 };
 
-/// An item that has all of what belongs together. A misspelt function hides nothing and is never
-/// called: its partner gives it away here, when the item is compiled.
+/// Concept of an item with complete sets of related functions. A misspelt function hides nothing
+/// and is never called; its missing counterpart reveals it here at compile time.
 template <class Item>
 concept Interaction = HasInteractionFunctions<Item> &&
-                      // What is remembered is begun and kept.
+                      // A history needs functions that initialise and commit it.
                       (!OwnFunctions<Item>::history_size ||
                        (OwnFunctions<Item>::initialize && OwnFunctions<Item>::commit)) &&
                       (OwnFunctions<Item>::history_size ||
                        !(OwnFunctions<Item>::initialize || OwnFunctions<Item>::commit ||
                          OwnFunctions<Item>::lazy_history || OwnFunctions<Item>::extrapolate ||
                          OwnFunctions<Item>::commit_off || OwnFunctions<Item>::switch_on)) &&
-                      // Rows have accelerations.
+                      // Rows need acceleration terms.
                       OwnFunctions<Item>::rows == OwnFunctions<Item>::acceleration_terms &&
-                      // What takes energy says how much.
+                      // Dissipative items report their work.
                       (!(OwnFunctions<Item>::dissipates || OwnFunctions<Item>::works) ||
                        OwnFunctions<Item>::work) &&
                       OwnFunctions<Item>::prescribes == OwnFunctions<Item>::prescribed &&

@@ -5,16 +5,16 @@
 
 namespace polhode {
 
-/// A group of elements with unknowns of their own, such as enhanced strains or pressures: what
-/// ElementGroup::advance() moves, and what a search goes back to when an iterate is of no use.
-/// Numbers of two sets may be mixed: a·x + b·y is a set in between.
+/// Interface of a group of elements with internal unknowns, such as enhanced strains or pressures:
+/// those updated by ElementGroup::advance(), and restored by a line search. Linear combinations a·x
+/// + b·y of two sets are valid sets.
 class InternalUnknowns {
  public:
   virtual ~InternalUnknowns() = default;
   [[nodiscard]] virtual std::size_t unknowns_size() const = 0;  ///< Of the whole group.
   virtual void get_unknowns(const double* scratch, double* unknowns) const = 0;
   virtual void set_unknowns(const double* unknowns, double* scratch) const = 0;
-  /// Largest difference of those that two states hold, from their histories of this group [m].
+  /// Largest difference of the unknowns in two states, from their histories of this group [m].
   [[nodiscard]] virtual double difference(const double* history,
                                           const double* other_history) const = 0;
 };

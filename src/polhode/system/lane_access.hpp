@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// One body's vector among those of eight.
+/// Vector of one of eight bodies.
 [[nodiscard]] inline Vec3 get(const Lane3& x, int lane) {
   return {x[0][lane], x[1][lane], x[2][lane]};
 }
@@ -15,7 +15,7 @@ inline void put(Lane3& x, int lane, const Vec3& value) {
   for (int i = 0; i < 3; ++i) x[i][lane] = value[i];
 }
 
-/// One body's matrix among those of eight, kept row by row.
+/// Matrix of one of eight bodies, stored row by row.
 [[nodiscard]] inline Mat3 get(const double (&x)[9][kLanes], int lane) {
   Mat3 M;
   for (int i = 0; i < 3; ++i)

@@ -9,9 +9,9 @@ namespace polhode {
 ///
 ///   f_a = m_ab (a_a − a_b),  f_b = −f_a,   accelerations at t_{n+αm},
 ///
-/// to wrenches and tangents. A consistent mass matrix [m_aa m_ab; m_ab m_bb] is this beside the
-/// row sums, which belong to the bodies. At an instant (dt = 0) accelerations are unknowns: the
-/// consistent start asks for coupled_mass() instead. @eq{mass-coupling}
+/// to wrenches and tangents. A consistent mass matrix [m_aa m_ab; m_ab m_bb] consists of this and
+/// the row sums, which belong to the bodies. At an instant (dt = 0) accelerations are unknowns: the
+/// consistent start uses coupled_mass() instead. @eq{mass-coupling}
 inline void add_mass_coupling(const PairStep& step, double m_ab, PairTerms& t) {
   const StepContext& c = step.context;
   if (m_ab == 0.0 || c.dt == 0.0) return;

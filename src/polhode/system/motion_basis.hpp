@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// The shape of a joint as elimination along the tree sees it: which of its motions are free.
+/// Shape of a joint for the elimination along the tree: its free motions.
 ///
 /// Bodies a (parent) and b (child), joint points Z_a, Z_b from the centres of mass, frames R_a,
 /// R_b (columns x, y, z) in body components. The rows, and the multipliers, come in this order:
@@ -16,7 +16,7 @@ namespace polhode {
 ///   directions = 2:    z_a·x_b, z_a·y_b                                     (2 rows)
 ///   directions = 3:    z_a·x_b, z_a·y_b, x_a·y_b                            (3 rows)
 ///
-/// where x_a is the first column of R_a turned with body a, and so on. A joint's own evaluation
+/// where x_a is the first column of R_a rotated with body a, and so on. A joint's own evaluation
 /// must give exactly these rows; the tests compare the two.
 struct MotionBasis {
   bool coincident = false;

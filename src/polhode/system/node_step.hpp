@@ -6,19 +6,19 @@
 
 namespace polhode {
 
-/// Motion of all nodes of deformable solids over the current step: all that an element or a load
-/// on nodes may know of it. Three numbers a node, world components. Nodes bonded to bodies and
-/// prescribed ones are among them like the others.
+/// Motion of all nodes of deformable solids over the current step, the only input of elements and
+/// loads on nodes. Three numbers per node, world components. Bonded and prescribed nodes are
+/// included.
 struct NodeStep {
   const double* x_n;   ///< Positions at t_n [m].
   const double* x_n1;  ///< Positions at t_{n+1} [m].
-  const double* u;     ///< x_{n+1} − x_n, kept apart [m].
+  const double* u;     ///< x_{n+1} − x_n, stored separately [m].
   const double* v_n;   ///< Newmark velocities at t_n [m/s].
   const double* v_n1;  ///< At t_{n+1} [m/s].
   const StepContext& context;
   double alpha_f = 0.5;  ///< Weight of t_{n+1} [-]; 1 at an instant and in statics.
   double rate = 0.0;     ///< γ/(βΔt): D v_{n+1}/D x_{n+1} [1/s]; 0 at an instant, in statics.
-  /// Geometric stiffness by extrapolated stresses (statics): the residual stays the same.
+  /// Geometric stiffness by extrapolated stresses (statics): the residual is unchanged.
   bool mixed_point = false;
 
   [[nodiscard]] static Eigen::Map<const Vec3> at(const double* field, int node) {

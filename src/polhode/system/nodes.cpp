@@ -13,7 +13,7 @@ namespace polhode {
 
 namespace {
 
-/// Sets of nodes that grow together.
+/// Disjoint sets of nodes (union-find).
 class UnionFind {
  public:
   explicit UnionFind(int n) : parent_(static_cast<std::size_t>(n)) {
@@ -190,7 +190,7 @@ void Nodes::find_pieces() {
         sets.unite(first, i);
       }
     }
-  // What may meet is of one piece.
+  // Nodes that may come into contact belong to one component.
   std::vector<const ChangingSparsity*> moving;
   for (const auto& g : groups_)
     if (const ChangingSparsity* pattern = g->changing_sparsity()) moving.push_back(pattern);
@@ -227,7 +227,7 @@ void Nodes::find_pieces() {
         if (data_[i].body >= 0) touched.insert(data_[i].body);
         if (data_[i].body == kGround && piece >= 0) pieces_[piece].turns = false;
       }
-      if (piece < 0 && !touched.empty() && !slots_[k].empty()) {  // bodies alone
+      if (piece < 0 && !touched.empty() && !slots_[k].empty()) {  // only bodies
         const auto same = std::find(bodies.begin(), bodies.end(), touched);
         piece = static_cast<int>(same - bodies.begin());
         if (same == bodies.end() || !pieces_[piece].nodes.empty()) {
@@ -245,7 +245,7 @@ void Nodes::find_pieces() {
     const auto free =
         std::find_if(reach.begin(), reach.end(), [&](int i) { return piece_[i] >= 0; });
     if (free == reach.end()) continue;
-    pieces_[piece_[*free]].turns = false;  // what touches does not turn as one
+    pieces_[piece_[*free]].turns = false;  // surfaces in contact do not rotate as one
     for (int i : reach)
       if (data_[i].body >= 0) bodies[piece_[*free]].insert(data_[i].body);
   }

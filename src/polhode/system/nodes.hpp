@@ -10,33 +10,34 @@
 
 namespace polhode {
 
-/// What a node that no body carries has for its body.
+/// Body index of a node that is not bonded.
 inline constexpr int kFreeNode = -2;
 
 /// A node of a deformable solid, at the start.
 struct NodeData {
   Vec3 position = Vec3::Zero();  ///< Reference position, and that of the start [m], world.
-  Vec3 velocity = Vec3::Zero();  ///< [m/s]; of a bonded node the body's counts.
-  int body = kFreeNode;          ///< The body it is bonded to; kGround holds it still.
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]; ignored for a bonded node.
+  int body = kFreeNode;          ///< Body to which it is bonded; kGround fixes it.
   Vec3 Z = Vec3::Zero();         ///< From the body's centre of mass, body axes [m].
 };
 
-/// A component of a node whose displacement from the start is given [m].
+/// A component of a node with a given displacement from the start [m].
 struct PrescribedComponent {
   int node = 0, component = 0;
   TimeFunctionPtr displacement;
 };
 
-/// Free nodes that elements connect, with the bodies these elements reach. A body separates: what
-/// is bonded to its two ends are two pieces.
+/// Free nodes connected by elements, with the bodies bonded to these elements. A body separates:
+/// parts bonded to its two ends are two components.
 struct ConnectedComponent {
   std::vector<int> nodes;   ///< Free ones; none if all nodes of an element are bonded.
   std::vector<int> bodies;  ///< In ascending order.
-  bool turns = true;        ///< Its matrix may be turned with a body: no single component is fixed.
+  /// Its matrix may be rotated with a body: no single component is fixed.
+  bool turns = true;
 };
 
-/// Nodes of all deformable solids: who moves them, which are neighbours, what they weigh. Nodes
-/// have no rotation; a bonded node moves as x = r + Λ Z with its body. @eq{eq:rbm-position}
+/// Nodes of all deformable solids: their bonds, their graph and their masses. Nodes have no
+/// rotation; a bonded node moves as x = r + Λ Z with its body. @eq{eq:rbm-position}
 class Nodes {
  public:
   int add(const NodeData& node);
@@ -44,8 +45,8 @@ class Nodes {
   /// @returns the index of the group.
   int add_elements(std::unique_ptr<ElementGroup> elements);
   /// Numbers unknowns, builds the graph, sums masses.
-  /// @throws InputError if an element names a node that is not there, a free node belongs to no
-  ///         element with mass, or a node is bonded and prescribed.
+  /// @throws InputError if an element names a nonexistent node, a free node belongs to no element
+  /// with mass, or a node is bonded and prescribed.
   void finish(int body_count);
 
   [[nodiscard]] int count() const { return static_cast<int>(data_.size()); }
@@ -53,7 +54,7 @@ class Nodes {
   [[nodiscard]] const NodeData& operator[](int node) const { return data_[node]; }
   [[nodiscard]] bool bonded(int node) const { return data_[node].body != kFreeNode; }
   [[nodiscard]] const std::vector<PrescribedComponent>& prescribed() const { return prescribed_; }
-  /// Number of an unknown, or -1: bonded or prescribed.
+  /// Number of an unknown, or -1 if it is bonded or prescribed.
   [[nodiscard]] int unknown(int node, int component) const {
     return unknown_[3 * node + component];
   }
@@ -66,10 +67,10 @@ class Nodes {
   [[nodiscard]] std::size_t history_size() const { return first_history_.back(); }
   [[nodiscard]] std::size_t scratch_size() const { return first_scratch_.back(); }
 
-  // The graph of neighbours, row by row; a node is a neighbour of itself.
+  // Graph of neighbours, row by row; a node is a neighbour of itself.
   [[nodiscard]] const std::vector<int>& row_start() const { return row_start_; }
   [[nodiscard]] const std::vector<int>& column() const { return column_; }
-  /// Blocks of the entries of a group's element matrices, see ElementSink.
+  /// Positions of a group's element matrices in the blocks, see ElementSink.
   [[nodiscard]] const std::vector<int>& slots(int group) const { return slots_[group]; }
   /// Consistent mass by block of the graph, the same for each direction [kg].
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
@@ -78,15 +79,15 @@ class Nodes {
 
   [[nodiscard]] const std::vector<ConnectedComponent>& pieces() const { return pieces_; }
   [[nodiscard]] int piece(int node) const { return piece_[node]; }  ///< Of a free node; else -1.
-  /// The piece whose bodies or nodes a group of elements belongs to.
+  /// Connected component of a group of elements.
   [[nodiscard]] int piece_of_group(int group) const { return piece_of_group_[group]; }
-  /// Three zeros for each node: their displacements at an instant.
+  /// Zero displacements, three for each node, for an instant.
   [[nodiscard]] const std::vector<double>& no_displacement() const { return no_displacement_; }
   [[nodiscard]] double element_size() const { return element_size_; }  ///< Mean extent [m].
   [[nodiscard]] bool conservative() const;
   [[nodiscard]] bool dissipates() const;
 
-  /// "element 17 of solid 'pad'".
+  /// Name of an element: "element 17 of solid 'pad'".
   [[nodiscard]] std::string element_name(int group, int element) const;
 
  private:

@@ -7,15 +7,15 @@
 
 namespace polhode {
 
-/// A number that a kind of joint or load takes beside its frames or points: what the reader
-/// accepts, what the reference page tells.
+/// A numerical parameter of a kind of joint or load besides its frames or points, as accepted by
+/// the reader and listed on the reference page.
 struct Parameter {
-  std::string name;                ///< Key in the model file.
-  std::string unit;                ///< SI, such as "N/m"; "-" for none.
-  std::optional<double> standard;  ///< Value when left out; nothing: see `meaning`.
-  double least = -std::numeric_limits<double>::infinity();  ///< Smallest value allowed.
-  double most = std::numeric_limits<double>::infinity();    ///< Largest value allowed.
-  std::string meaning;  ///< One line, with what holds when it is left out.
+  std::string name;                                         ///< Key in the model file.
+  std::string unit;                                         ///< SI, such as "N/m"; "-" for none.
+  std::optional<double> standard;                           ///< Default; none: see `meaning`.
+  double least = -std::numeric_limits<double>::infinity();  ///< Minimum.
+  double most = std::numeric_limits<double>::infinity();    ///< Maximum.
+  std::string meaning;  ///< One line, including the default behaviour.
 };
 
 }  // namespace polhode

@@ -8,13 +8,13 @@ namespace polhode {
 
 namespace {
 
-/// Above this many bodies a depth-first order is kinder to the cache than a breadth-first one.
+/// Number of bodies above which a depth-first order uses the cache better than a breadth-first one.
 constexpr int kDepthFirstFrom = 10000;
 
 struct Edge {
   int candidate;
   int other;        ///< The body at the far end.
-  bool as_child_b;  ///< The far end is b, hence needs no reversal.
+  bool as_child_b;  ///< The far end is b, so no reversal is needed.
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace polhode {
 
-/// A node's vector in a field of three numbers a node.
+/// Vector of a node in a field of three numbers per node.
 [[nodiscard]] inline Eigen::Map<const Vec3> at_node(const std::vector<double>& field, int node) {
   return Eigen::Map<const Vec3>(field.data() + 3 * node);
 }
@@ -19,7 +19,7 @@ namespace polhode {
   return Eigen::Map<Vec3>(field.data() + 3 * node);
 }
 
-/// A sum that keeps what rounding takes away (Neumaier).
+/// A sum with compensated rounding (Neumaier).
 struct ExactSum {
   double sum = 0.0, rest = 0.0;
   void add(double x) {
@@ -30,18 +30,17 @@ struct ExactSum {
   [[nodiscard]] double value() const { return sum + rest; }
 };
 
-/// Errors of single steps as estimated on the way: lengths over ℓ, angles in radians.
-/// @eq{step-error}
+/// Estimated errors of single steps: lengths over ℓ, angles in radians. @eq{step-error}
 struct StepErrors {
   double largest = 0.0, sum = 0.0;
   double time = 0.0;         ///< End of the step with the largest [s].
-  int body = -1, node = -1;  ///< Whose it is; −1: not known.
+  int body = -1, node = -1;  ///< Location of the largest; −1: not known.
   std::int64_t steps = 0;    ///< Steps with an estimate.
   std::int64_t hard = 0;     ///< Steps in which Newton's method only just converged.
   double hard_time = 0.0;    ///< End of the first of these [s].
 };
 
-/// What happened so far: the balance that every run ends with. SI units.
+/// Balance of the run so far, in SI units.
 struct Ledger {
   double initial_energy = 0.0;                     ///< T + V at the start [J].
   double initial_potential = 0.0;                  ///< V at the start [J].
@@ -50,21 +49,21 @@ struct Ledger {
   std::array<ExactSum, 3> impulse, angular_impulse;         ///< Of loads and ground [N s, N m s].
   double energy_scale = 0.0, p_scale = 0.0, l_scale = 0.0;  ///< Largest magnitudes reached.
   double energy_drift = 0.0, p_drift = 0.0, l_drift = 0.0;  ///< Largest absolute drifts.
-  /// Noise of rounding in energy [J], and the sums of its squares for the momenta.
+  /// Rounding noise in energy [J], and the sums of its squares for the momenta.
   double energy_noise = 0.0, p_noise = 0.0, l_noise = 0.0;
   double constraint_max = 0.0;  ///< Largest residual [m or -].
   StepErrors errors;
   std::int64_t steps = 0, rejected = 0, iterations = 0;
 };
 
-/// For ρ∞ < 1, where the stored accelerations depend on the length of the step: what they were
-/// after the last step, and how fast they change. World components but for A.
+/// Stored accelerations for ρ∞ < 1, where they depend on the length of the step: their values after
+/// the last step, and their rates of change. World components but for A.
 struct alignas(64) RatesBlock {
   Lane3 a, A, h_dot;                 ///< As in BodyBlock, at t_n + δΔt of the last step.
-  Lane3 a_rate, A_rate, h_dot_rate;  ///< Their change over the last step, by its length.
+  Lane3 a_rate, A_rate, h_dot_rate;  ///< Their change over the last step, divided by its length.
 };
 
-/// Everything that changes during a run. A value: copy it, save it, compare it bit for bit.
+/// Complete state of a run. A value type: it can be copied, saved, and compared bit for bit.
 struct State {
   double t = 0.0;                 ///< [s]
   std::vector<BodyBlock> blocks;  ///< By slot, see LaneOrder.
@@ -77,18 +76,19 @@ struct State {
   std::vector<double> node_v;      ///< Newmark velocities [m/s].
   std::vector<double> node_a;      ///< Newmark accelerations of t_n + δΔt [m/s²]; for ρ∞ < 1.
   std::vector<double> node_past;   ///< Mean velocities of the last steps, ring [m/s].
-  std::vector<double> node_rates;  ///< Of node_a like `rates`: numbers kept, then their changes.
+  std::vector<double> node_rates;  ///< Of node_a like `rates`: stored numbers, then their changes.
   std::vector<double> element_history;  ///< Of groups of elements: enhanced strains, ...
-  std::vector<double> contacts;         ///< Of BodyContacts: where candidates were found, points.
+  std::vector<double> contacts;         ///< Of BodyContacts: references of candidates, points.
   int past_count = 0;                   ///< Valid entries of the predictor's rings.
   int past_next = 0;                    ///< Ring position to be written next.
   std::array<double, kPast>
-      past_time{};          ///< Middles of the remembered steps [s], by ring position.
+      past_time{};          ///< Middle times of the stored steps [s], by ring position.
   double dt_last = 0.0;     ///< Length of the last accepted step [s].
-  double dt_next = 0.0;     ///< What the step control wants next [s].
-  double error_last = 0.0;  ///< Error estimate of the last step, or what noise leaves [-].
-  double turned = 0.0;      ///< Most a body can have turned since turns were counted [rad].
-  int easy_steps = 0;  ///< Steps in a row that needed few iterations; -1: find the length anew.
+  double dt_next = 0.0;     ///< Next length planned by the step control [s].
+  double error_last = 0.0;  ///< Error estimate of the last step, or the noise level [-].
+  double turned = 0.0;      ///< Largest possible rotation of a body since turns were counted [rad].
+  /// Consecutive steps with few iterations; -1: the length has to be found again.
+  int easy_steps = 0;
   Ledger ledger;
 
   [[nodiscard]] BodyMotion motion(int slot) const;

@@ -28,7 +28,7 @@ class Writer {
     (*this)(static_cast<std::int64_t>(values.size()));
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   }
-  /// A list that is there with `count` entries or not at all; blocks are followed by their bodies.
+  /// A list with `count` entries or none; blocks are followed by their bodies.
   template <class T>
   void optional(const std::vector<T>& list, std::size_t /*count*/) {
     (*this)(list.empty() ? 0 : 1);
@@ -54,7 +54,7 @@ class Reader {
     (*this)(wide);
     value = static_cast<int>(wide);
   }
-  /// A list of the length that the system asks for.
+  /// A list of the length required by the system.
   void operator()(std::vector<double>& values) {
     std::int64_t count = 0;
     (*this)(count);
@@ -92,7 +92,7 @@ class Reader {
 
   void take(void* target, std::size_t size) {
     if (size > bytes_.size()) throw InputError(where_, "ends in the middle of a state", kHint);
-    std::copy_n(bytes_.data(), size, static_cast<char*>(target));  // memcpy may not have null
+    std::copy_n(bytes_.data(), size, static_cast<char*>(target));  // memcpy must not get null
     bytes_.remove_prefix(size);
   }
 
@@ -100,7 +100,7 @@ class Reader {
   std::string_view where_;
 };
 
-/// Every number of one body, in a fixed order.
+/// All numbers of one body, in a fixed order.
 template <class Archive, class Block>
 void body(Archive& archive, Block& block, int lane) {
   const auto lane3 = [&](auto& x) {

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// Every bit of a state as bytes: little endian, bodies in the order of the system, so that the
-/// bytes do not depend on slots or padding.
+/// Bytes of a complete state: little endian, bodies in the order of the system, so that the bytes
+/// do not depend on slots or padding.
 [[nodiscard]] std::string state_bytes(const System& system, const State& state);
 
-/// The state those bytes were made of, with bodies in the slots of this system.
+/// State restored from these bytes, with bodies in the slots of this system.
 /// @param where  First part of the message, e.g. the name of the file.
 /// @throws InputError if the bytes belong to a system of other size or end too early.
 [[nodiscard]] State state_from_bytes(const System& system, std::string_view bytes,

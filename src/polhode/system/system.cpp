@@ -69,7 +69,7 @@ void System::finish() {
   if (!tree_.reversed.empty())
     for (const auto& group : groups_) group->finish();
 
-  // Scales: mean mass, and the mean reach of a body (joint arms, radius of gyration).
+  // Scales: mean mass, and the mean size of a body (joint arms, radius of gyration).
   std::vector<double> reach(n);
   for (int b = 0; b < n; ++b)
     reach[b] = std::sqrt(0.5 * bodies_[b].inertia.trace() / bodies_[b].mass);
@@ -104,7 +104,7 @@ void System::finish() {
   }
   mean_mass_ = n > 0 ? mass / n : 1.0;
   length_ = n > 0 && length > 0.0 ? length / n : 1.0;
-  if (n == 0 && !nodes_.empty()) {  // of the solids alone
+  if (n == 0 && !nodes_.empty()) {  // only solids
     Vec3 low = nodes_[0].position, high = low;
     for (int i = 0; i < nodes_.count(); ++i) {
       low = low.cwiseMin(nodes_[i].position);

@@ -14,15 +14,16 @@
 
 namespace polhode {
 
-/// A moving body of the system: what does not change during a run.
+/// Constant data of a moving body of the system.
 struct BodyData {
   std::string name;
   double mass = 1.0;                ///< [kg]
   Mat3 inertia = Mat3::Identity();  ///< J_r about the centre of mass, body axes [kg m²].
-  bool point_mass = false;          ///< Nothing turns it: statics and modes leave its turns out.
+  /// No moment acts on it: statics and modes leave out its rotations.
+  bool point_mass = false;
 };
 
-/// One interaction with its place in the numbering.
+/// An interaction and its position in the numbering.
 struct InteractionRef {
   int group = 0, item = 0;  ///< groups()[group], item-th of it.
   int a = kGround, b = kGround;
@@ -31,7 +32,7 @@ struct InteractionRef {
   int first_history = 0;  ///< Into State::history.
 };
 
-/// One interaction's view of a step, together with the bodies' steps that it looks at.
+/// View of a step for one interaction, together with the bodies' steps that it refers to.
 struct PairView {
   BodyStep a, b;
   StepContext context;
@@ -41,8 +42,8 @@ struct PairView {
   [[nodiscard]] PairStep step() const { return {a, b, context, lambda, history}; }
 };
 
-/// The compiled model: numbered unknowns, grouped interactions, spanning tree. Immutable once
-/// finish() was called.
+/// The compiled model: numbered unknowns, grouped interactions, spanning tree. Immutable after
+/// finish().
 class System {
  public:
   /// Adds a body and returns its index.
@@ -50,48 +51,50 @@ class System {
   /// The group of this item type, made on first use.
   template <class Item>
   Group<Item>& group();
-  /// A node of a deformable solid; returns its number. Bodies may follow later.
+  /// Adds a node of a deformable solid; returns its number. Bodies may be added later.
   int add_node(const NodeData& node) { return nodes_.add(node); }
-  /// Gives a component of a node's displacement from the start [m].
+  /// Prescribes a component of a node's displacement from the start [m].
   void prescribe(int node, int component, TimeFunctionPtr displacement) {
     nodes_.prescribe(node, component, std::move(displacement));
   }
   int add_elements(std::unique_ptr<ElementGroup> elements) {
     return nodes_.add_elements(std::move(elements));
   }
-  /// Contact between bodies, if any.
+  /// Sets the contacts between bodies.
   void set_contacts(std::shared_ptr<BodyContacts> contacts) { contacts_ = std::move(contacts); }
   [[nodiscard]] const std::shared_ptr<BodyContacts>& contacts() const { return contacts_; }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
-  /// Lets the item-th interaction of a kind be switched.
+  /// Makes the item-th interaction of a kind switchable.
   /// @throws std::logic_error if there is none.
   void set_switching(std::string_view kind, int item, Switching how);
-  /// Numbers that are saved with the state beside those of interactions, zero at the start.
+  /// Sets the number of further values saved with the state in addition to those of interactions,
+  /// initially zero.
   void set_memory(int count) { memory_size_ = count; }
-  /// Numbers everything. @throws InputError if an interaction names a body that does not exist.
+  /// Numbers everything. @throws InputError if an interaction names a nonexistent body.
   void finish();
 
   [[nodiscard]] const Vec3& gravity() const { return gravity_; }  ///< [m/s²]
   [[nodiscard]] const std::vector<BodyData>& bodies() const { return bodies_; }
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies_.size()); }
   [[nodiscard]] const Nodes& nodes() const { return nodes_; }
-  /// Of a body and the solids it holds; what hangs between several bodies in equal parts [kg].
+  /// Mass of a body including attached solids; solids between several bodies count in equal parts
+  /// [kg].
   [[nodiscard]] double carried_mass(int body) const { return carried_mass_[body]; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const InteractionGroup& group(int i) const { return *groups_[i]; }
   [[nodiscard]] const std::vector<InteractionRef>& interactions() const { return refs_; }
-  /// Where the numbers of set_memory() are in State::history.
+  /// Offset of the numbers of set_memory() in State::history.
   [[nodiscard]] int memory() const {
     return static_cast<int>(initial_.history.size()) - memory_size_;
   }
   [[nodiscard]] int memory_size() const { return memory_size_; }
   /// Whether an interaction is switched off.
   [[nodiscard]] bool is_off(const State& state, int interaction) const;
-  /// Friction or stops of joints: forces that change a lot over tiny ways.
+  /// Whether joints have friction or stops: forces that change strongly over tiny displacements.
   [[nodiscard]] bool stiff() const { return stiff_; }
-  /// Interactions with a configuration that no step may reach.
+  /// Interactions with an inadmissible configuration.
   [[nodiscard]] const std::vector<int>& barriers() const { return barriers_; }
-  /// Interactions some of whose rows follow functions of time.
+  /// Interactions with rows that follow functions of time.
   [[nodiscard]] const std::vector<int>& drives() const { return drives_; }
   [[nodiscard]] const SpanningTree& tree() const { return tree_; }
   [[nodiscard]] int slot(int body) const { return tree_.slot_of_body[body]; }
@@ -99,9 +102,9 @@ class System {
   [[nodiscard]] double length_scale() const {
     return length_;
   }  ///< ℓ: extent of the mechanism [m].
-  /// Neither dampers nor loads that depend on time: every interaction stores all it takes.
+  /// Whether all work is stored: neither dampers nor time-dependent loads.
   [[nodiscard]] bool conservative() const { return conservative_; }
-  /// Something takes energy for good, as dampers do.
+  /// Whether energy is dissipated, as by dampers.
   [[nodiscard]] bool dissipates() const { return dissipates_; }
   [[nodiscard]] const InteractionTraits& traits(const InteractionRef& ref) const {
     return groups_[ref.group]->traits(ref.item);
@@ -110,14 +113,14 @@ class System {
     return traits(ref).name;
   }
 
-  /// The state the bodies were added with; not yet assembled, projected or started.
+  /// The state as bodies were added; not yet assembled, projected or started.
   [[nodiscard]] const State& initial_state() const { return initial_; }
   [[nodiscard]] BodyMotion motion(const State& state, int body) const {
     return state.motion(slot(body));
   }
-  /// The instant of a body as a degenerate step; the ground for kGround.
+  /// Instant of a body as a degenerate step; the ground for kGround.
   [[nodiscard]] BodyStep instant(const State& state, int body) const;
-  /// The same for an interaction. @param lambda  Multipliers by row, or null if it has none.
+  /// Instant of an interaction. @param lambda  Multipliers by row, or null if it has none.
   [[nodiscard]] PairView instant(const State& state, const InteractionRef& ref,
                                  const double* lambda) const;
 

@@ -8,13 +8,14 @@ namespace polhode {
 
 namespace {
 
-/// Bending of a function between samples, as part of its change over kWindow times as long.
+/// Largest curvature effect of a function between samples, as a part of its change over kWindow
+/// times as long.
 constexpr double kBend = 1.0 / 3.0;
 constexpr double kWindow = 4.0;
 constexpr int kSamples = 16;
-/// Bending as part of the function's size that no step is shortened for.
+/// Curvature effect, as a part of the function's size, for which no step is shortened.
 constexpr double kNothing = 1e-12;
-/// Steps are not shortened below this part of the run for the sake of samples.
+/// Part of the run below which steps are not shortened for sampling.
 constexpr double kMinPart = 1e-7;
 
 }  // namespace
@@ -38,7 +39,7 @@ TimeBreaks::TimeBreaks(const System& system, double until, int most_derivative)
 }
 
 TimeBreak TimeBreaks::next(double t) {
-  if (t >= until_) {  // the run is taken on beyond its end
+  if (t >= until_) {  // the run is continued beyond its end
     until_ = 2.0 * t;
     for (Followed& f : followed_) f.from = -1.0;
   }
@@ -72,7 +73,7 @@ double TimeBreaks::sampled_length(double t, double h, double samples) const {
 bool TimeBreaks::sampled(const Followed& f, double t, double h, double apart) const {
   const double bend = 0.5 * apart * apart * f.function->bounds(t, t + h).curvature;
   if (bend <= kNothing * f.size) return true;
-  // The window ends at the next break, where the function may change by anything.
+  // The window ends at the next break, where the function may change arbitrarily.
   double from = t, to = t + kWindow * apart;
   if (f.next.exists() && to > f.next.t) {
     to = f.next.t - 1e-3 * apart;

@@ -99,7 +99,7 @@ std::string full_name(const Slice& slice, std::size_t k) {
   return slice.labels[k].empty() ? slice.head : slice.head + "." + slice.labels[k];
 }
 
-/// Reader that keeps what it has read: many columns come from one data set.
+/// Reader with a cache: many columns come from one data set.
 class Columns {
  public:
   explicit Columns(const ResultsReader& results) : results_(results), slices_(slices_of(results)) {}

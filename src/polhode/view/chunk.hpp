@@ -9,10 +9,10 @@
 
 namespace polhode {
 
-/// Packed numbers for the page: rows of `width` 32-bit words, each row minus the one before it
+/// Compressed numbers for the page: rows of `width` 32-bit words, each row minus the previous one
 /// (modulo 2³²), the lowest bytes of all words first, then the next ones, deflated (zlib, RFC
-/// 1950). Nothing is lost: the page adds rows up again. Numbers that change slowly leave zeros in
-/// the high bytes, which deflate well.
+/// 1950). It is lossless: the page sums rows up again. Slowly changing numbers have zeros in the
+/// high bytes, which deflate well.
 [[nodiscard]] std::string pack_floats(std::span<const double> values, std::size_t width);
 [[nodiscard]] std::string pack_integers(std::span<const std::uint32_t> values, std::size_t width);
 /// Inverse of pack_floats(). @throws std::runtime_error if the bytes are no such numbers.

@@ -28,7 +28,7 @@ constexpr std::array<std::array<double, 3>, 8> kPalette = {{{0.07, 0.24, 0.57},
                                                             {0.58, 0.47, 0.15},
                                                             {0.43, 0.14, 0.29}}};
 
-/// The file's numbers, and the views and accessors that name them.
+/// Numbers of the file, and the views and accessors that refer to them.
 class Numbers {
  public:
   Numbers(Json& views, Json& accessors) : views_(views), accessors_(accessors) {}
@@ -139,7 +139,7 @@ std::string scene_glb(const SceneData& scene) {
   for (const Json& mesh : m["meshes"])
     shapes.push_back({data.floats(numbers<float>(scene, mesh["points"]), "VEC3", 3, true),
                       data.integers(numbers<std::uint32_t>(scene, mesh["triangles"]))});
-  // glTF has y up; here it is what gravity points away from, z if there is none.
+  // glTF has y up; here it is opposite to gravity, z if there is none.
   const Json gravity = m.value("gravity", Json::array({0.0, 0.0, -1.0}));
   const bool y_up = std::abs(gravity[1].get<double>()) > std::abs(gravity[2].get<double>());
   Json root = {{"name", m["title"].get<std::string>().empty() ? "Model" : m["title"]}};

@@ -17,22 +17,22 @@ namespace polhode {
 
 namespace {
 
-/// Place of the data in a page, written by viewer/build.mjs.
+/// Placeholder of the data in a page, written by viewer/build.mjs.
 constexpr const char* kPlace = "<!--POLHODE-DATA-->";
-/// Place of numbers that the first picture does without, behind the player: it begins before a
-/// browser has read them.
+/// Placeholder of numbers not needed for the first picture, behind the player, which starts before
+/// a browser has read them.
 constexpr const char* kLaterPlace = "<!--POLHODE-LATER-->";
 
 bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 
-/// Fields of solids go with add_solids().
+/// Fields of solids are added by add_solids().
 bool is_channel(const std::string& path) {
   if (path == results::kTime) return false;
   if (!starts_with(path, results::kSolids)) return true;
   return path.find("/interfaces/") != std::string::npos;
 }
 
-/// Whether the first picture does without a channel.
+/// Whether a channel is not needed for the first picture.
 bool is_later(const std::string& path) {
   for (const char* first : {"/packed/bodies/position", "/packed/bodies/orientation",
                             "/packed/contacts/force", "/packed/contacts/point", "/packed/loads/"})
@@ -40,7 +40,7 @@ bool is_later(const std::string& path) {
   return starts_with(path, "/packed/");
 }
 
-/// Numbers in a frame of everything that the page takes.
+/// Numbers per frame of all data used by the page.
 std::size_t frame_size(const ResultsReader& results) {
   std::size_t size = 0;
   for (const ResultsReader::DataSet& set : results.data_sets())
@@ -57,8 +57,8 @@ std::size_t choose_every(const ResultsReader& results, const SceneOptions& optio
   return std::max<std::size_t>(1, (frames + most - 1) / most);
 }
 
-/// Change of total energy, less work put in, plus what was dissipated, over the largest energy: in
-/// double precision, because 32 bits would hide it.
+/// Change of total energy, minus work input, plus dissipation, over the largest energy: in double
+/// precision, because 32 bits are not accurate enough.
 std::vector<double> energy_drift(const ResultsReader& results, std::size_t every) {
   const std::string group = results::kEnergy;
   for (const char* name : {"/kinetic", "/potential", "/total", "/put_in", "/dissipated"})
@@ -184,14 +184,14 @@ SceneData make_scene(const ResultsReader& results, const Model* model,
                         {"unit", "-"},
                         {"dims", Json::array()},
                         {"data", chunks.floats(drift, 1)}});
-  // A replacement for bytes that are no UTF-8: titles and names come from files.
+  // Replaces bytes that are not UTF-8: titles and names come from files.
   scene.manifest = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
   return scene;
 }
 
 namespace {
 
-/// Chunks of a recording, those that the first picture does without or the others.
+/// Chunks of a recording, either those needed for the first picture or the others.
 std::string chunk_elements(const SceneData& scene, const std::string& suffix, bool later) {
   std::string data;
   for (std::size_t i = 0; i < scene.chunks.size(); ++i)
@@ -201,12 +201,12 @@ std::string chunk_elements(const SceneData& scene, const std::string& suffix, bo
   return data;
 }
 
-/// Elements of a recording; `suffix` tells a second one from the first.
+/// Elements of a recording; `suffix` distinguishes a second one from the first.
 std::string scene_elements(const SceneData& scene, const std::string& suffix) {
   std::string data = format("<script type=\"application/json\" id=\"polhode-scene{}\">", suffix);
   for (char c : scene.manifest) {
     if (c == '<')
-      data += "\\u003c";  // No text of a model can end the element.
+      data += "\\u003c";  // No text of a model may end the element.
     else
       data += c;
   }

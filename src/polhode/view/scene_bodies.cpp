@@ -15,11 +15,11 @@ namespace polhode {
 
 namespace {
 
-/// Triangles around round shapes: fewer where many bodies are drawn.
+/// Triangles around round shapes: fewer for many bodies.
 int segments_for(std::size_t bodies) { return bodies > 2000 ? 10 : bodies > 200 ? 16 : 32; }
 
-/// Thickness of the box that stands for a slender body without shapes, as a part of its length: it
-/// is to be seen in the whole of the mechanism.
+/// Thickness of the box of a slender body without shapes, as a part of its length: it should be
+/// visible in the whole mechanism.
 double thinnest(const BodySpec& body, double size) {
   constexpr double kThin = 0.06, kThick = 0.2, kOfAll = 0.004;
   if (body.point_mass) return kThin;
@@ -38,7 +38,7 @@ std::string key_of(const ShapeSpec& shape) {
   return key;
 }
 
-/// Size of the mechanism at the start, which the cubes of point masses follow.
+/// Size of the mechanism at the start, the scale of the cubes of point masses.
 double extent_of(const Model& model) {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   bool first = true;
@@ -72,7 +72,7 @@ class Meshes {
   std::map<std::string, std::size_t> known_;
 };
 
-/// The entry of that name, which is most often the one at that index; null if there is none.
+/// Entry of that name, usually the one at that index; null if there is none.
 template <class Spec>
 const Spec* named(const std::vector<Spec>& list, const std::string& name, std::size_t index) {
   if (index < list.size() && list[index].name == name) return &list[index];

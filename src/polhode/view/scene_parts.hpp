@@ -16,11 +16,11 @@ namespace polhode {
 
 using Json = nlohmann::ordered_json;
 
-/// Collector of packed numbers; entries of the manifest name them by index.
+/// Collection of compressed numbers; entries of the manifest refer to them by index.
 class ChunkList {
  public:
   explicit ChunkList(SceneData& scene) : chunks_(scene.chunks), later_(scene.later) {}
-  /// Says that the first picture does without the numbers that are added next.
+  /// Marks the numbers added next as not needed for the first picture.
   void later() { later_.insert(chunks_.size()); }
   /// {"c": index, "n": rows, "w": width, "t": "f" or "u"}
   Json floats(std::span<const double> values, std::size_t width);
@@ -36,19 +36,19 @@ class ChunkList {
 [[nodiscard]] Json json_of(const Vec3& v);
 [[nodiscard]] Json json_of(const Quat& q);  ///< w, x, y, z.
 
-/// The mesh of a solid as the results keep it, by the path of its group; only topology is filled
+/// Mesh of a solid as stored in the results, by the path of its group; only the topology is filled
 /// in.
 [[nodiscard]] Mesh mesh_of_results(const ResultsReader& results, const std::string& group);
 
-/// Fills in "meshes" and "bodies" of the manifest: each different shape once.
+/// Adds "meshes" and "bodies" to the manifest: each different shape once.
 void add_bodies(Json& manifest, ChunkList& chunks, const ResultsReader& results, const Model* model,
                 const SceneOptions& options);
-/// Fills in "joints" and "loads".
+/// Adds "joints" and "loads".
 void add_connections(Json& manifest, const ResultsReader& results, const Model* model,
                      const SceneOptions& options);
-/// Fills in "solids": outer faces, edges of elements, and fields of nodes and elements outside.
+/// Adds "solids": outer faces, edges of elements, and fields of outer nodes and elements.
 void add_solids(Json& manifest, ChunkList& chunks, const ResultsReader& results, std::size_t every);
-/// Fills in "beams" and "cables".
+/// Adds "beams" and "cables".
 void add_lines(Json& manifest, const ResultsReader& results, const Model* model);
 
 }  // namespace polhode

@@ -40,7 +40,7 @@ std::vector<std::array<int, 3>> triangles_of(const std::string& type) {
   return {{0, 1, 2}, {0, 2, 3}};
 }
 
-/// Edges of a face in its own node numbers, quadratic ones in two pieces.
+/// Edges of a face in its own node numbers, quadratic ones in two segments.
 std::vector<std::array<int, 2>> edges_of(const CellShape& shape) {
   std::vector<std::array<int, 2>> list;
   const int corners = shape.corners;
@@ -56,7 +56,7 @@ std::vector<std::array<int, 2>> edges_of(const CellShape& shape) {
   return list;
 }
 
-/// Visible part of a mesh, in numbers of the nodes that are seen.
+/// Visible part of a mesh, in numbers of the visible nodes.
 struct Outside {
   std::vector<int> nodes, elements;  ///< Of the mesh, by number here.
   std::vector<std::uint32_t> triangles, edges;
@@ -101,7 +101,7 @@ Outside outside_of(const Mesh& mesh) {
   return out;
 }
 
-/// Rows of the nodes or elements that are seen, out of those of all of each frame.
+/// Rows of the visible nodes or elements, out of those of all of each frame.
 std::vector<double> seen_rows(const std::vector<double>& values, std::size_t all,
                               const std::vector<int>& nodes, std::size_t width) {
   std::vector<double> rows;

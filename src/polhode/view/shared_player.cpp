@@ -24,8 +24,8 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// Takes the script out of a page, which then refers to player.js; its policy admits scripts from
-/// where the page lies in place of that one script.
+/// Removes the script from a page, which then refers to player.js; its security policy allows
+/// scripts from the page's location instead of that script.
 std::string take_script(std::string& page) {
   const std::size_t begin = page.rfind(kBegin), from = begin + std::string(kBegin).size(),
                     end = begin == std::string::npos ? begin : page.find(kEnd, from),

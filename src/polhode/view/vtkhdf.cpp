@@ -33,7 +33,7 @@ std::vector<VtkHdfField> fields_in(const ResultsReader& results, const std::stri
   return fields;
 }
 
-/// Sum of a list at the start and its changes at each frame.
+/// Sum of initial values and their changes at each frame.
 std::vector<double> moved(const std::vector<double>& start, std::vector<double> changes) {
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i] += start[i % start.size()];
   return changes;
@@ -62,7 +62,7 @@ void add_solid(VtkHdfFile& file, const ResultsReader& results, const std::string
   file.add(grid);
 }
 
-/// A beam or cable, with a line for each element.
+/// Adds a beam or cable, with a line for each element.
 void add_line(VtkHdfFile& file, const ResultsReader& results, const std::string& name,
               const std::string& position, const std::string& nodes, const std::string& elements) {
   const ResultsReader::DataSet* set = results.find(position);
@@ -81,7 +81,7 @@ void add_line(VtkHdfFile& file, const ResultsReader& results, const std::string&
 /// Surfaces of bodies, by their indices in the results.
 using Surfaces = std::vector<std::pair<std::size_t, TriangleSurface>>;
 
-/// A grid of surfaces that are moved and turned as their bodies are.
+/// Adds a grid of surfaces that are moved with their bodies.
 void add_surfaces(VtkHdfFile& file, const ResultsReader& results, const std::string& name,
                   const Surfaces& surfaces, std::size_t bodies) {
   const std::string group = results::kPackedBodies;
@@ -96,7 +96,8 @@ void add_surfaces(VtkHdfFile& file, const ResultsReader& results, const std::str
     }
     grid.points += surface.points.size();
   }
-  /// A vector for each point, by the place of its body in lists of vectors and its turned arm.
+  /// A vector for each point, by the index of its body in lists of vectors and its rotated lever
+  /// arm.
   using Visit = std::function<Vec3(std::size_t at, const Vec3& arm)>;
   const auto each_point = [&](const Visit& visit) {
     const std::vector<double> q = results.read(group + "/orientation");
@@ -132,7 +133,7 @@ void add_surfaces(VtkHdfFile& file, const ResultsReader& results, const std::str
   file.add(grid);
 }
 
-/// A grid for each body, or one for all where they are many.
+/// Adds a grid for each body, or one for all if there are many.
 void add_body_surfaces(VtkHdfFile& file, const ResultsReader& results, const Model& model) {
   const std::vector<std::string> names =
       results.names(std::string(results::kPackedBodies) + "/names");

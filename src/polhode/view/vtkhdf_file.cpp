@@ -41,13 +41,13 @@ void number_attribute(hid_t object, const char* name, const std::vector<std::int
   H5Awrite(attribute.get(), H5T_NATIVE_INT64, values.data());
 }
 
-/// The type, and the version of the format that it needs.
+/// Writes the type, and the version of the format that it requires.
 void describe(hid_t group, const std::string& type) {
   number_attribute(group, "Version", {2, 3});
   text_attribute(group, "Type", type);
 }
 
-/// Rows of `width` numbers, deflated in pieces of about 64 KB; a single number is no row.
+/// Rows of `width` numbers, deflated in chunks of about 64 KB; a single number is no row.
 template <class T>
 bool write_rows(hid_t group, const std::string& name, hid_t stored, hid_t native,
                 const std::vector<T>& values, std::size_t width = 1, bool table = false) {
@@ -78,14 +78,14 @@ bool write_indices(hid_t group, const std::string& name, const std::vector<std::
   return write_rows(group, name, H5T_STD_I64LE, H5T_NATIVE_INT64, values, 1, table);
 }
 
-/// 0, by, 2 by, ...: where the part of each frame begins.
+/// Starts 0, by, 2 by, ... of the parts of the frames.
 std::vector<std::int64_t> begins(std::size_t frames, std::size_t by) {
   std::vector<std::int64_t> list;
   for (std::size_t f = 0; f < frames; ++f) list.push_back(static_cast<std::int64_t>(f * by));
   return list;
 }
 
-/// A name that can stand in a path and an assembly.
+/// Name that is valid in a path and an assembly.
 std::string block_name(const std::string& name) {
   std::string result;
   for (const char c : name) result += c == '/' || c == '.' ? '_' : c;

@@ -12,15 +12,15 @@
 
 namespace polhode {
 
-/// Values at the points or cells of a grid: `width` numbers each, frame after frame. They are
-/// read when they are written, so that one field at a time is in memory.
+/// Values at the points or cells of a grid: `width` numbers each, frame after frame. They are read
+/// when they are written, so that only one field at a time is in memory.
 struct VtkHdfField {
   std::string name, unit;
   std::size_t width = 1;
   std::function<std::vector<double>()> values{};
 };
 
-/// A grid whose cells stay the same while its points move.
+/// A grid with constant cells and moving points.
 struct VtkHdfGrid {
   std::string name;
   std::size_t points = 0;
@@ -38,14 +38,14 @@ struct VtkHdfGrid {
 };
 
 /// A file of the type "PartitionedDataSetCollection" that is being written; it gets its name when
-/// it is whole.
+/// it is complete.
 class VtkHdfFile {
  public:
   /// @param times  Of the frames [s]. @throws FileError
   VtkHdfFile(std::string path, std::vector<double> times);
   ~VtkHdfFile();
   VtkHdfFile(const VtkHdfFile&) = delete;
-  /// Of a name that is taken the next one gets an underscore behind it. @throws FileError
+  /// Adds a grid. A name that exists already gets an underscore appended. @throws FileError
   void add(const VtkHdfGrid& grid);
   [[nodiscard]] std::size_t grids() const { return names_.size(); }
   void close();  ///< @throws FileError

@@ -16,7 +16,7 @@ constexpr std::uint16_t kUtf8 = 0x0800;      // names
 constexpr std::uint16_t kFirstDay = 0x0021;  // 1 January 1980
 constexpr std::uint16_t kDeflated = 8;
 
-/// Numbers in the order of bytes that the format wants.
+/// Numbers in the byte order of the format.
 class LittleEndian {
  public:
   LittleEndian& u16(std::size_t v) { return put(v, 2); }
@@ -36,7 +36,7 @@ class LittleEndian {
   std::string bytes_;
 };
 
-/// Raw deflate stream, without the head and sum of zlib.
+/// Raw deflate stream, without zlib's header and checksum.
 std::string deflated(const std::string& bytes) {
   z_stream stream{};
   if (deflateInit2(&stream, 6, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -53,7 +53,7 @@ std::string deflated(const std::string& bytes) {
   return packed;
 }
 
-/// What the head of a file and its entry in the directory share.
+/// Common data of the header of a file and its entry in the directory.
 void add_description(LittleEndian& out, const ZipEntry& entry, std::size_t packed) {
   const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(entry.bytes.data()),
                           static_cast<uInt>(entry.bytes.size()));

@@ -11,7 +11,7 @@
 namespace polhode {
 namespace {
 
-/// The parts of a path such as solids.pad.mesh.elements[3].
+/// Components of a path such as solids.pad.mesh.elements[3].
 std::vector<std::string> parts_of(std::string_view path) {
   std::vector<std::string> parts(1);
   for (const char c : path) {
@@ -24,7 +24,7 @@ std::vector<std::string> parts_of(std::string_view path) {
   return parts;
 }
 
-/// Whether a load's nodes or faces exist.
+/// Checks that a load's nodes or faces exist.
 void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
   const std::string where = format("loads.{}", load.name);
   try {
@@ -37,7 +37,7 @@ void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputEr
   }
 }
 
-/// Whether a probe's point lies in the solid.
+/// Checks that a probe's point lies in the solid.
 void check_probe(const ProbeSpec& probe, const std::string& where, const SolidPlan& plan,
                  std::vector<InputError>& faults) {
   if (probe.node && *probe.node >= static_cast<int>(plan.mesh.nodes.size())) {
@@ -76,7 +76,7 @@ SourceLocation place_of_path(const ReadContext& context, const SourceNode& root,
                                     [&](const auto& k) { return k.name == part; });
       if (key == node->keys.end()) break;
       node = &node->children[static_cast<std::size_t>(key - node->keys.begin())];
-      // A map is meant by its name, a value by itself.
+      // For a map the name is meant, for a value the value itself.
       place = node->is_map() ? context.tree.place_of(*key, *node) : context.tree.place_of(*node);
     } else if (node->is_list()) {
       std::size_t index = 0;

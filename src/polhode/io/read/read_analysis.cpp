@@ -7,7 +7,7 @@
 namespace polhode {
 namespace {
 
-/// Writes a value where the file gives one, and leaves the standard where it does not.
+/// Sets a value that is given in the file, and leaves the default otherwise.
 template <class Target, class Value>
 void assign(Target& target, const std::optional<Value>& value) {
   if (value) target = *value;
@@ -26,7 +26,7 @@ void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
   analysis.step = section.number("step");
 }
 
-/// Entries that mean nothing in an analysis of this type.
+/// Rejects entries without meaning in an analysis of this type.
 void check_type(Section& section, const std::string& type) {
   const auto refuse = [&](const char* key, const std::string& goes_with) {
     if (section.has(key))

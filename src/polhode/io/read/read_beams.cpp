@@ -12,7 +12,7 @@
 namespace polhode {
 namespace {
 
-/// Of a material that a beam can be made of.
+/// Data of a material for beams.
 struct BeamMaterial {
   double E = 0.0, nu = 0.0, density = 0.0, relaxation_time = 0.0;
 };
@@ -161,7 +161,7 @@ class SectionReader {
   Section section_;
 };
 
-/// A fault found while a beam or cable was divided, at the key that it names.
+/// Reports an error found while a beam or cable was meshed, at the key that it names.
 void tell(Section& section, const InputError& e) {
   const std::string key = e.where().substr(std::min(e.where().size(), section.path("").size()));
   if (section.has(key))
@@ -170,7 +170,7 @@ void tell(Section& section, const InputError& e) {
     section.fault(e.what_is_wrong(), e.hint() + ".");
 }
 
-/// Makes the names of bodies and joints known that came with a beam or cable.
+/// Registers the names of bodies and joints created for a beam or cable.
 void name_parts(ReadContext& context, std::size_t bodies, std::size_t joints, bool sound) {
   const Model& model = context.model;
   for (std::size_t k = bodies; k < model.bodies.size(); ++k) {
@@ -202,7 +202,7 @@ class BeamReader {
     if (const SourceNode* bonded = section_.find("bonded")) read_bonds(*bonded);
     read_velocities();
     if (const SourceNode* node = section_.find("contact")) read_contact(*node);
-    // Contact strikes single nodes.
+    // Contact impulses act on single nodes.
     beam_.consistent_mass = section_.number("consistent_mass").value_or(beam_.contact ? 0.0 : 0.5);
     beam_.residual_bending_flexibility =
         section_.boolean("residual_bending_flexibility").value_or(true);
@@ -313,7 +313,8 @@ class BeamReader {
     return true;
   }
 
-  /// Bodies with the names of the nodes, so that who names them hears of no second fault.
+  /// Adds placeholder bodies with the names of the nodes, so that references to them cause no
+  /// further error.
   void stand_in() {
     const std::size_t bodies = context_.model.bodies.size();
     beam_.first_node = static_cast<int>(bodies);
@@ -432,7 +433,7 @@ class CableReader {
   Section section_;
 };
 
-/// Names of beams and cables are names of bodies, with a suffix.
+/// Checks that the name of a beam or cable does not collide with bodies, whose names it prefixes.
 bool check_free_name(ReadContext& context, const SourceNode::Key& key, const SourceNode& value,
                      const std::string& collection) {
   if (!check_name(context, key, value, collection)) return false;
@@ -459,7 +460,7 @@ void read_sections(ReadContext& context, const SourceNode& node) {
     if (const FieldTable* table = read_kind(context, node.children[k], section.place,
                                             "sections." + key.name, section_tables(), type))
       SectionReader(context, node.children[k], section, type, *table).read();
-    // A fault of its material is told there, and leaves the section without mass.
+    // An error of its material is reported there, and leaves the section without mass.
     const bool sound =
         context.diagnostics.size() == before && section.section.mass_per_length > 0.0;
     context.sections.emplace(key.name, sound ? std::optional(std::move(section)) : std::nullopt);

@@ -10,7 +10,7 @@
 namespace polhode {
 namespace {
 
-/// Reads one body; faults go to the context.
+/// Reader of one body; errors go to the context.
 class BodyReader {
  public:
   BodyReader(ReadContext& context, const SourceNode& node, BodySpec& body)
@@ -83,7 +83,7 @@ class BodyReader {
   }
 
   void require_mass(bool weighable) {
-    // A key that was misspelt, or a 'fixed' that is no boolean, is told already.
+    // A misspelt key, or a 'fixed' that is no boolean, is already reported.
     if (section_.has_unknown_key() || (section_.has("fixed") && !fixed_is_sound_)) return;
     if (!section_.has("mass")) {
       section_.fault(weighable ? "'density' is missing" : "'mass' is missing",

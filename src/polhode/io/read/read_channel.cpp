@@ -31,7 +31,7 @@ std::optional<ReadChannel> read_channel(ReadContext& context, Section& section) 
     const std::string unit = find_channel(context.model, channel.spec, where).unit;
     channel.dimension = read_unit(unit).unit.value_or(Unit{}).dimension;
   } catch (const InputError& e) {
-    if (e.where() != where) return std::nullopt;  // of the joint, which is told there
+    if (e.where() != where) return std::nullopt;  // of the joint, which is reported there
     section.fault("channel", e.what_is_wrong(), e.hint() + ".");
     return std::nullopt;
   }

@@ -18,10 +18,10 @@ void assign(T& target, const std::optional<T>& value) {
   if (value) target = *value;
 }
 
-/// The smallest restitution that a damper can bring about.
+/// Smallest restitution that a damper can produce.
 constexpr double kMinDamped = 0.05;
 
-/// Keys of forces, which impulses do not have.
+/// Keys of contact forces that are not available with impulses.
 constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_stiffness",
                                 "reference_load",     "rebound",         "reference_pressure",
                                 "static_friction",    "friction_across", "direction",
@@ -94,7 +94,7 @@ Combination combination(const std::string& word) {
   return Combination::geometric_mean;
 }
 
-/// Reads the section; faults go to the context.
+/// Reader of the section; errors go to the context.
 class ContactsReader {
  public:
   ContactsReader(ReadContext& context, const SourceNode& node)
@@ -138,7 +138,7 @@ class ContactsReader {
   }
 
  private:
-  /// Every entry of a map from names to sections.
+  /// Visits every entry of a map from names to sections.
   template <class F>
   void each(const std::string& key, const FieldTable& table, const char* example, F&& read_one) {
     const SourceNode* node = section_.find(key);
@@ -167,7 +167,7 @@ class ContactsReader {
     if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
   }
 
-  /// Two bodies that have shapes, or one and a solid or cable; ground itself has none.
+  /// Two bodies that have shapes, or one and a solid or cable; the ground itself has none.
   std::optional<std::array<int, 2>> read_sides(Section& section) {
     const SourceNode* node = section.find("between");
     if (!node) return std::nullopt;
@@ -253,7 +253,7 @@ class ContactsReader {
     contacts_.pairs.push_back(std::move(pair));
   }
 
-  /// What is stated of a point does not suit a surface, and the other way round.
+  /// Rejects law keys for points on surfaces, and vice versa.
   void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
     if (!is_surface_side(sides[0]) && !is_surface_side(sides[1])) {
       if (section.has("reference_pressure"))
@@ -441,7 +441,7 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
                     "Give one of them another name.");
       return std::nullopt;
     }
-    if (cable && !context.cables.at(child.text)) return std::nullopt;  // its fault is told
+    if (cable && !context.cables.at(child.text)) return std::nullopt;  // already reported
     sides[k] = cable ? side_of_cable(*context.cables.at(child.text))
                      : side_of_solid(context.solids.at(child.text));
   }

@@ -72,7 +72,8 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
 
 bool is_controlled(const TimeFunctionPtr& f) { return f && f->controller() >= 0; }
 
-/// Positions and speeds that are prescribed may not jump, as what a controller sets does.
+/// Rejects controllers of prescribed positions and velocities, which must not jump as controller
+/// outputs do.
 void refuse_controlled_motion(ReadContext& context) {
   const auto refuse = [&](const SourceLocation& place, const std::string& path) {
     context.diagnostics.add(place, path, "is prescribed, but the output of a controller may jump",

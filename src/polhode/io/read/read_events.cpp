@@ -35,7 +35,8 @@ std::optional<ConditionSpec> read_condition(ReadContext& context, const SourceNo
   return condition;
 }
 
-/// A body as a whole meets surfaces as well, whose contact is not switched: the first of them.
+/// First surface in contact with a body that is to be switched as a whole; contact with surfaces
+/// cannot be switched.
 std::optional<std::string> surface_met(const Model& model, const std::array<int, 2>& sides) {
   if (sides[1] != kEverySide) return std::nullopt;
   std::vector<InputError> told_elsewhere;

@@ -10,7 +10,7 @@
 namespace polhode {
 namespace {
 
-/// Where a body stands at the start; the ground is the world.
+/// Pose of a body at the start; for the ground the world.
 struct Pose {
   Vec3 r = Vec3::Zero();    ///< Centre of mass [m].
   Vec3 com = Vec3::Zero();  ///< The same in the user's body coordinates [m].
@@ -28,8 +28,8 @@ Pose pose_of(const ReadContext& context, int body) {
   return {b.position, b.com, b.orientation.toRotationMatrix()};
 }
 
-/// Right-handed axes with this z; x as near as it can be to a wish, or along the world axis that is
-/// least along z.
+/// Right-handed axes with this z; x as near as possible to a given direction, or along the world
+/// axis most nearly normal to z.
 Mat3 axes_about(const Vec3& z, const std::optional<Vec3>& wish = {}) {
   int least = 0;
   z.cwiseAbs().minCoeff(&least);
@@ -71,7 +71,7 @@ class JointReader {
     read_frame_motion();
     read_strength();
     read_enforcement();
-    // What follows needs sound numbers, and bodies that stand where they should.
+    // The following needs valid numbers, and bodies with valid placements.
     const auto sound = [&](int body) {
       return body == kGround || context_.body_is_sound[static_cast<std::size_t>(body)];
     };
@@ -103,7 +103,7 @@ class JointReader {
     }
     if (section_.has("at_body")) return;
     if (!section_.has("at")) {
-      // Directions alone matter to parallel axes.
+      // Parallel axes need only directions.
       if (joint_.type != "parallel_axes" && section_.misses("at") && section_.misses("at_body"))
         section_.fault("'at' is missing", "Give at (world) or at_body (a point on each body).");
       return;
@@ -158,7 +158,7 @@ class JointReader {
     return u.norm() > 0.0 ? std::optional<Vec3>(u.normalized()) : std::nullopt;
   }
 
-  /// The direction, unless it is along z.
+  /// The direction, unless it is parallel to z.
   [[nodiscard]] static std::optional<Vec3> across(const Vec3& z, const std::optional<Vec3>& x) {
     return x && x->cross(z).norm() > 1e-3 ? x : std::nullopt;
   }
@@ -170,7 +170,7 @@ class JointReader {
     return false;
   }
 
-  /// z on each body; x_axis counts in the world at the start, as seen from a.
+  /// z on each body; x_axis is given in the world at the start, on a.
   void read_body_axes() {
     const auto z = section_.direction_pair("axis_body");
     const auto x = section_.direction("x_axis");
@@ -178,7 +178,7 @@ class JointReader {
     const Vec3 z_a = a_.Lambda * (*z)[0], z_b = b_.Lambda * (*z)[1];
     if (x && !check_x(z_a, *x)) return;
     const Mat3 F = axes_about(z_a, x ? x : across(z_a, rod_direction()));
-    // The shortest turn from one axis to the other keeps the joint's angle at the start near zero.
+    // The smallest rotation from one axis to the other keeps the joint's initial angle near zero.
     const Quat turn = Quat::FromTwoVectors(z_a, z_b);
     joint_.R_a = a_.Lambda.transpose() * F;
     joint_.R_b = b_.Lambda.transpose() * (turn * F);
@@ -309,7 +309,7 @@ class JointReader {
     enforcement_at_ = node;
   }
 
-  /// A stiffness for each kind of row, and none for what the joint leaves free.
+  /// Checks that there is a stiffness for each kind of row, and none for free motions.
   void check_enforcement(const JointParts& parts) {
     if (!joint_.enforcement) return;
     Section section(context_, *enforcement_at_, context_.tree.place_of(*enforcement_at_),
@@ -326,7 +326,7 @@ class JointReader {
     check("turning_stiffness", demand.rotations, "rotations");
   }
 
-  /// Joints given with `at` stand at zero; others are looked at when the start is assembled.
+  /// Joints given with `at` start at zero; others are checked when the start is assembled.
   void check_start() {
     if (joint_.assembled_start) return;
     if (joint_kind(joint_.type).points_apart) {
@@ -357,7 +357,7 @@ class JointReader {
     if (!is_new && std::abs(found->second - start) > 1e-9 * start) joint_.assembled_start = true;
   }
 
-  /// The kind itself knows what else can be wrong.
+  /// Further errors are found by the kind itself.
   void check_recipe() {
     try {
       check_enforcement(joint_kind(joint_.type)

@@ -8,7 +8,7 @@
 namespace polhode {
 namespace {
 
-/// A force over a coordinate, given by points.
+/// Force as a function of a coordinate, given by points.
 TimeFunctionPtr read_law_table(ReadContext& context, const SourceNode& node,
                                const std::string& path, const Field& field) {
   Section section(context, node, context.tree.place_of(node), path, law_table_fields());
@@ -74,7 +74,7 @@ TimeFunctionPtr read_law(ReadContext& context, const SourceNode& node, const std
                   "Give it in a unit of that dimension.");
     return nullptr;
   }
-  const double somewhere = field.variable == "l" ? 1.0 : 0.0;  // distances are above zero
+  const double somewhere = field.variable == "l" ? 1.0 : 0.0;  // distances are positive
   if (!std::isfinite((*expression)(somewhere))) {
     context.fault(node, path, format("is no finite number at {} = {}", field.variable, somewhere),
                   "Look for a division by zero or a root of a negative number.");

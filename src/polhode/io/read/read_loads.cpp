@@ -13,22 +13,22 @@
 namespace polhode {
 namespace {
 
-/// A world point at the start, seen from a body's centre of mass in its axes.
+/// World point at the start, relative to a body's centre of mass in its axes.
 Vec3 seen_from(const ReadContext& context, int body, const Vec3& point) {
   if (body == kGround) return point;
   const BodySpec& b = context.model.bodies[static_cast<std::size_t>(body)];
   return b.orientation.conjugate() * (point - b.position);
 }
 
-/// A point in the user's body coordinates, seen from the centre of mass.
+/// Point in the user's body coordinates, relative to the centre of mass.
 Vec3 from_com(const ReadContext& context, int body, const Vec3& point) {
   if (body == kGround) return point;
   return point - context.model.bodies[static_cast<std::size_t>(body)].com;
 }
 
-/// True if a joint leaves one rotation free, and that about its z.
+/// Whether the only free rotation of a joint is that about its z.
 bool turns_about_z(const JointSpec& joint) {
-  if (joint.type.empty()) return true;  // Its own fault is told already.
+  if (joint.type.empty()) return true;  // Its own error is already reported.
   const auto has = [&](const std::string& freedom) {
     return std::find(joint.free.begin(), joint.free.end(), freedom) != joint.free.end();
   };
@@ -69,7 +69,7 @@ class LoadReader {
     if (kind.vector.empty()) return;
     if (const auto vector = section_.time_vector(kind.vector)) load_.vector = *vector;
     load_.body_fixed = section_.boolean("body_fixed").value_or(false);
-    if (kind.turns) return;  // The same wherever it acts.
+    if (kind.turns) return;  // Independent of the point of application.
     if (section_.refuse_both("at", "at_body", "Give one of them.")) return;
     if (const auto point = section_.vector("at")) load_.Z_b = seen_from(context_, load_.b, *point);
     if (const auto point = section_.vector("at_body"))
@@ -169,7 +169,7 @@ class LoadReader {
     }
   }
 
-  /// One point and one set of axes at the start, carried by both bodies.
+  /// One point and one set of axes at the start, fixed to both bodies.
   void read_frames() {
     if (!check_point_keys()) return;
     if (const auto point = section_.vector("at")) {
@@ -209,7 +209,7 @@ class LoadReader {
     return F;
   }
 
-  /// Axes given in the world at the start, in those of a body.
+  /// World axes at the start in the axes of a body.
   [[nodiscard]] Mat3 axes_on(int body, const Mat3& F) const {
     if (body == kGround) return F;
     const BodySpec& b = context_.model.bodies[static_cast<std::size_t>(body)];
@@ -221,7 +221,7 @@ class LoadReader {
     load_.R_b.col(2) = axes_on(load_.b, Mat3::Identity()) * axle;
   }
 
-  /// A spring about an axis, where the joint has one such axis or a coordinate says which.
+  /// Checks a spring about an axis: the joint has one such axis or a coordinate is given.
   void check_angle(const LoadKind& kind) {
     if (!kind.turns || !kind.drives.empty() || !table_.find("coordinate")) return;
     if (section_.has("coordinate")) return;
@@ -260,7 +260,7 @@ class LoadReader {
         (i == 0 ? load_.coordinate : load_.coordinate_2) = *word;
   }
 
-  /// The function of time that a kind of load follows.
+  /// Reads the function of time of a kind of load.
   void read_drive(const LoadKind& kind) {
     if (kind.drives.empty()) return;
     std::string keys;
@@ -297,8 +297,8 @@ class LoadReader {
       if (const SourceNode* node = section_.find(p.name)) read_matrix(p.name, *node);
   }
 
-  /// A spline through points over their distances from each other, or a curve over s.
-  /// @param prefix  Before the names: "", or "other_" of a second curve.
+  /// Reads a spline through points over the chord length, or a curve over s.
+  /// @param prefix  Of the names: "", or "other_" for a second curve.
   void read_curve(const std::string& prefix) {
     const std::string points = prefix + "points", x_key = prefix + "curve_x";
     const std::string y_key = prefix + "curve_y";
@@ -345,7 +345,7 @@ class LoadReader {
     load_.laws[y_key] = std::make_shared<TableFunction>(s, y, Interpolation::kCubic, closed);
   }
 
-  /// A resistance takes energy at any rate.
+  /// Checks that a resistance dissipates at any rate.
   void check_resistance(const LawParameter& l, const TimeFunction& law) {
     for (int k = -40; k <= 20; ++k)
       for (const double sign : {-1.0, 1.0}) {

@@ -7,7 +7,7 @@
 namespace polhode {
 namespace {
 
-/// Reads one material; faults go to the context.
+/// Reader of one material; errors go to the context.
 class MaterialReader {
  public:
   MaterialReader(ReadContext& context, const SourceNode& node, MaterialSpec& material,
@@ -63,7 +63,7 @@ class MaterialReader {
     material_.fibre = std::move(fibre);
   }
 
-  /// What only the law itself knows, such as moduli that do not go together.
+  /// Checks by the law itself, such as incompatible moduli.
   void check() {
     try {
       static_cast<void>(make_material(section_.path(), material_description(material_)));

@@ -39,9 +39,9 @@ void read_units(ReadContext& context, const SourceNode& node) {
 
 Quantity read_variable(ReadContext& context, const SourceNode& node, const std::string& path) {
   const auto expression = read_expression(context, node, path, false);
-  if (!expression) return {1.0, Certainty::kBare, {}};  // So that its uses give no more faults.
+  if (!expression) return {1.0, Certainty::kBare, {}};  // Its uses then cause no further errors.
   Quantity value{(*expression)(0.0), expression->certainty(), expression->dimension()};
-  // A number without a unit means whatever it is used for.
+  // A number without a unit gets the dimension of its use.
   if (value.certainty == Certainty::kPure) value.certainty = Certainty::kBare;
   return value;
 }
@@ -72,7 +72,7 @@ void read_variables(ReadContext& context, const SourceNode& node) {
       continue;
     }
     const auto given = context.given_variables.find(name);
-    // First the value: until it is known the name is not.
+    // First the value: the name is not known before it.
     const auto value = given != context.given_variables.end()
                            ? given->second
                            : read_variable(context, node.children[k], "variables." + name);
@@ -82,7 +82,7 @@ void read_variables(ReadContext& context, const SourceNode& node) {
 
 namespace {
 
-/// A map from names to things; an empty value stands for no things.
+/// Map from names to objects; an empty value means none.
 const SourceNode* named_things(ReadContext& context, const SourceNode& root,
                                const std::string& name) {
   const SourceNode* node = root.find(name);
@@ -101,7 +101,7 @@ void read_root(ReadContext& context, const SourceNode& root) {
                             "A model starts with 'format: 1'.");
     return;
   }
-  // What they set is named by what is read before them.
+  // Their outputs are referred to by objects read before them.
   if (const SourceNode* node = root.is_map() ? root.find("controllers") : nullptr)
     for (const SourceNode::Key& key : node->keys) context.controllers.push_back(key.name);
   read_things(context, root, "");
@@ -153,7 +153,8 @@ void read_things(ReadContext& context, const SourceNode& root, const std::string
   if (const SourceNode* node = named_things(context, root, "parts")) {
     const std::size_t before = context.diagnostics.size();
     read_parts(context, *node);
-    if (context.diagnostics.size() != before) return;  // Names of theirs would be unknown.
+    // References to their names would be unknown.
+    if (context.diagnostics.size() != before) return;
   }
   const auto read = [&](const char* name, void (*reader)(ReadContext&, const SourceNode&)) {
     if (const SourceNode* node = named_things(context, root, name)) reader(context, *node);

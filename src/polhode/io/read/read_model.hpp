@@ -15,14 +15,14 @@ namespace polhode {
 /// written as it would be in the file.
 using Overrides = std::vector<std::string>;
 
-/// Reads a model file (YAML or JSON) and resolves it: SI units, every name checked, mass
-/// properties and frames worked out.
-/// @throws ModelErrors with all faults of the model at once.
+/// Reads a model file (YAML or JSON) and resolves it: SI units, checked names, mass properties and
+/// frames computed.
+/// @throws ModelErrors with all errors of the model at once.
 /// @throws FileError if the file cannot be read.
 [[nodiscard]] Model read_model(const std::filesystem::path& file, const Overrides& overrides = {});
 
-/// As read_model(), from a text already in memory.
-/// @param filename  Shown in messages; mesh files are seen from its folder.
+/// Reads a model like read_model(), from a text in memory.
+/// @param filename  For messages; paths of mesh files are relative to its folder.
 [[nodiscard]] Model read_model_text(std::string text, const std::string& filename,
                                     const Overrides& overrides = {});
 

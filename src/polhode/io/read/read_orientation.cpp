@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kForms =
     "Use one of: axis with angle, quaternion, rotation_vector, euler, matrix.";
 
-/// How far printed numbers may be from a unit quaternion or an orthogonal matrix.
+/// Tolerance for printed unit quaternions and orthogonal matrices.
 constexpr double kPrinted = 1e-4;
 
 Quat turn(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis)); }
@@ -98,7 +98,7 @@ std::optional<Quat> read_orientation(ReadContext& context, const SourceNode& nod
   int forms = 0;
   for (const char* form : {"axis", "quaternion", "rotation_vector", "euler", "matrix"})
     forms += section.has(form) ? 1 : 0;
-  if (forms == 0 && section.has_unknown_key()) return std::nullopt;  // Told already.
+  if (forms == 0 && section.has_unknown_key()) return std::nullopt;  // Already reported.
   if (forms != 1) {
     section.fault(forms == 0 ? "gives no rotation" : "gives more than one rotation", kForms);
     return std::nullopt;

@@ -12,7 +12,7 @@ namespace polhode {
 
 namespace {
 
-/// Reads one part and adds it to the model; faults go to the context.
+/// Reader of one part, which is added to the model; errors go to the context.
 class PartReader {
  public:
   PartReader(ReadContext& context, const SourceNode& node, const SourceLocation& place,
@@ -36,7 +36,7 @@ class PartReader {
   }
 
  private:
-  /// The parsed file; null after a fault.
+  /// Parsed file; null after an error.
   const SourceTree* open() {
     const auto text = section_.text("file");
     if (!text) return nullptr;
@@ -86,7 +86,7 @@ class PartReader {
     add(std::move(part), root, prefix.value_or(name_ + "_"));
   }
 
-  /// Variables that the part gets from here, in the units of the part if they have none.
+  /// Variables passed to the part, in the units of the part if they have none.
   void read_given(ReadContext& part) {
     const SourceNode* node = section_.find("variables");
     if (!node || !node->is_map()) {
@@ -153,7 +153,7 @@ class PartReader {
     for (auto& tree : part.owned_trees) context_.owned_trees.push_back(std::move(tree));
   }
 
-  /// False after a fault: names of the part that others have taken.
+  /// Checks for names of the part that are already used; false after an error.
   bool check_names(const ReadContext& part, const std::string& prefix) {
     for (const char c : prefix) {
       if (std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-') continue;

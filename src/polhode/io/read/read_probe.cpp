@@ -10,7 +10,7 @@ namespace polhode {
 
 namespace {
 
-/// The name of a thing that a probe records; known are those in `names`.
+/// Name of the object of a probe, one of `names`.
 std::string read_target(ReadContext& context, Section& section, const std::string& kind,
                         const std::vector<std::string>& names) {
   const auto name = section.text(kind);
@@ -26,7 +26,7 @@ std::string read_target(ReadContext& context, Section& section, const std::strin
   return *name;
 }
 
-/// An element of a beam or a piece of a cable.
+/// Reads the element of a beam or the segment of a cable.
 void read_line_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
   std::vector<std::string> names;
   const Model& model = context.model;
@@ -50,7 +50,7 @@ void read_line_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
         "The first is 0.");
 }
 
-/// A point, a node or an interface of a solid.
+/// Reads a point, a node or an interface of a solid.
 void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
   const auto solid = read_solid_name(context, *section.find("solid"), section.path("solid"));
   const auto point = section.vector("point");
@@ -85,7 +85,7 @@ void read_solid_probe(ReadContext& context, Section& section, ProbeSpec& probe) 
             (names.empty() ? "It is bonded to nothing." : "Interfaces: " + name_list(names) + "."));
 }
 
-/// Two bodies with shapes, solids or cables, in a model with contact.
+/// Reads two bodies with shapes, solids or cables, in a model with contact.
 void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe) {
   const auto pair = read_side_pair(context, *section.find("contact"), section.path("contact"));
   if (!pair) return;

@@ -80,7 +80,7 @@ Section::Section(ReadContext& context, const SourceNode& node, SourceLocation pl
 }
 
 const SourceNode* Section::find(const std::string& name) const {
-  static_cast<void>(table_.at(name));  // A reader asks only for what the table has.
+  static_cast<void>(table_.at(name));  // A reader uses only keys of the table.
   return node_.is_map() ? node_.find(name) : nullptr;
 }
 

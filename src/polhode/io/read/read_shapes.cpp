@@ -18,7 +18,7 @@ std::vector<std::string> shape_names() {
   return names;
 }
 
-/// Sizes as a list in order, as a map by name, or, where there is one only, as a number.
+/// Sizes as a list in order, as a map by name, or, if there is only one, as a number.
 std::optional<std::vector<double>> read_sizes(ReadContext& context, const SourceNode& node,
                                               const std::string& path, const ShapeKind& kind) {
   const Field& field = shape_fields().at(kind.name);
@@ -172,7 +172,7 @@ std::optional<ShapeSpec> read_shape(ReadContext& context, const SourceNode& node
     sizes = value;
     shape.type = name;
   }
-  if (!sizes && section.has_unknown_key()) return std::nullopt;  // Told already.
+  if (!sizes && section.has_unknown_key()) return std::nullopt;  // Already reported.
   if (!sizes) {
     section.fault("has no kind", "Use one of: " + name_list(names) + ".");
     return std::nullopt;

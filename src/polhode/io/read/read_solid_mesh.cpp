@@ -5,7 +5,7 @@
 namespace polhode {
 namespace {
 
-/// Reads where a mesh comes from; faults go to the context.
+/// Reader of the source of a mesh; errors go to the context.
 class SolidMeshReader {
  public:
   SolidMeshReader(ReadContext& context, const SourceNode& node, const std::string& path,

@@ -8,7 +8,7 @@
 namespace polhode {
 namespace {
 
-/// Index of a thing by name; a fault that lists what there is.
+/// Index of an object by name; an error that lists the existing names.
 std::optional<int> read_name_of(ReadContext& context, const SourceNode& node,
                                 const std::string& path, const char* what,
                                 const std::unordered_map<std::string, int>& known,
@@ -23,7 +23,7 @@ std::optional<int> read_name_of(ReadContext& context, const SourceNode& node,
   return std::nullopt;
 }
 
-/// Reads one solid; faults go to the context.
+/// Reader of one solid; errors go to the context.
 class SolidReader {
  public:
   SolidReader(ReadContext& context, const SourceNode& node, SolidSpec& solid)

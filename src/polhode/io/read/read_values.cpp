@@ -16,7 +16,7 @@ std::string expected(const Field& field) {
   return field.dimension.name() + (unit.empty() ? "" : " (" + unit + ")");
 }
 
-/// Place of a part of a text value, where the file shows it as it is.
+/// Position of a part of a text value, if the file contains it literally.
 SourceLocation place_within(const ReadContext& context, const SourceNode& node,
                             std::size_t offset) {
   SourceLocation place = context.tree.place_of(node);
@@ -56,7 +56,7 @@ bool check_range(ReadContext& context, const SourceNode& node, const std::string
   return false;
 }
 
-/// Says of which dimension the value is and which one is expected.
+/// Reports the dimension of the value and the expected one.
 void wrong_dimension(ReadContext& context, const SourceNode& node, const std::string& path,
                      const Field& field, const Expression& expression) {
   std::string hint = "Give it in a unit of that dimension.";
@@ -70,7 +70,7 @@ void wrong_dimension(ReadContext& context, const SourceNode& node, const std::st
                 hint);
 }
 
-/// Factor to SI, or a fault.
+/// Factor to SI, or an error.
 std::optional<double> si_factor(ReadContext& context, const SourceNode& node,
                                 const std::string& path, const Field& field,
                                 const Expression& expression) {
@@ -106,7 +106,7 @@ void ReadContext::fault(const SourceNode& node, const std::string& path, std::st
 
 std::vector<std::string> ReadContext::body_names() const {
   std::vector<std::string> names = {"ground"};
-  for (const BodySpec& body : model.bodies)  // nodes of beams: their ends stand for them
+  for (const BodySpec& body : model.bodies)  // nodes of beams: their ends represent them
     if (body.name.find('.') == std::string::npos) names.push_back(body.name);
   for (const BeamSpec& beam : model.beams)
     for (const char* end : {".start", ".end"}) names.push_back(beam.name + end);
@@ -330,7 +330,7 @@ std::optional<Vec3> read_direction(ReadContext& context, const SourceNode& node,
   if (!check_list(context, node, path, 3, "a direction",
                   "Use x, y, z, -x, -y, -z or three numbers."))
     return std::nullopt;
-  // A direction has no unit that matters, so any one will do.
+  // The unit of a direction is irrelevant.
   Vec3 direction;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto component = read_expression(context, node.children[k], path, false);
@@ -421,7 +421,7 @@ std::optional<int> read_body(ReadContext& context, const SourceNode& node,
   if (node.text == "ground") return kGround;
   const auto found = context.bodies.find(node.text);
   if (found != context.bodies.end()) return found->second;
-  // With very many faults the search for what was meant would take minutes.
+  // With very many errors the search for suggestions would take minutes.
   std::string hint = "Give the name of a body.";
   if (context.diagnostics.size() < kMaxSuggestions) {
     const std::vector<std::string> names = context.body_names();

@@ -87,7 +87,7 @@ TimeBounds ConstantFunction::bounds(double, double) const { return {std::abs(val
 
 TimeBounds ExpressionFunction::bounds(double from, double to) const {
   const TimeBounds b = expression_->bounds(from, to);
-  // Roots and poles have infinite slopes: samples show how fast it goes on from there.
+  // Roots and poles have infinite slopes: samples show the behaviour from there on.
   if (!std::isfinite(b.size) || !std::isfinite(b.curvature)) return TimeFunction::bounds(from, to);
   return {std::abs(factor_) * b.size, std::abs(factor_) * b.curvature};
 }
@@ -164,7 +164,7 @@ TimeBreak TableFunction::next_break(double t, double until) const {
   if (!(at > after) || at > until) return {};
   if (interpolation_ == Interpolation::kStep) return {at, 0};
   if (interpolation_ == Interpolation::kLinear) return {at, 1};
-  // The end value holds before and after a table: a spline has a slope there.
+  // The end value is constant before and after a table: a spline has a kink there.
   const bool at_end = point == times_.begin() || point + 1 == times_.end();
   return {at, at_end && !periodic_ ? 1 : 3};
 }

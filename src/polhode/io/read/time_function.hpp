@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// The same value at all times.
+/// A constant function of time.
 class ConstantFunction final : public TimeFunction {
  public:
   explicit ConstantFunction(double value) : value_(value) {}
@@ -23,7 +23,7 @@ class ConstantFunction final : public TimeFunction {
   double value_;
 };
 
-/// An expression in t, times the factor that brings it to SI.
+/// An expression in t, times a factor to SI.
 class ExpressionFunction final : public TimeFunction {
  public:
   ExpressionFunction(std::shared_ptr<const Expression> expression, double factor)
@@ -43,14 +43,14 @@ class ExpressionFunction final : public TimeFunction {
   double factor_;
 };
 
-/// How a table goes on between its points.
+/// Interpolation between the points of a table.
 enum class Interpolation : unsigned char {
   kLinear,  ///< Straight lines.
   kCubic,   ///< Natural cubic spline, or a periodic one.
-  kStep,    ///< Each value holds until the next point.
+  kStep,    ///< Constant from each point to the next.
 };
 
-/// Values at given times; before the first and after the last the end value holds, or it repeats.
+/// Values at given times; before the first and after the last one constant, or periodic.
 class TableFunction final : public TimeFunction {
  public:
   /// @param times   At least two, strictly increasing [s].
@@ -60,15 +60,15 @@ class TableFunction final : public TimeFunction {
   [[nodiscard]] double operator()(double t) const override;
   [[nodiscard]] TimeRates rates(double t, TimeSide side) const override;
 
-  /// The points: the value jumps at those of kStep, the slope at those of kLinear, the third
-  /// derivative at those of kCubic.
+  /// Next break of the table: the value jumps at points of kStep, the slope at those of kLinear,
+  /// the third derivative at those of kCubic.
   [[nodiscard]] TimeBreak next_break(double t, double until) const override;
   [[nodiscard]] TimeBounds bounds(double from, double to) const override;
 
  private:
   /// Number of the last point at or before a time in the table, −1 if there is none.
   [[nodiscard]] int interval(double t) const;
-  /// The time in the table that t stands for: of a periodic one, within its first period.
+  /// Time in the table equivalent to t: for a periodic table within its first period.
   [[nodiscard]] double in_table(double t) const;
 
   std::vector<double> times_, values_;

@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// Saves a state so that a run continues from it bit for bit. The file is written atomically and
-/// carries a checksum. @throws FileError
+/// Saves a state for an exactly equal continuation of the run. The file is written atomically and
+/// has a checksum. @throws FileError
 void write_checkpoint(const std::string& path, const Model& model, const System& system,
                       const State& state);
 

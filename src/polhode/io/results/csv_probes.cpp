@@ -19,7 +19,7 @@ namespace polhode {
 
 namespace {
 
-/// Rows stay in memory at most this long [s].
+/// Longest time for which rows are buffered [s].
 constexpr double kHold = 0.05;
 
 void write_all(const std::string& path, int file, std::string_view bytes) {
@@ -37,7 +37,7 @@ std::string joined(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-/// The complete rows of a table up to a time; what follows them is dropped.
+/// Complete rows of a table up to a time; later text is dropped.
 std::string kept_rows(const std::string& text, std::size_t begin, double t,
                       std::optional<double>& last) {
   std::size_t end = begin;
@@ -81,7 +81,7 @@ CsvTable::~CsvTable() {
   if (file_ < 0) return;
   try {
     flush();
-  } catch (const FileError&) {  // flush() tells whoever asks.
+  } catch (const FileError&) {  // flush() reports it.
   }
   ::close(file_);
 }
@@ -89,7 +89,7 @@ CsvTable::~CsvTable() {
 void CsvTable::append(const std::vector<double>& row) {
   const char* separator = "";
   for (double x : row) {
-    held_ += format("{}{}", separator, x);  // Shortest text that reads back as the same number.
+    held_ += format("{}{}", separator, x);  // Shortest text that is read back as the same number.
     separator = ",";
   }
   held_ += '\n';

@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// A table of numbers that grows row by row and holds whole lines only, even after a kill.
+/// A table of numbers that grows row by row and contains complete lines only, even after a kill.
 class CsvTable {
  public:
   /// @param header  Names with units, e.g. "x [m]".
@@ -33,16 +33,16 @@ class CsvTable {
   std::chrono::steady_clock::time_point last_write_{};
 };
 
-/// The probes of a model (output.probes), each in its own file <name>.csv, each at its own rate:
-/// a row at the first step end at or after each multiple of the interval.
+/// Probes of a model (output.probes), each in its own file <name>.csv with its own rate: a row at
+/// the first step end at or after each multiple of the interval.
 class CsvProbes {
  public:
-  /// @param folder  Where the files go; made if missing.
-  /// @param keep    Continue existing files, see CsvTable.
+  /// @param folder  Of the files; created if missing.
+  /// @param keep  Continue existing files, see CsvTable.
   /// @throws FileError, InputError
   CsvProbes(const Simulation& simulation, const std::string& folder,
             std::optional<double> keep = std::nullopt);
-  /// After every step, and once at the start. @throws FileError
+  /// Records after every step, and once at the start. @throws FileError
   void record(const Simulation& simulation);
   void flush();
   [[nodiscard]] bool empty() const { return probes_.empty(); }

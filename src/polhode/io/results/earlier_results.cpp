@@ -32,7 +32,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-/// True of a table of ours: its first column is the time.
+/// Whether a table is one of ours: its first column is the time.
 bool is_our_table(const fs::path& path) {
   std::string head(5, '\0');
   std::ifstream(path).read(head.data(), static_cast<std::streamsize>(head.size()));

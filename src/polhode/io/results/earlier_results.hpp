@@ -5,9 +5,9 @@
 
 namespace polhode {
 
-/// Removes from a results folder what an earlier run wrote there and a new one may not write over:
-/// results.h5, tables of probes, events.csv, pictures, certificates. Other files stay, and so do
-/// checkpoints and modes.
+/// Removes files of an earlier run from a results folder that a new run might not overwrite:
+/// results.h5, tables of probes, events.csv, pictures, certificates. Other files, checkpoints and
+/// modes stay.
 /// @throws FileError if a file cannot be removed.
 void clear_earlier_results(const std::string& folder);
 

@@ -28,24 +28,24 @@ using Dims = std::vector<hsize_t>;
 
 /// Chunks of about this many bytes: few enough to index, small enough to rewrite.
 constexpr std::size_t kChunkBytes = 65536;
-/// Half the entries of an index node: no node splits before 1,024 chunks of a channel exist, and
-/// a split is the one change of the index that a kill in its middle could spoil.
+/// Half the number of entries of an index node: no node splits before a channel has 1,024 chunks,
+/// and a split is the only change of the index that could be corrupted by a kill.
 constexpr unsigned kIndexHalfSize = 512;
-/// Conversions of a list of names take place in this many bytes. HDF5 would clear a whole mebibyte
-/// for every list, which took a third of the time that a short run needs.
+/// Buffer size for the conversion of a list of names [bytes]. HDF5 would clear a whole mebibyte for
+/// every list, a third of the time of a short run.
 constexpr std::size_t kNamesBytes = 4096;
-/// Frames held back take at most this much memory.
+/// Largest memory for buffered frames.
 constexpr std::size_t kHoldBytes = std::size_t{8} << 20;
 
 using hdf5::Id;
 
-/// HDF5 prints its own error stack unless told not to; ours is one sentence.
+/// Disables the error stack printed by HDF5; our messages are one sentence.
 void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Id access_properties() {
   Id fapl(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
-  H5Pset_file_locking(fapl.get(), false, true);  // A run may be looked at while it goes on.
+  H5Pset_file_locking(fapl.get(), false, true);  // A run may be read while it continues.
 #endif
   return fapl;
 }
@@ -86,7 +86,7 @@ struct Hdf5File::Impl {
   Id file;
   std::vector<Id> datasets;
   hsize_t written = 0;       ///< Frames in the file.
-  std::vector<double> held;  ///< Frames not yet in the file.
+  std::vector<double> held;  ///< Buffered frames.
   std::size_t held_frames = 0, frame_size = 0;
   Clock::time_point last_write = Clock::now();
   bool failed = false;
@@ -187,7 +187,7 @@ struct Hdf5File::Impl {
     return {H5Gcreate2(file.get(), name.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
   }
 
-  /// Writes the held frames of one channel, whose numbers start at `offset` in a frame.
+  /// Writes the buffered frames of one channel, whose numbers start at `offset` in a frame.
   void write_channel(std::size_t index, std::size_t offset) {
     const Channel& c = channels[index];
     const std::size_t size = c.size();
@@ -208,9 +208,9 @@ struct Hdf5File::Impl {
             "cannot be written");
   }
 
-  /// Puts the file's coming length into its first block before anything refers to what lies
-  /// there; HDF5 itself would write that number last, and a kill in between would leave data
-  /// beyond the end that readers believe.
+  /// Writes the future length of the file into its first block before any reference to the new
+  /// data. HDF5 itself would write it last, and a kill in between would leave data beyond the
+  /// recorded end that readers accept.
   void announce_length() {
     hsize_t length = 0;
     if (H5Fget_filesize(file.get(), &length) < 0) return;
@@ -218,7 +218,7 @@ struct Hdf5File::Impl {
     if (descriptor < 0) return;
     std::array<unsigned char, 9> head{};
     const bool readable = ::pread(descriptor, head.data(), head.size(), 0) == 9;
-    // Format of the first block: the length stands at byte 40 in version 0, at 44 in version 1.
+    // Format of the first block: the length is at byte 40 in version 0, at 44 in version 1.
     if (readable && head[0] == 0x89 && head[1] == 'H' && head[8] <= 1) {
       const off_t place = head[8] == 0 ? 40 : 44;
       const off_t now = ::lseek(descriptor, 0, SEEK_END);
@@ -226,7 +226,7 @@ struct Hdf5File::Impl {
           ::ftruncate(descriptor, static_cast<off_t>(length)) == 0) {
         const std::uint64_t value = length;
         if (::pwrite(descriptor, &value, sizeof value, place) != sizeof value)
-          errno = 0;  // The flush that follows meets and reports the same trouble.
+          errno = 0;  // The following flush has and reports the same error.
       }
     }
     ::close(descriptor);
@@ -268,7 +268,7 @@ Hdf5File::Hdf5File(const std::string& path, std::vector<Channel> channels,
   H5Pset_istore_k(creation.get(), kIndexHalfSize);
   const Id access = access_properties();
   std::error_code ignored;
-  std::filesystem::remove(path, ignored);  // A reader of the old file keeps it.
+  std::filesystem::remove(path, ignored);  // Readers of the old file keep their copy.
   m.file = Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!m.file.valid()) m.fail("cannot be written");
   for (const Channel& c : m.channels) m.create_channel(c);
@@ -318,7 +318,7 @@ Hdf5File::~Hdf5File() {
   if (!impl_) return;
   try {
     if (!impl_->failed) close();
-  } catch (const FileError&) {  // Nobody is left to tell; close() tells.
+  } catch (const FileError&) {  // close() reports errors.
   }
 }
 

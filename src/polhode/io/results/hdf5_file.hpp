@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// One quantity that grows by one entry each frame.
+/// A quantity that grows by one entry per frame.
 struct Channel {
   std::string path;               ///< In the file, e.g. /packed/bodies/position.
   std::vector<std::size_t> dims;  ///< Shape of one frame's entry; empty: a number.
@@ -20,47 +20,47 @@ struct Channel {
   [[nodiscard]] std::size_t size() const;  ///< Numbers in one frame's entry.
 };
 
-/// A look at a part of a channel under a name of its own: entries first to first+count-1 of the
-/// channel's second dimension. Nothing is stored twice.
+/// A named view of a part of a channel: entries first to first+count-1 of the channel's second
+/// dimension. Nothing is stored twice.
 struct ChannelView {
   std::string path;
   std::size_t channel = 0;
   std::size_t first = 0, count = 1;
   /// One entry without its dimension: (frames, 3) rather than (frames, 1, 3).
   bool squeeze = false;
-  std::string unit{};  ///< Where the channel holds numbers of several units; "": the channel's.
+  std::string unit{};  ///< For channels with several units; "": the channel's.
 };
 
-/// An HDF5 file in which channels grow frame by frame, whole after a kill at any moment.
+/// An HDF5 file with channels that grow frame by frame, consistent after a kill at any moment.
 ///
-/// The first channel is the time, and its length says how many frames are complete: it grows
-/// last. Frames are held back at most kHold of wall time, then written together.
+/// The first channel is the time; its length is the number of complete frames and is written last.
+/// Frames are buffered for at most kHold of wall time, then written together.
 class Hdf5File {
  public:
-  /// Longest wall time a frame stays in memory [s].
+  /// Longest buffering time of a frame [s].
   static constexpr double kHold = 0.05;
 
   /// Starts a new file. @throws FileError
   Hdf5File(const std::string& path, std::vector<Channel> channels,
            const std::vector<ChannelView>& views);
   /// Continues an existing file: keeps the frames up to t, drops later ones.
-  /// @throws FileError; InputError if its channels are others.
+  /// @throws FileError; InputError if its channels differ.
   [[nodiscard]] static Hdf5File append_to(const std::string& path, std::vector<Channel> channels,
                                           double t);
-  ~Hdf5File();  ///< Writes what is held back; errors are lost, so call close() first.
+  ~Hdf5File();  ///< Writes buffered frames; errors are lost, so call close() first.
   Hdf5File(Hdf5File&&) noexcept;
 
   void attribute(const std::string& group, const std::string& name, const std::string& value);
   void attribute(const std::string& group, const std::string& name, double value);
   void names(const std::string& path, const std::vector<std::string>& values);
   void numbers(const std::string& path, const std::vector<std::int64_t>& values);
-  /// Vectors that do not change: one row each.
+  /// Writes constant vectors: one row each.
   void vectors(const std::string& path, const std::vector<Vec3>& values, const std::string& unit);
 
-  /// Adds a frame: every channel's numbers one after the other. @throws FileError
+  /// Adds a frame: the numbers of all channels in order. @throws FileError
   void append(const std::vector<double>& frame);
   [[nodiscard]] std::size_t frames() const;
-  /// Writes what is held back. @throws FileError
+  /// Writes buffered frames. @throws FileError
   void flush();
   void close();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places in files and pictures do not count; all else does, field by field as the specs list them.
+// Fingerprint of a model without positions in files and pictures; all other fields in the order of
+// the specs.
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,11 +16,11 @@ namespace polhode {
 
 namespace {
 
-/// Times at which functions are looked at: 0, and from 0.1 ms to some three hours.
+/// Number of sample times of functions: 0, and from 0.1 ms to some three hours.
 constexpr int kTimes = 240;
 constexpr double kFirstTime = 1e-4, kGrowth = 1.08;
 
-/// Feeds values into a hash, each list with its length, so that neighbours cannot run together.
+/// Hash of values, each list with its length, so that the sequence is unambiguous.
 class Fingerprint {
  public:
   template <class... Values>
@@ -72,7 +73,8 @@ class Fingerprint {
     double t = kFirstTime;
     for (int k = 0; k < kTimes; ++k, t *= kGrowth) one((*f)(t));
   }
-  /// What a file holds, wherever it lies. One that is gone since the model was read stops no run.
+  /// Adds the contents of a file, independent of its path. A file removed since the model was read
+  /// is no error.
   void contents(const std::string& file) {
     if (file.empty()) return;
     try {
@@ -102,7 +104,7 @@ class Fingerprint {
   void one(const JointSpec& j) {
     add(j.name, j.type, j.a, j.b, j.Z_a, j.Z_b, j.R_a, j.R_b, j.free, j.parameters, j.friction,
         j.limits, j.angle_limits, j.motion);
-    // What is not there leaves the fingerprints of older models alone.
+    // Absent entries leave the fingerprints of older models unchanged.
     if (j.breaks.force || j.breaks.moment) add(j.breaks.force, j.breaks.moment);
     if (j.enforcement)
       add(static_cast<int>(j.enforcement->law), j.enforcement->stiffness,
@@ -111,7 +113,7 @@ class Fingerprint {
   void one(const ChannelSpec& c) {
     const ProbeSpec& of = c.of;
     add(of.kind, of.target, c.name, of.point);
-    // What is not there leaves the fingerprints of older models alone.
+    // Absent entries leave the fingerprints of older models unchanged.
     if (of.kind != "body" && of.kind != "joint" && of.kind != "load")
       add(of.pair, of.node, of.element, of.reaction_of, of.stress);
     if (of.axes != "world") add(of.axes);
@@ -134,7 +136,7 @@ class Fingerprint {
     add(l.name, l.type, l.a, l.b, l.joint, l.coordinate, l.drive, l.Z_a, l.Z_b, l.body_fixed,
         l.vector, l.value, l.solid, l.selection, l.follower, l.keeps, l.parameters, l.laws, l.words,
         l.matrices, l.joint_2, l.coordinate_2, l.R_a, l.R_b);
-    // What code gives shows in nothing but its presence.
+    // Functions in code are represented by their presence only.
     if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()));
   }
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
@@ -199,7 +201,7 @@ std::string model_fingerprint(const Model& model) {
   Fingerprint f;
   f.add(model.gravity, model.bodies, model.joints, model.loads, model.materials, model.solids,
         model.beams, model.cables, model.contacts);
-  // Shapes weigh nothing here, as masses do: only what touches asks for them.
+  // Shapes do not affect the mass here, only contact.
   if (model.contacts.present)
     for (const BodySpec& body : model.bodies) f.add(body.shapes);
   if (!model.events.empty()) f.add(model.events);

@@ -7,9 +7,9 @@
 
 namespace polhode {
 
-/// SHA-256 over everything of a model that a run depends on, contents of mesh files included, but
-/// not the duration, steps, solver or output, so that a run may be continued for longer. Time
-/// functions count by their values at a few hundred times.
+/// SHA-256 of everything that a run depends on, including contents of mesh files, but not the
+/// duration, steps, solver or output, so that a run may be continued for longer. Time functions are
+/// represented by their values at a few hundred times.
 [[nodiscard]] std::string model_fingerprint(const Model& model);
 
 }  // namespace polhode

@@ -16,7 +16,7 @@ namespace polhode {
 
 namespace {
 
-/// Triangles around the circle of a round shape: a picture needs no more.
+/// Triangles around the circle of a round shape, sufficient for a picture.
 constexpr int kSegments = 24;
 
 void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, const Vec3& offset) {
@@ -48,7 +48,7 @@ TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) 
 
 namespace {
 
-/// A square of a plane about its point; both sides are seen.
+/// Square of a plane about its point, visible from both sides.
 TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
   const Vec3 n(normal[0], normal[1], normal[2]);
   const Mat3 R = Quat::FromTwoVectors(Vec3::UnitZ(), n).toRotationMatrix();
@@ -59,7 +59,7 @@ TriangleSurface plane_patch(const std::vector<double>& normal, double half_width
   return square;
 }
 
-/// Farthest that a body stands from a point at the start, with room for its own size.
+/// Largest distance of a body from a point at the start, including its size.
 double reach_from(const Vec3& point, const Model& model, double size) {
   double farthest = size;
   for (const BodySpec& body : model.bodies)

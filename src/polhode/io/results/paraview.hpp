@@ -13,23 +13,23 @@
 
 namespace polhode {
 
-/// What is drawn of one body: triangles in body axes, measured from the centre of mass.
+/// Picture of one body: triangles in body axes, relative to the centre of mass.
 struct BodyPicture {
   std::string name;
   TriangleSurface surface;
 };
 
-/// Pictures of the bodies of a model. A moving body without shapes is drawn as the box that has
-/// its mass and inertia, a point mass as a small cube, nodes of beams and cables not at all
-/// (LinesWriter draws these). Of a plane, which has no
-/// end, a square about its point is drawn that reaches beyond all bodies at the start.
-/// @param size  Extent of the mechanism, which the cube's size follows [m].
+/// Pictures of the bodies of a model. A moving body without shapes is drawn as the box with its
+/// mass and inertia, a point mass as a small cube, nodes of beams and cables not at all
+/// (LinesWriter draws these). An unbounded plane is drawn as a square about its point that extends
+/// beyond all bodies at the start.
+/// @param size  Extent of the mechanism, the scale of the cube [m].
 /// @throws InputError if a mesh file cannot be read.
 [[nodiscard]] std::vector<BodyPicture> body_pictures(const Model& model, double size);
 
-/// The box with the mass and inertia of a body, about its centre of mass, body axes; of a point
-/// mass a cube of 2 % of `size`.
-/// @param thinnest  Least length of a side, as a part of the largest [-].
+/// Box with the mass and inertia of a body, about its centre of mass, body axes; for a point mass a
+/// cube of 2 % of `size`.
+/// @param thinnest  Smallest side, as a part of the largest [-].
 [[nodiscard]] TriangleSurface inertia_box(const BodySpec& body, double size,
                                           double thinnest = 0.02);
 
@@ -57,11 +57,11 @@ class ParaviewWriter {
 /// Nodes of a cell in the order of VTK, by their places in ours.
 [[nodiscard]] std::vector<std::size_t> vtk_order(const CellShape& shape);
 
-/// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points stand where the nodes
-/// are at the time. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
+/// Deforming solids for ParaView, as a ParaviewSeries of .vtu files. Points are the present
+/// positions of nodes. Point data: "displacement" [m], "velocity" [m/s] and the averages "cauchy",
 /// "von_mises" [Pa], "strain_energy_density" [J/m³]. Cell data: these three by element,
 /// "principal_stretches" [-], largest first, and "solid" (index); field data "solid <name>"
-/// holds the index of each. Stresses have six components: xx, yy, zz, xy, yz, xz.
+/// contains the index of each. Stresses have six components: xx, yy, zz, xy, yz, xz.
 class SolidsWriter {
  public:
   /// @param meshes  Of the solids; nodes and cells in the order of the reports.
@@ -85,13 +85,13 @@ class SolidsWriter {
 };
 
 /// Beams and cables for ParaView, as a ParaviewSeries of .vtp files with a line for each element or
-/// piece. Point data: "velocity" [m/s], "radius" [m], of a circle of about the section's size, for
-/// the filter Tube, and "y_axis", that of the section. Cell data: "force" (N, V_y, V_z) [N],
-/// "moment" [N m], "strain" [-] and "curvature" [1/m] along section axes, of cables the tension as
+/// segment. Point data: "velocity" [m/s], "radius" [m], of a circle of about the section's size,
+/// for the filter Tube, and "y_axis", that of the section. Cell data: "force" (N, V_y, V_z) [N],
+/// "moment" [N m], "strain" [-] and "curvature" [1/m] along section axes, for cables the tension as
 /// N, and "line" (index); the names of the beams, then the cables, are field data "line_names".
 class LinesWriter {
  public:
-  /// @param size  Extent of the mechanism, that thickness follows where none is known [m].
+  /// @param size  Extent of the mechanism, the scale of unknown thicknesses [m].
   /// @param keep  Continue existing files: times up to that one stay listed.
   /// @throws FileError
   LinesWriter(const std::string& folder, const std::string& name, const Model& model, double size,
@@ -109,10 +109,10 @@ class LinesWriter {
   std::vector<double> radii_;  ///< Of the beams, then the cables [m].
 };
 
-/// Forces of contact for ParaView, as a ParaviewSeries of .vtp files: a point where each force
-/// acts, with point data "force" and "friction" [N] on the first of its two bodies, "normal_force"
-/// [N], "gap" [m] and "bodies" (two indices); draw them with the filter Glyph. The names of the
-/// bodies are field data "body_names".
+/// Contact forces for ParaView, as a ParaviewSeries of .vtp files: a point for each force, with
+/// point data "force" and "friction" [N] on the first of its two bodies, "normal_force" [N], "gap"
+/// [m] and "bodies" (two indices), to be drawn by the filter Glyph. The names of the bodies are
+/// field data "body_names".
 class ContactsWriter {
  public:
   /// @param keep  Continue existing files: times up to that one stay listed. @throws FileError

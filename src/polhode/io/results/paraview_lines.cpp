@@ -6,14 +6,15 @@ namespace polhode {
 
 namespace {
 
-/// Of the size of the mechanism: radius of beams whose sections have no size, and of cables.
+/// Radii of beams with sections of unknown size, and of cables, as parts of the size of the
+/// mechanism.
 constexpr double kBeamRadius = 5e-3, kCableRadius = 2e-3;
 
 void add(std::vector<float>& list, const Vec3& x) {
   for (int c = 0; c < 3; ++c) list.push_back(static_cast<float>(x[c]));
 }
 
-/// Everything that is drawn at one time.
+/// Drawn lines at one time.
 struct Lines {
   std::vector<float> points, velocity, y_axis, radius, force, moment, strain, curvature;
   std::vector<std::int64_t> corners, ends;
@@ -25,7 +26,7 @@ struct Lines {
     add(y_axis, y);
     radius.push_back(static_cast<float>(r));
   }
-  /// Between the points k and k + 1.
+  /// Adds a line between the points k and k + 1.
   void add_line(std::size_t k, const Vec6& forces, const Vec6& strains, std::size_t owner) {
     corners.push_back(static_cast<std::int64_t>(k));
     corners.push_back(static_cast<std::int64_t>(k + 1));

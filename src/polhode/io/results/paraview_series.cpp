@@ -16,7 +16,7 @@ namespace polhode {
 
 namespace {
 
-/// The list of times is written again at most this often, but at every frame of a slow run [s].
+/// Shortest interval between updates of the list of times, except in slow runs [s].
 constexpr double kListEvery = 0.2;
 
 /// Times of a list written earlier, up to t.
@@ -50,7 +50,7 @@ std::string ParaviewSeries::file(std::size_t frame) const {
 
 void ParaviewSeries::append(double t, const std::string& bytes) {
   const std::string path = folder_ + "/" + file(times_.size());
-  // A new file: many file systems wait for the disk when an old one is written over.
+  // A new file: on many file systems overwriting an old one waits for the disk.
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
@@ -71,7 +71,7 @@ void ParaviewSeries::write_list() {
   text += "</Collection>\n</VTKFile>\n";
   const double begin = wall_clock();
   write_file_atomically(format("{}/{}.pvd", folder_, name_), text, false);
-  // Long lists are written less often, so that all lists together stay a small part of the run.
+  // Long lists are written less often, so that they take a small part of the run.
   next_listing_ = wall_clock() + std::max(kListEvery, 20.0 * (wall_clock() - begin));
 }
 

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// Files of one kind over time, and the list of them that ParaView opens: <name>.pvd lists the
-/// times, <name>/<number>.<extension> holds one of them.
+/// Series of files over time, and their list for ParaView: <name>.pvd lists the times,
+/// <name>/<number>.<extension> contains one of them.
 ///
-/// Every file is whole before the .pvd names it, and the .pvd is replaced at once, so that a run
-/// that was killed leaves readable files.
+/// Every file is complete before the .pvd names it, and the .pvd is replaced atomically, so that a
+/// killed run leaves readable files.
 class ParaviewSeries {
  public:
   /// @param extension  Of the files, e.g. vtp.
@@ -21,7 +21,7 @@ class ParaviewSeries {
   ParaviewSeries(std::string folder, std::string name, std::string extension,
                  std::optional<double> keep = std::nullopt);
 
-  /// Adds the whole content of one file. @throws FileError
+  /// Adds one complete file. @throws FileError
   void append(double t, const std::string& bytes);
   [[nodiscard]] std::size_t frames() const { return times_.size(); }
   void close() { write_list(); }  ///< @throws FileError
@@ -35,7 +35,7 @@ class ParaviewSeries {
   double next_listing_ = 0.0;  ///< Seconds of the steady clock.
 };
 
-/// The parts of a VTK file in XML whose numbers stand behind the text, as they lie in memory.
+/// A VTK file in XML with appended raw numbers.
 class VtkFile {
  public:
   /// @param type  PolyData or UnstructuredGrid.
@@ -51,8 +51,8 @@ class VtkFile {
   }
   /// Names as field data: character codes, each text ended by 0.
   void names(const char* name, const std::vector<std::string>& values);
-  /// Names as field data that readers without texts take too, such as meshio: a number called
-  /// "solid bush" for each, its index.
+  /// Names as field data for readers without texts, such as meshio: a number called "solid bush"
+  /// for each, its index.
   void indices(const char* kind, const std::vector<std::string>& names);
   /// The whole file.
   [[nodiscard]] std::string bytes() const;

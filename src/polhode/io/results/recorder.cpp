@@ -19,7 +19,7 @@ namespace polhode {
 
 namespace {
 
-/// The file events.csv: a line whenever a sensor's bodies begin or cease to overlap.
+/// File events.csv: a line whenever a sensor's overlap begins or ends.
 class SensorFile {
  public:
   SensorFile(std::string path, std::optional<double> keep) : path_(std::move(path)) {
@@ -46,7 +46,7 @@ class SensorFile {
   std::size_t done_ = 0;
 };
 
-/// Points of bodies, then those of surfaces of solids and of cables, which are side a.
+/// Contact points of bodies, then those of surfaces of solids and of cables, which are side a.
 std::vector<contact::TouchingPoint> touching_points(const Simulation& simulation) {
   std::vector<contact::TouchingPoint> points = simulation.contact_points();
   int side = static_cast<int>(simulation.contact_map().body.size());
@@ -100,7 +100,7 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
       impl_->results.emplace(ResultsFile::append_to(path, layout, *keep));
     else
       impl_->results.emplace(path, layout, provenance);
-    // The start of a continued run is an instant the earlier run has dealt with already.
+    // The start of a continued run was already recorded by the earlier run.
     if (impl_->results->frames() > 0) impl_->last_frame = simulation.time();
   }
   if (output.paraview)
@@ -131,7 +131,7 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
       if (is_cable_side(side)) return bodies + solids + cable_of_side(side);
       return is_solid_side(side) ? bodies + solid_of_side(side) : side;
     };
-    // Sides of surfaces are numbered behind the shapes of bodies, see touching_points().
+    // Sides of surfaces are numbered after the shapes of bodies, see touching_points().
     std::vector<int> side = simulation.contact_map().body;
     for (const ContactMap::Surface& surface : simulation.contact_map().surfaces)
       side.insert(side.end(), {number_of(surface.own), number_of(surface.side)});

@@ -42,7 +42,7 @@ constexpr StoredQuantity kBeamElementQuantities[] = {
     {"force", 3, "N"}, {"moment", 3, "N m"}, {"strain", 3, "-"}, {"curvature", 3, "1/m"}};
 constexpr StoredQuantity kPieceQuantities[] = {{"tension", 1, "N"}, {"length", 1, "m"}};
 
-/// All numbers of all loads in one channel, with a view of each under the load's name.
+/// Adds all numbers of all loads as one channel, with a named view for each load.
 void add_loads(FilePlan& p, const ResultsLayout& layout, bool named) {
   namespace r = results;
   const auto numbers = static_cast<std::size_t>(layout.load_numbers());
@@ -87,7 +87,7 @@ void plan_resistance(const ResultsLayout& layout, FilePlan& p, bool named) {
   add({"work", 1, "J"}, driven, true);
 }
 
-/// What impacts and friction took, and the pairs, in the order of add_contacts().
+/// Adds losses by impacts and friction, and the pairs, in the order of add_contacts().
 void plan_contacts(const ResultsLayout& layout, FilePlan& p) {
   namespace r = results;
   if (!layout.has_contacts) return;
@@ -129,7 +129,7 @@ void plan_lines(const ResultsLayout& layout, FilePlan& p) {
   }
 }
 
-/// Start of the nodes and the nodes of each element.
+/// Initial positions of the nodes and the nodes of each element.
 void fix_mesh(const ResultsLayout::SolidEntry& solid, FixedData& data) {
   std::vector<std::int64_t> connectivity, offsets{0}, types;
   for (int e = 0; e < solid.mesh->element_count(); ++e) {
@@ -143,7 +143,7 @@ void fix_mesh(const ResultsLayout::SolidEntry& solid, FixedData& data) {
   data.numbers.emplace_back(part(solid.name, "elements/vtk_type"), types);
 }
 
-/// Names and types of joints or loads, and which of the packed numbers each owns.
+/// Names and types of joints or loads, and their ranges in the packed numbers.
 template <class Entry, class Size>
 void fix_entries(const char* group, const std::vector<Entry>& entries, Size&& size,
                  FixedData& data) {

@@ -23,7 +23,7 @@ struct StoredQuantity {
   std::size_t size;
   const char* unit;
 };
-/// What a results file holds: channels as they are stored, and views of them under names.
+/// Plan of a results file: stored channels, and their named views.
 struct FilePlan {
   std::vector<Channel> channels;
   std::vector<ChannelView> views;
@@ -32,7 +32,7 @@ struct FilePlan {
            bool integer = false) {
     channels.push_back({join(group, q.name), std::move(dims), q.unit, integer});
   }
-  /// Quantities of `rows` things each.
+  /// Adds quantities of `rows` objects each.
   void add_all(const std::string& group, std::span<const StoredQuantity> quantities,
                std::size_t rows) {
     for (const StoredQuantity& q : quantities) {
@@ -53,13 +53,13 @@ struct FilePlan {
   return format("{}/{}/{}", results::kSolids, solid, name);
 }
 
-/// The order of the channels is the order in which list_numbers() lists the numbers.
+/// Channels in the order in which list_numbers() lists the numbers.
 [[nodiscard]] FilePlan plan_results(const ResultsLayout& layout);
 
 /// Appends the numbers of a frame, channel after channel.
 void list_numbers(const ResultsFrame& frame, std::vector<double>& numbers);
 
-/// Parts of results that do not change: names, numbers and meshes, by path.
+/// Constant parts of results: names, numbers and meshes, by path.
 struct FixedData {
   std::vector<std::pair<std::string, std::vector<std::string>>> names;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> numbers;

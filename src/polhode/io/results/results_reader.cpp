@@ -35,7 +35,7 @@ Id open_file(const std::string& path) {
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose};
 }
 
-/// Length that the first block of an HDF5 file promises; 0 if it is no such file. Format of that
+/// Length recorded in the first block of an HDF5 file; 0 if it is no such file. Format of that
 /// block: HDF5 File Format Specification 3.0, section II.A.
 std::uint64_t promised_length(const std::string& path) {
   std::array<char, 64> head{};
@@ -49,7 +49,7 @@ std::uint64_t promised_length(const std::string& path) {
   return length;
 }
 
-/// Temporary copy of a file that has lost its end, zeros in place of what is missing.
+/// Temporary copy of a truncated file, with zeros for the missing part.
 class FullLengthCopy {
  public:
   FullLengthCopy(const std::string& path, std::uint64_t length) {
@@ -102,7 +102,7 @@ std::string attribute_of(hid_t object, const char* name) {
   return text_of(attribute.get());
 }
 
-/// Whole frames of a data set before the first part that lies beyond the end of the file.
+/// Number of complete frames of a data set before its first part beyond the end of the file.
 hsize_t frames_before(hid_t dataset, std::uint64_t end, hsize_t frames) {
   hsize_t chunks = 0;
   const Id space(H5Dget_space(dataset), H5Sclose);
@@ -123,7 +123,7 @@ hsize_t frames_before(hid_t dataset, std::uint64_t end, hsize_t frames) {
     if (H5Dget_chunk_info(dataset, space.get(), i, offset.data(), &filter, &address, &bytes) < 0)
       return 0;
     if (address + bytes <= end) continue;
-    // Frames of a chunk lie one after the other: those before the cut are whole.
+    // Frames of a chunk are consecutive: those before the cut are complete.
     const hsize_t rows = address < end && bytes > 0 ? (end - address) * depth / bytes : 0;
     whole = std::min(whole, offset[0] + rows);
   }
@@ -140,7 +140,7 @@ struct ResultsReader::Impl {
   std::string path;
   std::unique_ptr<FullLengthCopy> copy;  // Outlives the open file.
   Id file;
-  std::uint64_t end = 0;  ///< Length of the file as it lies on the disk.
+  std::uint64_t end = 0;  ///< Length of the file on the disk.
   std::size_t frames = 0;
   std::vector<DataSet> sets;
 
@@ -157,7 +157,7 @@ struct ResultsReader::Impl {
     if (info->type != H5O_TYPE_DATASET) return 0;
     const Id dataset(H5Dopen2(object, name, H5P_DEFAULT), H5Dclose);
     const Id creation(H5Dget_create_plist(dataset.get()), H5Pclose);
-    // What grows by frames is stored in chunks; lists are not, and views are virtual.
+    // Growing data sets are stored in chunks; lists are not, and views are virtual.
     if (!dataset.valid() || H5Pget_layout(creation.get()) != H5D_CHUNKED) return 0;
     const std::vector<hsize_t> dims = extent(dataset.get());
     if (dims.empty()) return 0;

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// A results file opened for reading, while a run goes on, after it was killed, or cut short.
+/// Reader of a results file, also of a running, killed or truncated run.
 ///
-/// A file that has lost its end, by an interrupted copy or a full disk, is read up to its last
-/// whole frame: a sparse copy of the full length is opened instead, and frames whose chunks lie
-/// beyond the cut are left out.
+/// A truncated file, after an interrupted copy or on a full disk, is read up to its last complete
+/// frame: a sparse copy of the full length is opened instead, and frames with chunks beyond the cut
+/// are left out.
 class ResultsReader {
  public:
   /// A quantity with one entry per frame.
@@ -28,19 +28,19 @@ class ResultsReader {
   ~ResultsReader();
   ResultsReader(ResultsReader&&) noexcept;
 
-  [[nodiscard]] std::size_t frames() const;  ///< Whole ones.
-  [[nodiscard]] bool cut_short() const;      ///< The file has lost its end.
-  /// Every quantity that is stored, in the order of their paths; named views are left out.
+  [[nodiscard]] std::size_t frames() const;  ///< Complete ones.
+  [[nodiscard]] bool cut_short() const;      ///< The file is truncated.
+  /// All stored quantities, in the order of their paths, without named views.
   [[nodiscard]] const std::vector<DataSet>& data_sets() const;
   [[nodiscard]] const DataSet* find(const std::string& path) const;
   [[nodiscard]] bool has(const std::string& path) const;
 
-  /// Frames 0, every, 2 every, ... of a quantity, one after the other. @throws FileError
+  /// Reads frames 0, every, 2 every, ... of a quantity, consecutively. @throws FileError
   [[nodiscard]] std::vector<double> read(const std::string& path, std::size_t every = 1) const;
-  /// A list that does not change; empty if there is none. @throws FileError
+  /// A constant list of names; empty if there is none. @throws FileError
   [[nodiscard]] std::vector<std::string> names(const std::string& path) const;
   [[nodiscard]] std::vector<std::int64_t> numbers(const std::string& path) const;
-  /// A list of vectors that does not change, one after the other.
+  /// A constant list of vectors, consecutively.
   [[nodiscard]] std::vector<double> vectors(const std::string& path) const;
   /// Text of an attribute; empty if there is none.
   [[nodiscard]] std::string attribute(const std::string& group, const std::string& name) const;

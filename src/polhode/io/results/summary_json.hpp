@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// End of a run as its user sees it, and the place of its results.
+/// End of a run, as shown to its user, and the location of its results.
 struct RunPlace {
   std::string end = "finished";  ///< finished, not_converged, interrupted or limit.
   int exit_code = 0;             ///< Of the command line.

@@ -11,7 +11,7 @@ namespace polhode {
 
 namespace {
 
-/// Distance outside its field at which a curve is cut [pixel].
+/// Distance outside its panel at which a curve is clipped [pixel].
 constexpr double kMargin = 50.0;
 constexpr double kClose = 0.5;
 
@@ -100,7 +100,7 @@ void SvgPanel::curve(const std::vector<double>& x, const std::vector<double>& y,
       open = false;
       continue;
     }
-    // Points closer than half a pixel add nothing.
+    // Points closer than half a pixel are skipped.
     const bool last = i + 1 == x.size() || i + 1 == y.size() || !std::isfinite(y[i + 1]);
     if (open && !last && std::hypot(px(x[i]) - at_x, py(y[i]) - at_y) < kClose) continue;
     at_x = px(x[i]);

@@ -10,28 +10,28 @@ namespace polhode {
 [[nodiscard]] std::string svg_text(double x, double y, const std::string& text,
                                    const char* style = "text");
 
-/// A whole picture of that size in pixels, with the style sheet of panels.
+/// A complete picture of that size in pixels, with the style sheet of panels.
 [[nodiscard]] std::string svg_page(double width, double height, const std::string& content);
 
 /// A diagram with axes, ticks and a title in an SVG picture.
 class SvgPanel {
  public:
   struct Box {
-    double x, y, width, height;  ///< Of the field in which curves stand [pixel].
+    double x, y, width, height;  ///< Of the area of curves [pixel].
   };
   /// @param decades  The values drawn are logarithms to base ten: ticks say 1e-3.
   SvgPanel(const Box& box, double x_low, double x_high, double y_low, double y_high,
            const std::string& title, bool decades = false);
 
-  /// A curve; points that are not finite break it, what lies outside is cut off.
+  /// Draws a curve, interrupted at points that are not finite and clipped.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const char* colour,
              bool dashed = false);
-  /// The area between two curves.
+  /// Fills the area between two curves.
   void band(const std::vector<double>& x, const std::vector<double>& low,
             const std::vector<double>& high, const char* colour);
-  /// The whole height from one x to another.
+  /// Shades the full height from one x to another.
   void shade(double from, double to, const char* colour);
-  /// A level line across.
+  /// Draws a horizontal line.
   void level(double y, const char* colour);
   [[nodiscard]] std::string text() const;
 

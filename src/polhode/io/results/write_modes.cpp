@@ -13,7 +13,7 @@ namespace polhode {
 
 namespace {
 
-/// Largest displacement in a picture, as part of the model's size.
+/// Largest displacement in a picture, as a part of the model's size.
 constexpr double kShown = 0.1;
 
 std::vector<Channel> channels(std::size_t bodies, std::size_t nodes) {
@@ -36,7 +36,7 @@ std::vector<Channel> channels(std::size_t bodies, std::size_t nodes) {
   return list;
 }
 
-/// Largest displacement of a mode: of bodies, with turns over the model's size, and of nodes.
+/// Largest displacement of a mode: of bodies, with rotations times the model's size, and of nodes.
 double largest_move(const ModalAnalysis& analysis, int mode, double size) {
   double most = 0.0;
   for (const bool imaginary : {false, true}) {
@@ -51,7 +51,7 @@ double largest_move(const ModalAnalysis& analysis, int mode, double size) {
   return most;
 }
 
-/// Solids in a mode: nodes moved, stresses those of the equilibrium.
+/// Solids in a mode: displaced nodes, stresses of the equilibrium.
 std::vector<SolidReport> solids_in(const ModalAnalysis& analysis, int mode, bool imaginary,
                                    double factor) {
   const Simulation& simulation = analysis.simulation();

@@ -9,9 +9,9 @@
 namespace polhode {
 
 /// Writes frequencies and shapes into a folder: modes.h5, see docs/reference/results_file.md, and,
-/// if the model's output asks for ParaView, paraview/modes.pvd and modes_solids.pvd with one
-/// picture a mode. There the largest displacement is a tenth of the model's size; "velocity" is the
-/// displacement.
+/// if the model's output requests ParaView, paraview/modes.pvd and modes_solids.pvd with one
+/// picture per mode. There the largest displacement is a tenth of the model's size; "velocity" is
+/// the displacement.
 /// @throws FileError
 void write_modes(const ModalAnalysis& analysis, const std::string& folder,
                  const Provenance& provenance);

@@ -138,7 +138,7 @@ ResultsFile::ResultsFile(const std::string& path, const ResultsLayout& layout,
   file_.attribute(r::kProvenance, "instruction_set", provenance.instruction_set);
   file_.attribute(r::kProvenance, "model_file", provenance.model_file);
   file_.attribute(r::kProvenance, "overrides", lines(provenance.overrides));
-  // A list of one text: attributes hold at most 64 KB, models may be longer.
+  // A list of one text: attributes are limited to 64 KB, models may be longer.
   file_.names(join(r::kProvenance, "model"), {provenance.model_text});
   file_.flush();
 }

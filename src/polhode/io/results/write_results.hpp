@@ -12,7 +12,7 @@
 
 namespace polhode {
 
-/// Where results come from; kept with them.
+/// Provenance of results, stored with them.
 struct Provenance {
   std::string version{};  ///< Of Polhode.
   std::string solver{}, instruction_set{};
@@ -21,21 +21,21 @@ struct Provenance {
   std::vector<std::string> overrides{};  ///< As given with --set.
 };
 
-/// Names and shapes that a results file is laid out by.
+/// Names and shapes that determine the layout of a results file.
 struct ResultsLayout {
   struct JointEntry {
     std::string name, type;
     int coordinates = 0;  ///< Free coordinates reported.
-    int friction = 0;     ///< Of them with friction; 0: none.
-    int stops = 0;        ///< Of them with limits.
-    bool driven = false;  ///< Its frame moves as prescribed.
+    int friction = 0;     ///< Number of them with friction; 0: none.
+    int stops = 0;        ///< Number of them with limits.
+    bool driven = false;  ///< Its frame has a prescribed motion.
   };
   struct LoadEntry {
     std::string name, type;
   };
   struct SolidEntry {
     std::string name;
-    const Mesh* mesh = nullptr;   ///< Outlives the file.
+    const Mesh* mesh = nullptr;   ///< Must outlive the file.
     std::vector<Vec3> reference;  ///< Nodes at the start, world [m].
     std::vector<std::string> interfaces;
   };
@@ -49,31 +49,31 @@ struct ResultsLayout {
   };
   std::string title{};
   std::vector<std::string> bodies{};
-  std::vector<bool> nodes{};  ///< Of beams and cables: bodies without a view of their own.
+  std::vector<bool> nodes{};  ///< Of beams and cables: bodies without a named view.
   std::vector<JointEntry> joints{};
   std::vector<LoadEntry> loads{};
   std::vector<SolidEntry> solids{};
   std::vector<BeamEntry> beams{};
   std::vector<CableEntry> cables{};
   bool has_contacts = false;
-  std::vector<std::string> contacts{};  ///< Pairs of bodies that are kept: "a+b".
+  std::vector<std::string> contacts{};  ///< Recorded pairs of bodies: "a+b".
 
   [[nodiscard]] int coordinates() const;   ///< Of all joints.
-  [[nodiscard]] int load_numbers() const;  ///< That all loads report.
+  [[nodiscard]] int load_numbers() const;  ///< Of all loads.
   [[nodiscard]] bool is_node(std::size_t body) const { return body < nodes.size() && nodes[body]; }
 };
 
-/// What stands at one time. Lists hold one entry per body, joint, coordinate or number of a load of
-/// the layout.
+/// Results at one time. Lists have one entry per body, joint, coordinate or number of a load of the
+/// layout.
 struct ResultsFrame {
   double t = 0.0;
   std::vector<Vec3> position, velocity,
       angular_velocity;           ///< Centre of mass, world [m, m/s, rad/s].
   std::vector<Quat> orientation;  ///< Body to world.
   std::vector<double> coordinates, rates, loads;
-  /// Numbers of the joints that have them, see JointReport.
+  /// Numbers of joints with these quantities, see JointReport.
   std::vector<double> friction, slips, stops, power, work;
-  std::vector<Vec3> force, moment;  ///< That a exerts on b, at the joint's point on b, world.
+  std::vector<Vec3> force, moment;  ///< Of a on b, at the joint's point on b, world.
   std::vector<SolidReport> solids;
   std::vector<std::vector<InterfaceReport>> interfaces;  ///< By solid.
   std::vector<BeamReport> beams;

@@ -10,10 +10,10 @@
 
 namespace polhode {
 
-/// What a value of a model file looks like.
+/// Kinds of values in a model file.
 enum class FieldKind : unsigned char {
   kNumber,      ///< A number, with unit, or an expression.
-  kTimeNumber,  ///< The same, of t too, or a table.
+  kTimeNumber,  ///< The same, also of t, or a table over t.
   kLaw,         ///< An expression of a coordinate or rate, or a table over it.
   kInteger,
   kBoolean,  ///< true or false.
@@ -36,7 +36,7 @@ enum class FieldKind : unsigned char {
   kSelection,      ///< Nodes or faces of a solid: the name of a set, a section, or a list of these.
   kBonds,          ///< A map from bodies to selections.
   kPoints,         ///< A list of vectors.
-  kIndices,        ///< A list of whole numbers, not negative.
+  kIndices,        ///< A list of nonnegative integers.
   kIndexLists,     ///< A list of such lists.
   kIndexSets,      ///< A map from names to such lists.
   kLevel,          ///< min, max or a number.
@@ -55,7 +55,7 @@ enum class FieldKind : unsigned char {
   kRows,           ///< Rows of numbers, all of one length.
 };
 
-/// Where a number must lie, in SI.
+/// Range of a number, in SI.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -66,24 +66,23 @@ inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false};
 
-/// One key of the model file.
+/// A key of the model file.
 struct Field {
   std::string name{};
   FieldKind kind = FieldKind::kNumber;
   Dimension dimension{};
-  std::string meaning{};  ///< One line.
-  std::string
-      standard{};  ///< What holds when it is left out: a value in SI, or words; "" if nothing.
+  std::string meaning{};   ///< One line.
+  std::string standard{};  ///< Default: a value in SI, or a description; "" if none.
   bool required = false;
   Range range{};
   std::vector<std::string> choices{};
   std::string table{};     ///< Of kSection and kNamed: title of the section's table.
-  std::string variable{};  ///< Of kLaw: what it depends on, x or v.
-  Dimension of{};          ///< Dimension of that.
+  std::string variable{};  ///< Of kLaw: its variable, x or v.
+  Dimension of{};          ///< Dimension of the variable.
   std::string since = "0.1";
 };
 
-/// The keys of one kind of thing.
+/// The keys of one kind of object.
 struct FieldTable {
   std::string title;    ///< e.g. "body", "joint revolute".
   std::string meaning;  ///< One or two sentences.
@@ -96,7 +95,7 @@ struct FieldTable {
   [[nodiscard]] std::vector<std::string> names() const;
 };
 
-/// A kind of joint, load, material ... and the keys it takes.
+/// A kind of joint, load, material ... and its keys.
 struct KindTable {
   std::string name;
   FieldTable table;
@@ -148,7 +147,7 @@ const FieldTable& height_field_fields();
 const FieldTable& time_table_fields();
 const FieldTable& law_table_fields();
 const FieldTable& event_fields();
-/// Keys of a number that something reports, those of a probe and its name: see read_channel().
+/// Keys of a reported number, those of a probe and its name: see read_channel().
 std::vector<Field> channel_fields();
 const FieldTable& controller_fields();
 const FieldTable& controlled_value_fields();

@@ -17,7 +17,7 @@ Field size(const char* name, const char* meaning) {
           .range = kPositive};
 }
 
-/// What the library of units has no name for: N m², kg/m, kg m.
+/// Dimensions without a name in the library of units: N m², kg/m, kg m.
 constexpr Dimension kBendingStiffness{3, 1, -2, 0}, kMassPerLength{-1, 1, 0, 0},
     kInertiaPerLength{1, 1, 0, 0};
 
@@ -50,7 +50,7 @@ KindTable section(const std::string& name, const std::string& meaning,
   return kind;
 }
 
-/// A shape filled with a material.
+/// Section of a shape filled with a material.
 KindTable shaped(const std::string& name, const std::string& meaning, std::vector<Field> sizes) {
   sizes.push_back({.name = "material",
                    .kind = kMaterial,

@@ -48,7 +48,7 @@ const Field kXAxis{
 
 enum class Axis { kRequired, kOptional, kNone };
 
-/// How a joint is given its axes; a kind that is not named here has one that matters.
+/// Specification of a joint's axes; a kind that is not listed has one relevant axis.
 Axis axis_of(const std::string& name) {
   if (name == "universal" || name == "distance" || name == "slack_link") return Axis::kNone;
   if (name == "spherical" || name == "fixed" || name == "generic" || name == "universal_spherical")
@@ -61,7 +61,7 @@ Field parameter_field(const Parameter& p) {
   Field field{.name = p.name, .kind = kNumber, .meaning = sentence(p.meaning)};
   if (unit.unit) field.dimension = unit.unit->dimension;
   if (p.standard) field.standard = format("{:g}", *p.standard);
-  // The smallest positive number stands for "above zero", the largest for "any".
+  // The smallest positive number means "above zero", the largest "any".
   constexpr double kMax = std::numeric_limits<double>::max();
   const bool positive = p.least == std::numeric_limits<double>::min();
   if (p.least != -kMax) field.range.least = positive ? 0.0 : p.least;
@@ -78,7 +78,7 @@ Field type_field(const std::string& what, const std::string& name) {
           .choices = {name}};
 }
 
-/// Friction and stops of the kinds that take them.
+/// Adds friction and stops of the kinds that support them.
 void add_resistance(const std::string& name, std::vector<Field>& fields) {
   const auto section = [&](const char* key, const std::string& table, const char* meaning) {
     fields.push_back({.name = key, .kind = kSection, .meaning = meaning, .table = table});

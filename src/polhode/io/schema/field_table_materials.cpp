@@ -13,7 +13,8 @@ using enum FieldKind;
 
 namespace {
 
-/// The smallest positive number, and the neighbours of round numbers, stand for open ends.
+/// Range of a parameter; the smallest positive number, and the neighbours of round numbers, mean
+/// open ends.
 Range range_of(const Parameter& p) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto is_round = [](double x) { return std::isfinite(x) && 2.0 * x == std::round(2.0 * x); };
@@ -28,7 +29,7 @@ Range range_of(const Parameter& p) {
   return range;
 }
 
-/// A parameter that stands in an alternative may be left out.
+/// Whether a parameter is required; one of an alternative is not.
 bool is_required(const MaterialKind& kind, const Parameter& p) {
   if (p.standard) return false;
   for (const auto& set : kind.alternatives)
@@ -52,7 +53,7 @@ std::vector<Field> parameter_fields(const MaterialKind& kind) {
   return fields;
 }
 
-/// Which parameters go together, as a sentence.
+/// Description of the alternatives of parameters.
 std::string alternatives_text(const MaterialKind& kind) {
   std::string text;
   for (const auto& set : kind.alternatives) {

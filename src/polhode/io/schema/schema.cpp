@@ -28,7 +28,8 @@ json list_of(json items, int least, int most) {
   return schema;
 }
 
-/// Bounds of bare numbers: zero is zero in every unit, other bounds hold for plain numbers only.
+/// Adds bounds of bare numbers: zero is zero in every unit, other bounds apply to plain numbers
+/// only.
 void add_bounds(json& schema, const Field& field) {
   const auto holds = [&](double bound) {
     return std::isfinite(bound) && (bound == 0.0 || field.dimension.is_none());
@@ -43,7 +44,7 @@ json choice(const std::vector<std::string>& choices) {
   json words = json::array();
   for (const std::string& word : choices) {
     words.push_back(word);
-    // A choice of numbers is written as a number too.
+    // A choice of numbers may also be written as a number.
     if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos)
       words.push_back(std::stoi(word));
   }

@@ -9,7 +9,7 @@
 namespace polhode {
 namespace {
 
-/// What a value looks like, in a word or two.
+/// Short description of a value's form.
 std::string form(const Field& field) {
   using enum FieldKind;
   switch (field.kind) {

@@ -27,7 +27,7 @@ std::string joined_text(const std::vector<Diagnostic>& diagnostics) {
 
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
-/// Characters on the screen, not bytes.
+/// Displayed characters, not bytes.
 std::size_t display_width(std::string_view s) {
   return static_cast<std::size_t>(
       std::count_if(s.begin(), s.end(), [](char c) { return !is_continuation(c); }));
@@ -104,7 +104,7 @@ std::string SourceText::excerpt(int line_number, int column, int length) const {
   std::size_t at = std::min(static_cast<std::size_t>(column) - 1, whole.size());
   const std::size_t reach =
       length > 0 ? static_cast<std::size_t>(length) : value_length(whole.substr(at));
-  // A long line is cut around the fault, between characters.
+  // A long line is cut around the error, between characters.
   std::size_t first = 0;
   std::string_view shown = whole;
   std::string_view before_cut, after_cut;
@@ -163,7 +163,7 @@ void Diagnostics::throw_if_any() {
     return std::tuple(file(a), a.place.line, a.place.column) <
            std::tuple(file(b), b.place.line, b.place.column);
   });
-  // A file that is a part twice has its faults once.
+  // Errors of a file that is used as a part twice are reported once.
   const auto same = [](const Diagnostic& a, const Diagnostic& b) {
     return a.place.file == b.place.file && a.place.line == b.place.line &&
            a.place.column == b.place.column && a.path == b.path && a.what == b.what;

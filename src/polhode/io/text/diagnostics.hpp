@@ -12,33 +12,33 @@
 
 namespace polhode {
 
-/// One fault of a model file.
+/// One error of a model file.
 struct Diagnostic {
   SourceLocation place;  ///< file:line:column; line 0: the place has no line (an override).
-  std::string path;      ///< Where in the model, e.g. joints.B.bodies; may be empty.
-  std::string what;      ///< With the value given; no full stop at the end.
-  std::string hint;      ///< What to do; whole sentences, may be empty.
+  std::string path;      ///< Path in the model, e.g. joints.B.bodies; may be empty.
+  std::string what;      ///< Including the given value; no full stop at the end.
+  std::string hint;      ///< What to do; complete sentences, may be empty.
   std::string
-      excerpt;  ///< The source line with the faulty part underlined, two lines; may be empty.
+      excerpt;  ///< Source line with the erroneous part underlined, two lines; may be empty.
 
-  /// `file:line:column: error: path: what. mend.` and the excerpt below it.
+  /// `file:line:column: error: path: what. hint.` and the excerpt below it.
   [[nodiscard]] std::string text() const;
 };
 
-/// A model file has faults: all of them at once.
+/// All errors of a model file.
 class ModelErrors : public std::invalid_argument {
  public:
   explicit ModelErrors(std::vector<Diagnostic> diagnostics);
 
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
-  /// Every message with its excerpt, in the order of the file; the same as what().
+  /// All messages with their excerpts, in the order of the file; the same as what().
   [[nodiscard]] std::string text() const { return what(); }
 
  private:
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// The text of a model file, by lines, to quote from.
+/// Text of a model file, by lines, for excerpts.
 class SourceText {
  public:
   SourceText() = default;
@@ -46,7 +46,7 @@ class SourceText {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// Where a line starts in the text; 1-based.
+  /// Offset of a line in the text; 1-based.
   [[nodiscard]] std::size_t offset(int line_number) const;
   /// A line without its end; 1-based, empty beyond the end.
   [[nodiscard]] std::string_view line(int number) const;
@@ -59,22 +59,22 @@ class SourceText {
   std::vector<std::size_t> line_starts_;
 };
 
-/// Gathers the faults of one file and of its parts.
+/// Collection of the errors of one file and of its parts.
 class Diagnostics {
  public:
   explicit Diagnostics(const SourceText& source) : source_(&source) {}
 
-  /// Another file, of a part, to quote from.
+  /// Registers another file, of a part, for excerpts.
   void know(std::shared_ptr<const SourceText> source) { of_parts_.push_back(std::move(source)); }
 
   /// @param length  Bytes to underline; 0: as far as the value reaches on its line.
   void add(const SourceLocation& place, std::string path, std::string what, std::string hint,
            int length = 0);
-  /// Adds faults as they are.
+  /// Adds existing errors.
   void take(const std::vector<Diagnostic>& faults);
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::size_t size() const { return list_.size(); }
-  /// @throws ModelErrors if there is a fault, in the order of the file, those of parts behind.
+  /// @throws ModelErrors if there is an error, in the order of the file, those of parts last.
   void throw_if_any();
 
  private:

@@ -49,7 +49,7 @@ class ModelText {
                     a < 0 ? "ground" : format("b{}", a), b, list(at),
                     axis.empty() ? "" : ", axis: " + axis);
   }
-  /// @param probes  Of what is worth following, as in a model file.
+  /// @param probes  Quantities of interest, as in a model file.
   std::string end(const std::string& analysis, const std::string& every,
                   const std::string& probes) {
     text_ += "\nanalysis: {type: dynamics, " + analysis + "}\n";
@@ -65,8 +65,8 @@ class ModelText {
 constexpr const char* kTurning = ", velocity: [0.5, 0, 0], angular_velocity: [0, 0, -1]";
 constexpr const char* kSliding = ", velocity: [1, 0, 0]";
 
-/// N square cells of unit bars: N + 1 uprights on the ground, N bars across their tops, every
-/// joint a full hinge. All uprights turn at 1 rad/s at the start.
+/// N square cells of unit bars: N + 1 uprights on the ground, N bars across their tops, all joints
+/// revolute. All uprights rotate at 1 rad/s at the start.
 std::string n_four_bar(const Values& values) {
   const int N = count(values, "N");
   const double J = 1.0 / 12.0, thin = 1e-3;
@@ -78,7 +78,7 @@ std::string n_four_bar(const Values& values) {
   for (int i = 0; i <= N; ++i) m.joint("revolute", kGround, uprights[i], Vec3(i, 0, 0), "z");
   for (int i = 0; i < N; ++i) {
     m.joint("revolute", uprights[i], bars[i], Vec3(i, 1, 0), "z");
-    // The bar is named first: a positive angle turns the upright.
+    // The bar is named first: a positive angle rotates the upright.
     m.joint("revolute", bars[i], uprights[i + 1], Vec3(i + 1, 1, 0), "z");
   }
   return m.end("duration: 10 s, step: 10 ms", "500 ms",
@@ -87,7 +87,7 @@ std::string n_four_bar(const Values& values) {
 
 constexpr double kRod = 0.1;  ///< Length of the rods of chains and trees [m].
 
-/// Inertia of a rod along x with a little about its own axis.
+/// Inertia of a rod along x with a small one about its own axis.
 Vec3 rod_inertia() {
   const double across = kRod * kRod / 12 + 1e-3;
   return {1e-3, across, across};
@@ -112,8 +112,8 @@ std::string chain(const Values& values) {
       format("tip: {{body: b{}, point: [{}, 0, 0]}}, hook: {{joint: j0}}", N - 1, kRod / 2));
 }
 
-/// Rod i hangs on the end of rod (i − 1)/2; every rod lies along x at the start, its end a little
-/// to the side, where its two children begin.
+/// Rod i is attached to the end of rod (i − 1)/2; every rod lies along x at the start, its end
+/// slightly to the side, where its two children begin.
 std::string binary_tree(const Values& values) {
   const int N = count(values, "N");
   ModelText m(format("Binary tree of {} rods", N), {0, 0, -9.81});
@@ -134,8 +134,8 @@ std::string binary_tree(const Values& values) {
                       list(0.5 * (ends.back() - begins.back()))));
 }
 
-/// Balls of 1 kg and 0.1 m radius over a bin that is four layers of them high, slightly out of
-/// their lattice; all at rest at the start.
+/// Balls of 1 kg and 0.1 m radius above a bin that is four layers of them high, slightly off a
+/// lattice; all at rest at the start.
 std::string spheres_in_a_bin(const Values& values) {
   const int n = count(values, "N", 1'000'000);
   const double side = 0.25 * std::ceil(std::sqrt(n / 4.0));

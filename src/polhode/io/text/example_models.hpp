@@ -7,14 +7,14 @@
 
 namespace polhode {
 
-/// A value that a generator of models takes.
+/// A parameter of a generator of models.
 struct GeneratorParameter {
   std::string name;
-  std::string standard;  ///< Value when left out.
+  std::string standard;  ///< Default.
   std::string meaning;   ///< One line; a choice lists its words.
 };
 
-/// Writes the text of a model of any size.
+/// Generator of the text of a model of any size.
 struct ModelGenerator {
   std::string name;
   std::string meaning;  ///< One line.
@@ -25,7 +25,7 @@ struct ModelGenerator {
 /// Every generator: n_four_bar, chain, binary_tree.
 [[nodiscard]] const std::vector<ModelGenerator>& model_generators();
 
-/// The text of a generated model; values that are left out take their standard.
+/// Text of a generated model; missing values have their defaults.
 /// @throws InputError for an unknown parameter or a value out of range.
 [[nodiscard]] std::string generate_model(const ModelGenerator& generator,
                                          const std::map<std::string, std::string>& values);

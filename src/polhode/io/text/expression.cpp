@@ -183,7 +183,7 @@ void Expression::fold_constants() {
 std::optional<double> Expression::factor_to_si(const Dimension& wanted,
                                                const UnitSystem& units) const {
   if (type_.certainty == Certainty::kKnown) {
-    // An angle is not a plain number, but 1/s is as good as rad/s.
+    // An angle is not a plain number, but 1/s is accepted for rad/s.
     const bool stray_angle = wanted.is_none() && std::abs(type_.dimension.angle) > 1e-9;
     if (!type_.dimension.matches(wanted) || stray_angle) return std::nullopt;
     return 1.0;

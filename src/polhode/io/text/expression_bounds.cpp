@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An expression over a span of time: interval arithmetic on its value and first two derivatives,
-// and the operations that have branches.
+// Bounds of an expression over a span of time: interval arithmetic on its value and first two
+// derivatives, and on operations with branches.
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -18,7 +18,7 @@ struct Jet {
   Interval v, d, e;
 };
 
-/// Which branches were taken.
+/// Branches taken.
 struct Branches {
   bool open = false;           ///< Some operation may take either of two.
   std::vector<double> chosen;  ///< By operation, at the middle of its operands.
@@ -92,7 +92,7 @@ Interval equal(const Jet& y, const Jet& x) {
   return {0.0, 1.0};
 }
 
-/// Truth of a value: it counts as true unless it is zero.
+/// Truth of a value: true unless it is zero.
 Interval truth(const Jet& x) {
   if (!x.v.contains(0.0)) return 1.0;
   return x.v.is_number() ? Interval(0.0) : Interval(0.0, 1.0);
@@ -132,7 +132,7 @@ Jet whole(const Jet& x, Branches& branches) {
   return {{lo, hi}, 0.0, 0.0};
 }
 
-/// Functions of one number that have no branches.
+/// Functions of one number without branches.
 Jet smooth(ExpressionOp op, const Jet& x) {
   using Op = ExpressionOp;
   const Interval& v = x.v;
@@ -299,7 +299,7 @@ Jet run(const Program& program, const Interval& t, Branches& branches) {
   return stack.back();
 }
 
-/// Search of a span of time by halves, the earlier one first. The halves are those of the whole
+/// Search of a span of time by bisection, the earlier half first. The halves are those of the whole
 /// span, also in a search of a part of it.
 template <class Program>
 class BreakSearch {
@@ -317,10 +317,11 @@ class BreakSearch {
   }
 
  private:
-  /// Spans looked at, after which samples have to do: an expression may be undecided everywhere.
+  /// Number of spans after which samples are used: an expression may be undecided everywhere.
   static constexpr int kMax = 20000;
   static constexpr int kSamples = 4096;
-  /// Branches are compared so many least spans before and after a place.
+  /// Distance from a position, in smallest spans, at which branches before and after it are
+  /// compared.
   static constexpr double kBeside = 8.0;
 
   [[nodiscard]] std::vector<double> branches_at(double t) const {
@@ -343,7 +344,7 @@ class BreakSearch {
     return search(from + 0.5 * width, 0.5 * width);
   }
 
-  /// The break at a time, if the branches before and after it differ.
+  /// Break at a time, if the branches before and after it differ.
   [[nodiscard]] std::optional<TimeBreak> at(double t, double width) const {
     const double beside = kBeside * width, before = t - width - beside, after = t + beside;
     if (t <= after_ * (1.0 + kSameBreak) + least_ || branches_at(before) == branches_at(after))
@@ -355,7 +356,7 @@ class BreakSearch {
     return TimeBreak{t, jump > kJump * slopes ? 0 : 1};
   }
 
-  /// The first change of branches from one sample to the next, brought close by halving.
+  /// First change of branches between samples, located by bisection.
   [[nodiscard]] std::optional<TimeBreak> by_samples() const {
     const double h = root_ / kSamples;
     for (double from = h * std::floor(after_ / h); from < until_; from += h) {
@@ -371,7 +372,7 @@ class BreakSearch {
     return std::nullopt;
   }
 
-  /// A change of this many times those just before and after is a jump.
+  /// Ratio to the changes just before and after above which a change is a jump.
   static constexpr double kJump = 8.0;
 
   const Expression& expression_;
@@ -388,7 +389,7 @@ TimeBreak Expression::next_break(double t, double until) const {
 }
 
 TimeBounds Expression::bounds(double from, double to) const {
-  // A break may stand at either end, where both branches are possible.
+  // A break may lie at either end, where both branches are possible.
   const double edge = 1e-3 * (to - from);
   Branches branches;
   const Jet f = run(program_, Interval(from + edge, to - edge), branches);

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// What a step of an expression's program does to the stack of values.
+/// Operations of an expression's program on the stack of values.
 enum class ExpressionOp : unsigned char {
   kPush,
   kTime,
@@ -49,7 +49,7 @@ enum class ExpressionOp : unsigned char {
   kMax,
 };
 
-/// What a function wants and gives.
+/// Dimension rules of functions.
 enum class FunctionRule : unsigned char {
   kAngleToNumber,
   kNumberToAngle,
@@ -123,7 +123,7 @@ inline constexpr std::array kExpressionFunctions = {
   }
 }
 
-/// Values at once on the stack; the parser refuses what needs more.
+/// Largest size of the stack; the parser rejects expressions that need more.
 inline constexpr int kStackSize = 128;
 
 }  // namespace polhode

@@ -14,19 +14,19 @@ namespace polhode {
 namespace {
 
 constexpr std::size_t kLongest = 4096;
-constexpr int kDeepest = 48;  // Brackets in brackets.
+constexpr int kDeepest = 48;  // Nested brackets.
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-/// Recursive descent; checks dimensions and writes a program for a stack machine as it goes.
+/// Recursive-descent parser that checks dimensions and writes a program for a stack machine.
 class ExpressionParser {
  public:
   using Op = ExpressionOp;
 
-  /// @param variable  What the expression may depend on; "" for nothing.
+  /// @param variable  Allowed variable; "" for none.
   ExpressionParser(std::string_view text, const Variables& variables, const UnitSystem& units,
                    std::string_view variable, double in_units)
       : text_(text),
@@ -49,7 +49,7 @@ class ExpressionParser {
   }
 
  private:
-  /// Type of a part of the expression, and where its program starts.
+  /// Type of a part of the expression, and the start of its program.
   struct Part {
     Quantity type;           ///< The value is not used.
     std::size_t start = 0;   ///< First instruction.
@@ -130,8 +130,8 @@ class ExpressionParser {
     whole.type = known(reading.unit->dimension);
   }
 
-  /// The text to write where an expression has a dimension before the unit behind it: a unit counts
-  /// for the whole, so that of `tilt - 90 deg` is not that of 90 alone.
+  /// Suggested text where an expression has a dimension before its trailing unit: a unit applies to
+  /// the whole, so that of `tilt - 90 deg` does not apply to 90 alone.
   [[nodiscard]] std::string instead_of_unit(const Unit& unit, std::string_view written) const {
     const std::size_t end = text_.find_last_not_of(' ', at_ - 1);
     const std::size_t before =
@@ -337,7 +337,7 @@ class ExpressionParser {
   }
   static bool is_known(const Part& p) { return p.type.certainty == Certainty::kKnown; }
 
-  /// Brings two parts that are added or compared to one dimension.
+  /// Converts two parts that are added or compared to one dimension.
   Quantity unify(Part& a, Part& b, const std::string& where) {
     if (is_known(a) && is_known(b)) {
       if (!a.type.dimension.matches(b.type.dimension))
@@ -360,7 +360,7 @@ class ExpressionParser {
     return a.type;
   }
 
-  /// A number in the user's base units becomes one in SI.
+  /// Converts a number in the user's base units to SI.
   void adopt(const Part& part, const Dimension& d, std::optional<std::size_t> end = {}) {
     const bool with_angle = std::abs(part.type.dimension.angle) < 1e-9;
     scale(end.value_or(result_.program_.size()),
@@ -371,7 +371,7 @@ class ExpressionParser {
     const Dimension d = a.type.dimension + sign * b.type.dimension;
     const bool bare = a.type.certainty == Certainty::kBare || b.type.certainty == Certainty::kBare;
     if (!bare) return is_known(a) || is_known(b) ? known(d) : Quantity{};
-    // With a variable of any dimension the product has any; all counts in the user's base units.
+    // A product with a variable of any dimension has any; all numbers are in the user's base units.
     if (is_known(a)) {
       const std::size_t before = result_.program_.size();
       scale(b.start, 1.0 / units_.factor_without_angle(a.type.dimension));
@@ -400,7 +400,7 @@ class ExpressionParser {
     return {type, base.start, base.offset};
   }
 
-  /// Value of the program from an instruction on, if it has no t.
+  /// Value of the program from an instruction on, if it does not depend on t.
   [[nodiscard]] std::optional<double> constant_value(std::size_t start) const {
     Expression part;
     part.program_.assign(result_.program_.begin() + static_cast<std::ptrdiff_t>(start),
@@ -465,7 +465,7 @@ class ExpressionParser {
                             {Op::kScale, factor});
   }
 
-  /// Counts brackets, signs and calls within each other.
+  /// Counter of nested brackets, signs and calls.
   struct Nesting {
     explicit Nesting(ExpressionParser& p) : parser(p) {
       if (++parser.depth_ > 3 * kDeepest)

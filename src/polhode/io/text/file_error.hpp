@@ -7,25 +7,25 @@
 
 namespace polhode {
 
-/// A file could not be read or written: full disk, missing folder, no permission.
+/// Error of reading or writing a file: full disk, missing folder, no permission.
 class FileError : public std::runtime_error {
  public:
   FileError(std::string_view file, std::string_view what, std::string_view hint);
-  /// With the reason the system gives for errno.
+  /// Error with the system's description of errno.
   [[nodiscard]] static FileError from_errno(std::string_view file, std::string_view what);
 };
 
 /// The bytes of a file. @throws FileError
 [[nodiscard]] std::string read_file(const std::string& path);
 
-/// Writes a file so that at no moment, not even after a crash, a half-written one stands under
-/// its name: temporary file, fsync, rename.
+/// Writes a file atomically: at no moment, not even after a crash, is there a partial file of this
+/// name (temporary file, fsync, rename).
 /// @param durable  Wait until the disk has it (fsync), so that it also survives a power cut; a
-///                 killed program leaves whole files either way.
+/// killed program leaves complete files either way.
 /// @throws FileError
 void write_file_atomically(const std::string& path, std::string_view bytes, bool durable = true);
 
-/// Makes a folder and those above it. @throws FileError
+/// Creates a folder and its parents. @throws FileError
 void make_folder(const std::string& path);
 
 }  // namespace polhode

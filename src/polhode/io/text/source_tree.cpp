@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kNoAliases = "aliases (*name) are not allowed";
 constexpr const char* kWriteOut = "Write the value out, or use a variable.";
 
-/// Stops the parser at the first thing that cannot be read on from.
+/// Stops the parser at the first unrecoverable error.
 struct SourceStop {
   int line, column;
   std::string what, hint;
@@ -87,7 +87,8 @@ class TreeBuilder : public YAML::EventHandler {
       refuse(mark, "tags (!name) are not allowed", "Leave the tag out.");
   }
 
-  /// The parser takes a quote that is never closed for a text up to the end of the file.
+  /// Checks for a quote that is never closed, which the parser reads as a text up to the end of the
+  /// file.
   void check_closing_quote(const YAML::Mark& mark) const {
     const std::string_view text = source_.text();
     std::size_t k = source_.offset(mark.line + 1) + static_cast<std::size_t>(mark.column);
@@ -142,7 +143,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     level.has_key = false;
     if (node.kind == SourceNode::Kind::kEmpty && !level.node.keys.empty()) {
-      // The parser places nothing where the next thing stands.
+      // The parser gives no useful position for an empty value.
       node.line = level.node.keys.back().line;
       node.column = level.node.keys.back().column;
     }
@@ -181,7 +182,7 @@ std::string normalised(std::string text) {
   return text;
 }
 
-/// Refuses bytes that no text file has, before the parser meets them.
+/// Rejects bytes that are invalid in text files, before parsing.
 void check_characters(const SourceText& source) {
   const std::string_view text = source.text();
   int line = 1, column = 1;
@@ -192,7 +193,7 @@ void check_characters(const SourceText& source) {
     if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7F)
       throw SourceStop{line, column, format("the character with code {} is not allowed", c),
                        "Remove it; a model file is plain text."};
-    // YAML's two more line ends, which editors do not count as such.
+    // YAML's two further line ends, which editors do not count.
     if (n == 3 && (text.substr(k, 3) == "\xE2\x80\xA8" || text.substr(k, 3) == "\xE2\x80\xA9"))
       throw SourceStop{line, column, "a Unicode line separator is not allowed",
                        "End lines as usual."};
@@ -206,7 +207,7 @@ void check_characters(const SourceText& source) {
   }
 }
 
-/// A sentence from the parser's message.
+/// Sentence from the parser's message.
 SourceStop parser_complaint(const SourceText& source, const YAML::Exception& error) {
   const int line = error.mark.line + 1, column = error.mark.column + 1;
   const std::string_view text = source.line(line);
@@ -378,7 +379,7 @@ void SourceTree::apply_override(const std::string& path, const std::string& valu
       next = &node->children[index];
     } else if (node->is_map()) {
       next = node->find(part);
-      // Keys of one thing may be added; things, and what would only misspell a thing, may not.
+      // Keys of an object may be added; objects, and likely misspellings of objects, may not.
       const bool holds_names = k == 1 && (parts[0] == "bodies" || parts[0] == "joints" ||
                                           parts[0] == "loads" || parts[0] == "variables");
       const bool may_add = !holds_names && (last || k == 0);

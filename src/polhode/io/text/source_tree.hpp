@@ -12,18 +12,18 @@
 
 namespace polhode {
 
-/// A value of a model file with its place: text, list or map.
+/// A value of a model file with its position: text, list or map.
 struct SourceNode {
   enum class Kind : unsigned char { kEmpty, kText, kList, kMap };
 
-  /// A key of a map, with its own place.
+  /// A key of a map, with its own position.
   struct Key {
     std::string name;
     int line = 0, column = 0;
   };
 
   Kind kind = Kind::kEmpty;
-  bool in_quotes = false;    ///< The text stood in quotes or was a block text.
+  bool in_quotes = false;    ///< The text was quoted or a block text.
   int line = 0, column = 0;  ///< 1-based; 0 in an override.
   int origin = 0;            ///< 0: the file; k: override k (1-based).
   std::string text;
@@ -36,22 +36,22 @@ struct SourceNode {
   /// The value of a key, or null.
   [[nodiscard]] const SourceNode* find(std::string_view key) const;
   [[nodiscard]] SourceNode* find(std::string_view key);
-  /// "a list", "a map", "the text 'x'", "nothing": what stands here, for messages.
+  /// Description of a value for messages: "a list", "a map", "the text 'x'", "nothing".
   [[nodiscard]] std::string description() const;
 };
 
-/// What a file may hold at most; more is refused rather than read for minutes.
+/// Limits of a file; larger ones are rejected rather than read for minutes.
 struct SourceLimits {
   std::size_t bytes = std::size_t{1} << 29;
   std::size_t nodes = 50'000'000;
   int depth = 64;
 };
 
-/// A parsed model file: located values, and the text to quote from.
+/// A parsed model file: located values, and the text for excerpts.
 class SourceTree {
  public:
-  /// Parses strict YAML 1.2 (and so JSON). Refuses duplicate keys, anchors, aliases, tags, several
-  /// documents, text that is not UTF-8, and what exceeds the limits.
+  /// Parses strict YAML 1.2 (and so JSON). Rejects duplicate keys, anchors, aliases, tags, several
+  /// documents, text that is not UTF-8, and files beyond the limits.
   /// @throws ModelErrors
   static SourceTree parse(std::string text, std::string filename, const SourceLimits& limits = {});
 
@@ -60,12 +60,12 @@ class SourceTree {
   [[nodiscard]] const SourceText& source() const { return *source_; }
   [[nodiscard]] std::shared_ptr<const SourceText> shared_source() const { return source_; }
 
-  /// Replaces or adds a value as `--set path=value` does.
-  /// @param path   Name of a variable, or a path of keys and list indices joined by dots.
-  /// @param value  As it would stand in the file.
+  /// Replaces or adds a value like `--set path=value`.
+  /// @param path  Name of a variable, or a path of keys and list indices joined by dots.
+  /// @param value  As it would be written in the file.
   void apply_override(const std::string& path, const std::string& value, Diagnostics& diagnostics);
 
-  /// Place of a node: in the file, or "--set path=value".
+  /// Position of a node: in the file, or "--set path=value".
   [[nodiscard]] SourceLocation place_of(const SourceNode& node) const;
   [[nodiscard]] SourceLocation place_of(const SourceNode::Key& key, const SourceNode& value) const;
 

@@ -293,7 +293,7 @@ std::vector<std::string> unit_names() {
 
 double UnitSystem::factor_without_angle(const Dimension& d) const {
   double result = 1.0;
-  // Units of 1 are by far the most common, and stay exact.
+  // Factors of 1 are by far the most common, and stay exact.
   if (length != 1.0) result *= std::pow(length, d.length);
   if (mass != 1.0) result *= std::pow(mass, d.mass);
   if (time != 1.0) result *= std::pow(time, d.time);

@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// Exponents of the base dimensions. An angle is carried along but counts for little: where an
-/// angle is 1 (arc = angle × radius) it may be left out or added.
+/// Exponents of the base dimensions. The angle is tracked leniently: as an angle is 1 (arc = angle
+/// × radius) it may be left out or added.
 struct Dimension {
   double length = 0.0, mass = 0.0, time = 0.0, angle = 0.0;
 
@@ -19,11 +19,11 @@ struct Dimension {
   friend Dimension operator*(double n, const Dimension& a) {
     return {n * a.length, n * a.mass, n * a.time, n * a.angle};
   }
-  /// Equal but for the angle.
+  /// Whether dimensions are equal except for the angle.
   [[nodiscard]] bool matches(const Dimension& other) const;
-  /// Nothing at all, not even an angle.
+  /// Whether it is dimensionless, without an angle.
   [[nodiscard]] bool is_none() const;
-  /// "a length", "a force", or, without a name, "kg m^2/s^2".
+  /// Name of the dimension: "a length", "a force", or, without a name, "kg m^2/s^2".
   [[nodiscard]] std::string name() const;
   /// Its SI unit, "" for none.
   [[nodiscard]] std::string si_unit() const;
@@ -51,17 +51,17 @@ inline constexpr Dimension kAngularStiffness{2, 1, -2, -1};
 inline constexpr Dimension kAngularDamping{2, 1, -1, -1};
 }  // namespace dimensions
 
-/// A unit as written, e.g. N/mm: what one of it is in SI, and of which dimension.
+/// A unit as written, e.g. N/mm: its size in SI, and its dimension.
 struct Unit {
   double factor = 1.0;
   Dimension dimension;
-  bool has_hertz = false;  ///< Hz stands in it: cycles or radians per second is not clear.
+  bool has_hertz = false;  ///< It contains Hz: cycles or radians per second is ambiguous.
 };
 
-/// What a unit text turned out to be.
+/// Result of reading a unit.
 struct UnitReading {
   std::optional<Unit> unit;
-  std::string what, hint;  ///< Of the fault, if there is no unit.
+  std::string what, hint;  ///< Of the error, if there is no unit.
 };
 
 /// Reads a unit: names with SI prefixes, joined by blanks, *, / and ^, e.g. "kg m^2/s".
@@ -70,7 +70,7 @@ struct UnitReading {
 /// Names of all units without prefixes, for messages and the reference page.
 [[nodiscard]] std::vector<std::string> unit_names();
 
-/// What bare numbers mean: the size of each base unit in SI. Derived numbers follow.
+/// Meaning of bare numbers: the size of each base unit in SI, from which others are derived.
 struct UnitSystem {
   double length = 1.0, mass = 1.0, time = 1.0, angle = 1.0;
 

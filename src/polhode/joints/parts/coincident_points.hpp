@@ -5,9 +5,10 @@
 
 namespace polhode {
 
-/// A point of a stays on a point of b: g = x_b − x_a = 0 [m]. @eq{joint-coincident}
+/// Constraint that a point of a and a point of b coincide: g = x_b − x_a = 0 [m].
+/// @eq{joint-coincident}
 ///
-/// The multiplier is the force [N] on b at the joint point, its opposite acts on a.
+/// The multiplier is the force [N] on b at the joint point; its opposite acts on a.
 struct CoincidentPoints {
   static constexpr int kRows = 3;
 
@@ -23,7 +24,7 @@ struct CoincidentPoints {
     }
   }
 
-  /// Arms turn with their bodies. @eq{ga-moment-tangent}
+  /// Adds the tangent of the lever arms, which rotate with their bodies. @eq{ga-moment-tangent}
   static void add_wrench_tangent(const Configuration&, const Configuration& q_n1, double alpha_f,
                                  const double* lambda, PairTerms& t) {
     const Vec3 f(lambda[0], lambda[1], lambda[2]);

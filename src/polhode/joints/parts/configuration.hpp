@@ -6,21 +6,21 @@
 
 namespace polhode {
 
-/// Where the two sides of a joint are at one time: world components, all a part needs to know.
+/// Configuration of the two sides of a joint at one time: world components, all that a part needs.
 ///
 /// At t_{n+αf} everything is the average of its values at t_n and t_{n+1}, so the directions
 /// are shorter than one and not quite orthogonal; the parts are quadratic, and their gradients
 /// at the averages do exactly the work of the step (docs/theory/joints.md).
 struct Configuration {
   Vec3 u;         ///< Offset x_b − x_a between the joint points [m].
-  Vec3 z_a, z_b;  ///< Arms from the centres of mass to the joint points [m].
+  Vec3 z_a, z_b;  ///< Lever arms from the centres of mass to the joint points [m].
   Mat3 R_a, R_b;  ///< Joint axes x, y, z of each side as columns [-].
 
   /// From the centre of mass of a to the joint point of b [m].
   [[nodiscard]] Vec3 y() const { return u + z_a; }
 };
 
-/// How the sides of a joint move at one instant, world components.
+/// Velocities of the sides of a joint at one instant, world components.
 struct SideRates {
   Vec3 omega_a, omega_b;  ///< Angular velocities [rad/s].
   Vec3 u_dot;             ///< ẋ_b − ẋ_a [m/s].
@@ -30,7 +30,7 @@ struct SideRates {
 ///
 /// The same rows evaluated at t_{n+αf} are the columns of B: wrench per unit of multiplier.
 struct PairRows {
-  double* a;  ///< 6 numbers a row, rows one after the other.
+  double* a;  ///< 6 numbers per row, rows consecutive.
   double* b;
 
   void set(int row, const Vec3& a_r, const Vec3& a_theta, const Vec3& b_r, const Vec3& b_theta) {

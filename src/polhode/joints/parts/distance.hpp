@@ -5,11 +5,11 @@
 
 namespace polhode {
 
-/// Two points keep their distance L: g = (u·u − L²)/(2L) = 0 with u = x_b − x_a [m].
-/// @eq{joint-distance}
+/// Constraint of a constant distance L of two points: g = (u·u − L²)/(2L) = 0 with u = x_b − x_a
+/// [m]. @eq{joint-distance}
 ///
-/// Quadratic, unlike |u| − L, and equal to it to first order. The multiplier is the force [N]
-/// that pushes the points apart (at |u| = L).
+/// Quadratic, unlike |u| − L, and equal to it to first order. The multiplier is the repulsive force
+/// [N] between the points (at |u| = L).
 struct Distance {
   static constexpr int kRows = 1;
   double length = 1.0;  ///< L [m]; positive.
@@ -24,7 +24,7 @@ struct Distance {
     G.set(row, -n, -q.z_a.cross(n), n, q.z_b.cross(n));
   }
 
-  /// The force F = λ u_α/L on b follows u, and the arms turn.
+  /// Adds the tangent: the force F = λ u_α/L on b follows u, and the lever arms rotate.
   void add_wrench_tangent(const Configuration& q_alpha, const Configuration& q_n1, double alpha_f,
                           const double* lambda, PairTerms& t) const {
     const double l = alpha_f * *lambda / length;

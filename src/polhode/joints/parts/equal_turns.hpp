@@ -5,12 +5,12 @@
 
 namespace polhode {
 
-/// Both sides turn alike about their own z axes: g = x_a·y_b − y_a·x_b = 0 [-].
-/// @eq{joint-equal-turns}
+/// Constraint of equal rotations of both sides about their own z axes: g = x_a·y_b − y_a·x_b = 0
+/// [-]. @eq{joint-equal-turns}
 ///
-/// Then the one turn that takes the axes of a to those of b is about an axis in the plane that
-/// halves the angle between the two shafts: their speeds are equal in each position. The
-/// multiplier is half the moment [N m] about the mean shaft, at aligned shafts.
+/// The rotation that takes the axes of a to those of b then has its axis in the plane that bisects
+/// the angle between the two shafts: their speeds are equal in each position. The multiplier is
+/// half the moment [N m] about the mean shaft, at aligned shafts.
 struct EqualTurns {
   static constexpr int kRows = 1;
 

@@ -5,12 +5,12 @@
 
 namespace polhode {
 
-/// The distance l = |u| of two points over a step, as a force along it needs it: by
+/// Distance l = |u| of two points over a step with the derivatives that a force along it needs: by
 /// Δ(l²) = (u_n + u_{n+1})·Δu its discrete gradient is n = (u_n + u_{n+1})/(l_n + l_{n+1}).
 /// @eq{spring-gradient}
 struct LinkLength {
   double at_n = 0.0, at_n1 = 0.0;  ///< [m]
-  Vec3 n = Vec3::Zero();           ///< Discrete gradient by u; 0 where both lengths are.
+  Vec3 n = Vec3::Zero();           ///< Discrete gradient by u; 0 where both lengths are 0.
   Vec3 e = Vec3::Zero();           ///< Direction at t_{n+1}.
 
   LinkLength(const Configuration& q_n, const Configuration& q_n1)
@@ -19,12 +19,12 @@ struct LinkLength {
     if (at_n1 > 0.0) e = q_n1.u / at_n1;
   }
 
-  /// Row of a direction d of u, with the arms of q.
+  /// Row of a direction d of u, with the lever arms of q.
   static void row(const Vec3& d, const Configuration& q, PairRows G) {
     G.set(0, -d, -q.z_a.cross(d), d, q.z_b.cross(d));
   }
 
-  /// A constant force along l: n turns with u, and the arms turn.
+  /// Adds the tangent of a constant force along l: n rotates with u, and the lever arms rotate.
   void add_wrench_tangent(const Configuration& q_alpha, const Configuration& q_n1, double alpha_f,
                           double force, PairTerms& t) const {
     if (!(at_n + at_n1 > 0.0)) return;

@@ -5,13 +5,13 @@
 
 namespace polhode {
 
-/// A joint axis d of a stays at right angles to an axis e of b: g = d·e = 0 [-].
+/// Constraint that a joint axis d of a is orthogonal to an axis e of b: g = d·e = 0 [-].
 /// @eq{joint-orthogonal}
 ///
 /// The multiplier is a moment [N m] about d × e, positive on a.
 struct OrthogonalAxes {
   static constexpr int kRows = 1;
-  int of_a = 0, of_b = 1;  ///< Which column of R_a, of R_b.
+  int of_a = 0, of_b = 1;  ///< Columns of R_a and of R_b.
 
   void residual(const Configuration& q, double* g) const { *g = d(q).dot(e(q)); }
 

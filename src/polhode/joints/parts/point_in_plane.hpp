@@ -5,13 +5,13 @@
 
 namespace polhode {
 
-/// The point of b stays in the plane through the point of a whose normal d turns with a:
-/// g = d·(x_b − x_a) = 0 [m]. @eq{joint-plane}
+/// Constraint that the point of b lies in the plane through the point of a with normal d fixed to
+/// a: g = d·(x_b − x_a) = 0 [m]. @eq{joint-plane}
 ///
 /// The multiplier is the force [N] on b along d.
 struct PointInPlane {
   static constexpr int kRows = 1;
-  int normal = 2;  ///< Which column of R_a.
+  int normal = 2;  ///< Column of R_a.
 
   void residual(const Configuration& q, double* g) const { *g = d(q).dot(q.u); }
 

@@ -20,7 +20,7 @@ inline void gather(const int* nodes, const double* field, const double* base, P 
     }
 }
 
-/// What stands in a block at the beginning of an evaluation.
+/// State of a block at the beginning of an evaluation.
 template <class P, int kKind>
 struct Block {
   static constexpr ElementSizes kSizes = kElementSizes[kKind];
@@ -30,7 +30,7 @@ struct Block {
   int number;
   const int* nodes;
   const double* points;
-  int present;  ///< Elements that are not there to fill up.
+  int present;  ///< Number of elements without padding.
   P fibre[3]{};
   P u_0[R][3], u_1[R][3];  ///< Displacements of nodes, then enhanced modes.
   P v[R][3];               ///< Velocities at t_{n+αf}; only with viscosity.
@@ -67,7 +67,8 @@ struct Block {
   }
 
  private:
-  /// α at both ends, and its rate: that of the step, extrapolated to t_{n+αf} with the one before.
+  /// Enhanced modes α at both ends, and their rate: that of the step, extrapolated to t_{n+αf} with
+  /// the previous one.
   void modes(const ElementStep& step, bool rates) {
     constexpr int n = kSizes.modes();
     P before[n];
@@ -92,7 +93,7 @@ struct Block {
   }
 };
 
-/// Displacement gradients of a point at the times that matter, and what follows from them.
+/// Displacement gradients of a point at the required times, and quantities derived from them.
 template <class P>
 struct PointMotion {
   P H_0[9], H_1[9], H_alpha[9];
@@ -172,7 +173,7 @@ struct MeanPressure {
   }
 };
 
-/// Forces of a block (on the solid's own nodes, as stresses pull) and records for the tangent.
+/// Forces of a block (on the solid's own nodes, tension positive) and records for the tangent.
 template <class P, int kKind>
 struct BlockForces {
   using B = Block<P, kKind>;
@@ -181,7 +182,7 @@ struct BlockForces {
 
   P f[R][3]{};
   P least_volume = broadcast<P>(1.0);
-  P a[kMean ? R : 1][3]{}, b[kMean ? R : 1][3]{};  ///< Σ w Bᵀ g: how the mean dilatation moves.
+  P a[kMean ? R : 1][3]{}, b[kMean ? R : 1][3]{};  ///< Σ w Bᵀ g: derivative of the mean dilatation.
 
   template <bool kTangent>
   void compute(const ElementData& data, const ElementStep& step, const B& block,
@@ -262,8 +263,8 @@ struct BlockForces {
   }
 };
 
-/// Three columns of the tangent, by the moves of row b: K[c][a][i] is the derivative of f_a,i by
-/// the move of row b along c. @eq{solid-tangent}
+/// Three columns of the tangent, for displacements of row b: K[c][a][i] is the derivative of f_a,i
+/// by the displacement of row b along c. @eq{solid-tangent}
 template <class P, int kKind>
 inline void tangent_columns(const ElementData& data, const Block<P, kKind>& block,
                             const PointRecord<P>* records, int b, P (*K)[Block<P, kKind>::R][3]) {

@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// Inverse by Gauss-Jordan in place, without exchanges: the matrices are nearly symmetric, and
-/// positive as long as the element is stable.
+/// Inverse by Gauss-Jordan elimination in place, without pivoting: the matrices are nearly
+/// symmetric, and positive definite as long as the element is stable.
 template <class P, int n>
 inline void invert(P (*A)[n]) {
   for (int k = 0; k < n; ++k) {
@@ -36,7 +36,7 @@ inline void turned(const double* Q, bool back, const P* x, P* y) {
     }
 }
 
-/// What is kept of a condensation, in the scratch of a block. @eq{solid-condensation}
+/// Stored condensation, in the scratch of a block. @eq{solid-condensation}
 template <class P, int kKind>
 struct Condensation {
   static constexpr ElementSizes kSizes = kElementSizes[kKind];
@@ -47,8 +47,8 @@ struct Condensation {
   [[nodiscard]] P get(int at) const { return load<P>(scratch + at * W); }
   void put(int at, const P& x) const { store(scratch + at * W, x); }
 
-  /// Condenses K (column by column: K[column][row], nodes first) and f in place, and keeps what is
-  /// needed later.
+  /// Condenses K (column by column: K[column][row], nodes first) and f in place, and stores the
+  /// factors.
   void make(P (*K)[N + M], P* f) const {
     P inverse[M][M], move[M], left[N][M];
     for (int i = 0; i < M; ++i)
@@ -85,7 +85,7 @@ struct Condensation {
     }
   }
 
-  /// Condenses f alone, with what was kept, turned by Q since.
+  /// Condenses f alone, with the stored factors, rotated by Q since then.
   void reuse(const double* Q, P* f) const {
     P r[M], x[M], y[M], g[N], h[N];
     turned<P, M>(Q, true, f + N, r);
@@ -103,7 +103,7 @@ struct Condensation {
     for (int a = 0; a < N; ++a) f[a] -= h[a];
   }
 
-  /// α ← α − K_αα⁻¹ r_α − K_αα⁻¹ K_αu du. @returns the largest part of that move.
+  /// Updates α ← α − K_αα⁻¹ r_α − K_αα⁻¹ K_αu du. @returns the largest component of the change.
   [[nodiscard]] P advance(const double* Q, const P* du) const {
     P d[N], x[M], y[M], largest{};
     turned<P, N>(Q, true, du, d);

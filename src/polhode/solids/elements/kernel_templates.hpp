@@ -111,7 +111,7 @@ double advance_elements(const ElementData& data, const ElementStep& step, const 
   return largest;
 }
 
-/// Energy density of a point, without the volume's own if that is averaged.
+/// Energy density of a point, without the volumetric energy if that is averaged.
 template <class P>
 inline P energy_density(const ElementData& data, const P* fibre, bool whole, const P* E) {
   P W{};
@@ -122,7 +122,7 @@ inline P energy_density(const ElementData& data, const P* fibre, bool whole, con
   return W;
 }
 
-/// Mean dilatation less one at t_{n+1}.
+/// Mean dilatation minus one at t_{n+1}.
 template <class P, int kKind>
 inline P mean_dilatation(const Block<P, kKind>& block) {
   using B = Block<P, kKind>;

@@ -7,12 +7,12 @@
 
 namespace polhode {
 
-/// What the kernels know of a group of elements. Elements lie in blocks of as many as a pack is
-/// wide; the last block is filled up with its last element. Packs stand one after the other.
+/// Data of a group of elements for the kernels. Elements are stored in blocks of the width of a
+/// pack; the last block is padded with its last element. Packs are consecutive.
 struct ElementData {
   int elements = 0;
   int blocks = 0;
-  const int* nodes = nullptr;        ///< n an element, with those that fill up.
+  const int* nodes = nullptr;        ///< n per element, including padding.
   const double* X = nullptr;         ///< Block: 3n packs, reference positions.
   const double* points = nullptr;    ///< Block: by point, weight and 3 packs a row, see Rows.
   const double* volumes = nullptr;   ///< Block: a pack.
@@ -24,13 +24,13 @@ struct ElementData {
   FibreKernel fibre_kernel{};
   VolumeKernel volume_kernel{};
   bool uncoupled = false;
-  double bulk = 0.0;       ///< Of the volume's own energy, if uncoupled [Pa].
+  double bulk = 0.0;       ///< Of the volumetric energy, if uncoupled [Pa].
   bool conserving = true;  ///< Discrete gradient; else the stress of the averaged F.
   bool viscous = false;
   double viscous_lame = 0.0, viscous_shear = 0.0;  ///< [Pa s]
 };
 
-/// One evaluation: the motion, and where results go.
+/// Input and output of one evaluation.
 struct ElementStep {
   const double *x_n = nullptr, *x_n1 = nullptr, *v_n = nullptr, *v_n1 = nullptr;
   double alpha_f = 1.0;
@@ -38,10 +38,11 @@ struct ElementStep {
   double dt = 0.0;
   bool mixed_point = false;
   const double* history = nullptr;
-  double* scratch = nullptr;  ///< Null at an instant: internal unknowns are those of the history.
-  double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Row by row; of what was condensed.
+  /// Null at an instant: internal unknowns are then those of the history.
+  double* scratch = nullptr;
+  double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Rotation since the condensation, row by row.
   double* force = nullptr;
-  double* tangent = nullptr;  ///< Null: not wanted.
+  double* tangent = nullptr;  ///< Null: not needed.
   const int* slots = nullptr;
   double least_volume = 1.0;  ///< Out: smallest det F.
   int worst_element = -1;     ///< Out.
@@ -52,26 +53,26 @@ inline constexpr int kSampleSize = 14;
 /// At each node of an element: Cauchy stress (6) and energy density.
 inline constexpr int kNodalSize = 7;
 
-/// What a kind of element computes.
+/// Functions of a kind of element.
 struct ElementKernel {
   void (*evaluate)(const ElementData&, ElementStep&);
-  /// @returns the largest move of an internal unknown [m].
+  /// Updates internal unknowns. @returns the largest change of one [m].
   double (*advance)(const ElementData&, const ElementStep&, const double* du);
-  /// Energy at t_{n+1}, and power taken by viscosity.
+  /// Energy at t_{n+1}, and power dissipated by viscosity.
   void (*work)(const ElementData&, const ElementStep&, double* stored, double* power);
   /// @param nodal  n × kNodalSize an element, or null.
   void (*sample)(const ElementData&, const ElementStep&, double* samples, double* nodal);
 };
 
-/// Sizes that kernels and the group agree on: rows of gradients at a point (nodes, then enhanced
-/// modes), numbers of history by element and packs of scratch by block.
+/// Sizes used by kernels and the group: rows of gradients at a point (nodes, then enhanced modes),
+/// numbers of history by element and packs of scratch by block.
 struct ElementSizes {
   int nodes, points, enhanced;
   bool mean_dilatation;
 
   [[nodiscard]] constexpr int rows() const { return nodes + enhanced; }
   [[nodiscard]] constexpr int point_packs() const { return 1 + 3 * rows(); }
-  /// Enhanced: α, and α̇ of the step before. Mean dilatation: pressure.
+  /// Enhanced: α, and α̇ of the previous step. Mean dilatation: pressure.
   [[nodiscard]] constexpr int history() const {
     return enhanced > 0 ? 6 * enhanced : mean_dilatation ? 1 : 0;
   }
@@ -81,14 +82,15 @@ struct ElementSizes {
   [[nodiscard]] constexpr int at_inverse() const { return 2 * modes(); }
   [[nodiscard]] constexpr int at_left() const { return at_inverse() + modes() * modes(); }
   [[nodiscard]] constexpr int at_right() const { return at_left() + 3 * nodes * modes(); }
-  // Of mean dilatation: pressure, extrapolated pressure, slope of it by the nodes' moves.
+  // Of mean dilatation: pressure, extrapolated pressure, its derivative by the nodes'
+  // displacements.
   [[nodiscard]] constexpr int at_slope() const { return 2; }
   [[nodiscard]] constexpr int scratch() const {
     return enhanced > 0 ? at_right() + 3 * nodes * modes() : mean_dilatation ? 2 + 3 * nodes : 0;
   }
 };
 
-/// Every kind of element, in the order of kElementSizes.
+/// All kinds of element, in the order of kElementSizes.
 inline constexpr ElementSizes kElementSizes[] = {
     {8, 8, 0, false},    // hex8_standard
     {8, 8, 3, false},    // hex8_eas9
@@ -108,7 +110,8 @@ struct ElementKernels {
   const ElementKernel* kinds;
 };
 
-/// As material_kernels(). @throws InputError if the machine or the build lacks it.
+/// Kernels of an instruction set, see material_kernels(). @throws InputError if the machine or the
+/// build lacks it.
 [[nodiscard]] const ElementKernels& element_kernels(const std::string& isa);
 
 }  // namespace polhode

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens at one point of kWidth elements: strains, stress, derivative.
-// Included by the files kernels_*.cpp only.
+// Operations at one point of kWidth elements: strains, stress, derivative. Included by the files
+// kernels_*.cpp only.
 #pragma once
 
 #include <polhode/solids/elements/kernels.hpp>
@@ -54,7 +54,7 @@ inline void times_symmetric(const P* F, const P* S, P* A) {
   }
 }
 
-/// sym(e_c·F ⊗ G) with doubled shear: the strain of moving row G along world axis c.
+/// sym(e_c·F ⊗ G) with doubled shear: the strain by displacing row G along world axis c.
 template <class P>
 inline void strain_of_move(const P* f, const P* G, P* B) {
   B[0] = f[0] * G[0];
@@ -65,20 +65,20 @@ inline void strain_of_move(const P* f, const P* G, P* B) {
   B[5] = f[2] * G[0] + f[0] * G[2];
 }
 
-/// Everything the tangent needs to know of a point.
+/// Data of a point for the tangent.
 template <class P>
 struct PointRecord {
   P F_alpha[9];  ///< With the weight of the point.
-  P F_t[9];      ///< Strains of moves at t_{n+1} are sym(F_tᵀ ∇δu).
-  P S[6];        ///< For the geometric part: with α_f and the weight.
+  P F_t[9];      ///< Strains of displacements at t_{n+1} are sym(F_tᵀ ∇δu).
+  P S[6];        ///< For the geometric part, including α_f and the weight.
   P D[36];
-  P F_v[9], F_ve[9];  ///< Strain rates of moves of nodes and of enhanced modes.
+  P F_v[9], F_ve[9];  ///< Strain rates of displacements of nodes and of enhanced modes.
 };
 
-/// The two strains between which the stress is taken.
+/// The two strains of the discrete stress.
 ///
-/// At α_f = 1, at an instant, and for midpoint stress both are the same, and the derivative by one
-/// of them is half of the derivative: `factor` makes up for it.
+/// At α_f = 1, at an instant, and for midpoint stress both are equal, and the derivative by one of
+/// them is half of the derivative: `factor` corrects for that.
 template <class P>
 struct StressEnds {
   const P *E_a, *E_b;
@@ -86,7 +86,7 @@ struct StressEnds {
   double factor;
 };
 
-/// Law and fibres together. D may be null.
+/// Stress of material and fibres together. D may be null.
 template <class P>
 inline void stress_between(const ElementData& data, const P* fibre, bool whole, const P* E_a,
                            const P* E_b, P* S, P* D) {
@@ -109,7 +109,7 @@ inline void add_shift(const ElementData& data, const P* fibre, bool whole, doubl
     for (int i = 0; i < 36; ++i) D[i] += 2.0 * shift * D_1[i];
 }
 
-/// Discrete derivative of J by E: J_b − J_a = g : (E_b − E_a), and what its own derivative needs.
+/// Discrete derivative of J by E: J_b − J_a = g : (E_b − E_a), and the data of its own derivative.
 /// @eq{solid-mean-dilatation}
 template <class P>
 struct VolumeGradient {

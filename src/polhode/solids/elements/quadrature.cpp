@@ -53,7 +53,7 @@ Quadrature tetrahedron_rule(int degree) {
     const double w = 1.0 / 24.0;
     return {{{b, b, b}, w}, {{a, b, b}, w}, {{b, a, b}, w}, {{b, b, a}, w}};
   }
-  // A cube folded into the tetrahedron: 9 degrees in each variable, 2 of them for the fold.
+  // A cube mapped to the tetrahedron: degree 9 in each variable, 2 of it for the Jacobian.
   Quadrature rule;
   const auto line = gauss(5);
   for (const auto& [s, w_s] : line)

@@ -24,8 +24,8 @@ using Quadrature = std::vector<QuadraturePoint>;
 [[nodiscard]] Quadrature tetrahedron_rule(int degree);
 [[nodiscard]] Quadrature wedge_rule();
 
-/// The rule for loads on a face of that shape (tri3, tri6, quad4, quad8, quad9): exact for the
-/// pressure on flat faces.
+/// Rule for loads on a face of that shape (tri3, tri6, quad4, quad8, quad9): exact for pressure on
+/// flat faces.
 [[nodiscard]] Quadrature face_rule(const std::string& shape);
 
 }  // namespace polhode

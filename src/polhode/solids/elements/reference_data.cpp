@@ -54,7 +54,7 @@ ReferenceData::ReferenceData(const std::string& where, const ElementKind& kind,
   std::vector<Mat> gradients;
   for (const QuadraturePoint& p : kind.stiffness) gradients.push_back(shape_gradients(cell, p.xi));
   const Mat at_centre = shape_gradients(cell, Vec3::Zero());
-  // Inverted elements are refused where mass is integrated too: there are points near corners.
+  // Inverted elements are also rejected at the points of the mass rule, which are near corners.
   std::vector<Mat> checks;
   for (const Vec3& xi : cell.nodes) checks.push_back(shape_gradients(cell, 0.999 * xi));
   for (int e = 0; e < blocks * width; ++e) {

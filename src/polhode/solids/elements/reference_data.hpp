@@ -12,7 +12,7 @@
 
 namespace polhode {
 
-/// Numbers that begin at a cache line.
+/// Array of numbers aligned to a cache line.
 class AlignedNumbers {
  public:
   explicit AlignedNumbers(std::size_t size)
@@ -33,11 +33,11 @@ class AlignedNumbers {
 /// Gradients, weights and positions of the undeformed elements, in blocks of `width`.
 struct ReferenceData {
   int elements, blocks;
-  std::vector<int> nodes;  ///< Filled up to whole blocks with the last element.
+  std::vector<int> nodes;  ///< Padded to whole blocks with the last element.
   AlignedNumbers X, points, volumes, fibres;
   double volume = 0.0;
 
-  /// @param fibres  None, one for all, or one an element.
+  /// @param fibres  None, one for all, or one per element.
   /// @throws InputError if an element is inverted or flat.
   ReferenceData(const std::string& where, const ElementKind& kind, std::span<const int> nodes,
                 std::span<const Vec3> X, std::span<const Vec3> fibres, int width);

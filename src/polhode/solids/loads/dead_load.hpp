@@ -12,14 +12,14 @@
 
 namespace polhode {
 
-/// Forces on nodes that do not depend on where the nodes are: f_i = B_i v(t), with a constant
-/// matrix for each node. The work at t_{n+αf} over a step is f·u exactly.
+/// Forces on nodes that do not depend on the positions of the nodes: f_i = B_i v(t), with a
+/// constant matrix for each node. The work at t_{n+αf} over a step is f·u exactly.
 class DeadLoad final : public ElementGroup {
  public:
   struct Share {
     int node;
-    Mat3 B;  ///< Times the value's vector.
-    Vec3 X;  ///< Where the potential is zero [m].
+    Mat3 B;  ///< Multiplied by the vector of the load.
+    Vec3 X;  ///< Position of zero potential [m].
   };
 
   DeadLoad(std::string kind, std::string name, std::vector<Share> shares, TimeVector value)

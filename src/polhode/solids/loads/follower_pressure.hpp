@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// Pressure that stays at right angles to faces of one shape.
+/// Follower pressure, always normal to faces of one shape.
 class FollowerPressure final : public ElementGroup {
  public:
   FollowerPressure(std::string name, const LoadedFaces& faces, TimeFunctionPtr pressure,

@@ -13,7 +13,7 @@
 namespace polhode {
 namespace {
 
-/// Shares of nodes, gathered; ascending by node.
+/// Accumulated shares of nodes, ascending by node.
 class Shares {
  public:
   explicit Shares(std::span<const Vec3> X) : X_(X) {}
@@ -94,7 +94,7 @@ std::unique_ptr<ElementGroup> make_dead_pressure(std::string name,
   check_faces(name, faces);
   Shares shares(X);
   each_point(faces, X, [&](int node, double w, const Vec3& area) {
-    // The value stands in the first component of the vector.
+    // The value is in the first component of the vector.
     Mat3 B = Mat3::Zero();
     B.col(0) = -w * area;
     shares.add(node, B);

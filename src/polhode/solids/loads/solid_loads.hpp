@@ -12,25 +12,25 @@
 namespace polhode {
 
 /// Faces of one shape: tri3, tri6, quad4, quad8, quad9. Seen from outside the solid, their corners
-/// run counterclockwise.
+/// are counterclockwise.
 struct LoadedFaces {
   std::string shape;
   std::vector<int> nodes;  ///< Numbers of nodes, face after face.
 };
 
-/// How a follower pressure is taken over a step.
+/// Evaluation of a follower pressure over a step.
 enum class FollowerRule : unsigned char {
-  /// On the positions at t_{n+αf}: forces on a closed surface have no moment, so angular momentum
+  /// At the positions at t_{n+αf}: forces on a closed surface have no moment, so angular momentum
   /// is exact. Work differs from p ΔV by terms of third order in the step.
   kMomentum,
   /// Simpson's mean of both ends and the middle: at ρ∞ = 1 work is exactly p ΔV; moments on a
-  /// closed surface vanish to second order in the step only.
+  /// closed surface vanish only to second order in the step.
   kWork
 };
 
-// Loads are ElementGroups. Values are taken at t_{n+αf}, times StepContext::load_factor. Loads
-// whose value is constant and that do not follow have a potential, which counts as stored; what
-// others do over a step is put in.
+// Loads are ElementGroups. Values are taken at t_{n+αf}, times StepContext::load_factor. Loads with
+// a constant value that are no follower loads have a potential, which counts as stored; the work of
+// others over a step is external.
 //
 // name: path of the load in the user's model. X: reference positions of all nodes [m].
 

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// What a fibre gives over a step.
+/// Discrete stress of a fibre over a step.
 template <class P>
 struct FibreDifference {
   P value;       ///< F[y_0, y_1] = (F(y_1) − F(y_0))/(y_1 − y_0) [Pa].

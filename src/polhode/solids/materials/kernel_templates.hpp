@@ -76,7 +76,7 @@ void fibre_add_stress(const void* law, bool uncoupled, const double* A, const do
   const LogDifference<P> l(e.at_n.s, e.at_n1.s);
   const P c_1 = 1.0 + e.at_n1.s;
   const PowerDifference<P> power(1.0 / 3.0, l, c_1);
-  // I₄ and the factor a that takes changes of volume out of it.
+  // I₄ and the factor a that removes volume changes from it.
   const P one = P{} + 1.0;
   const P i_0 = 2.0 * dyad.dot(e.at_n.E), i_1 = 2.0 * dyad.dot(e.at_n1.E);
   const P I_0 = 1.0 + i_0, I_1 = 1.0 + i_1;
@@ -84,7 +84,7 @@ void fibre_add_stress(const void* law, bool uncoupled, const double* A, const do
   const P a_1 = uncoupled ? 1.0 + power.minus_one_1 : one;
   const P y_0 = uncoupled ? power.minus_one_0 * I_0 + i_0 : i_0;
   const P y_1 = uncoupled ? power.minus_one_1 * I_1 + i_1 : i_1;
-  // Tension only, exactly across the switch: what lies below y = 0 gives nothing.
+  // Tension only, exact across the transition: there is no contribution below y = 0.
   const P zero = P{};
   const P u_0 = y_0 > 0.0 ? y_0 : zero, u_1 = y_1 > 0.0 ? y_1 : zero;
   if (!any(u_0 + u_1 != 0.0)) return;

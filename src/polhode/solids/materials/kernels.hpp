@@ -5,22 +5,22 @@
 
 namespace polhode {
 
-/// What a law computes for some elements side by side. Numbers are packs of that many doubles,
+/// Functions of a law for several elements in SIMD lanes. Numbers are packs of that many doubles,
 /// aligned to their size; symmetric tensors are six packs (11 22 33 12 23 31), D is 36 row by row
 /// and acts on strains with doubled shear.
 struct LawKernel {
   /// Discrete stress between E_0 and E_1 (the stress itself if they are equal), and its derivative
   /// by E_1 if D is not null.
-  /// @param whole  False: of an uncoupled material without its resistance to changes of volume.
+  /// @param whole  False: of an uncoupled material without its volumetric part.
   void (*stress)(const void* law, bool whole, const double* E_0, const double* E_1, double* S,
                  double* D);
   /// Strain energy per reference volume.
   void (*energy)(const void* law, bool whole, const double* E, double* W);
 };
 
-/// The same of fibres along A (three packs, unit length), which add to S, D and W.
+/// Functions of fibres along A (three packs, unit length), added to S, D and W.
 struct FibreKernel {
-  /// @param uncoupled  The fibre feels the stretch that is left when the volume is restored.
+  /// @param uncoupled  The fibre is subject to the isochoric stretch.
   void (*add_stress)(const void* law, bool uncoupled, const double* A, const double* E_0,
                      const double* E_1, double* S, double* D);
   void (*add_energy)(const void* law, bool uncoupled, const double* A, const double* E, double* W);
@@ -42,7 +42,8 @@ struct MaterialKernels {
   VolumeKernel volume;
 };
 
-/// "automatic" takes the widest this machine has; else baseline, avx2 or avx512.
+/// Kernels of an instruction set: "automatic" chooses the widest of this machine; else baseline,
+/// avx2 or avx512.
 /// @throws InputError if the machine or the build lacks it.
 [[nodiscard]] const MaterialKernels& material_kernels(const std::string& isa);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material and every fibre there is. To add one: its file, and its name here.
+// Lists of all materials and all fibres. To add one: its file, and its name here.
 #pragma once
 
 #include <polhode/solids/materials/exponential_fibre.hpp>

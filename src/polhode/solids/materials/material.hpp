@@ -13,20 +13,20 @@
 
 namespace polhode {
 
-/// A material as a user describes it.
+/// Description of a material by the user.
 struct MaterialDescription {
   std::string kind;        ///< A name of material_kinds().
-  ParameterValues values;  ///< SI, by the kind's names; what is left out takes its standard.
+  ParameterValues values;  ///< SI, by the kind's names; defaults for missing ones.
   std::string fibre = {};  ///< A name of fibre_kinds(), or "": no fibres.
   ParameterValues fibre_values = {};
-  /// Kelvin-Voigt viscosity, one of: times the elastic moduli at rest [s] (of an uncoupled
-  /// material times its shear modulus only) ...
+  /// Kelvin-Voigt viscosity, either relaxation time: times the elastic moduli at rest [s] (of an
+  /// uncoupled material times its shear modulus only) ...
   double relaxation_time = 0.0;
-  /// ... or moduli of its own, S_v = λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
+  /// ... or separate moduli, S_v = λ_v tr(Ė) I + 2 μ_v Ė [Pa s].
   LinearModuli viscous = {};
 };
 
-/// A material: its laws with their constants, ready for the kernels. Made by make_material().
+/// A material: its laws with their constants, as input of the kernels. Made by make_material().
 class Material {
  public:
   [[nodiscard]] const MaterialKind& kind() const { return *kind_; }
@@ -59,10 +59,10 @@ struct MaterialPoint {
   Mat6 D;  ///< ∂S/∂E_1, on strains with doubled shear [Pa].
 };
 
-/// One point by itself: for tests, plots and fits. Elements use the kernels.
+/// Discrete stress at a single point, for tests, plots and fits. Elements use the kernels.
 /// @param E_0, E_1  Green's strain, order 11 22 33 12 23 31, no factors of two.
-/// @param A         Direction of fibres, unit length; not read without fibres.
-/// @param whole     False: of an uncoupled material without its resistance to changes of volume.
+/// @param A  Direction of fibres, unit length; not used without fibres.
+/// @param whole  False: of an uncoupled material without its volumetric part.
 [[nodiscard]] MaterialPoint discrete_stress(const Material& material, const Vec6& E_0,
                                             const Vec6& E_1, const Vec3& A = Vec3::UnitX(),
                                             bool whole = true);

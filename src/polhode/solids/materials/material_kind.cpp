@@ -44,7 +44,7 @@ bool has_all(const ParameterValues& given, const std::vector<std::string>& names
   return std::all_of(names.begin(), names.end(), [&](const auto& n) { return given.count(n) > 0; });
 }
 
-/// Of all names that stand in alternatives, those given must be one whole set.
+/// Checks that the given names out of alternatives form exactly one complete set.
 void check_alternatives(std::string_view where, const MaterialKind& kind,
                         const ParameterValues& given) {
   if (kind.alternatives.empty()) return;

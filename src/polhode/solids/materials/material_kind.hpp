@@ -13,16 +13,16 @@ namespace polhode {
 /// Parameters by name, SI.
 using ParameterValues = std::map<std::string, double>;
 
-/// A type of material, or of fibre, as users name it.
+/// A type of material, or of fibre, in the model file.
 struct MaterialKind {
   std::string name;     ///< "type" of a material, "law" of a fibre in the model file.
   std::string meaning;  ///< One line.
   std::vector<Parameter> parameters;
-  /// Sets of parameters of which exactly one is to be given, e.g. Young's modulus and Poisson's
-  /// ratio, or two others. Empty: all parameters stand alone.
+  /// Alternative sets of parameters of which exactly one has to be given, e.g. Young's modulus and
+  /// Poisson's ratio, or two others. Empty: no alternatives.
   std::vector<std::vector<std::string>> alternatives = {};
-  bool uncoupled = false;  ///< Shape and volume are resisted apart: wanted by hex8_q1p0.
-  std::string also = {};   ///< Another name that is understood.
+  bool uncoupled = false;  ///< Volumetric and isochoric parts are uncoupled: required by hex8_q1p0.
+  std::string also = {};   ///< Alias that is accepted.
 };
 
 /// Moduli of an isotropic material at small strains: S = λ tr E I + 2 μ E.
@@ -31,13 +31,13 @@ struct LinearModuli {
   double shear = 0.0;  ///< μ [Pa].
 };
 
-/// λ and μ from whichever of the alternatives of isotropic_alternatives() was given.
+/// λ and μ from the alternative of isotropic_alternatives() that was given.
 [[nodiscard]] LinearModuli isotropic_moduli(const ParameterValues& values);
 /// Young's modulus and Poisson's ratio, or two of the others.
 [[nodiscard]] std::vector<Parameter> isotropic_parameters();
 [[nodiscard]] std::vector<std::vector<std::string>> isotropic_alternatives();
 
-/// Refuses what a kind does not know, lacks, or forbids, and fills in what was left out.
+/// Parameters with defaults, checked for unknown, missing and invalid ones.
 /// @param where  Path of the material in the user's model.
 /// @throws InputError
 [[nodiscard]] ParameterValues checked_values(std::string_view where, const MaterialKind& kind,

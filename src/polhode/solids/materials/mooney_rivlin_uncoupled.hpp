@@ -10,12 +10,12 @@
 
 namespace polhode {
 
-/// Nearly incompressible Mooney-Rivlin solid, shape and volume apart:
+/// Nearly incompressible Mooney-Rivlin solid with uncoupled volumetric and isochoric parts:
 ///
 ///   W = c₁ (Ī₁ − 3) + c₂ (Ī₂ − 3) + ½ K ln² J,   Ī₁ = J^(−2/3) I₁,  Ī₂ = J^(−4/3) I₂
 ///
-/// This struct is the part of shape; what an uncoupled material does about volume is the same for
-/// all and added by their kernel.
+/// This struct is the isochoric part; the volumetric part is the same for all uncoupled materials
+/// and added by their kernel.
 struct MooneyRivlinUncoupled {
   static constexpr const char* kKind = "mooney_rivlin_uncoupled";
   static constexpr bool kUncoupled = true;

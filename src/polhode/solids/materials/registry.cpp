@@ -17,7 +17,7 @@ std::vector<MaterialKind> kinds_of(LawList<Law...>) {
   return {Law::kind()...};
 }
 
-/// Makes the law of that number in the list and keeps its bytes.
+/// Constructs the law of that number in the list and stores its bytes.
 template <class Use, class... Law>
 void with_law(LawList<Law...>, int index, const ParameterValues& values, const Use& use) {
   int i = 0;
@@ -35,7 +35,7 @@ const MaterialKind& find(const std::vector<MaterialKind>& kinds, std::string_vie
                    did_you_mean(name, names) + "Use one of: " + name_list(names));
 }
 
-/// Errors of laws are told where the material stands.
+/// Reports errors of laws with the path of the material.
 template <class Do>
 void told_at(std::string_view where, const Do& act) {
   try {
@@ -48,7 +48,7 @@ void told_at(std::string_view where, const Do& act) {
 
 }  // namespace
 
-/// The one that fills a Material.
+/// Maker of a Material.
 struct MaterialMaker {
   std::string_view where;
   const MaterialDescription& description;

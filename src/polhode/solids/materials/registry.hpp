@@ -11,7 +11,7 @@ namespace polhode {
 
 /// Every type of material, in the order of the documentation.
 [[nodiscard]] const std::vector<MaterialKind>& material_kinds();
-/// Every law of fibres, which any material may carry.
+/// All laws of fibres, which can be combined with any material.
 [[nodiscard]] const std::vector<MaterialKind>& fibre_kinds();
 
 /// The material type of this name. @throws InputError that lists the names if it is unknown.

@@ -10,7 +10,8 @@ namespace polhode {
 ///
 ///   W = ½ λ (tr E)² + μ E : E
 ///
-/// For small strains with any rotation. It softens under strong compression and then collapses.
+/// For small strains with arbitrary rotations. It softens under strong compression and then
+/// collapses.
 struct StVenantKirchhoff {
   static constexpr const char* kKind = "elastic";
   static constexpr bool kUncoupled = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strain at both ends of a step, its invariants and their exact discrete derivatives.
+// Strains at both ends of a step, their invariants and the exact discrete derivatives of these.
 // Derivation: docs/theory/solids.md.
 #pragma once
 
@@ -72,7 +72,7 @@ struct StrainPair {
   }
 };
 
-/// A number that depends on C_1: its derivative over three of the tensors there are.
+/// A scalar function of C_1: its derivative in terms of three tensors.
 template <class P>
 struct Slope {
   P c{};   ///< Times cof C_1.
@@ -84,7 +84,7 @@ struct Slope {
 ///
 ///   S/2 = w1 I + w2 (tr C̄ I − C̄) + q K_a = p I + 2 w2 (tr Ē I − Ē) + q (K_a − I)
 ///
-/// with p = w1 + 2 w2 + q, which a material gives without cancellation: it vanishes at rest.
+/// with p = w1 + 2 w2 + q, computed by a material without cancellation: it vanishes at rest.
 template <class P>
 struct Coefficients {
   P p{}, w2{}, q{};
@@ -109,7 +109,7 @@ inline void add_dyad(const P* a, const P* b, P* D) {
     for (int j = 0; j < 6; ++j) D[6 * i + j] += a[i] * b[j];
 }
 
-/// Writes S and, if wanted, D = ∂S/∂E_1, which acts on strains with doubled shear.
+/// Computes S and, if needed, D = ∂S/∂E_1, which acts on strains with doubled shear.
 /// @eq{solid-discrete-stress}
 template <class P>
 inline void write_stress(const StrainPair<P>& pair, const Coefficients<P>& a, P* S, P* D) {

@@ -42,10 +42,10 @@ Slopes means(const ToeFibre& f, double a, double b) {
   return sum;
 }
 
-/// Steps over which eight points integrate to rounding: small in the exponent and in y itself.
+/// Length of steps that eight points integrate to rounding: small in the exponent and in y itself.
 double longest(const ToeFibre& f, double y) { return std::min(0.5 / f.c4, 0.25) * (1.0 + y); }
 
-/// ∫ dF/dI from a to b > a where no kink lies between, in panels short enough.
+/// ∫ dF/dI from a to b > a without a kink in between, in sufficiently short panels.
 double smooth_rise(const ToeFibre& f, double a, double b) {
   const int panels = 1 + static_cast<int>((b - a) / longest(f, a));
   double sum = 0.0;
@@ -82,7 +82,7 @@ double ToeFibre::energy_of(double y) const { return y > 0.0 ? rise(*this, 0.0, y
 
 void ToeFibre::difference_of(double y_0, double y_1, double* value, double* derivative) const {
   const double a = std::min(y_0, y_1), b = std::max(y_0, y_1), step = y_1 - y_0;
-  if (!(b - a < 1e4)) {  // not a number, or far beyond any solid
+  if (!(b - a < 1e4)) {  // NaN, or far beyond any solid
     *value = *derivative = std::numeric_limits<double>::quiet_NaN();
     return;
   }

@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// Fibre with a toe: an exponential start, then, if asked for, a straight line.
+/// Fibre with a toe: an exponential start, followed by an optional straight line.
 ///
 ///   λ dF/dλ = c₃ (exp(c₄ (λ − 1)) − 1)    for 1 < λ < λ_m
 ///   λ dF/dλ = c₅ λ + c₆                   beyond, c₆ such that the force does not jump

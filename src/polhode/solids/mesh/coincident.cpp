@@ -33,14 +33,14 @@ std::vector<int> first_coincident(const std::vector<Vec3>& points, double distan
     least = least.cwiseMin(x);
     most = most.cwiseMax(x);
   }
-  // Cells wide enough that their numbers fit, and that few points look into more than one.
+  // Cells wide enough that their numbers do not overflow, and few points search more than one.
   const double reach = std::max(distance, 0.0);
   const double extent = (most - least).maxCoeff();
   const double width = std::max({8.0 * reach, 1e-14 * extent, 1e-290});
   const auto cell_of = [&](double x, int k) {
     return static_cast<std::int64_t>(std::floor((x - least[k]) / width));
   };
-  // Points are kept in chains by cell, newest first.
+  // Points are stored in chains by cell, newest first.
   std::unordered_map<Cell, int, CellHash> newest;
   newest.reserve(points.size());
   std::vector<int> next(points.size(), -1);

@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-/// For each point the first point that lies within a distance of it, itself if there is none
-/// before. Points that stand for others are never stood for: chains end at the first point.
+/// For each point the first point within a distance of it, itself if there is no earlier one.
+/// Points with an earlier partner are not partners of others: there are no chains.
 /// @param distance  [m]; at most 0: equal coordinates only.
 [[nodiscard]] std::vector<int> first_coincident(const std::vector<Vec3>& points, double distance);
 

@@ -15,15 +15,15 @@ class FaceIndex {
  public:
   explicit FaceIndex(const Mesh& mesh);
 
-  /// The elements that have a face, in ascending order; −1 for those there are none.
+  /// Elements with a face, in ascending order; −1 for missing ones.
   struct Entry {
     std::array<int, 2> element{-1, -1};
     std::array<int, 2> face{-1, -1};  ///< Local number in the element's shape.
-    int times = 0;                    ///< Of a sound mesh 1 or 2.
+    int times = 0;                    ///< 1 or 2 in a valid mesh.
   };
-  /// @param corners  Three or four nodes. @returns null if no solid has such a face.
+  /// Finds a face. @param corners  Three or four nodes. @returns null if no solid has such a face.
   [[nodiscard]] const Entry* find(std::span<const int> corners) const;
-  /// Every face, in the order of the elements.
+  /// All faces, in the order of the elements.
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
  private:

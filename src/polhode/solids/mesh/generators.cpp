@@ -13,8 +13,8 @@ namespace polhode {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 4.0;
-/// Corner of the square in the middle of a disc, or of the cube in a ball, over the radius, and how
-/// far its sides bulge: angles at its corners stay away from 90 and 180 degrees.
+/// Corner of the square in the middle of a disc, or of the cube in a ball, over the radius; and the
+/// bulge of its sides, which keeps angles at its corners away from 90 and 180 degrees.
 constexpr double kCore = 0.45;
 constexpr double kBulge = 0.15;
 constexpr double kMaxNodes = 2e7;
@@ -25,7 +25,7 @@ const std::vector<std::string> kSolidsWithoutWedge = {"hex8", "hex20", "hex27", 
 
 int count(double value) { return static_cast<int>(std::lround(value)); }
 
-/// Whether a coordinate, or a distance, has a value, for the naming of sides.
+/// Whether a coordinate or a distance has a value, in the definition of named sides.
 bool is_at(double x, double value, double size) { return std::abs(x - value) <= 1e-9 * size; }
 
 std::vector<NamedSide> box_sides(const Vec3& half) {
@@ -126,7 +126,7 @@ Vec3 ball_core(double a, const Vec3& u) {
                   u[2] * (1.0 + 0.5 * kBulge * (rest[0] + rest[1]))};
 }
 
-/// Between the core's face across axis k and the sphere; s is the depth, 0 at the core.
+/// Point between the core's face across axis k and the sphere; s is the depth, 0 at the core.
 Vec3 ball_shell(double R, double a, int k, double s, const Vec3& on_face) {
   Vec3 direction;
   for (int i = 0; i < 3; ++i) direction[i] = i == k ? 1.0 : std::tan(kQuarter * on_face[i]);
@@ -147,7 +147,7 @@ Mesh sphere(const MeshGenerator& self, const MeshParameters& p, std::string_view
   std::vector<Patch> patches;
   for (int octant = 0; octant < octants; ++octant) {
     const Vec3 sign{octant & 1 ? -1.0 : 1.0, octant & 2 ? -1.0 : 1.0, octant & 4 ? -1.0 : 1.0};
-    // A mirrored patch runs the other way round: its first two coordinates are exchanged.
+    // A mirrored patch has the opposite orientation: its first two coordinates are exchanged.
     const bool mirrored = sign.prod() < 0.0;
     const auto add = [&](std::array<std::vector<double>, 3> ends,
                          const std::function<Vec3(const Vec3&)>& map) {
@@ -189,7 +189,7 @@ Mesh line(const MeshGenerator& self, const MeshParameters& p, std::string_view t
   const auto point = [&](int i) {
     return Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
   };
-  const int parts = n * shape.order;  // nodes of one segment, less its first
+  const int parts = n * shape.order;  // nodes of one segment without its first
   mesh.nodes.push_back(point(0));
   for (int s = 0; s < segments; ++s) {
     if ((point(s + 1) - point(s)).norm() == 0.0)

@@ -31,7 +31,7 @@ struct GmshFile {
     else
       return whole<T>(in.integer(what), what);
   }
-  /// A count of things that take some bytes each: in text, and in binary.
+  /// A count of objects of some bytes each: in text, and in binary.
   template <class T>
   std::size_t count(const char* things, std::size_t text_bytes, std::size_t binary_bytes) {
     const auto n = static_cast<std::int64_t>(read<T>("a count"));
@@ -58,7 +58,7 @@ struct GmshFile {
   int read_cell(std::int64_t type, std::int64_t label, std::size_t at, bool wide);
   /// Number of nodes of a Gmsh type. @throws InputError, naming a type that is not supported.
   [[nodiscard]] std::size_t nodes_of_type(std::int64_t type) const;
-  /// Refuses everything but the end of a section.
+  /// Rejects everything but the end of a section.
   void expect_end(const std::string& section);
 };
 

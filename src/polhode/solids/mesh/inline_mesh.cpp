@@ -8,7 +8,7 @@
 namespace polhode {
 namespace {
 
-/// The type that cells of so many nodes have when none is named.
+/// Default type of cells with this number of nodes.
 std::string usual_type(std::size_t nodes) {
   for (const char* name : {"hex8", "hex20", "hex27", "tet4", "tet10", "wedge6", "line2", "line3"})
     if (cell_shape(name).nodes.size() == nodes) return name;

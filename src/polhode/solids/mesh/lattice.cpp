@@ -14,7 +14,7 @@ namespace {
 /// Nodes of one hexahedron of 27 nodes.
 using Hex27 = std::array<int, 27>;
 
-/// Points of a hexahedron by their place (0, 1, 2)³, as local numbers of hex27.
+/// Points of a hexahedron by their position (0, 1, 2)³, as local numbers of hex27.
 int local_number(int i, int j, int k) {
   static const std::array<int, 27> kNumbers = [] {
     std::array<int, 27> numbers{};
@@ -30,7 +30,7 @@ int local_number(int i, int j, int k) {
   return kNumbers[i + 3 * (j + 3 * k)];
 }
 
-/// The node of a hexahedron half way between two of its corners.
+/// Node of a hexahedron midway between two of its corners.
 int half_way(int a, int b) {
   const CellShape& shape = cell_shape("hex27");
   const Vec3 sum = shape.nodes[a] + shape.nodes[b];
@@ -38,7 +38,7 @@ int half_way(int a, int b) {
   return local_number(index(0), index(1), index(2));
 }
 
-/// Points of the cells' ends and middles.
+/// End and middle points of the cells.
 std::vector<double> with_middles(const std::vector<double>& ends) {
   std::vector<double> all;
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -69,7 +69,7 @@ void add_patch(const Patch& patch, std::vector<Vec3>& points, std::vector<Hex27>
       }
 }
 
-/// A cell of the type wanted, as local numbers of hex27: corners, then middles of edges.
+/// Cell of the requested type, as local numbers of hex27: corners, then middles of edges.
 std::vector<int> with_edges(const CellShape& shape, std::vector<int> corners) {
   if (shape.order == 2)
     for (const CellEdge& edge : shape.edges)
@@ -79,8 +79,9 @@ std::vector<int> with_edges(const CellShape& shape, std::vector<int> corners) {
 
 using Cells = std::vector<std::vector<int>>;
 
-/// Six tetrahedra: the first node of the cell with the triangles of its three far faces, each face
-/// being halved from its own first node. "First" is by number in the mesh, which neighbours share.
+/// Six tetrahedra: the first node of the cell with the triangles of its three opposite faces, each
+/// face being split from its own first node. "First" is by number in the mesh, common to
+/// neighbours.
 Cells tetrahedra(const CellShape& shape, const Hex27& cell) {
   const CellShape& hex = cell_shape("hex8");
   int apex = 0;
@@ -93,7 +94,8 @@ Cells tetrahedra(const CellShape& shape, const Hex27& cell) {
     for (int i = 1; i < 4; ++i)
       if (cell[face.nodes[i]] < cell[face.nodes[start]]) start = i;
     const auto at = [&](int i) { return face.nodes[(start + i) % 4]; };
-    // A face seen from outside runs counterclockwise, so the apex behind it comes last but turned.
+    // Seen from outside a face is counterclockwise, so the apex behind it comes last with two
+    // corners exchanged.
     found.push_back(with_edges(shape, {at(0), at(2), at(1), apex}));
     found.push_back(with_edges(shape, {at(0), at(3), at(2), apex}));
   }
@@ -164,7 +166,7 @@ Mesh lattice_mesh(std::string_view name, const std::vector<Patch>& patches, std:
   for (const Hex27& cell : cells)
     for (const std::vector<int>& one : split(shape, cell))
       for (int local : one) nodes.push_back(cell[local]);
-  // Only the nodes in use, in the order of the lattice.
+  // Only nodes in use, in the order of the lattice.
   std::vector<int> number(points.size(), -1);
   for (int node : nodes) number[node] = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {

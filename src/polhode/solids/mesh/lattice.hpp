@@ -11,14 +11,14 @@
 
 namespace polhode {
 
-/// A curved box of cells: an image of the unit cube, cut into cells along each coordinate.
+/// A curved box of cells: an image of the unit cube, divided into cells along each coordinate.
 struct Patch {
   /// Ends of the cells along each coordinate, from 0 to 1, ascending.
   std::array<std::vector<double>, 3> ends;
   std::function<Vec3(const Vec3&)> map;  ///< Unit cube → X [m], with a positive determinant.
 };
 
-/// A named part of the boundary: the faces all of whose nodes fulfil a condition.
+/// A named part of the boundary: the faces of which all nodes satisfy a condition.
 struct NamedSide {
   std::string name;
   std::function<bool(const Vec3&)> holds;
@@ -28,12 +28,12 @@ struct NamedSide {
 /// @param ratio  Length of the last cell over that of the first [-], positive.
 [[nodiscard]] std::vector<double> graded(int n, double ratio);
 
-/// A mesh of patches that fit together cell by cell. Nodes in the middles of edges, faces and cells
-/// are images of the middles in the unit cube, so they lie on curved boundaries.
+/// Mesh of patches with matching cells. Nodes in the middles of edges, faces and cells are images
+/// of the middles in the unit cube, so they lie on curved boundaries.
 ///
-/// Tetrahedra: six of each cell, by drawing lines from its first node to the three far faces, so
-/// that neighbours agree whatever their orientation. Wedges: two of each cell, their triangles
-/// across the third coordinate; patches must agree on that coordinate.
+/// Tetrahedra: six per cell, by lines from its first node to the three opposite faces, so that
+/// neighbours match for any orientation. Wedges: two per cell, with triangles normal to the third
+/// coordinate; patches must agree on that coordinate.
 ///
 /// @param type  hex8, hex20, hex27, tet4, tet10 or wedge6.
 /// @throws InputError if the cells would be inverted, or for another type.

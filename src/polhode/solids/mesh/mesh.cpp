@@ -11,7 +11,7 @@
 namespace polhode {
 namespace {
 
-/// New numbers of the elements that are kept; −1 for the others.
+/// New numbers of the kept elements; −1 for the others.
 std::vector<int> kept_only(const std::vector<int>& set, const std::vector<int>& new_number) {
   std::vector<int> kept;
   for (int i : set)
@@ -195,7 +195,7 @@ double element_volume(const Mesh& mesh, int element) {
   const CellShape& shape = mesh.element_shape(element);
   std::vector<Vec3> X;
   for (int node : mesh.element_nodes(element)) X.push_back(mesh.nodes[node]);
-  // det ∂X/∂ξ has degree 5 in each variable at most, the map onto a tetrahedron included.
+  // det ∂X/∂ξ has at most degree 5 in each variable, including the map onto a tetrahedron.
   static const double kPoint = std::sqrt(0.6);
   const std::array<double, 3> xs{-kPoint, 0.0, kPoint};
   const std::array<double, 3> ws{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};

@@ -16,16 +16,16 @@ namespace polhode {
 /// Cells of one shape.
 struct ElementBlock {
   std::string type;        ///< Name of a shape (cell_shape()).
-  std::vector<int> nodes;  ///< Indices into Mesh::nodes, all of one cell after the other.
+  std::vector<int> nodes;  ///< Indices into Mesh::nodes, cell by cell.
 
   [[nodiscard]] const CellShape& shape() const { return cell_shape(type); }
 };
 
 /// Faces of one shape (tri3, tri6, quad4, quad8, quad9). Those of a solid face outward: seen from
-/// outside, their corners run counterclockwise.
+/// outside, their corners are counterclockwise.
 struct FaceBlock {
   std::string type;
-  std::vector<int> nodes;   ///< Indices into Mesh::nodes, all of one face after the other.
+  std::vector<int> nodes;   ///< Indices into Mesh::nodes, face by face.
   std::vector<int> owners;  ///< By face: number of the solid element it bounds; −1 if none.
 
   [[nodiscard]] const CellShape& shape() const { return cell_shape(type); }
@@ -37,9 +37,9 @@ struct Surface {
   std::vector<FaceBlock> blocks;
 
   [[nodiscard]] int size() const;
-  /// Every node of the surface, once, ascending.
+  /// All nodes of the surface, once each, ascending.
   [[nodiscard]] std::vector<int> nodes() const;
-  /// Adds a face; its type's block is made if there is none.
+  /// Adds a face; its type's block is created if there is none.
   void add(std::string_view type, std::span<const int> nodes, int owner);
 };
 
@@ -47,7 +47,7 @@ struct Surface {
 ///
 /// Elements are numbered through all blocks, from 0: those of blocks[0] first.
 struct Mesh {
-  std::string name;                  ///< File, or what made it; first part of messages.
+  std::string name;                  ///< File or generator; first part of messages.
   std::vector<Vec3> nodes;           ///< Reference positions X [m].
   std::vector<ElementBlock> blocks;  ///< Solids, lines and points; 2-D cells only without solids.
   std::map<std::string, std::vector<int>, std::less<>> node_sets;     ///< Ascending, no doubles.
@@ -55,10 +55,10 @@ struct Mesh {
   std::map<std::string, Surface, std::less<>> surfaces;
   std::vector<std::int64_t> node_labels;     ///< Numbers in the file; empty: 1, 2, 3, …
   std::vector<std::int64_t> element_labels;  ///< Numbers in the file; empty: 1, 2, 3, …
-  std::vector<std::string> notes;            ///< What a reader left out or changed.
+  std::vector<std::string> notes;            ///< Omissions and changes by a reader.
 
   [[nodiscard]] int element_count() const;
-  /// Block of an element, and its place in it.
+  /// Block of an element, and its index there.
   struct Place {
     int block;
     int index;
@@ -67,7 +67,7 @@ struct Mesh {
   /// Nodes of an element.
   [[nodiscard]] std::span<const int> element_nodes(int element) const;
   [[nodiscard]] const CellShape& element_shape(int element) const;
-  /// The number by which the user knows a node or an element.
+  /// User's number of a node or an element.
   [[nodiscard]] std::int64_t node_label(int node) const;
   [[nodiscard]] std::int64_t element_label(int element) const;
 };
@@ -75,16 +75,16 @@ struct Mesh {
 /// Faces that belong to one solid element only, outward.
 [[nodiscard]] Surface boundary(const Mesh& mesh);
 
-/// The elements of a set, with the nodes, sets and surfaces that belong to them, renumbered.
-/// A name that is empty means all solid elements (all elements, if there are no solids).
-/// @throws InputError if there is no such set; the message lists those there are.
+/// Elements of a set, with their nodes, sets and surfaces, renumbered. An empty name means all
+/// solid elements (all elements, if there are no solids).
+/// @throws InputError if there is no such set; the message lists the existing ones.
 [[nodiscard]] Mesh part_of(const Mesh& mesh, std::string_view element_set);
 
-/// All coordinates multiplied by factor, then turned by R and moved by x.
+/// Multiplies all coordinates by a factor; move() rotates by R and translates by x.
 void scale(Mesh& mesh, double factor);
 void move(Mesh& mesh, const Mat3& R, const Vec3& x);
 
-/// Least and largest coordinates [m]. Of a mesh without nodes: zero.
+/// Smallest and largest coordinates [m]. Zero for a mesh without nodes.
 struct Extent {
   Vec3 least = Vec3::Zero();
   Vec3 most = Vec3::Zero();

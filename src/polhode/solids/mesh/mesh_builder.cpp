@@ -121,7 +121,7 @@ int MeshBuilder::same_element(const std::vector<int>& nodes, const CellShape& sh
 }
 
 void MeshBuilder::make_elements(Mesh& mesh, bool solids) {
-  // Elements of one type after the other, as blocks are; types as they come in the file.
+  // Elements ordered by type, as blocks are; types in the order of the file.
   std::vector<const CellShape*> types;
   for (const Cell& cell : cells_) {
     const int d = cell.shape->dimension;
@@ -169,7 +169,7 @@ void MeshBuilder::add_oriented(const Mesh& mesh, const FaceIndex& faces,
     surface.add(type, nodes, -1);
     return;
   }
-  // Between two solids the one that the face looks out of is meant.
+  // Between two solids the face belongs to the one from which it faces outward.
   int side = 0;
   if (entry->times > 1) {
     const std::vector<int> own = face_nodes(mesh, entry->element[0], entry->face[0]);

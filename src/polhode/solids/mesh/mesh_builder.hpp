@@ -16,28 +16,28 @@ namespace polhode {
 
 class FaceIndex;
 
-/// Collects what a file says of a mesh, by the file's own numbers, and makes a Mesh of it. What
-/// does not fit together is refused with its place in the file.
+/// Collects the contents of a mesh file, by the file's own numbers, and builds a Mesh. Inconsistent
+/// contents are rejected with their position in the file.
 class MeshBuilder {
  public:
-  /// @param cursor  Outlives the builder; tells places.
-  /// @param binary  Places are told in bytes, not in lines.
+  /// @param cursor  Must outlive the builder; provides positions.
+  /// @param binary  Positions are given in bytes, not in lines.
   MeshBuilder(const MeshCursor& cursor, bool binary) : cursor_(cursor), binary_(binary) {}
 
-  /// Adds a node. @throws InputError for a number given before, and absurd coordinates.
+  /// Adds a node. @throws InputError for a repeated number, and unreasonable coordinates.
   void add_node(std::int64_t label, const Vec3& X, std::size_t at);
   /// Adds a cell, its nodes in the order of our shapes.
   /// @returns its index, for the sets below.
   int add_cell(const CellShape& shape, std::int64_t label, std::span<const std::int64_t> nodes,
                std::size_t at);
 
-  /// Puts a cell into a set: solids and lines form sets of elements, faces form surfaces, points
-  /// form sets of nodes.
+  /// Adds a cell to a set: solids and lines form sets of elements, faces form surfaces, points form
+  /// sets of nodes.
   void put(int cell, std::string_view set);
   void put_node(std::int64_t node, std::string_view set, std::size_t at);
-  /// A face of a solid, by its local corners, into a surface.
+  /// Adds a face of a solid, by its local corners, to a surface.
   void put_face(int cell, std::span<const int> local_corners, std::string_view surface);
-  /// Every face of a set's cells that belongs to one cell only, into a surface.
+  /// Adds all faces of a set's cells that belong to one cell only to a surface.
   void put_free_faces(const std::vector<int>& cells, std::string_view surface);
 
   [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
@@ -46,15 +46,15 @@ class MeshBuilder {
   [[nodiscard]] std::int64_t label(int cell) const { return cells_[cell].label; }
   /// Position of a cell's node, by the order of our shapes. @throws InputError if there is none.
   [[nodiscard]] const Vec3& position(int cell, int node) const;
-  /// Exchanges nodes of a cell: new node i is the old one order[i].
+  /// Permutes nodes of a cell: new node i is the old one order[i].
   void reorder(int cell, std::span<const int> order);
   void note(std::string text) { notes_.push_back(std::move(text)); }
 
-  /// Cells that are listed twice with the same nodes are one cell in two sets (Gmsh 2 does so);
-  /// otherwise they are refused.
+  /// Cells listed twice with the same nodes are one cell in two sets (as in Gmsh 2); otherwise they
+  /// are rejected.
   bool repeated_cells_are_one = false;
 
-  /// Everything together. @throws InputError
+  /// Builds the mesh. @throws InputError
   [[nodiscard]] Mesh finish();
 
  private:
@@ -74,7 +74,7 @@ class MeshBuilder {
   [[nodiscard]] std::vector<int> resolved(const Cell& cell) const;
   void make_elements(Mesh& mesh, bool solids);
   void make_surfaces(Mesh& mesh, bool solids);
-  /// An element made before with the same nodes; −1 if there is none.
+  /// Existing element with the same nodes; −1 if there is none.
   [[nodiscard]] int same_element(const std::vector<int>& nodes, const CellShape& shape);
   void add_oriented(const Mesh& mesh, const FaceIndex& faces, const std::vector<int>& nodes,
                     std::string_view type, Surface& surface, int& stray) const;
@@ -92,7 +92,7 @@ class MeshBuilder {
   std::map<std::string, std::vector<int>, std::less<>> free_face_sets_;
   std::vector<std::string> notes_;
   std::vector<int> element_of_;  ///< By cell: number of the element; −1 if it is none.
-  std::vector<int> cell_of_;     ///< By element made so far.
+  std::vector<int> cell_of_;     ///< By element created so far.
   std::unordered_multimap<std::size_t, int> known_;  ///< Hash of nodes → position in cell_of_.
 };
 

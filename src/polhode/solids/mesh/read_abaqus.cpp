@@ -16,7 +16,7 @@
 namespace polhode {
 namespace {
 
-/// Our shape of an Abaqus element, by the name up to the count of its nodes.
+/// Shape of an Abaqus element, by its name including the number of its nodes.
 const CellShape* abaqus_shape(std::string_view type) {
   static const std::map<std::string, const char*, std::less<>> solids{
       {"C3D4", "tet4"},   {"C3D10", "tet10"}, {"C3D6", "wedge6"}, {"C3D8", "hex8"},
@@ -30,7 +30,7 @@ const CellShape* abaqus_shape(std::string_view type) {
     return &cell_shape(found->second);
   std::size_t digits = end;
   while (digits > 0 && type[digits - 1] >= '0' && type[digits - 1] <= '9') --digits;
-  // S4R5 has two numbers, R3D4 and SFM3D4 have one within the family's name.
+  // S4R5 contains two numbers, R3D4 and SFM3D4 have one in the family's name.
   for (const char* family : kFaces) {
     if (!type.starts_with(family)) continue;
     const std::string_view rest = type.substr(std::string_view(family).size());
@@ -44,10 +44,10 @@ const CellShape* abaqus_shape(std::string_view type) {
   return nullptr;
 }
 
-/// Where Abaqus has our node i; empty: at the same place.
+/// Abaqus position of our node i; empty: the same.
 std::vector<int> abaqus_order(const CellShape& shape) {
   if (shape.name != "hex27") return {};
-  // Behind the edges: the middle of the cell, then of the faces -z, +z, -y, +x, +y, -x.
+  // After the edges: the middle of the cell, then of the faces -z, +z, -y, +x, +y, -x.
   std::vector<int> order(27);
   for (int i = 0; i < 20; ++i) order[static_cast<std::size_t>(i)] = i;
   const std::array<int, 7> rest{26, 24, 23, 25, 21, 22, 20};
@@ -69,11 +69,11 @@ std::span<const int> abaqus_face(const CellShape& shape, std::int64_t face) {
   return faces[static_cast<std::size_t>(face - 1)];
 }
 
-/// What would change the mesh, but is not read.
+/// Keywords that would change the mesh, but are not supported.
 const std::set<std::string, std::less<>> kRefused{"INCLUDE", "NGEN",     "NFILL",   "NCOPY",
                                                   "NMAP",    "ELGEN",    "ELCOPY",  "SYSTEM",
                                                   "IMPORT",  "MANIFEST", "SUBMODEL"};
-/// What brackets the parts of a file without saying anything of the mesh.
+/// Keywords of structure without information on the mesh.
 const std::set<std::string, std::less<>> kSilent{"HEADING",  "PREPRINT",     "END PART",
                                                  "ASSEMBLY", "END ASSEMBLY", "END INSTANCE"};
 
@@ -125,11 +125,11 @@ class AbaqusReader {
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
     }
-    if (all.size() > 1 && all.back().empty()) all.pop_back();  // a comma at the end
+    if (all.size() > 1 && all.back().empty()) all.pop_back();  // a trailing comma
     return all;
   }
 
-  /// Splits "*ELEMENT, TYPE=C3D8, ELSET=all" and what follows when it ends in a comma.
+  /// Splits "*ELEMENT, TYPE=C3D8, ELSET=all" and its continuation lines after a comma.
   void split_keyword() {
     std::string text(line_.substr(1));
     keyword_at_ = line_at_;
@@ -191,7 +191,7 @@ class AbaqusReader {
                        "Name it in the keyword's line");
     return *found;
   }
-  /// The name under which a set was first seen: capitals do not matter.
+  /// Name under which a set first appeared: it is not case sensitive.
   std::string set_name(const std::string& given) {
     return names_.try_emplace(upper_case(given), given).first->second;
   }
@@ -303,14 +303,14 @@ class AbaqusReader {
     mesh_.put(cell, name);
     members.list.push_back(cell);
   }
-  /// Sets that name sets could keep a small file busy for hours.
+  /// Limits nested sets of sets, which could otherwise take hours for a small file.
   void count_work() {
     if (++work_ > 100'000 + 200 * in_.bytes().size())
       refuse("the sets name more members than the file can have", "Write each set once");
   }
 
   /// Calls use() with each number of the data lines; with GENERATE, lines are first, last, step. A
-  /// word that is no number is a set: use_set().
+  /// word that is not a number is a set: use_set().
   template <class Use, class UseSet>
   void each_member(const Use& use, const UseSet& use_set) {
     const bool generate = parameters_.count("GENERATE") > 0;

@@ -11,10 +11,10 @@
 namespace polhode {
 namespace {
 
-/// One type of Gmsh's elements: our shape, and where Gmsh has our node i.
+/// A type of Gmsh element: our shape, and Gmsh's position of our node i.
 struct GmshType {
   const char* shape;       ///< Null: not supported.
-  const char* name;        ///< In Gmsh's words.
+  const char* name;        ///< Gmsh's name.
   std::vector<int> order;  ///< Empty: the same.
 };
 
@@ -177,7 +177,7 @@ Mesh parse_gmsh(const std::string& name, std::string_view bytes) {
       in.refuse("nodes with parametric coordinates are not supported in this version",
                 "Save without them (Mesh.SaveParametric = 0), or in format 4.1");
     } else {
-      skip_section(in, section);  // comments, data, periodicity and the like
+      skip_section(in, section);  // comments, data, periodicity etc.
     }
     file.expect_end(section);
   }

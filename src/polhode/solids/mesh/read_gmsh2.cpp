@@ -8,7 +8,7 @@
 namespace polhode {
 namespace {
 
-/// Puts a cell into the set of its physical group, else of its entity.
+/// Adds a cell to the set of its physical group, else of its entity.
 void put(GmshFile& file, int cell, const std::vector<std::int64_t>& tags) {
   const int dimension = file.mesh.shape(cell).dimension;
   if (!tags.empty() && tags[0] != 0)

@@ -21,7 +21,7 @@ void skip_integers(GmshFile& file, const char* things) {
   for (std::size_t i = 0; i < n; ++i) (void)file.read<std::int32_t>(things);
 }
 
-/// In which order the lines of a section announce their counts: blocks, things, least and largest.
+/// Order of the counts in the first line of a section: blocks, objects, smallest and largest tag.
 struct Announced {
   std::size_t blocks;
   std::size_t things;

@@ -8,11 +8,11 @@
 
 namespace polhode {
 
-/// Reads a mesh, by the ending of the file's name: .msh (Gmsh 2.2 and 4.1, text and binary), .vtu
-/// (VTK, every encoding, zlib), .inp (Abaqus: nodes, elements, sets and surfaces).
+/// Reads a mesh; the format follows from the file name: .msh (Gmsh 2.2 and 4.1, text and binary),
+/// .vtu (VTK, all encodings, zlib), .inp (Abaqus: nodes, elements, sets and surfaces).
 ///
 /// Groups of the file become sets: of elements (solids, lines), of nodes (points), and surfaces
-/// (faces), which face outward of the solid they bound. Node orders are those of our shapes.
+/// (faces), which face outward from the solid they bound. Node orders are those of our shapes.
 /// Elements are not checked for inversion; see check_mesh().
 ///
 /// @param scale  Metres per unit of the file.
@@ -21,11 +21,11 @@ namespace polhode {
 ///         twice, counts that do not match.
 [[nodiscard]] Mesh read_mesh(const std::string& path, double scale = 1.0);
 
-/// As read_mesh(), from the bytes of a file already in memory.
+/// Reads a mesh like read_mesh(), from the bytes of a file in memory.
 /// @param name  First part of messages; its ending chooses the format.
 [[nodiscard]] Mesh parse_mesh(const std::string& name, std::string_view bytes, double scale = 1.0);
 
-/// The formats by themselves, whatever the name's ending; in the file's unit.
+/// Reads a given format for any file name; in the file's unit.
 [[nodiscard]] Mesh parse_gmsh(const std::string& name, std::string_view bytes);
 [[nodiscard]] Mesh parse_vtu(const std::string& name, std::string_view bytes);
 [[nodiscard]] Mesh parse_abaqus(const std::string& name, std::string_view bytes);

@@ -16,13 +16,13 @@ namespace polhode {
 namespace {
 
 constexpr std::int64_t kMaxThings = 2'000'000'000;
-/// An array of integers with more values than this is no division into sets.
+/// Number of different values of an integer array above which it does not define sets.
 constexpr std::size_t kMaxSets = 1000;
 
 constexpr int kVoxel = 11;
 constexpr int kPixel = 8;
 constexpr std::array<int, 8> kVoxelOrder{0, 1, 3, 2, 4, 5, 7, 6};
-/// Between VTK's wedge, whose triangle 0 1 2 faces away from 3 4 5, and ours.
+/// Permutation between VTK's wedge, whose triangle 0 1 2 faces away from 3 4 5, and ours.
 constexpr std::array<int, 6> kWedgeOrder{0, 2, 1, 3, 5, 4};
 
 const CellShape* shape_of(std::int64_t vtk) {
@@ -39,7 +39,7 @@ struct Pending {
   std::size_t content = 0;  ///< Byte behind the tag.
 };
 
-/// What a piece of the file holds.
+/// Contents of a piece of the file.
 struct Piece {
   XmlTag tag;
   std::int64_t points = 0, cells = 0;
@@ -109,7 +109,7 @@ class VtuReader {
     return count;
   }
 
-  /// Notes the arrays of a section, to be read later.
+  /// Stores the arrays of a section, to be read later.
   std::vector<Pending> arrays_of(const XmlTag& section) {
     std::vector<Pending> arrays;
     if (section.empty) return arrays;
@@ -233,7 +233,7 @@ class VtuReader {
       });
   }
 
-  /// Sets out of an array of integers: of zeros and ones, the set of that name; otherwise a set
+  /// Sets from an array of integers: for zeros and ones the set of that name; otherwise a set
   /// "name_value" for each value.
   template <class Put>
   void put_sets(const Pending& data, std::int64_t count, const Put& put) {
@@ -257,8 +257,8 @@ class VtuReader {
     }
   }
 
-  /// VTK's wedges face the other way; but many programs write them as all others do. The volumes of
-  /// the file's own wedges tell which way is meant.
+  /// Corrects the orientation of wedges. VTK's definition is opposite to the usual one, which many
+  /// programs write; the volumes of the file's wedges show which is used.
   void turn_wedges() {
     const CellShape& wedge = cell_shape("wedge6");
     std::vector<int> wedges;

@@ -79,7 +79,7 @@ std::vector<char> nodes_of_set(std::string_view where, const Mesh& mesh, const s
   return in;
 }
 
-/// Which nodes a selection by coordinates holds.
+/// Nodes of a selection by coordinates.
 template <class Holds>
 std::vector<char> nodes_where(const Mesh& mesh, const Holds& holds) {
   std::vector<char> in(mesh.nodes.size());
@@ -88,7 +88,7 @@ std::vector<char> nodes_where(const Mesh& mesh, const Holds& holds) {
   return in;
 }
 
-/// Nodes at a plane. At an extent: that of the nodes which belong to elements.
+/// Nodes in a plane. At an extent: that of the nodes of elements.
 std::vector<char> nodes_at_plane(std::string_view where, const Mesh& mesh, const Selection& s,
                                  double tolerance) {
   if (!(std::abs(s.normal.norm() - 1.0) < 1e-6))
@@ -137,7 +137,7 @@ std::vector<char> nodes_of(std::string_view where, const Mesh& mesh, const Selec
   return {};
 }
 
-/// How far a selection misses, where that helps.
+/// Distance by which a selection misses, where that helps.
 std::string miss(const Mesh& mesh, const Selection& s) {
   if (s.kind == Kind::kSet || s.kind == Kind::kNodes) return {};
   const auto distance = [&](const Vec3& X) {

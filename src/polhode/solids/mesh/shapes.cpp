@@ -17,7 +17,7 @@ namespace {
 using Corners = std::vector<std::vector<int>>;
 using Powers = std::vector<std::array<int, 3>>;
 
-/// What shapes of one family have in common.
+/// Common data of the shapes of one family.
 struct Family {
   int dimension;
   std::vector<Vec3> corners;
@@ -84,7 +84,7 @@ Powers tensor(int dimension, int degree) {
       [](int, int, int) { return true; });
 }
 
-/// Quadratic serendipity: what is squared in at most one variable.
+/// Quadratic serendipity monomials: squares of at most one variable.
 Powers serendipity(int dimension) {
   return powers({2, dimension > 1 ? 2 : 0, dimension > 2 ? 2 : 0},
                 [](int a, int b, int c) { return (a == 2) + (b == 2) + (c == 2) <= 1; });
@@ -234,7 +234,7 @@ double least_jacobian(const CellShape& shape, const Vec3* X) {
   double least = std::numeric_limits<double>::infinity();
   for (const Mat& slopes : shape.slopes) {
     const double J = determinant(slopes, X);
-    if (!(J >= least)) least = J;  // one that is no number is the least of all
+    if (!(J >= least)) least = J;  // NaN counts as the smallest
   }
   return least;
 }

@@ -17,14 +17,14 @@ struct CellEdge {
   int middle = -1;
 };
 
-/// One face of a solid. Seen from outside, the corners run counterclockwise; then follow the nodes
-/// in the middles of the edges, then the one in the middle of the face, as the type has them.
+/// One face of a solid. Seen from outside, the corners are counterclockwise; then follow the nodes
+/// in the middles of the edges, then the one in the middle of the face, if the type has them.
 struct CellFace {
   std::string type;        ///< A 2-D shape: tri3, tri6, quad4, quad8, quad9.
   std::vector<int> nodes;  ///< Local numbers.
 };
 
-/// One kind of cell: how many nodes it has, and where they stand.
+/// A kind of cell: its nodes and their reference coordinates.
 ///
 /// Nodes are in the order of VTK, corners first, with one exception: triangle 0 1 2 of wedge6 faces
 /// triangle 3 4 5, as in Gmsh and Abaqus, so that the wedge's map has a positive determinant.
@@ -42,33 +42,33 @@ struct CellShape {
   std::vector<CellFace> faces;             ///< Of solids; outward. Empty for others.
   std::vector<std::array<int, 3>> powers;  ///< Monomials that span the shape functions.
   Mat coefficients;                        ///< Column a: coefficients of N_a over the monomials.
-  std::vector<Mat> slopes;  ///< shape_gradients() at each node, and at last in the middle.
+  std::vector<Mat> slopes;  ///< shape_gradients() at each node, and finally in the middle.
 
   [[nodiscard]] int size() const { return static_cast<int>(nodes.size()); }
 };
 
-/// Every kind of cell.
+/// All kinds of cell.
 [[nodiscard]] const std::vector<CellShape>& cell_shapes();
 
 /// The shape of that name; null if there is none.
 [[nodiscard]] const CellShape* find_cell_shape(std::string_view name);
 
-/// The shape of that name. @throws InputError that lists the names there are.
+/// Shape of that name. @throws InputError that lists the existing names.
 [[nodiscard]] const CellShape& cell_shape(std::string_view name);
 
 /// Shape functions at a reference point [-].
 [[nodiscard]] Vec shape_functions(const CellShape& shape, const Vec3& xi);
 
-/// Their derivatives by the reference coordinates: one row a node, three columns (those past the
-/// dimension are zero) [-].
+/// Derivatives of the shape functions by the reference coordinates: one row per node, three columns
+/// (those beyond the dimension are zero) [-].
 [[nodiscard]] Mat shape_gradients(const CellShape& shape, const Vec3& xi);
 
 /// Determinant of ∂X/∂ξ of a solid cell at a reference point [m³].
 /// @param X  Nodes of the cell, shape.size() of them.
 [[nodiscard]] double jacobian(const CellShape& shape, const Vec3* X, const Vec3& xi);
 
-/// Least determinant over all nodes and the middle of a solid cell, for nodes X [m³]. Not positive:
-/// the cell is inverted or collapsed somewhere.
+/// Smallest determinant over all nodes and the middle of a solid cell, for nodes X [m³]. Not
+/// positive: the cell is inverted or collapsed somewhere.
 [[nodiscard]] double least_jacobian(const CellShape& shape, const Vec3* X);
 
 }  // namespace polhode

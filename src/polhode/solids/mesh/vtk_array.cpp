@@ -35,7 +35,7 @@ constexpr std::array<NumberType, 10> kTypes{{{"Int8", 1, true, true},
                                              {"Float32", 4, false, true},
                                              {"Float64", 8, false, true}}};
 
-/// Where an array stands, for messages.
+/// Position of an array, for messages.
 struct Site {
   MeshCursor& in;
   const XmlTag& tag;
@@ -62,8 +62,8 @@ int sextet(char c) {
   return c == '/' ? 63 : -1;
 }
 
-/// Bytes one after the other, raw or out of base64. Parts that were encoded each by itself, and so
-/// have padding in between, follow each other without a seam.
+/// Byte sequence, raw or from base64. Separately encoded parts, with padding in between, are
+/// concatenated.
 class Bytes {
  public:
   Bytes(std::string_view text, bool base64) : text_(text), base64_(base64) {}
@@ -82,7 +82,7 @@ class Bytes {
     ready_.erase(0, n);
     return result;
   }
-  /// Drops what is left of the four characters decoded last: a new part begins with new ones.
+  /// Drops the rest of the last four characters decoded: a new part starts a new group.
   void next_part() { ready_.clear(); }
   [[nodiscard]] std::size_t left() const { return text_.size() - at_; }
 
@@ -139,11 +139,12 @@ std::string payload(const Site& site, Bytes bytes, const VtkEncoding& encoding,
     check_size(0);
     return {};
   }
-  // Deflate shrinks by less than 1100, so these limits keep memory in line with the file's size.
+  // Deflate compresses by less than 1100, so these limits keep memory in proportion to the file's
+  // size.
   if (blocks > bytes.left() / h + 1 || wanted / 1100 > bytes.left())
     site.refuse(format("{} compressed blocks of {} bytes cannot fit the file", blocks, block_size));
   const std::uint64_t whole = last_size == 0 ? blocks : blocks - 1;
-  // In this order nothing overflows.
+  // This order avoids overflow.
   if ((whole > 0 && block_size > wanted / whole) || last_size > wanted ||
       whole * block_size + last_size != wanted)
     site.refuse(format("{} bytes are expected, but {} blocks of {} and {} bytes are announced",

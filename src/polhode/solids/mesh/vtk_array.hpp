@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// How a VTK file keeps its numbers.
+/// Encoding of numbers in a VTK file.
 struct VtkEncoding {
   bool big_endian = false;
   bool wide_header = false;  ///< UInt64 instead of UInt32.
@@ -31,8 +31,8 @@ struct VtkArray {
 };
 
 /// Reads the array of a DataArray tag that has just been read, up to its closing tag.
-/// @param count  How many numbers it must have.
-/// @throws InputError for another number of them, unknown types, and data that cannot be decoded.
+/// @param count  Required number of values.
+/// @throws InputError for another number of values, unknown types, and data that cannot be decoded.
 [[nodiscard]] VtkArray read_vtk_array(MeshCursor& in, XmlTags& xml, const XmlTag& tag,
                                       const VtkEncoding& encoding, std::size_t count);
 

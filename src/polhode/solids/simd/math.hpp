@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions of packs, and divided differences of them that lose no digits however close
-// their two arguments are. Relative errors are a few units of the last place.
+// Elementary functions of packs, and their divided differences without loss of digits for close
+// arguments. Relative errors are a few units of the last place.
 #pragma once
 
 #include <polhode/solids/simd/pack.hpp>
@@ -24,7 +24,7 @@ inline P atanh_ratio_near(P z2) {
   return r * z2;
 }
 
-/// ln of numbers that may be far from 1; not a number if not positive.
+/// ln of numbers not necessarily near 1; NaN if not positive.
 template <class P>
 inline P log_far(P c) {
   using M = MaskOf<P>;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of doubles, one element a lane, for templates that are compiled once for each instruction
-// set. A template that is instantiated with a Pack belongs to one set only, because the widths
-// differ; other functions must not be called from the files kernels_*.cpp.
+// Vectors of doubles, one element per lane, for templates compiled once for each instruction set. A
+// template instantiated with a Pack belongs to one set only, because the widths differ; other
+// functions must not be called from the files kernels_*.cpp.
 #pragma once
 
 namespace polhode {
 
-/// W doubles that are computed side by side.
+/// W doubles for SIMD arithmetic.
 template <int W>
 struct PackOf;
 template <>
@@ -36,7 +36,7 @@ template <class P>
   return P{} + x;
 }
 
-/// From memory of any alignment.
+/// Load from memory of any alignment.
 template <class P>
 [[gnu::always_inline]] inline P load(const double* p) {
   P r;
@@ -55,7 +55,7 @@ template <class M>
   return found != 0;
 }
 
-/// Packs handed to a function that is found through a table.
+/// Packs passed to a function found through a table.
 template <class P>
 [[gnu::always_inline]] inline const double* numbers(const P* p) {
   return reinterpret_cast<const double*>(p);
