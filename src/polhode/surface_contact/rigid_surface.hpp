@@ -9,9 +9,10 @@ namespace polhode {
 
 /// A rigid surface that points of solids meet, in coordinates y of its own.
 ///
-/// Gaps are distances to a convex core (plane, point, segment, disc, box) less
+/// Gaps are distances to a core (plane, point, segment, disc, box) less
 /// a radius, so they and their gradients are continuous; edges are rounded by
-/// `rounding`. What is not convex is a surface of triangles, see RigidMesh.
+/// `rounding`. A tube is a rectangle turned about its axis, on which alone its
+/// gradient jumps; what else is not convex is a surface of triangles, see RigidMesh.
 struct RigidSurface {
   enum class Kind : unsigned char {
     plane,          ///< z = 0, the free side above.
@@ -19,6 +20,7 @@ struct RigidSurface {
     capsule,        ///< About the z axis, ends of its axis at ±half[2].
     cylinder,       ///< About the z axis, from −half[2] to half[2].
     box,            ///< From −half to half.
+    tube,           ///< About the z axis, from −half[2] to half[2]; bored to the radius half[1].
     hollow_sphere,  ///< What lies inside a sphere about the origin is free.
     convex,         ///< `solid`: an ellipsoid, cone or convex hull.
     mesh            ///< `triangles`: of a closed surface or a field of heights.
@@ -26,7 +28,7 @@ struct RigidSurface {
   Kind kind = Kind::plane;
   double radius = 0.0;       ///< [m]
   Vec3 half = Vec3::Zero();  ///< [m]
-  double rounding = 0.0;     ///< Of the edges of boxes and cylinders [m].
+  double rounding = 0.0;     ///< Of the edges of boxes, cylinders and tubes [m].
   std::shared_ptr<const contact::Shape> solid = nullptr;
   std::shared_ptr<const RigidMesh> triangles = nullptr;
 
