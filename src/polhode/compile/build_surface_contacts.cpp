@@ -159,7 +159,7 @@ class SurfacesBuilder {
     const SurfaceLaw law =
         law_of(pair.law, material_of(cable), 2.0 * line.radius, sizes.smallest, Band::about);
     const std::string where = name_of(pair);
-    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance);
+    const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance, line.radius);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
     points.points.through = sizes.through;
     const SurfacePlace place = place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side)]);

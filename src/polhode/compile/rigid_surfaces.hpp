@@ -31,8 +31,10 @@ struct CableSizes {
 [[nodiscard]] CableSizes cable_sizes(const ShapeSpec& shape, double radius);
 
 /// A shape for contact with surfaces of solids, in its own coordinates. Its edges are rounded by
-/// the tolerance of the gap, as far as the shape allows.
+/// the tolerance of the gap, as far as the shape allows. A tube has round sides, except for cables
+/// that could touch its bore on both sides: for them it consists of triangles.
+/// @param radius  Of a cable [m].
 [[nodiscard]] RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
-                                         double tolerance);
+                                         double tolerance, double radius = 0.0);
 
 }  // namespace polhode

@@ -36,6 +36,16 @@ void clamp_radially(const Vec3& y, double radius, Nearest& n) {
   n.D += radius / rho * t * t.transpose();
 }
 
+/// The ring between two radii about z. A point on the axis is nearest to all of it.
+void clamp_in_ring(const Vec3& y, double inner, double outer, Nearest& n) {
+  const double rho = std::hypot(y[0], y[1]), nearest = std::clamp(rho, inner, outer);
+  const Vec3 out = rho > 0.0 ? Vec3(y[0] / rho, y[1] / rho, 0.0) : Vec3(1.0, 0.0, 0.0);
+  const Vec3 t(-out[1], out[0], 0.0);
+  n.point += nearest * out;
+  if (rho > 0.0) n.D += nearest / rho * t * t.transpose();
+  if (rho == nearest) n.D += out * out.transpose();
+}
+
 /// Gap inside a core, which no contact should reach: exit through the nearest face.
 RigidSurface::Gap inside(const Vec3& depth, const Vec3 (&normals)[3], double offset) {
   Eigen::Index face = 0;
@@ -112,6 +122,19 @@ RigidSurface::Gap RigidSurface::plain_gap(const Vec3& y) const {
       clamp_along(y, 2, end, core);
       break;
     }
+    case Kind::tube: {
+      offset = rounding;
+      const double rho = std::hypot(y[0], y[1]), end = half[2] - rounding;
+      const double side = radius - rounding, bore = half[1] + rounding;
+      if (rho > bore && rho < side && std::abs(y[2]) < end) {
+        const Vec3 out(y[0] / rho, y[1] / rho, 0.0);
+        return inside({side - rho, rho - bore, end - std::abs(y[2])},
+                      {out, Vec3(-out), Vec3(0.0, 0.0, y[2] < 0.0 ? -1.0 : 1.0)}, offset);
+      }
+      clamp_in_ring(y, bore, side, core);
+      clamp_along(y, 2, end, core);
+      break;
+    }
     case Kind::box: {
       offset = rounding;
       const Vec3 core_half = half.array() - rounding;
@@ -137,6 +160,7 @@ double RigidSurface::extent() const {
     case Kind::capsule:
       return radius + half[2];
     case Kind::cylinder:
+    case Kind::tube:
       return std::hypot(radius, half[2]);
     case Kind::box:
       return half.norm();

@@ -9,16 +9,18 @@ namespace polhode {
 
 /// A rigid surface in contact with points of solids, in its own coordinates y.
 ///
-/// Gaps are distances to a convex core (plane, point, segment, disc, box) minus a radius, so they
-/// and their gradients are continuous; edges are rounded by `rounding`. Nonconvex shapes are
-/// surfaces of triangles, see RigidMesh.
+/// Gaps are distances to a core (plane, point, segment, disc, box) minus a radius, so they and
+/// their gradients are continuous; edges are rounded by `rounding`. A tube is a rectangle rotated
+/// about its axis; its gradient jumps only there. Other nonconvex shapes are surfaces of triangles,
+/// see RigidMesh.
 struct RigidSurface {
   enum class Kind : unsigned char {
-    plane,          ///< z = 0, the free side above.
-    sphere,         ///< About the origin.
-    capsule,        ///< About the z axis, ends of its axis at ±half[2].
-    cylinder,       ///< About the z axis, from −half[2] to half[2].
-    box,            ///< From −half to half.
+    plane,     ///< z = 0, the free side above.
+    sphere,    ///< About the origin.
+    capsule,   ///< About the z axis, ends of its axis at ±half[2].
+    cylinder,  ///< About the z axis, from −half[2] to half[2].
+    box,       ///< From −half to half.
+    tube,      ///< About the z axis, from −half[2] to half[2], with a bore of radius half[1].
     hollow_sphere,  ///< About the origin; its inside is free.
     convex,         ///< `solid`: an ellipsoid, cone or convex hull.
     mesh            ///< `triangles`: of a closed surface or a height field.
@@ -26,7 +28,7 @@ struct RigidSurface {
   Kind kind = Kind::plane;
   double radius = 0.0;       ///< [m]
   Vec3 half = Vec3::Zero();  ///< [m]
-  double rounding = 0.0;     ///< Of the edges of boxes and cylinders [m].
+  double rounding = 0.0;     ///< Of the edges of boxes, cylinders and tubes [m].
   std::shared_ptr<const contact::Shape> solid = nullptr;
   std::shared_ptr<const RigidMesh> triangles = nullptr;
 
