@@ -393,7 +393,7 @@ TEST(Connectors, RefuseWhatTheyCannotDo) {
   has(message(slider("type: translational_spring, spring_force: \"3*t\"", "1")),
       "'t' (the time) has no meaning here");
   has(message(slider("type: translational_spring, damper_force: \"-v\"", "1")),
-      "a damper does not push along its rate");
+      "a damper must not add energy");
   has(message(slider("type: translational_spring, spring_force: \"4*x m\"", "1")), "expects");
   has(message(bushed("type: dynamics, duration: 1 s, step: h",
                      ", stiffness_matrix: [[1, 2, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, "

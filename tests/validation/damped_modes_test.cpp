@@ -203,7 +203,7 @@ joints:
 analysis: {type: modes, count: 3}
 )");
   EXPECT_TRUE(r.modes.empty());
-  EXPECT_THAT(r.warnings.at(0), HasSubstr("every freedom of the model is held"));
+  EXPECT_THAT(r.warnings.at(0), HasSubstr("every degree of freedom is constrained"));
 }
 
 }  // namespace

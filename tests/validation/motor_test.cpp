@@ -247,8 +247,9 @@ TEST(Motor, RefusesWhatItCannotFollow) {
             std::string::npos);
   EXPECT_NE(fault(arm("coordinate: ry")).find("has no function of time"), std::string::npos);
   EXPECT_NE(fault(arm("coordinate: rx, angle: 0")).find("'rx' is not free"), std::string::npos);
-  EXPECT_NE(fault(kCart, {"loads.motor.joint=elbow"}).find("has not one free displacement"),
-            std::string::npos);
+  EXPECT_NE(
+      fault(kCart, {"loads.motor.joint=elbow"}).find("does not have exactly one free displacement"),
+      std::string::npos);
   EXPECT_NE(fault(arm("angle: \"t > 0.5 ? 1 : 0\"")).find("jumps by 1 rad at t = 0.5 s"),
             std::string::npos);
   EXPECT_NE(fault(arm("speed: 1"), {"analysis={type: statics}"}).find("is a rate"),

@@ -75,7 +75,8 @@ TEST(RunErrors, AStepTooLongForTheMotionIsSaid) {
   const RunSummary coarse = run(kPole);
   ASSERT_TRUE(coarse.errors);
   EXPECT_GT(coarse.errors->largest, 1e-2);
-  EXPECT_TRUE(warns(coarse, "steps are too long for the motion: body 'pole'"));
+  EXPECT_TRUE(
+      warns(coarse, "steps are too long for the motion: the estimated error of body 'pole'"));
   const RunSummary fine = run(kPole, {"variables.h=0.1 ms"});
   EXPECT_LT(fine.errors->largest, 1e-4);
   EXPECT_TRUE(fine.warnings.empty()) << fine.warnings.front();

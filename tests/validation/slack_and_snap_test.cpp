@@ -174,7 +174,7 @@ TEST(Held, ASolidWithoutAFreeNodeRunsInStaticsAndModes) {
   const ModalAnalysis modes(read_model_text(kHeldBlock, "cube.yaml", {"analysis.type=modes"}));
   ASSERT_TRUE(modes.converged()) << modes.message();
   EXPECT_TRUE(modes.report().modes.empty());
-  EXPECT_THAT(modes.report().warnings.at(0), HasSubstr("every freedom of the model is held"));
+  EXPECT_THAT(modes.report().warnings.at(0), HasSubstr("every degree of freedom is constrained"));
 }
 
 }  // namespace
