@@ -17,9 +17,6 @@ namespace {
 constexpr double kRestShare = 0.5;
 /// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// k d̂/F at which it carries a force there: without rebound, the force that stops the mass in a
-/// step.
-constexpr double kStopStiffness = 373.0;
 /// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
 /// w²).
 constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
@@ -93,15 +90,8 @@ void ContactSet::store_again(Point& p, double stiffness, double energy) const {
   set_band(p, stiffness, upper, p.data.history.floor);
 }
 
-/// Balls about their centres of mass, or one of them over a plane that stands.
-bool ContactSet::is_central(const Point& p) const {
-  if (!has_closed_form(p.data) || !p.data.a->corners[p.data.pair.i].isZero(0.0)) return false;
-  return p.data.b->solid == Solid::half_space ? shapes_[p.b].body == kGround
-                                              : p.data.b->centre.isZero(0.0);
-}
-
 /// Stiffness that stops the bodies within the tolerance [N/m]; Hertz [N/m^{3/2}].
-double ContactSet::impact_stiffness(const Point& p, double speed, double dt) const {
+double ContactSet::impact_stiffness(const Point& p, double speed) const {
   const double tolerance = p.data.normal.tolerance;
   const double per_square = speed * speed / (tolerance * tolerance);
   switch (p.data.normal.potential) {
@@ -112,9 +102,7 @@ double ContactSet::impact_stiffness(const Point& p, double speed, double dt) con
     case NormalPotential::barrier:
       break;
   }
-  const double stores = kImpactStiffness * p.mass * per_square;
-  if (p.data.history.restitution > 0.0 || !is_central(p)) return stores;
-  return std::min(stores, kStopStiffness * p.mass * std::abs(speed / dt) / tolerance);
+  return kImpactStiffness * p.mass * per_square;
 }
 
 /// Duration of an elastic impact on a spring of that stiffness [s].
@@ -146,7 +134,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
     set_phase(p, ContactPhase::compression);
-    return std::max(p.rest_stiffness, impact_stiffness(p, speed, dt));
+    return std::max(p.rest_stiffness, impact_stiffness(p, speed));
   };
   if (h.closed) {
     damp_load(p);
@@ -163,7 +151,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   h.approach = 0.0;
   if (p.damped && p.open_stiffness && speed < 0.0) {
     const double rests = gravity > 0.0 ? p.rest_stiffness : 0.0;
-    k = std::max(rests, impact_stiffness(p, speed, dt));
+    k = std::max(rests, impact_stiffness(p, speed));
   }
   if (p.damped && speed < 0.0 && contact_time(p, k, speed) > kResolved * std::abs(dt)) {
     h.approach = speed;
