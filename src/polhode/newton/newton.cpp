@@ -15,10 +15,6 @@ namespace {
 /// Increment below which the quadratic remainder is below round-off. No extra iteration is needed
 /// then, unless friction depends on multipliers, whose increments are not checked.
 constexpr double kNoExtraIterationBelow = 1e-10;
-/// Increment of an extra iteration below which its quadratic remainder is far below round-off. It
-/// consists of the softness of redundant rows, returned by the proximal centre; the contraction
-/// cannot be estimated from it, so the leak of the multipliers is measured.
-constexpr double kMeasuredBelow = 1e-9;
 /// Tolerance on the sum of further increments, the distance of the motion from the solution of its
 /// equations, which determines the errors of momenta and energy [-].
 constexpr double kLeft = 1e-13;
@@ -175,9 +171,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     const bool leaves = guard.near() && e > kLeaves * last;
     if (!leaves) stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
-    const bool measured = e < kMeasuredBelow && !system.stiff();  // by check() below
-    if (iterated_again && !kept && !measured && e * contraction * contraction > left &&
-        stalled < kStalled)
+    if (iterated_again && !kept && e * contraction * contraction > left && stalled < kStalled)
       continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
       return fail("contracts too slowly"), report;
