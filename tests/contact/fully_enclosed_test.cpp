@@ -33,8 +33,9 @@ std::optional<FullyEnclosed> ball_in(const Shape& surface, const Vec3& at, doubl
   const Mat3 turn = quaternion_from_rotation_vector({0.3, -0.2, 0.5}).toRotationMatrix();
   const Vec3 shift(3.0, -2.0, 1.0);
   const Mat3 upright = Mat3::Identity();
-  return buried(sphere("ball", diameter), surface, Placement<double>(shift + turn * at, upright, 0),
-                Placement<double>(shift, turn, 6));
+  return fully_enclosed(sphere("ball", diameter), surface,
+                        Placement<double>(shift + turn * at, upright, 0),
+                        Placement<double>(shift, turn, 6));
 }
 
 TEST(FullyEnclosed, FindsWhatLiesWithinAClosedSurface) {

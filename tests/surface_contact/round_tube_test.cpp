@@ -99,7 +99,7 @@ TEST(RoundTube, BendsARopeAsAFullBarDoes) {
     (void)finished(tube);
     (void)finished(turned);
     EXPECT_LT(largest_difference(tube, turned), 1e-8);
-    EXPECT_LT(largest_difference(tube, bar), 5e-6) << "whose steps may be cut elsewhere";
+    EXPECT_LT(largest_difference(tube, bar), 5e-6) << "2.5e-6 at 0.02 ms, 1e-14 before";
   }
 }
 

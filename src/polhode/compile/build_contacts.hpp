@@ -36,7 +36,7 @@ struct ContactMap {
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
     const SurfaceContactInterface* touching = nullptr;  ///< That group; owned by the System.
-    /// Likewise, if it is in contact with the mesh of a solid; else null.
+    /// That group if it is a contact with the mesh of a solid, else null.
     const SolidContact* on_mesh = nullptr;
   };
   std::vector<Surface> surfaces;

@@ -31,8 +31,8 @@ constexpr double kTolerance = 1e-3;
 constexpr double kOnSolid = 1e-2;
 /// Smallest pressure at gap zero, as a part of Young's modulus.
 constexpr double kPressure = 0.02;
-/// The same for a cable: the pressure of a one per cent strain on a drum of fifteen times the
-/// cable's radius.
+/// Smallest pressure of a cable at gap zero, as a part of Young's modulus: that of one per cent of
+/// strain on a drum of fifteen times the cable's radius.
 constexpr double kCablePressure = 1e-3;
 /// Band of edges as a part of that of faces: faces in contact keep their edges farther apart than
 /// that, so that edges add nothing to the pressure, even if their band ends at the initial gap.

@@ -14,8 +14,8 @@
 namespace polhode {
 
 /// Layout of each event's numbers in the state, see System::memory(): number of occurrences, time
-/// of the last one [s], whether its condition still holds, and of the last one energy loss [J] and
-/// largest impulse [N s or N m s].
+/// of the last one [s], whether its condition still holds, energy loss [J] and largest impulse
+/// [N s or N m s] of the last one.
 struct EventMemory {
   enum Entry : int { kCount, kTime, kSpent, kLost, kImpulse, kSize };
 };

@@ -14,7 +14,7 @@ namespace polhode {
 
 /// Centre line of a cable with contact: straight from node to node.
 struct CableLine {
-  /// Of the System, bonded to the bodies to which the cable's segments are attached.
+  /// Node numbers in the System; the nodes are bonded to the bodies of the cable's segments.
   std::vector<int> nodes;
   std::vector<double> arc;  ///< Arc lengths of the nodes along the unstressed cable [m].
   double radius = 0.0;      ///< [m]

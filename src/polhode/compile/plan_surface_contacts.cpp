@@ -13,8 +13,8 @@ namespace polhode {
 
 namespace {
 
-/// First key of a law that surfaces of solids do not support; empty if none. Constants of the force
-/// of a point, which surfaces choose themselves, are ignored.
+/// First key of a law that surfaces of solids do not support; empty if none. Constants of
+/// point forces are ignored: surfaces have their own.
 std::string strange_key(const ContactLawSpec& law) {
   if (law.static_friction > law.friction) return "static_friction";
   if (law.friction_across > 0.0 && law.friction_across != law.friction) return "friction_across";

@@ -39,7 +39,7 @@ struct PointHistory {
   double force = 0.0;               ///< λ of a closed point in the last step [N].
   double bristle_stiffness = 0.0;   ///< k_T, constant while closed [N/m].
   double gap = 0.0;                 ///< Of a closed point at t_n, as the last step computed it [m].
-  /// Of the non-smooth law: impulse on a in the last step, world [N s].
+  /// Impulse of the non-smooth law on a in the last step, world [N s].
   Vec3 impulse = Vec3::Zero();
   Vec3 turning = Vec3::Zero();  ///< Likewise, of rolling and torsional friction [N m s].
   bool closed = false;          ///< The gap was within the activation distance at t_n.

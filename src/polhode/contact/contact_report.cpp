@@ -76,7 +76,7 @@ void add_fully_enclosed(const std::vector<PlacedShape>& shapes, Touch&& touch, A
       const Placement<double> at_a = at(a), at_b = at(b);
       const Vec3 between = value(at_a.point(A.bound_centre)) - value(at_b.point(B.bound_centre));
       if (between.norm() > A.bound_radius + B.bound_radius) continue;
-      const std::optional<FullyEnclosed> found = buried(A, B, at_a, at_b);
+      const std::optional<FullyEnclosed> found = fully_enclosed(A, B, at_a, at_b);
       if (!found) continue;
       deepest[std::minmax(a, b)] = {std::min(a, b), std::max(a, b), found->depth,
                                     a < b ? found->normal : Vec3(-found->normal)};

@@ -15,8 +15,9 @@ Vec3 witness(const Shape& a) { return a.corners.empty() ? a.centre : a.corners.f
 
 }  // namespace
 
-std::optional<FullyEnclosed> buried(const Shape& a, const Shape& b, const Placement<double>& at_a,
-                                    const Placement<double>& at_b) {
+std::optional<FullyEnclosed> fully_enclosed(const Shape& a, const Shape& b,
+                                            const Placement<double>& at_a,
+                                            const Placement<double>& at_b) {
   const Vec3 y = at_b.to_body(value(at_a.point(witness(a))));
   const bool bordered =
       std::any_of(b.edges.begin(), b.edges.end(), [](const Shape::Edge& e) { return e.open; });

@@ -17,8 +17,8 @@ struct FullyEnclosed {
 /// Whether a shape lies inside a closed surface, or below one with a border, without intersecting
 /// it. Nearby features cannot decide this, as triangles have two sides.
 /// @param b  A Solid::surface.
-[[nodiscard]] std::optional<FullyEnclosed> buried(const Shape& a, const Shape& b,
-                                                  const Placement<double>& at_a,
-                                                  const Placement<double>& at_b);
+[[nodiscard]] std::optional<FullyEnclosed> fully_enclosed(const Shape& a, const Shape& b,
+                                                          const Placement<double>& at_a,
+                                                          const Placement<double>& at_b);
 
 }  // namespace polhode::contact

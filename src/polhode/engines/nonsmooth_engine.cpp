@@ -102,10 +102,8 @@ bool NonsmoothEngine::move(const State& state, const Trial& trial) {
     double change = 0.0, size = 0.0;
     for (int b = 0; b < bodies_; ++b) {
       BodyStep& s = steps_[b];
-      const Vec3 before = s.u,
-                 normal_impulse = dt * loads_now_[b].head<3>() + impulses_[b].head<3>();
-      s.u = dt *
-            (s.v_n + 0.5 * (dt * system_->gravity() + normal_impulse / system_->bodies()[b].mass));
+      const Vec3 before = s.u, impulse = dt * loads_now_[b].head<3>() + impulses_[b].head<3>();
+      s.u = dt * (s.v_n + 0.5 * (dt * system_->gravity() + impulse / system_->bodies()[b].mass));
       change = std::max(change, per_length * (s.u - before).norm());
       size = std::max(size, per_length * s.u.norm());
     }
