@@ -126,7 +126,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
                                                   const StepContext& context,
                                                   std::span<const char> moved) override;
   void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
-                     std::span<Vec6> increments) const override;
+                     std::span<const FreeMotion> free, std::span<Vec6> increments) const override;
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;

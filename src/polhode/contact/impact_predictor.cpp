@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newton predictor for steps in which bodies would interpenetrate at the end.
+// Newton predictor for balls in contact.
 #include <algorithm>
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace polhode::contact {
 namespace {
 
 /// Maximum number of Gauss-Seidel sweeps over all points. They end when no gap changes by more than
-/// this part of its clearance.
+/// this part of its clearance, and no friction force by more than this part of its bound.
 constexpr int kSweeps = 100, kMaxIterations = 30;
 constexpr double kAgreed = 0.1;
 constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
@@ -20,29 +20,59 @@ constexpr double kFar = 0.5;
 
 /// A point between two balls, or a ball and a plane, and the effect of its contact on their motion.
 struct Meeting {
-  const PointData* data;
-  const SpherePairCache* balls;
-  Vec3 along;               ///< Line of centres at t_n.
-  double share_a, share_b;  ///< Inverse masses [1/kg].
-  double held;  ///< Contact force that the prediction contains already: of resting bodies [N].
-  double push = 0.0;  ///< Relative displacement by the contact, times mass [kg m].
+  const PointData* data = nullptr;
+  const SpherePairCache* balls = nullptr;
+  Vec3 along = Vec3::Zero();            ///< Line of centres at t_n.
+  double share_a = 0.0, share_b = 0.0;  ///< Inverse masses [1/kg].
+  double turning_a = 0.0,
+         turning_b = 0.0;                 ///< Inverse moments of inertia, on the mean [1/(kg m²)].
+  double radius_a = 0.0, radius_b = 0.0;  ///< [m]
+  double push = 0.0;                      ///< Normal force over K [kg m].
+  bool rubs = false;
+  Vec3 bristle = Vec3::Zero();   ///< At t_n, in the tangent plane [m].
+  Vec3 friction = Vec3::Zero();  ///< On a, over K [kg m].
 
   [[nodiscard]] double shares() const { return share_a + share_b; }
+  /// Displacement of the points of contact relative to each other, by a friction force over K.
+  [[nodiscard]] double tangential_shares() const {
+    return shares() + radius_a * radius_a * turning_a + radius_b * radius_b * turning_b;
+  }
+  /// Adds the displacements by a change of the forces over K.
+  void move(std::span<Vec6> increments, int ground, double more, const Vec3& rub) const {
+    const Vec3 force = more * along + rub, moment = along.cross(rub);
+    Vec6& of_a = increments[balls->a];
+    of_a.head<3>() += share_a * force;
+    of_a.tail<3>() -= radius_a * turning_a * moment;
+    if (balls->b == ground) return;
+    Vec6& of_b = increments[balls->b];
+    of_b.head<3>() -= share_b * force;
+    of_b.tail<3>() -= radius_b * turning_b * moment;
+  }
+  /// Slip of a relative to b.
+  [[nodiscard]] Vec3 slip(std::span<const Vec6> increments, int ground) const {
+    const Vec6& of_a = increments[balls->a];
+    Vec3 u = of_a.head<3>() + radius_a * along.cross(Vec3(of_a.tail<3>()));
+    if (balls->b != ground) {
+      const Vec6& of_b = increments[balls->b];
+      u -= of_b.head<3>() - radius_b * along.cross(Vec3(of_b.tail<3>()));
+    }
+    return u - along.dot(u) * along;
+  }
 };
 
 /// Gap at the end of the step if only this contact acts additionally: the root of K(g − free) =
-/// λ(g_0, g) − held, whose sides increase and decrease with g.
-/// @param free  Gap without this contact's impulse [m]. @param K  Of both masses [N/m].
-double gap_with(const Meeting& m, double free, double K, double dt) {
+/// λ(g_0, g), whose sides increase and decrease with g.
+/// @param free  Gap without this contact's force [m]. @param now  First guess [m].
+/// @param K  Of both masses [N/m].
+double gap_with(const Meeting& m, double free, double now, double K, double dt) {
   const double reach = m.balls->reach, least = m.balls->least_gap, gap_n = m.balls->gap_n;
-  const double apart = free - m.held / K;
-  if (apart >= reach) return apart;
-  double low = std::max(least, apart), high = std::max({reach, low, free});
-  double g = 0.5 * (low + std::min(high, std::max(low, gap_n)));
+  if (free >= reach) return free;
+  double low = std::max(least, free), high = std::max(reach, low);
+  double g = now > low && now < high ? now : 0.5 * (low + std::clamp(gap_n, low, high));
   for (int k = 0; k < kMaxIterations; ++k) {
     const double enough = kExactEnough * (g - least);
     const NormalForce f = normal_force(*m.data, gap_n, g, dt);
-    const double rest = K * (g - apart) - f.lambda;
+    const double rest = K * (g - free) - f.lambda;
     (rest < 0.0 ? low : high) = g;
     const double next = g - rest / (K + std::max(0.0, f.stiffness));
     if (std::abs(next - g) < enough) return next > low && next < high ? next : g;
@@ -51,18 +81,71 @@ double gap_with(const Meeting& m, double free, double K, double dt) {
   return g;
 }
 
+/// Friction force over K on a, if only this contact acts additionally. @eq{contact-bristle}
+/// @param free  Slip without this contact's friction [m].
+Vec3 friction_with(const Meeting& m, const Vec3& free, double K, double dt) {
+  const FrictionLaw& f = m.data->friction;
+  const double limit = friction_limit(*m.data, K * m.push), k = f.stiffness;
+  const double factor = 0.5 + f.damping / (k * dt);
+  Vec3 bristle = m.bristle;
+  if (const double size = k * bristle.norm(); size > limit) bristle *= limit / size;
+  const Vec3 force =
+      -k * (bristle + factor * free) / (1.0 + k * factor * m.tangential_shares() / K);
+  const double size = force.norm();
+  return (size > limit ? limit / size : 1.0) / K * force;
+}
+
 }  // namespace
 
-/// Predictor of impacts by Gauss-Seidel iteration over the points. Friction and rotations are
-/// neglected, as they matter little to impacts of balls. Without it the fastest pair would limit
-/// the step of all bodies. @eq{contact-impact-predictor}
+/// Predictor of contact by Gauss-Seidel iteration over the points of balls, with the laws of the
+/// step itself, linear only in the rotations. Without it the fastest pair would limit the step of
+/// all bodies, and Newton's method would find in many iterations which points slide.
+/// @eq{contact-impact-predictor}
 void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContext& context,
-                               std::span<Vec6> increments) const {
+                               std::span<const FreeMotion> free, std::span<Vec6> increments) const {
   const double K = context.ga.alpha_m / (context.ga.beta * context.dt * context.dt);
   const auto ground = static_cast<int>(steps.size()) - 1;
-  const auto share = [&](int body) {
-    return body == ground ? 0.0 : 1.0 / system_->bodies()[body].mass;
-  };
+  // Predictions contain all forces of t_n. Where those of points below replace them, bodies start
+  // from their motion without contact.
+  std::vector<char> from_free(steps.size(), 0);
+  for (int b = 0; b < ground; ++b) from_free[b] = free[b].known;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].data.history.closed && !points_[i].sensor && !balls_[i].holds)
+      from_free[balls_[i].a] = from_free[balls_[i].b] = 0;
+  for (int b = 0; b < ground; ++b)
+    if (from_free[b]) increments[b] = free[b].increment;
+
+  std::vector<Meeting> meetings;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const SpherePairCache& balls = balls_[i];
+    if (!balls.holds || points_[i].sensor) continue;
+    const PointData& data = points_[i].data;
+    Meeting m;
+    m.data = &data;
+    m.balls = &balls;
+    m.along = balls.offset.normalized();
+    const auto take = [&](int body, double radius, double& share, double& turning, double& arm) {
+      if (body == ground) return;
+      share = 1.0 / system_->bodies()[body].mass;
+      turning = 3.0 / system_->bodies()[body].inertia.trace();
+      arm = radius;
+    };
+    take(balls.a, data.a->rounding, m.share_a, m.turning_a, m.radius_a);
+    take(balls.b, data.b->rounding, m.share_b, m.turning_b, m.radius_b);
+    m.rubs = data.friction.mu > 0.0 && !data.history.in_impact();
+    if (data.history.closed) {
+      m.push = data.history.force / K;
+      if (m.rubs) {
+        m.bristle = data.history.bristle - m.along.dot(data.history.bristle) * m.along;
+        m.friction = -data.friction.stiffness / K * m.bristle;
+      }
+      Meeting start = m;  // moves only the bodies that start without contact forces
+      if (!from_free[balls.a]) start.share_a = start.turning_a = 0.0;
+      if (balls.b == ground || !from_free[balls.b]) start.share_b = start.turning_b = 0.0;
+      start.move(increments, ground, m.push, m.friction);
+    }
+    meetings.push_back(m);
+  }
   const auto gap_of = [&](const SpherePairCache& balls) {
     const Vec3 u_a = increments[balls.a].head<3>();
     const Vec3 moved = balls.b == ground ? u_a : Vec3(u_a - increments[balls.b].head<3>());
@@ -70,32 +153,25 @@ void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContex
                ? balls.gap_n + balls.offset.dot(moved) / balls.distance
                : balls.gap_after(moved);
   };
-  std::vector<Meeting> meetings;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const SpherePairCache& balls = balls_[i];
-    if (!balls.holds || points_[i].sensor) continue;
-    const PointData& data = points_[i].data;
-    Meeting m{&data, &balls, balls.offset.normalized(), share(balls.a), share(balls.b), 0.0};
-    if (data.history.closed) {
-      m.held = data.history.force;
-      const double gap = gap_of(balls);
-      if (gap > balls.least_gap)
-        m.held = std::min(m.held, normal_force(data, balls.gap_n, gap, context.dt).lambda);
-    }
-    meetings.push_back(m);
-  }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double most = 0.0;
     for (Meeting& m : meetings) {
-      const double free = gap_of(*m.balls) - m.shares() * m.push;
-      if (free >= m.balls->reach && m.push == 0.0 && m.held == 0.0) continue;
-      const double gap = gap_with(m, free, K / m.shares(), context.dt);
-      const double push = (gap - free) / m.shares(), more = push - m.push;
+      const double now = gap_of(*m.balls), gap_without = now - m.shares() * m.push;
+      if (gap_without >= m.balls->reach && m.push == 0.0) continue;
+      const double gap = gap_with(m, gap_without, now, K / m.shares(), context.dt);
+      const double push = (gap - gap_without) / m.shares(), more = push - m.push;
       const double clearance = std::min(gap, m.balls->reach) - m.balls->least_gap;
       most = std::max(most, m.shares() * std::abs(more) / clearance);
       m.push = push;
-      increments[m.balls->a].head<3>() += m.share_a * more * m.along;
-      if (m.balls->b != ground) increments[m.balls->b].head<3>() -= m.share_b * more * m.along;
+      Vec3 rub = Vec3::Zero();
+      if (m.rubs) {
+        const Vec3 slip = m.slip(increments, ground) - m.tangential_shares() * m.friction;
+        const Vec3 friction = friction_with(m, slip, K, context.dt);
+        rub = friction - m.friction;
+        if (push > 0.0) most = std::max(most, K * rub.norm() / friction_limit(*m.data, K * push));
+        m.friction = friction;
+      }
+      m.move(increments, ground, more, rub);
     }
     if (most < kAgreed) break;
   }

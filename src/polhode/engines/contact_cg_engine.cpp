@@ -122,6 +122,26 @@ void ContactCgEngine::start_inertia(const State& state, const StepContext& conte
   }
 }
 
+/// Increments at which the momentum balance holds without loads and contacts, of bodies without
+/// loads. @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot}
+std::vector<PointwiseContacts::FreeMotion> ContactCgEngine::free_motions(
+    const StepContext& context) const {
+  std::vector<PointwiseContacts::FreeMotion> motions(inertia_.size());
+  for (PointwiseContacts::FreeMotion& m : motions) m.known = true;
+  for (const int b : acted_on_) motions[b].known = false;
+  const double per_speed = context.ga.kappa / context.dt;
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    if (!motions[b].known) continue;
+    const BodyData& body = system_->bodies()[b];
+    const Inertia& at = inertia_[b];
+    const BodyStep& s = steps_[b];
+    const Vec3 v = at.force / (per_speed * body.mass);
+    const Vec3 W = body.inertia.ldlt().solve(s.Lambda_n.transpose() * at.moment) / per_speed;
+    motions[b].increment << (v - at.v) / s.rate, s.Lambda_n * (W - at.W) / s.rate;
+  }
+  return motions;
+}
+
 /// @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot} @eq{eq:td-incremental-rotation}
 void ContactCgEngine::move(int body, const Vec3& u, const Vec3& theta) {
   BodyStep& s = steps_[body];
@@ -163,7 +183,7 @@ void ContactCgEngine::begin_step(const State& state, Trial& trial) {
   contacts_->cover(steps_, trial.context, x_);
   std::vector<Vec6> predicted;  // bodies of joints keep their prediction, for which their rows hold
   for (const int b : coupled_) predicted.push_back(x_[b]);
-  pointwise_->place_impacts(steps_, trial.context, x_);
+  pointwise_->place_impacts(steps_, trial.context, free_motions(trial.context), x_);
   for (std::size_t k = 0; k < coupled_.size(); ++k) x_[coupled_[k]] = predicted[k];
   const double part = contacts_->filter(steps_, x_);
   for (int b = 0; b < system_->body_count(); ++b)

@@ -50,6 +50,8 @@ class ContactCgEngine final : public NewtonEngine {
 
  private:
   void start_inertia(const State& state, const StepContext& context);
+  [[nodiscard]] std::vector<PointwiseContacts::FreeMotion> free_motions(
+      const StepContext& context) const;
   void move(int body, const Vec3& u, const Vec3& theta);
   void evaluate(const State& state, const Trial& trial);
   void move_all();

@@ -113,7 +113,8 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     place_[moving[k]] = k;
     block_[k] = own_[moving[k]];
   }
-  inverse_ = block_;
+  diagonal_ = block_;
+  preconditioner_ = Preconditioner::none;
   springs_.clear();
   friction_.clear();
   ties_.clear();
@@ -127,20 +128,114 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     for (int j = 0; j < 3; ++j) s.C[j] = four(from.C.col(j), squared);
     s.arm_a = four(from.arm_a, ratio);
     s.arm_b = four(from.arm_b, ratio);
-    if (s.a != count) add(s, s.arm_a, inverse_[s.a]);
-    if (s.b != count) add(s, s.arm_b, inverse_[s.b]);
+    if (s.a != count) add(s, s.arm_a, diagonal_[s.a]);
+    if (s.b != count) add(s, s.arm_b, diagonal_[s.b]);
     springs_.push_back(s);
     if (!from.friction_slope.isZero(0.0))
       friction_.push_back(
           {four(from.friction_slope, squared), four(from.normal, 1.0), s.arm_a, s.arm_b, s.a, s.b});
   }
+}
+
+void BlockCg::invert_diagonal() {
+  preconditioner_ = Preconditioner::diagonal;
+  inverse_.resize(diagonal_.size());
   // With springs so stiff that the body's own block is lost in rounding, any positive definite
   // block is suitable.
-  for (int k = 0; k < count; ++k)
-    if (Block inverse; invert(inverse_[k], inverse))
-      inverse_[k] = inverse;
-    else
-      inverse_[k] = own_inverse_[moving[k]];
+  for (std::size_t k = 0; k < diagonal_.size(); ++k)
+    if (!invert(diagonal_[k], inverse_[k])) inverse_[k] = own_inverse_[moving_[k]];
+}
+
+/// Counting sort of the springs by body, and of each body's by the number of the other one.
+void BlockCg::sort_neighbours() {
+  const auto n = static_cast<int>(block_.size());
+  first_.assign(block_.size() + 1, 0);
+  for (const Spring& s : springs_)
+    if (s.a != n && s.b != n) ++first_[s.a], ++first_[s.b];
+  for (int k = 0, sum = 0; k <= n; ++k) {
+    const int count = first_[k];
+    first_[k] = sum;
+    sum += count;
+  }
+  neighbours_.resize(first_[block_.size()]);
+  later_.assign(first_.begin(), first_.end() - 1);
+  const auto put = [&](const Spring& s, int own, int other, Four arm, Four other_arm) {
+    neighbours_[later_[own]++] = {{s.C[0], s.C[1], s.C[2]}, arm, other_arm, other};
+  };
+  for (const bool larger : {false, true})
+    for (const Spring& s : springs_) {
+      if (s.a == n || s.b == n) continue;
+      if ((s.b > s.a) == larger) put(s, s.a, s.b, s.arm_a, s.arm_b);
+      if ((s.a > s.b) == larger) put(s, s.b, s.a, s.arm_b, s.arm_a);
+    }
+  for (int k = 0; k < n; ++k) {
+    later_[k] = first_[k];
+    while (later_[k] < first_[k + 1] && neighbours_[later_[k]].other < k) ++later_[k];
+  }
+}
+
+/// Pivots D_k = A_kk − Σ A_kj D_j⁻¹ A_jk over the bodies j before k. @eq{cg-sweeps}
+void BlockCg::eliminate() {
+  preconditioner_ = Preconditioner::sweeps;
+  sort_neighbours();
+  inverse_.resize(diagonal_.size());
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    Block pivot = diagonal_[k];
+    for (int i = first_[k]; i < later_[k]; ++i) {
+      const Neighbour& s = neighbours_[i];
+      // C W C with W the compliance of the other body at the point
+      const Block& Y = inverse_[s.other];
+      Spring t;
+      Four by_force[3];
+      for (int j = 0; j < 3; ++j) {
+        Pair unit{};
+        unit.moved = s.C[j];
+        unit.turned = cross(s.other_arm, s.C[j]);
+        const Pair x = times(Y, unit);
+        by_force[j] = x.moved + cross(x.turned, s.other_arm);
+      }
+      for (int j = 0; j < 3; ++j)
+        t.C[j] = -(by_force[j][0] * s.C[0] + by_force[j][1] * s.C[1] + by_force[j][2] * s.C[2]);
+      add(t, s.arm, pivot);
+    }
+    if (!invert(pivot, inverse_[k]) && !invert(diagonal_[k], inverse_[k]))
+      inverse_[k] = own_inverse_[moving_[k]];
+  }
+}
+
+double BlockCg::precondition(const Vectors& r, Vectors& z) const {
+  const std::size_t n = diagonal_.size();
+  double product = 0.0;
+  if (preconditioner_ == Preconditioner::diagonal) {
+    for (std::size_t k = 0; k < n; ++k) {
+      z[k] = times(inverse_[k], r[k]);
+      product += dot(r[k], z[k]);
+    }
+    return product;
+  }
+  const auto subtract = [&](const Neighbour& s, Pair& from) {
+    const Pair& x = z[s.other];
+    const Four u = x.moved + cross(x.turned, s.other_arm);
+    const Four F = u[0] * s.C[0] + u[1] * s.C[1] + u[2] * s.C[2];
+    from.moved += F;
+    from.turned += cross(s.arm, F);
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    Pair left = r[k];
+    for (int i = first_[k]; i < later_[k]; ++i) subtract(neighbours_[i], left);
+    z[k] = times(inverse_[k], left);
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    if (later_[k] < first_[k + 1]) {
+      Pair left{};
+      for (int i = later_[k]; i < first_[k + 1]; ++i) subtract(neighbours_[i], left);
+      const Pair more = times(inverse_[k], left);
+      z[k].moved += more.moved;
+      z[k].turned += more.turned;
+    }
+    product += dot(r[k], z[k]);
+  }
+  return product;
 }
 
 /// y = A p. Fixed bodies have a part of p that is zero, and a part of y that is not used.
@@ -200,13 +295,10 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
   z_.resize(n);
   p_.assign(n + 1, zero);
   y_.assign(n + 1, zero);
-  double rz = 0.0;
   carried_.setZero();
   if (!rows_.empty()) project(r_);
-  for (std::size_t k = 0; k < n; ++k) {
-    z_[k] = p_[k] = times(inverse_[k], r_[k]);
-    rz += dot(r_[k], z_[k]);
-  }
+  double rz = precondition(r_, z_);
+  std::copy(z_.begin(), z_.end(), p_.begin());
   const double enough = part * rz;
   int iterations = 0;
   while (iterations < most && rz > enough) {
@@ -216,15 +308,13 @@ int BlockCg::iterate(const Vectors& b, double part, int most) {
     for (std::size_t k = 0; k < n; ++k) curvature += dot(p_[k], y_[k]);
     if (!(curvature > 0.0)) break;
     const auto alpha = static_cast<float>(rz / curvature);
-    double next = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
       x_[k].moved += alpha * p_[k].moved;
       x_[k].turned += alpha * p_[k].turned;
       r_[k].moved -= alpha * y_[k].moved;
       r_[k].turned -= alpha * y_[k].turned;
-      z_[k] = times(inverse_[k], r_[k]);
-      next += dot(r_[k], z_[k]);
     }
+    double next = precondition(r_, z_);
     if (!rows_.empty()) {
       for (const int k : row_bodies_) next -= dot(r_[k], z_[k]);
       project(r_);
@@ -249,6 +339,7 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
   multipliers_.setZero(static_cast<Eigen::Index>(rows_.size()));
   const double size = scale(rhs, force_of_rows(), basis_[0]);
   if (size == 0.0) return 0;
+  if (preconditioner_ == Preconditioner::none) ties_.empty() ? eliminate() : invert_diagonal();
   const Vectors asked = rows_.empty() ? Vectors{} : fulfil_rows(size, basis_[0]);
   const int iterations =
       friction_.empty() || directions == 0

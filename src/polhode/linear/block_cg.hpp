@@ -11,12 +11,16 @@ namespace polhode {
 
 /// Conjugate gradient solver for bodies coupled only by springs between points: a symmetric
 /// positive definite matrix of one 6×6 block per body and one spring per contact, never assembled.
-/// It is preconditioned by the inverse diagonal blocks, springs included. Friction that follows
-/// normal forces is unsymmetric: GMRES adds it, preconditioned by the conjugate gradients.
+/// It is preconditioned by a forward and a backward sweep over the bodies, (D + L) D⁻¹ (D + Lᵀ)
+/// with L the blocks below the diagonal and D the pivots of an elimination without fill, which is
+/// exact where no loop of contacts exists (Meurant, Computer Solution of Large Linear Systems,
+/// 1999, section 8.5). Friction that follows normal forces is unsymmetric: GMRES adds it,
+/// preconditioned by the conjugate gradients.
 ///
 /// A few joints, springs and motors may couple bodies as well. Their rows are enforced by
 /// projection (Gould, Hribar and Nocedal, SIAM J. Sci. Comput. 23, 2001): with M the matrix of the
-/// inverse blocks and D = G M⁻¹ Gᵀ, factored, every direction satisfies G z = 0. @eq{cg-rows}
+/// diagonal blocks, the preconditioner then, and D = G M⁻¹ Gᵀ, factored, every direction satisfies
+/// G z = 0. @eq{cg-rows}
 ///
 /// Works in single precision, four numbers at a time, on a matrix scaled to blocks of size one:
 /// Newton iterations need only a few digits of an increment and correct the rest in the next one.
@@ -78,6 +82,11 @@ class BlockCg {
   static void add(const Spring& spring, Four arm, Block& block);
   static bool invert(const Block& block, Block& inverse);
   void multiply();
+  void invert_diagonal();
+  void sort_neighbours();
+  void eliminate();
+  /// z = M⁻¹ r with the preconditioner M. @returns r·z.
+  double precondition(const Vectors& r, Vectors& z) const;
   /// Right-hand side scaled to size one. @param least  Lower bound of its size.
   /// @returns its size before; zero if it is zero.
   double scale(std::span<const Vec6> rhs, double least, Vectors& b) const;
@@ -100,8 +109,19 @@ class BlockCg {
   double per_length_ = 1.0, per_turn_ = 1.0;  ///< Scales of the matrix: S A S.
   std::vector<Block> own_, own_inverse_;      ///< By body.
   std::vector<int> moving_, place_;           ///< Moving bodies; by body its position among them.
-  std::vector<Block> block_, inverse_;        ///< Of moving bodies, as all that follows.
+  std::vector<Block> block_;                  ///< Of moving bodies, as all that follows.
+  std::vector<Block> diagonal_;               ///< With springs.
+  std::vector<Block> inverse_;                ///< Of diagonal_, or of the pivots of the sweeps.
+  enum class Preconditioner { none, diagonal, sweeps };
+  Preconditioner preconditioner_ = Preconditioner::none;  ///< That inverse_ belongs to.
   std::vector<Spring> springs_;
+  /// A spring as one of its bodies sees it.
+  struct Neighbour {
+    Four C[3], arm, other_arm;
+    int other;
+  };
+  std::vector<Neighbour> neighbours_;  ///< By body; those of smaller number first.
+  std::vector<int> first_, later_;     ///< Of each body; the first of a larger number.
   std::vector<FrictionTerm> friction_;
   struct ScaledTie {
     Block ab, ba;

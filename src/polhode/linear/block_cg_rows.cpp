@@ -31,6 +31,7 @@ void BlockCg::set_ties(std::span<const Tie> ties) {
 
 bool BlockCg::set_rows(std::span<const Row> rows) {
   const auto count = static_cast<int>(moving_.size()), n = static_cast<int>(rows.size());
+  if (n > 0) invert_diagonal();
   rows_.clear();
   row_bodies_.clear();
   row_values_.setZero(n);

@@ -20,6 +20,9 @@ constexpr double kNoExtraIterationBelow = 1e-10;
 constexpr double kLeft = 1e-13;
 /// The same for stiff bristles and stops, which turn tiny displacements into forces.
 constexpr double kLeftStiff = 1e-18;
+/// Curvature of exact constraints, in units of 1/ℓ: an increment e after one of e' leaves at most
+/// kCurvature·e·e' if the tangents are complete.
+constexpr double kCurvature = 1e3;
 /// Ratio to the smallest increment. Small increments are round-off when none has been below that
 /// for several iterations.
 constexpr double kGains = 0.7;
@@ -165,14 +168,16 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     trial.lambda_centre = trial.lambda;  // rows of loops: tree joints need no centre
     if (!iterated_again && (e > kNoExtraIterationBelow || system.stiff()) && !kept) continue;
     // Quadratic convergence leaves e (e/last)² or less. Redundant rows, whose multipliers converge
-    // by proximal iterations, contract by a constant factor: these need further iterations.
+    // by proximal iterations, contract by a constant factor: these need further iterations. With
+    // constraints alone such a remainder is g ≠ 0, balanced by momentum, which the check bounds.
     const double contraction = last > 0.0 ? e / last : 1.0;
+    double remainder = e * contraction * contraction;
+    if (system.only_constraints()) remainder = std::min(remainder, kCurvature * e * last);
     slowly_contracting = iterated_again && contraction > kSlowContraction;
     const bool leaves = guard.near() && e > kLeaves * last;
     if (!leaves) stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
-    if (iterated_again && !kept && e * contraction * contraction > left && stalled < kStalled)
-      continue;
+    if (iterated_again && !kept && remainder > left && stalled < kStalled) continue;
     if (stalled >= kStalled && e > kRoundOffBelow * options.tolerance)
       return fail("contracts too slowly"), report;
     if (done.rotation > options.max_rotation) {

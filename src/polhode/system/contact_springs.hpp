@@ -38,10 +38,15 @@ class PointwiseContacts {
   virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
                                                           const StepContext& context,
                                                           std::span<const char> moved) = 0;
-  /// Limits predicted increments, pair by pair, near the positions at which impacts in the step
-  /// will stop them.
-  /// @param steps  Without any motion yet.
+  /// Motion of a body in a step without contact forces.
+  struct FreeMotion {
+    bool known = false;  ///< Only gravity and contacts act on the body.
+    Vec6 increment = Vec6::Zero();
+  };
+  /// Replaces predicted increments of balls by those that their contacts leave them.
+  /// @param steps  Without any motion yet. @param free  By body.
   virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
+                             std::span<const FreeMotion> free,
                              std::span<Vec6> increments) const = 0;
 };
 

@@ -51,6 +51,8 @@ void System::finish() {
       if (traits.has_barrier) barriers_.push_back(index);
       if (traits.prescribes) drives_.push_back(index);
       stiff_ = stiff_ || (traits.rows > 0 && traits.works);
+      only_constraints_ = only_constraints_ && traits.rows > 0 && !traits.works &&
+                          !traits.dissipates && !traits.compliant && !traits.has_barrier;
       if (basis) candidates.push_back({a, b, index, traits.reversible});
       shapes.push_back(shape_code(basis));
       refs_.push_back({g, i, a, b, traits.rows, rows_, histories});
@@ -83,6 +85,7 @@ void System::finish() {
     }
   }
   nodes_.finish(n);
+  only_constraints_ = only_constraints_ && nodes_.count() == 0 && contacts_ == nullptr;
   for (int g = 0; g < nodes_.group_count(); ++g)
     stiff_ = stiff_ || nodes_.group(g).barrier_constraint();
   conservative_ = conservative_ && nodes_.conservative();

@@ -92,6 +92,9 @@ class System {
   [[nodiscard]] bool is_off(const State& state, int interaction) const;
   /// Whether joints have friction or stops: forces that change strongly over tiny displacements.
   [[nodiscard]] bool stiff() const { return stiff_; }
+  /// Whether bodies interact by exact constraints alone, whose tangents are complete, so that
+  /// Newton's method converges quadratically but for the proximal iteration of redundant rows.
+  [[nodiscard]] bool only_constraints() const { return only_constraints_; }
   /// Interactions with an inadmissible configuration.
   [[nodiscard]] const std::vector<int>& barriers() const { return barriers_; }
   /// Interactions with rows that follow functions of time.
@@ -137,7 +140,7 @@ class System {
   int rows_ = 0;
   std::vector<double> carried_mass_;
   double mean_mass_ = 1.0, length_ = 1.0;
-  bool conservative_ = true, dissipates_ = false, stiff_ = false;
+  bool conservative_ = true, dissipates_ = false, stiff_ = false, only_constraints_ = true;
   std::vector<int> barriers_, drives_;
   int memory_size_ = 0;
 };
