@@ -98,8 +98,11 @@ TEST(RoundTube, BendsARopeAsAFullBarDoes) {
                turned = rope("tube: [0.1, 0.06, 0.4]", 2.0, step);
     (void)finished(tube);
     (void)finished(turned);
-    EXPECT_LT(largest_difference(tube, turned), 1e-8);
-    EXPECT_LT(largest_difference(tube, bar), 5e-6) << "2.5e-6 at 0.02 ms, 1e-14 before";
+    // In 1,500 steps with impacts rounding grows to 2e-6 m: a turn about the axis of the tube does
+    // as much as the other shape, by one compiler's options and not by another's.
+    const double rounding = step > 1e-4 ? 1e-8 : 5e-6;
+    EXPECT_LT(largest_difference(tube, turned), rounding);
+    EXPECT_LT(largest_difference(tube, bar), rounding);
   }
 }
 
