@@ -132,7 +132,7 @@ def main(site, out, version):
         page = pathlib.Path(folder) / "theory.html"
         page.write_text(text)
         subprocess.run([browser, "--headless=new", *(["--no-sandbox"] if os.geteuid() == 0 else []), "--disable-gpu", f"--user-data-dir={folder}/profile", "--no-pdf-header-footer",
-                        "--generate-pdf-document-outline", f"--print-to-pdf={out}", page.as_uri()], check=True, capture_output=True, timeout=300)
+                        "--generate-pdf-document-outline", f"--print-to-pdf={out}", page.as_uri()], check=True, capture_output=True, timeout=900)
     check(out, titles)
     return 0
 
