@@ -14,6 +14,7 @@ const expect = (condition, text) => { if (!condition) { failed++; console.log(`F
 
 async function open(path, options, look) {
   const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, offline: true, ...options }), page = await context.newPage();
+  context.setDefaultNavigationTimeout(180_000);  // a busy machine
   const faults = [];
   page.on("console", (m) => { if (["error", "warning"].includes(m.type()) && !/GL Driver Message|software WebGL/.test(m.text())) faults.push(m.text()); });
   page.on("pageerror", (e) => faults.push(String(e)));
