@@ -13,9 +13,9 @@
 
 namespace polhode {
 
-/// Layout of each event's numbers in the state, see System::memory(): number of occurrences, time
-/// of the last one [s], whether its condition still holds, energy loss [J] and largest impulse
-/// [N s or N m s] of the last one.
+/// Layout of each event's entries in the state, see System::memory(): number of occurrences, time
+/// of the last occurrence [s], whether the condition is still fulfilled, energy loss [J] and
+/// largest impulse [N s or N m s] of the last occurrence.
 struct EventMemory {
   enum Entry : int { kCount, kTime, kSpent, kLost, kImpulse, kSize };
 };

@@ -19,34 +19,37 @@ constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
 constexpr double kFar = 0.5;
 
 /// A point between two balls, or a ball and a plane, and the effect of its contact on their motion.
-struct Meeting {
+struct PredictedContact {
   const PointData* data = nullptr;
   const SpherePairCache* balls = nullptr;
-  Vec3 along = Vec3::Zero();            ///< Line of centres at t_n.
-  double share_a = 0.0, share_b = 0.0;  ///< Inverse masses [1/kg].
-  double turning_a = 0.0,
-         turning_b = 0.0;                 ///< Inverse moments of inertia, on the mean [1/(kg m²)].
+  Vec3 along = Vec3::Zero();                          ///< Line of centres at t_n.
+  double inverse_mass_a = 0.0, inverse_mass_b = 0.0;  ///< [1/kg]
+  double inverse_inertia_a = 0.0,
+         inverse_inertia_b = 0.0;         ///< Inverse moments of inertia, on the mean [1/(kg m²)].
   double radius_a = 0.0, radius_b = 0.0;  ///< [m]
-  double push = 0.0;                      ///< Normal force over K [kg m].
-  bool rubs = false;
+  double normal_force = 0.0;              ///< Over K [kg m].
+  bool has_friction = false;     ///< Outside impacts, whose friction is an impulse at their end.
   Vec3 bristle = Vec3::Zero();   ///< At t_n, in the tangent plane [m].
   Vec3 friction = Vec3::Zero();  ///< On a, over K [kg m].
 
-  [[nodiscard]] double shares() const { return share_a + share_b; }
+  [[nodiscard]] double inverse_mass() const { return inverse_mass_a + inverse_mass_b; }
   /// Displacement of the points of contact relative to each other, by a friction force over K.
-  [[nodiscard]] double tangential_shares() const {
-    return shares() + radius_a * radius_a * turning_a + radius_b * radius_b * turning_b;
+  [[nodiscard]] double tangential_inverse_mass() const {
+    return inverse_mass() + radius_a * radius_a * inverse_inertia_a +
+           radius_b * radius_b * inverse_inertia_b;
   }
   /// Adds the displacements by a change of the forces over K.
-  void move(std::span<Vec6> increments, int ground, double more, const Vec3& rub) const {
-    const Vec3 force = more * along + rub, moment = along.cross(rub);
+  void move(std::span<Vec6> increments, int ground, double normal_change,
+            const Vec3& friction_change) const {
+    const Vec3 force = normal_change * along + friction_change,
+               moment = along.cross(friction_change);
     Vec6& of_a = increments[balls->a];
-    of_a.head<3>() += share_a * force;
-    of_a.tail<3>() -= radius_a * turning_a * moment;
+    of_a.head<3>() += inverse_mass_a * force;
+    of_a.tail<3>() -= radius_a * inverse_inertia_a * moment;
     if (balls->b == ground) return;
     Vec6& of_b = increments[balls->b];
-    of_b.head<3>() -= share_b * force;
-    of_b.tail<3>() -= radius_b * turning_b * moment;
+    of_b.head<3>() -= inverse_mass_b * force;
+    of_b.tail<3>() -= radius_b * inverse_inertia_b * moment;
   }
   /// Slip of a relative to b.
   [[nodiscard]] Vec3 slip(std::span<const Vec6> increments, int ground) const {
@@ -64,7 +67,7 @@ struct Meeting {
 /// λ(g_0, g), whose sides increase and decrease with g.
 /// @param free  Gap without this contact's force [m]. @param now  First guess [m].
 /// @param K  Of both masses [N/m].
-double gap_with(const Meeting& m, double free, double now, double K, double dt) {
+double gap_with(const PredictedContact& m, double free, double now, double K, double dt) {
   const double reach = m.balls->reach, least = m.balls->least_gap, gap_n = m.balls->gap_n;
   if (free >= reach) return free;
   double low = std::max(least, free), high = std::max(reach, low);
@@ -83,14 +86,14 @@ double gap_with(const Meeting& m, double free, double now, double K, double dt) 
 
 /// Friction force over K on a, if only this contact acts additionally. @eq{contact-bristle}
 /// @param free  Slip without this contact's friction [m].
-Vec3 friction_with(const Meeting& m, const Vec3& free, double K, double dt) {
+Vec3 friction_with(const PredictedContact& m, const Vec3& free, double K, double dt) {
   const FrictionLaw& f = m.data->friction;
-  const double limit = friction_limit(*m.data, K * m.push), k = f.stiffness;
+  const double limit = friction_limit(*m.data, K * m.normal_force), k = f.stiffness;
   const double factor = 0.5 + f.damping / (k * dt);
   Vec3 bristle = m.bristle;
   if (const double size = k * bristle.norm(); size > limit) bristle *= limit / size;
   const Vec3 force =
-      -k * (bristle + factor * free) / (1.0 + k * factor * m.tangential_shares() / K);
+      -k * (bristle + factor * free) / (1.0 + k * factor * m.tangential_inverse_mass() / K);
   const double size = force.norm();
   return (size > limit ? limit / size : 1.0) / K * force;
 }
@@ -115,36 +118,38 @@ void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContex
   for (int b = 0; b < ground; ++b)
     if (from_free[b]) increments[b] = free[b].increment;
 
-  std::vector<Meeting> meetings;
+  std::vector<PredictedContact> contacts;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SpherePairCache& balls = balls_[i];
     if (!balls.holds || points_[i].sensor) continue;
     const PointData& data = points_[i].data;
-    Meeting m;
+    PredictedContact m;
     m.data = &data;
     m.balls = &balls;
     m.along = balls.offset.normalized();
-    const auto take = [&](int body, double radius, double& share, double& turning, double& arm) {
+    const auto take = [&](int body, double radius, double& inverse_mass, double& inverse_inertia,
+                          double& arm) {
       if (body == ground) return;
-      share = 1.0 / system_->bodies()[body].mass;
-      turning = 3.0 / system_->bodies()[body].inertia.trace();
+      inverse_mass = 1.0 / system_->bodies()[body].mass;
+      inverse_inertia = 3.0 / system_->bodies()[body].inertia.trace();
       arm = radius;
     };
-    take(balls.a, data.a->rounding, m.share_a, m.turning_a, m.radius_a);
-    take(balls.b, data.b->rounding, m.share_b, m.turning_b, m.radius_b);
-    m.rubs = data.friction.mu > 0.0 && !data.history.in_impact();
+    take(balls.a, data.a->rounding, m.inverse_mass_a, m.inverse_inertia_a, m.radius_a);
+    take(balls.b, data.b->rounding, m.inverse_mass_b, m.inverse_inertia_b, m.radius_b);
+    m.has_friction = data.friction.mu > 0.0 && !data.history.in_impact();
     if (data.history.closed) {
-      m.push = data.history.force / K;
-      if (m.rubs) {
+      m.normal_force = data.history.force / K;
+      if (m.has_friction) {
         m.bristle = data.history.bristle - m.along.dot(data.history.bristle) * m.along;
         m.friction = -data.friction.stiffness / K * m.bristle;
       }
-      Meeting start = m;  // moves only the bodies that start without contact forces
-      if (!from_free[balls.a]) start.share_a = start.turning_a = 0.0;
-      if (balls.b == ground || !from_free[balls.b]) start.share_b = start.turning_b = 0.0;
-      start.move(increments, ground, m.push, m.friction);
+      PredictedContact start = m;  // moves only the bodies that start without contact forces
+      if (!from_free[balls.a]) start.inverse_mass_a = start.inverse_inertia_a = 0.0;
+      if (balls.b == ground || !from_free[balls.b])
+        start.inverse_mass_b = start.inverse_inertia_b = 0.0;
+      start.move(increments, ground, m.normal_force, m.friction);
     }
-    meetings.push_back(m);
+    contacts.push_back(m);
   }
   const auto gap_of = [&](const SpherePairCache& balls) {
     const Vec3 u_a = increments[balls.a].head<3>();
@@ -154,26 +159,29 @@ void ContactSet::place_impacts(std::span<const BodyStep> steps, const StepContex
                : balls.gap_after(moved);
   };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    double most = 0.0;
-    for (Meeting& m : meetings) {
-      const double now = gap_of(*m.balls), gap_without = now - m.shares() * m.push;
-      if (gap_without >= m.balls->reach && m.push == 0.0) continue;
-      const double gap = gap_with(m, gap_without, now, K / m.shares(), context.dt);
-      const double push = (gap - gap_without) / m.shares(), more = push - m.push;
+    double max_change = 0.0;
+    for (PredictedContact& m : contacts) {
+      const double now = gap_of(*m.balls), gap_without = now - m.inverse_mass() * m.normal_force;
+      if (gap_without >= m.balls->reach && m.normal_force == 0.0) continue;
+      const double gap = gap_with(m, gap_without, now, K / m.inverse_mass(), context.dt);
+      const double normal = (gap - gap_without) / m.inverse_mass(),
+                   normal_change = normal - m.normal_force;
       const double clearance = std::min(gap, m.balls->reach) - m.balls->least_gap;
-      most = std::max(most, m.shares() * std::abs(more) / clearance);
-      m.push = push;
-      Vec3 rub = Vec3::Zero();
-      if (m.rubs) {
-        const Vec3 slip = m.slip(increments, ground) - m.tangential_shares() * m.friction;
+      max_change = std::max(max_change, m.inverse_mass() * std::abs(normal_change) / clearance);
+      m.normal_force = normal;
+      Vec3 friction_change = Vec3::Zero();
+      if (m.has_friction) {
+        const Vec3 slip = m.slip(increments, ground) - m.tangential_inverse_mass() * m.friction;
         const Vec3 friction = friction_with(m, slip, K, context.dt);
-        rub = friction - m.friction;
-        if (push > 0.0) most = std::max(most, K * rub.norm() / friction_limit(*m.data, K * push));
+        friction_change = friction - m.friction;
+        if (normal > 0.0)
+          max_change = std::max(max_change,
+                                K * friction_change.norm() / friction_limit(*m.data, K * normal));
         m.friction = friction;
       }
-      m.move(increments, ground, more, rub);
+      m.move(increments, ground, normal_change, friction_change);
     }
-    if (most < kAgreed) break;
+    if (max_change < kAgreed) break;
   }
 }
 

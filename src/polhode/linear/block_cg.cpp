@@ -183,7 +183,8 @@ void BlockCg::eliminate() {
     Block pivot = diagonal_[k];
     for (int i = first_[k]; i < later_[k]; ++i) {
       const Neighbour& s = neighbours_[i];
-      // C W C with W the compliance of the other body at the point
+      // C W C, with W the compliance of the other body at the point; several points between the
+      // same bodies count one by one.
       const Block& Y = inverse_[s.other];
       Spring t;
       Four by_force[3];
@@ -213,7 +214,7 @@ double BlockCg::precondition(const Vectors& r, Vectors& z) const {
     }
     return product;
   }
-  const auto subtract = [&](const Neighbour& s, Pair& from) {
+  const auto subtract = [&](const Neighbour& s, Pair& from) {  // off-diagonal blocks are negative
     const Pair& x = z[s.other];
     const Four u = x.moved + cross(x.turned, s.other_arm);
     const Four F = u[0] * s.C[0] + u[1] * s.C[1] + u[2] * s.C[2];

@@ -18,10 +18,10 @@ constexpr double kNoExtraIterationBelow = 1e-10;
 /// Tolerance on the sum of further increments, the distance of the motion from the solution of its
 /// equations, which determines the errors of momenta and energy [-].
 constexpr double kLeft = 1e-13;
-/// The same for stiff bristles and stops, which turn tiny displacements into forces.
+/// Tolerance on that sum with stiff bristles and stops, which turn tiny displacements into forces.
 constexpr double kLeftStiff = 1e-18;
-/// Curvature of exact constraints, in units of 1/ℓ: an increment e after one of e' leaves at most
-/// kCurvature·e·e' if the tangents are complete.
+/// Bound of the curvature of exact constraints [1/ℓ]: with complete tangents an increment e after
+/// one of e' leaves at most kCurvature·e·e'.
 constexpr double kCurvature = 1e3;
 /// Ratio to the smallest increment. Small increments are round-off when none has been below that
 /// for several iterations.
