@@ -98,8 +98,8 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
 }
 
 /// A ball with backspin that falls on the floor without rebound and slides until it rolls, and a
-/// ball that falls on another: the predictor has the friction and rotation of the step, so that Newton's method
-/// only corrects what the predictor neglects. @tests{contact-impact-predictor}
+/// ball that falls on another: the predictor has the friction and rotation of the step, so that
+/// Newton's method only corrects what the predictor neglects. @tests{contact-impact-predictor}
 TEST(ContactCgEngine, StartsCloseToTheSolution) {
   for (const double dt : {5e-3, 1e-3, 1e-4}) {
     Scene s;

@@ -117,8 +117,8 @@ TEST_P(FlatStart, RunsInTheDirectionOfItsVelocities) {
 INSTANTIATE_TEST_SUITE_P(Of, FlatStart, testing::Values(1, 2, 3));
 
 // A motor that turns the first hinge: increments after the second are the proximal iteration's
-// alone, which no mechanism of constraints needs to continue (2.28 iterations at 10 ms if it does). Upper
-// ends move on circles.
+// alone, which no mechanism of constraints needs to continue (2.28 iterations at 10 ms if it does).
+// Upper ends move on circles.
 TEST(DrivenFourBar, NeedsTwoIterationsAStepAndFollowsItsMotor) {
   for (const double step : {0.02, 0.01, 0.001, 0.0001}) {
     const int N = 40;
