@@ -77,7 +77,7 @@ TEST(ContactCgEngine, NeverGainsEnergyAndBalancesMomentum) {
 }
 
 /// Two balls far apart from the others meet so fast that in one step they would change places: they
-/// start where their impact will stop them. @tests{contact-impact-predictor}
+/// start where their impact will stop them. @tests{contact-predictor}
 TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
   for (const double speed : {0.1, 1.0, 10.0, 200.0}) {
     Scene s(Vec3::Zero());
@@ -99,7 +99,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
 
 /// A ball with backspin that falls on the floor without rebound and slides until it rolls, and a
 /// ball that falls on another: the predictor has the friction and rotation of the step, so that
-/// Newton's method only corrects what the predictor neglects. @tests{contact-impact-predictor}
+/// Newton's method only corrects what the predictor neglects. @tests{contact-predictor}
 TEST(ContactCgEngine, StartsCloseToTheSolution) {
   for (const double dt : {5e-3, 1e-3, 1e-4}) {
     Scene s;
@@ -120,6 +120,34 @@ TEST(ContactCgEngine, StartsCloseToTheSolution) {
     }
     EXPECT_EQ(s.cuts, 0);
     EXPECT_LT(iterations, (dt > 1e-3 ? 5 : 2) * steps) << dt;
+  }
+}
+
+/// Layers of boxes that fall on each other without rebound, some joined: gaps and rows of the
+/// predictor are linear, and those of boxes are corrected. @tests{contact-predictor}
+TEST(ContactCgEngine, StartsCloseToTheSolutionWithBoxesAndJoints) {
+  for (const double dt : {5e-3, 1e-3, 1e-4}) {
+    Scene s;
+    s.cg_residual = 1e-6;
+    for (int i = 0; i < 18; ++i)
+      s.add_box("box " + std::to_string(i), {0.18, 0.16, 0.14}, 1.0,
+                at({0.22 * (i % 3) + 0.005 * std::sin(13.0 * i),
+                    0.22 * ((i / 3) % 3) + 0.005 * std::sin(78.0 * i),
+                    0.08 + 0.16 * (i / 9) + 0.005 * std::sin(38.0 * i)}));
+    s.add_joint("spherical", 0, 1, {0.11, 0.0, 0.08});
+    s.add_joint("revolute", 12, 13, {0.0, 0.33, 0.24});
+    s.add_joint("fixed", 3, 4, {0.11, 0.22, 0.08});
+    s.add_floor();
+    s.law(0.5, 0.0);
+    s.begin(dt);
+    int steps = 0, iterations = 0;
+    while (s.state.t < (dt > 5e-4 ? 0.3 : 0.08)) {
+      ASSERT_TRUE(s.step()) << s.last.text();
+      ++steps;
+      iterations += s.last.iterations;
+    }
+    EXPECT_LE(s.cuts, 2) << dt;
+    EXPECT_LT(iterations, (dt > 1e-3 ? 10 : 4) * steps) << dt;
   }
 }
 

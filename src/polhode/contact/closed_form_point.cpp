@@ -89,10 +89,12 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
   const Vec3 point = 0.5 * (p.at_n + p.at_n1);
   const Vec3 r_a = a.r_n + 0.5 * a.u, r_b = b.r_n + 0.5 * b.u;
   Vec3 N, n, c;
+  Vec3 end_normal;  // the gap at the end goes with it
   if (B.solid == Solid::half_space) {
     const Ends normal = turned(b, B.axes.col(2));
     N = 0.5 * (normal.at_n + normal.at_n1);
     n = N.normalized();
+    end_normal = normal.at_n1;
     const double more = A.rounding - B.rounding;
     c = point - 0.25 * ((normal.at_n.dot(p.at_n - q.at_n) + more) * normal.at_n +
                         (normal.at_n1.dot(p.at_n1 - q.at_n1) + more) * normal.at_n1);
@@ -102,6 +104,7 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
     N = (w_0 + w_1) / (l_0 + l_1);
     const Vec3 sum = w_0 / l_0 + w_1 / l_1;
     n = sum.normalized();
+    end_normal = w_1 / l_1;
     c = 0.5 * (point + 0.5 * (q.at_n + q.at_n1)) + 0.25 * (B.rounding - A.rounding) * sum;
   }
 
@@ -145,11 +148,11 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
     out.moment_a += out.arm_a.cross(F);
     out.moment_b -= out.arm_b.cross(F);
     const double k_T = f.stiffness * factor * part;
-    out.C = (k - k_T) * n * n.transpose();
+    out.C = k * end_normal * end_normal.transpose() - k_T * n * n.transpose();
     out.C.diagonal().array() += k_T;
     if (slides) {
       out.C -= (k_T / square) * middle * middle.transpose();
-      out.normal = n;
+      out.normal = end_normal;
       out.slide = middle;
       out.lag = k_T;
       out.friction_slope = (k * friction_slope(data, normal_force) / std::sqrt(square)) * middle;
@@ -166,13 +169,16 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
           0.5 * f.stiffness * (after.squaredNorm() - data.history.bristle.squaredNorm());
     }
   } else {
-    out.C = k * n * n.transpose();
+    out.C = k * end_normal * end_normal.transpose();
     if (report && f.mu > 0.0) {
       report->after.normal = n;
       if (!data.history.in_impact())
         report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
     }
   }
+  const Vec3 end_point = p.at_n1 - (A.rounding + 0.5 * gap_n1) * end_normal;
+  out.arm_a = end_point - a.r_n - a.u;
+  out.arm_b = end_point - b.r_n - b.u;
   if (report) report->force = out.force;
   return out;
 }

@@ -121,6 +121,8 @@ class Evaluation {
       g_1.distance = g_0.distance + closed_form_change();
     else if (value(g_1.distance) < data_.normal.reach())
       g_1.distance = with_value(g_1.distance, fine_distance());
+    end_point_ = value(g_1.point);
+    end_normal_ = value(g_1.normal);
     kinematics(g_0, g_1);
     forces(g_0, g_1);
     closed_forms();
@@ -144,9 +146,9 @@ class Evaluation {
     f.force = value(w.force);
     f.moment_a = value(w.moment_a);
     f.moment_b = value(w.moment_b);
-    f.arm_a = value(c_ - r_a_);
-    f.arm_b = value(c_ - r_b_);
-    const Vec3 n = value(n_);
+    f.arm_a = end_point_ - value(e_a_.position());
+    f.arm_b = end_point_ - value(e_b_.position());
+    const Vec3& n = end_normal_;
     const double k = std::max(0.0, stiffness_);
     f.C = k * n * n.transpose() + friction_C_;
     f.normal = n;
@@ -431,6 +433,7 @@ class Evaluation {
   Motion<T> move_a_, move_b_;
   T change_{}, lambda_{}, share_{1.0};
   double stiffness_ = 0.0;
+  Vec3 end_point_, end_normal_;  ///< At t_{n+1}.
   Mat3 friction_C_ = Mat3::Zero();
   Vec3 slide_ = Vec3::Zero();
   double lag_ = 0.0, rub_ = 0.0;  ///< Of a sliding point, as in PointForce.

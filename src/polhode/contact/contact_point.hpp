@@ -132,9 +132,10 @@ void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
 struct PointForce {
   Vec3 force = Vec3::Zero();                              ///< On a, at t_{n+αf} [N].
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< About the centres of mass [N m].
-  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  ///< From the centres of mass to the point [m].
+  /// From the centres of mass to the point at t_{n+1} [m].
+  Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
   Mat3 C = Mat3::Zero();       ///< Symmetric stiffness between the points of a and b there [N/m].
-  Vec3 normal = Vec3::Zero();  ///< Unit, from b to a.
+  Vec3 normal = Vec3::Zero();  ///< At t_{n+1}: unit, from b to a.
   Vec3 slide = Vec3::Zero();   ///< Deflection of a sliding bristle [m]; zero if it sticks.
   Vec3 friction_slope =
       Vec3::Zero();  ///< Derivative of its force on a by the displacement along the normal [N/m].

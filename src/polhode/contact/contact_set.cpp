@@ -152,7 +152,11 @@ void ContactSet::prepare(const System& system) {
     size_of_body_[s.body] = std::min(size_of_body_[s.body], s.shape.bound_radius);
   }
   carried_mass_.clear();
-  for (int b = 0; b < system.body_count(); ++b) carried_mass_.push_back(system.carried_mass(b));
+  inverse_inertia_.clear();
+  for (int b = 0; b < system.body_count(); ++b) {
+    carried_mass_.push_back(system.carried_mass(b));
+    inverse_inertia_.emplace_back(system.bodies()[b].inertia.inverse());
+  }
   heaviest_ = 0.0;
   for (const PlacedShape& s : shapes_)
     if (s.body != kGround) heaviest_ = std::max(heaviest_, carried_mass_[s.body]);

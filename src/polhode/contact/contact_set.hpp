@@ -125,8 +125,9 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
                                                   const StepContext& context,
                                                   std::span<const char> moved) override;
-  void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
-                     std::span<const FreeMotion> free, std::span<Vec6> increments) const override;
+  void predict(std::span<const BodyStep> steps, const StepContext& context,
+               std::span<const FreeMotion> free, std::span<FreeRows> rows,
+               std::vector<Vec6>& increments) const override;
   double filter(std::span<const BodyStep> steps, std::span<const Vec6> increments) override;
   double stored(const State& state, std::span<const BodyStep> instants) override;
   Work commit(State& state, std::span<const BodyStep> steps, const StepContext& context) override;
@@ -274,6 +275,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
 
   const System* system_ = nullptr;
   /// By body: its own mass and that of the solids attached to it [kg].
+  std::vector<Mat3> inverse_inertia_;  ///< By body, in its axes [1/(kg m²)].
   std::vector<double> carried_mass_;
   double heaviest_ = 0.0;  ///< Largest of these among bodies with shapes [kg].
   std::vector<double> reach_of_body_, size_of_body_;

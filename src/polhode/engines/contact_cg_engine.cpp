@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+
 #include <polhode/core/error.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/kernels/dispatch.hpp>
@@ -122,24 +124,67 @@ void ContactCgEngine::start_inertia(const State& state, const StepContext& conte
   }
 }
 
-/// Increments at which the momentum balance holds without loads and contacts, of bodies without
-/// loads. @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot}
-std::vector<PointwiseContacts::FreeMotion> ContactCgEngine::free_motions(
-    const StepContext& context) const {
-  std::vector<PointwiseContacts::FreeMotion> motions(inertia_.size());
-  for (PointwiseContacts::FreeMotion& m : motions) m.known = true;
-  for (const int b : acted_on_) motions[b].known = false;
+/// Increments at which the momentum balance holds without contacts: of bodies without loads
+/// exactly, of others linearised about their prediction. @eq{eq:td-Newmark-COM}
+/// @eq{eq:td-Newmark-mrot}
+void ContactCgEngine::find_free_motions(const State& state, const Trial& trial) {
+  const StepContext& context = trial.context;
   const double per_speed = context.ga.kappa / context.dt;
-  for (std::size_t b = 0; b < motions.size(); ++b) {
-    if (!motions[b].known) continue;
+  free_.resize(inertia_.size());
+  free_rows_.clear();
+  for (const int b : acted_on_) {
+    move(b, x_[b].head<3>(), x_[b].tail<3>());
+    rhs_[b] = of_motion(b, per_speed);
+    blocks_[b] = own_[b];
+  }
+  loads_.run(steps_, context, trial.lambda.data(), state.history.data(),
+             [&](int interaction, const PairStep&, const PairTerms& t) {
+               const InteractionRef& ref = system_->interactions()[interaction];
+               add_wrenches(ref, t);
+               add_free_rows(ref, t);
+             });
+  for (const int b : acted_on_) {
+    free_[b].has_loads = true;
+    const Mat6 symmetric = 0.5 * (blocks_[b] + blocks_[b].transpose());
+    const bool regular = Eigen::LLT<Mat6>(symmetric).info() == Eigen::Success;
+    free_[b].response = (regular ? blocks_[b] : own_[b]).inverse();
+    free_[b].increment = x_[b] + free_[b].response * rhs_[b];
+    move(b, Vec3::Zero(), Vec3::Zero());
+  }
+  for (std::size_t b = 0; b < free_.size(); ++b) {
+    if (free_[b].has_loads) continue;
     const BodyData& body = system_->bodies()[b];
     const Inertia& at = inertia_[b];
     const BodyStep& s = steps_[b];
     const Vec3 v = at.force / (per_speed * body.mass);
     const Vec3 W = body.inertia.ldlt().solve(s.Lambda_n.transpose() * at.moment) / per_speed;
-    motions[b].increment << (v - at.v) / s.rate, s.Lambda_n * (W - at.W) / s.rate;
+    free_[b].increment << (v - at.v) / s.rate, s.Lambda_n * (W - at.W) / s.rate;
   }
-  return motions;
+}
+
+void ContactCgEngine::add_free_rows(const InteractionRef& ref, const PairTerms& t) {
+  PointwiseContacts::FreeRows rows;
+  rows.a = ref.a;
+  rows.b = ref.b;
+  for (int k = 0; k < ref.rows; ++k) {
+    if (t.compliance[k] != 0.0) continue;
+    const auto row = static_cast<Eigen::Index>(rows.numbers.size());
+    if (ref.a != kGround) rows.G_a.row(row) = t.G_a.row(k);
+    if (ref.b != kGround) rows.G_b.row(row) = t.G_b.row(k);
+    rows.g[row] = t.g[k];
+    rows.numbers.push_back(ref.first_row + k);
+  }
+  if (!rows.numbers.empty()) free_rows_.push_back(std::move(rows));
+}
+
+/// Residual of a body's momentum balance without loads and contacts. @eq{eq:ga-momenta-Newmark}
+Vec6 ContactCgEngine::of_motion(int b, double per_speed) const {
+  const BodyData& body = system_->bodies()[b];
+  const BodyStep& s = steps_[b];
+  Vec6 residual;
+  residual << inertia_[b].force - per_speed * body.mass * s.v_n1,
+      inertia_[b].moment - per_speed * (s.Lambda_n1 * (body.inertia * s.W_n1));
+  return residual;
 }
 
 /// @eq{eq:td-Newmark-COM} @eq{eq:td-Newmark-mrot} @eq{eq:td-incremental-rotation}
@@ -181,16 +226,17 @@ void ContactCgEngine::begin_step(const State& state, Trial& trial) {
   weight_ = std::max(weight_, std::numeric_limits<double>::min());
   contacts_->begin_step(state, steps_, trial.context);
   contacts_->cover(steps_, trial.context, x_);
-  std::vector<Vec6> predicted;  // bodies of joints keep their prediction, for which their rows hold
-  for (const int b : coupled_) predicted.push_back(x_[b]);
-  pointwise_->place_impacts(steps_, trial.context, free_motions(trial.context), x_);
-  for (std::size_t k = 0; k < coupled_.size(); ++k) x_[coupled_[k]] = predicted[k];
+  blocks_ = own_;
+  find_free_motions(state, trial);
+  pointwise_->predict(steps_, trial.context, free_, free_rows_, x_);
+  for (const PointwiseContacts::FreeRows& rows : free_rows_)
+    for (std::size_t k = 0; k < rows.numbers.size(); ++k)
+      trial.lambda[rows.numbers[k]] += rows.change[static_cast<Eigen::Index>(k)];
   const double part = contacts_->filter(steps_, x_);
   for (int b = 0; b < system_->body_count(); ++b)
     move(b, part * x_[b].head<3>(), part * x_[b].tail<3>());
   searches_ = 0;
   slow_ = false;
-  blocks_ = own_;
   rows_off_before_ = std::numeric_limits<double>::infinity();
   move_all();
   evaluated_ = false;
@@ -221,9 +267,7 @@ void ContactCgEngine::move_late() {
   if (static_cast<double>(moving_.size()) > kMaxCrowd * static_cast<double>(n)) move_all();
 }
 
-/// Adds an interaction's forces and rows; rows that are switched off have no motion of their own.
-void ContactCgEngine::add_interaction(int interaction, const PairTerms& t, const Trial& trial) {
-  const InteractionRef& ref = system_->interactions()[interaction];
+void ContactCgEngine::add_wrenches(const InteractionRef& ref, const PairTerms& t) {
   if (ref.a != kGround) {
     rhs_[ref.a] += t.wrench_a;
     blocks_[ref.a] -= t.D_aa;
@@ -232,6 +276,12 @@ void ContactCgEngine::add_interaction(int interaction, const PairTerms& t, const
     rhs_[ref.b] += t.wrench_b;
     blocks_[ref.b] -= t.D_bb;
   }
+}
+
+/// Adds an interaction's forces and rows; rows that are switched off have no motion of their own.
+void ContactCgEngine::add_interaction(int interaction, const PairTerms& t, const Trial& trial) {
+  const InteractionRef& ref = system_->interactions()[interaction];
+  add_wrenches(ref, t);
   if (!couples(ref)) return;
   if (ref.a != kGround && ref.b != kGround && trial.context.tangents)
     ties_.push_back({ref.a, ref.b, -0.5 * (t.D_ab + t.D_ba.transpose())});
@@ -256,12 +306,7 @@ bool ContactCgEngine::rows_hold() const {
 void ContactCgEngine::evaluate(const State& state, const Trial& trial) {
   const StepContext& context = trial.context;
   const double per_speed = context.ga.kappa / context.dt;
-  for (const int b : moving_) {
-    const BodyData& body = system_->bodies()[b];
-    const BodyStep& s = steps_[b];
-    of_motion_[b] << inertia_[b].force - per_speed * body.mass * s.v_n1,
-        inertia_[b].moment - per_speed * (s.Lambda_n1 * (body.inertia * s.W_n1));
-  }
+  for (const int b : moving_) of_motion_[b] = of_motion(b, per_speed);
   rhs_ = of_motion_;
   for (const int b : acted_on_) blocks_[b] = own_[b];
   ties_.clear();

@@ -50,8 +50,10 @@ class ContactCgEngine final : public NewtonEngine {
 
  private:
   void start_inertia(const State& state, const StepContext& context);
-  [[nodiscard]] std::vector<PointwiseContacts::FreeMotion> free_motions(
-      const StepContext& context) const;
+  void find_free_motions(const State& state, const Trial& trial);
+  void add_free_rows(const InteractionRef& ref, const PairTerms& terms);
+  [[nodiscard]] Vec6 of_motion(int body, double per_speed) const;
+  void add_wrenches(const InteractionRef& ref, const PairTerms& terms);
   void move(int body, const Vec3& u, const Vec3& theta);
   void evaluate(const State& state, const Trial& trial);
   void move_all();
@@ -87,6 +89,8 @@ class ContactCgEngine final : public NewtonEngine {
     double moved, turned;  ///< Inverse mass, and inverse mean moment of inertia.
   };
   std::vector<PerMass> per_mass_;
+  std::vector<PointwiseContacts::FreeMotion> free_;  ///< By body.
+  std::vector<PointwiseContacts::FreeRows> free_rows_;
   std::vector<double> far_;    ///< By body, its largest coordinate at t_n [m].
   std::vector<double> sizes_;  ///< By body: size of its residual [N² / kg].
   std::span<const ActingPoint> acting_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/QR>
 
 #include <polhode/linear/block_cg_blocks.hpp>
 
@@ -114,7 +115,8 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
     block_[k] = own_[moving[k]];
   }
   diagonal_ = block_;
-  preconditioner_ = Preconditioner::none;
+  eliminated_ = false;
+  alone_.assign(moving_.size(), 0);
   springs_.clear();
   friction_.clear();
   ties_.clear();
@@ -137,21 +139,22 @@ void BlockCg::set_springs(std::span<const ActingPoint> points, std::span<const i
   }
 }
 
-void BlockCg::invert_diagonal() {
-  preconditioner_ = Preconditioner::diagonal;
-  inverse_.resize(diagonal_.size());
-  // With springs so stiff that the body's own block is lost in rounding, any positive definite
-  // block is suitable.
-  for (std::size_t k = 0; k < diagonal_.size(); ++k)
-    if (!invert(diagonal_[k], inverse_[k])) inverse_[k] = own_inverse_[moving_[k]];
+/// Inverse of a body's pivot, or of another positive definite block where the pivot is lost in
+/// rounding, as that of a body with springs far stiffer than its own block.
+void BlockCg::invert_pivot(std::size_t k, const Block& pivot) {
+  if (!invert(pivot, inverse_[k]) && !invert(diagonal_[k], inverse_[k]))
+    inverse_[k] = own_inverse_[moving_[k]];
 }
 
 /// Counting sort of the springs by body, and of each body's by the number of the other one.
 void BlockCg::sort_neighbours() {
   const auto n = static_cast<int>(block_.size());
+  const auto counts = [&](const Spring& s) {
+    return s.a != n && s.b != n && !alone_[s.a] && !alone_[s.b];
+  };
   first_.assign(block_.size() + 1, 0);
   for (const Spring& s : springs_)
-    if (s.a != n && s.b != n) ++first_[s.a], ++first_[s.b];
+    if (counts(s)) ++first_[s.a], ++first_[s.b];
   for (int k = 0, sum = 0; k <= n; ++k) {
     const int count = first_[k];
     first_[k] = sum;
@@ -164,7 +167,7 @@ void BlockCg::sort_neighbours() {
   };
   for (const bool larger : {false, true})
     for (const Spring& s : springs_) {
-      if (s.a == n || s.b == n) continue;
+      if (!counts(s)) continue;
       if ((s.b > s.a) == larger) put(s, s.a, s.b, s.arm_a, s.arm_b);
       if ((s.a > s.b) == larger) put(s, s.b, s.a, s.arm_b, s.arm_a);
     }
@@ -176,7 +179,7 @@ void BlockCg::sort_neighbours() {
 
 /// Pivots D_k = A_kk − Σ A_kj D_j⁻¹ A_jk over the bodies j before k. @eq{cg-sweeps}
 void BlockCg::eliminate() {
-  preconditioner_ = Preconditioner::sweeps;
+  eliminated_ = true;
   sort_neighbours();
   inverse_.resize(diagonal_.size());
   for (std::size_t k = 0; k < diagonal_.size(); ++k) {
@@ -199,21 +202,13 @@ void BlockCg::eliminate() {
         t.C[j] = -(by_force[j][0] * s.C[0] + by_force[j][1] * s.C[1] + by_force[j][2] * s.C[2]);
       add(t, s.arm, pivot);
     }
-    if (!invert(pivot, inverse_[k]) && !invert(diagonal_[k], inverse_[k]))
-      inverse_[k] = own_inverse_[moving_[k]];
+    invert_pivot(k, pivot);
   }
 }
 
 double BlockCg::precondition(const Vectors& r, Vectors& z) const {
   const std::size_t n = diagonal_.size();
   double product = 0.0;
-  if (preconditioner_ == Preconditioner::diagonal) {
-    for (std::size_t k = 0; k < n; ++k) {
-      z[k] = times(inverse_[k], r[k]);
-      product += dot(r[k], z[k]);
-    }
-    return product;
-  }
   const auto subtract = [&](const Neighbour& s, Pair& from) {  // off-diagonal blocks are negative
     const Pair& x = z[s.other];
     const Four u = x.moved + cross(x.turned, s.other_arm);
@@ -340,7 +335,7 @@ int BlockCg::solve(std::span<const Vec6> rhs, std::vector<Vec6>& x, double part,
   multipliers_.setZero(static_cast<Eigen::Index>(rows_.size()));
   const double size = scale(rhs, force_of_rows(), basis_[0]);
   if (size == 0.0) return 0;
-  if (preconditioner_ == Preconditioner::none) ties_.empty() ? eliminate() : invert_diagonal();
+  if (!eliminated_) eliminate();
   const Vectors asked = rows_.empty() ? Vectors{} : fulfil_rows(size, basis_[0]);
   const int iterations =
       friction_.empty() || directions == 0

@@ -82,7 +82,7 @@ class BlockCg {
   static void add(const Spring& spring, Four arm, Block& block);
   static bool invert(const Block& block, Block& inverse);
   void multiply();
-  void invert_diagonal();
+  void invert_pivot(std::size_t body, const Block& pivot);
   void sort_neighbours();
   void eliminate();
   /// z = M⁻¹ r with the preconditioner M. @returns r·z.
@@ -111,9 +111,10 @@ class BlockCg {
   std::vector<int> moving_, place_;           ///< Moving bodies; by body its position among them.
   std::vector<Block> block_;                  ///< Of moving bodies, as all that follows.
   std::vector<Block> diagonal_;               ///< With springs.
-  std::vector<Block> inverse_;                ///< Of diagonal_, or of the pivots of the sweeps.
-  enum class Preconditioner { none, diagonal, sweeps };
-  Preconditioner preconditioner_ = Preconditioner::none;  ///< That inverse_ belongs to.
+  std::vector<Block> inverse_;                ///< Of the pivots of the sweeps.
+  bool eliminated_ = false;                   ///< inverse_ is up to date.
+  /// Bodies of rows or ties: no springs of theirs take part in the sweeps.
+  std::vector<char> alone_;
   std::vector<Spring> springs_;
   /// A spring as one of its bodies sees it.
   struct Neighbour {

@@ -20,27 +20,36 @@ void BlockCg::set_ties(std::span<const Tie> ties) {
       for (int i = 0; i < 6; ++i) {
         const double scale = (i < 3 ? per_length_ : per_turn_) * (j < 3 ? per_length_ : per_turn_);
         const auto put = [&](Pair& column, double v) {
-          (i < 3 ? column.moved[i] : column.turned[i - 3]) = static_cast<float>(scale * v);
+          Four& half = i < 3 ? column.moved : column.turned;
+          half[i % 3] = static_cast<float>(scale * v);
         };
         put(t.ab.column[j], tie.K_ab(i, j));
         put(t.ba.column[j], tie.K_ab(j, i));
       }
+    alone_[t.a] = alone_[t.b] = 1;
     ties_.push_back(t);
   }
 }
 
 bool BlockCg::set_rows(std::span<const Row> rows) {
   const auto count = static_cast<int>(moving_.size()), n = static_cast<int>(rows.size());
-  if (n > 0) invert_diagonal();
+  inverse_.resize(moving_.size());
   rows_.clear();
   row_bodies_.clear();
   row_values_.setZero(n);
   carried_.setZero(n);
+  std::vector<char> taken(moving_.size(), 0);
   for (int i = 0; i < n; ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
     ScaledRow r{};
     r.a = row.a == kGround ? count : place_[row.a];
     r.b = row.b == kGround ? count : place_[row.b];
+    for (const int place : {r.a, r.b}) {
+      if (place == count || taken[place]) continue;
+      taken[place] = alone_[place] = 1;
+      invert_pivot(place, diagonal_[place]);
+      row_bodies_.push_back(place);
+    }
     const auto pair = [&](int place, const Vec6& G) {
       Pair p{};
       for (int k = 0; place != count && k < 3; ++k) {
@@ -63,11 +72,8 @@ bool BlockCg::set_rows(std::span<const Row> rows) {
     }
     row_values_[i] = -r.scale * row.g;
     rows_.push_back(r);
-    for (const int place : {r.a, r.b})
-      if (place != count) row_bodies_.push_back(place);
   }
   std::sort(row_bodies_.begin(), row_bodies_.end());
-  row_bodies_.erase(std::unique(row_bodies_.begin(), row_bodies_.end()), row_bodies_.end());
   return factor_rows();
 }
 

@@ -208,18 +208,19 @@ void ImpactResolver::settle_from(State& state, std::size_t first) {
     for (std::size_t i = 0; i < island.bodies.size(); ++i)
       place_[island.bodies[i]] = static_cast<int>(i);
   };
-  for (const Island& island : pressed) {
-    number(island);
-    find_held(rows_of(state, island), velocities(state, island));
-  }
-  for (const Island& island : all) {
-    number(island);
+  for (const Island& island : pressed) number(island);
+  for (const Island& island : all) number(island);
+  std::vector<std::vector<Row>> held = rows_of(state, pressed), rows = rows_of(state, all);
+  for (std::size_t i = 0; i < pressed.size(); ++i)
+    find_held(held[i], velocities(state, pressed[i]));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Island& island = all[i];
     if (island.tied && system_->rows() > 0) {
       std::vector<Vec6> jumps;
       for (int body : island.bodies) jumps.push_back(to_admissible[body]);
       jump(state, island, jumps);
     }
-    settle(state, island);
+    settle(state, island, std::move(rows[i]));
     jumped_.insert(jumped_.end(), island.bodies.begin(), island.bodies.end());
   }
 }
@@ -325,10 +326,9 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
 
 /// Resolves an island. Impulses that would add energy are scaled back until they do not.
 /// @eq{turn-law}
-void ImpactResolver::settle(State& state, const Island& island) {
+void ImpactResolver::settle(State& state, const Island& island, std::vector<Row> rows) {
   std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
-  std::vector<Row> rows = rows_of(state, island);
   find_held(rows, v);
   double most = 0.0;
   for (Row& row : rows) {

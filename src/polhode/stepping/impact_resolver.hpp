@@ -60,9 +60,13 @@ class ImpactResolver {
   template <class Use>
   void for_bodies(int row, Use&& use) const;
   struct Row;
-  /// Rows of an island: one for each normal, two more for each with friction.
-  [[nodiscard]] std::vector<Row> rows_of(const State& state, const Island& island);
-  void settle(State& state, const Island& island);
+  /// Rows by island: one for each normal, two more for each with friction.
+  [[nodiscard]] std::vector<std::vector<Row>> rows_of(const State& state,
+                                                      std::span<const Island> islands);
+  /// Rows of an island; responses of tied bodies are missing where no nodes take part.
+  [[nodiscard]] std::vector<Row> start_rows(const State& state, const Island& island);
+  void add_responses(std::span<const Island> islands, std::vector<std::vector<Row>>& rows);
+  void settle(State& state, const Island& island, std::vector<Row> rows);
   /// Resolves the islands that contain a row from that one on.
   void settle_from(State& state, std::size_t first);
   /// Adds rows for the resting contacts of bodies that jumped, as far as they are loaded by it.

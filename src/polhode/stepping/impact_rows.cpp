@@ -63,7 +63,8 @@ std::vector<ImpactResolver::Island> ImpactResolver::islands() const {
   return list;
 }
 
-std::vector<ImpactResolver::Row> ImpactResolver::rows_of(const State& state, const Island& island) {
+std::vector<ImpactResolver::Row> ImpactResolver::start_rows(const State& state,
+                                                            const Island& island) {
   std::vector<Row> rows;
   const int bodies = static_cast<int>(island.bodies.size());
   std::vector<Vec6> impulses;
@@ -101,10 +102,13 @@ std::vector<ImpactResolver::Row> ImpactResolver::rows_of(const State& state, con
     row.impact = impact;
     row.on = std::move(on);
     row.has_friction = has_friction;
-    if (island.tied) add_tied(row);
+    if (!on_nodes.empty()) {
+      add_tied(row);
+      return;
+    }
     for (const auto& [place, J] : row.on) {
-      if (island.tied) break;
       const int body = island.bodies[static_cast<std::size_t>(place)];
+      if (tied_[body]) continue;
       const BodyData& data = system_->bodies()[body];
       const Mat3 Lambda = system_->motion(state, body).Lambda();
       Vec6 x;
@@ -112,7 +116,6 @@ std::vector<ImpactResolver::Row> ImpactResolver::rows_of(const State& state, con
           Lambda * data.inertia.ldlt().solve(Lambda.transpose() * J.tail<3>());
       row.answer.emplace_back(place, x);
     }
-    row.mobility = row.speed_by(row);
   };
   const auto of_pair = [&](int k, const Vec6& on_a, const Vec6& on_b) {
     const auto& [a, b] = rows_[k].bodies;
@@ -159,6 +162,66 @@ std::vector<ImpactResolver::Row> ImpactResolver::rows_of(const State& state, con
     }
   }
   if (!on_nodes.empty()) solver_->press_nodes({});
+  return rows;
+}
+
+/// Adds the responses of tied bodies. Bodies that nothing ties do not affect each other: one
+/// solution of the whole system answers a row of each connected component.
+void ImpactResolver::add_responses(std::span<const Island> islands,
+                                   std::vector<std::vector<Row>>& rows) {
+  struct Component {
+    std::size_t island = 0;
+    std::vector<int> places;  ///< Of its bodies, in the island.
+    std::vector<Row*> rows;   ///< That load it.
+  };
+  std::map<int, Component> components;
+  const auto component_of = [&](const Island& island, int place) -> Component* {
+    if (static_cast<std::size_t>(place) >= island.bodies.size()) return nullptr;
+    const int body = island.bodies[static_cast<std::size_t>(place)];
+    return tied_[body] ? &components[impact_rows::first_of(tie_, body)] : nullptr;
+  };
+  std::size_t rounds = 0;
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    if (!islands[i].tied || !islands[i].nodes.empty()) continue;
+    for (int place = 0; place < static_cast<int>(islands[i].bodies.size()); ++place)
+      if (Component* const c = component_of(islands[i], place)) {
+        c->island = i;
+        c->places.push_back(place);
+      }
+    for (Row& row : rows[i])
+      for (const auto& [place, J] : row.on)
+        if (Component* const c = component_of(islands[i], place)) {
+          if (c->rows.empty() || c->rows.back() != &row) c->rows.push_back(&row);
+          rounds = std::max(rounds, c->rows.size());
+        }
+  }
+  std::vector<Vec6> impulses;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    impulses.assign(static_cast<std::size_t>(system_->body_count()), Vec6::Zero());
+    for (auto& [root, c] : components) {
+      if (round >= c.rows.size()) continue;
+      const Island& island = islands[c.island];
+      for (const auto& [place, J] : c.rows[round]->on)
+        if (component_of(island, place) == &c)
+          impulses[island.bodies[static_cast<std::size_t>(place)]] = J;
+    }
+    const std::vector<Vec6> jumps = solver_->jumps(impulses);
+    for (auto& [root, c] : components) {
+      if (round >= c.rows.size()) continue;
+      for (const int place : c.places)
+        c.rows[round]->answer.emplace_back(
+            place, jumps[islands[c.island].bodies[static_cast<std::size_t>(place)]]);
+    }
+  }
+}
+
+std::vector<std::vector<ImpactResolver::Row>> ImpactResolver::rows_of(
+    const State& state, std::span<const Island> islands) {
+  std::vector<std::vector<Row>> rows;
+  for (const Island& island : islands) rows.push_back(start_rows(state, island));
+  add_responses(islands, rows);
+  for (std::vector<Row>& of_island : rows)
+    for (Row& row : of_island) row.mobility = row.speed_by(row);
   return rows;
 }
 

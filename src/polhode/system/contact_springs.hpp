@@ -38,16 +38,27 @@ class PointwiseContacts {
   virtual std::span<const ActingPoint> evaluate_pointwise(std::span<const BodyStep> steps,
                                                           const StepContext& context,
                                                           std::span<const char> moved) = 0;
-  /// Motion of a body in a step without contact forces.
+  /// Motion of a body in a step without contact forces, and its response to them.
   struct FreeMotion {
-    bool known = false;  ///< Only gravity and contacts act on the body.
     Vec6 increment = Vec6::Zero();
+    bool has_loads = false;  ///< Its response is not that of its inertia alone.
+    Mat6 response;           ///< With loads: increment by a wrench.
   };
-  /// Replaces predicted increments of balls by those that their contacts leave them.
+  /// Exact constraint rows of an interaction: g + G_a Δx_a + G_b Δx_b, with the changes of both
+  /// increments; further rows are zero.
+  struct FreeRows {
+    int a = kGround, b = kGround;
+    std::vector<int> numbers;  ///< Of the multipliers.
+    Eigen::Matrix<double, kMaxRows, 6> G_a = Mat6::Zero(), G_b = Mat6::Zero();
+    Vec6 g = Vec6::Zero();
+    Vec6 change = Vec6::Zero();  ///< Of the multipliers, a result.
+  };
+  /// Predicts the increments that contacts and rows leave the bodies.
   /// @param steps  Without any motion yet. @param free  By body.
-  virtual void place_impacts(std::span<const BodyStep> steps, const StepContext& context,
-                             std::span<const FreeMotion> free,
-                             std::span<Vec6> increments) const = 0;
+  /// @param increments  By body. In: about which rows are linear.
+  virtual void predict(std::span<const BodyStep> steps, const StepContext& context,
+                       std::span<const FreeMotion> free, std::span<FreeRows> rows,
+                       std::vector<Vec6>& increments) const = 0;
 };
 
 }  // namespace polhode
