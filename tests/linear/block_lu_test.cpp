@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <polhode/linear/block_lu.hpp>
+#include <polhode/linear/block_lu_kernels.hpp>
 #include <polhode/linear/block_lu_order.hpp>
 
 #include "linear/random_kkt.hpp"
@@ -50,6 +51,26 @@ TEST(BlockLu, CountsWorkInProportionToTheLengthOfAChain) {
   short_chain.analyse(revolute_chain(100));
   long_chain.analyse(revolute_chain(200));
   EXPECT_NEAR(long_chain.factor_flops() / short_chain.factor_flops(), 2.0, 0.02);
+}
+
+/// With fused multiply-add the last digits depend on the processor.
+TEST(BlockLu, LeavesOutFusedMultiplyAddIfAsked) {
+  if (!has_fused_kernels()) GTEST_SKIP() << "this processor has none";
+  KktTopology topology = revolute_chain(20);
+  test::Numbers number(3);
+  const KktValues values = test::random_values(topology, number);
+  const auto solution = [&](bool fused) {
+    topology.fused = fused;
+    BlockLu lu;
+    lu.analyse(topology);
+    EXPECT_TRUE(lu.factor(values));
+    Vec x = Vec::LinSpaced(6 * topology.bodies + topology.rows, -1.0, 2.0);
+    lu.solve(x);
+    return x;
+  };
+  const Vec with = solution(true), without = solution(false);
+  EXPECT_LT((with - without).lpNorm<Eigen::Infinity>(), 1e-10 * without.lpNorm<Eigen::Infinity>());
+  EXPECT_NE(with, without);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class Builder {
 
   System build(SystemMap* map) {
     system_.set_gravity(model_.gravity);
+    system_.set_fused(model_.analysis.isa != "baseline");
     const double reach = dummy_reach();
     for (const BodySpec& body : model_.bodies) add_body(body, reach);
     for (const JointSpec& joint : model_.joints) add_joint(joint);

@@ -20,6 +20,7 @@ KktMap kkt_map(const System& system) {
   KktMap map;
   map.topology.bodies = system.body_count();
   map.topology.rows = system.rows();
+  map.topology.fused = system.fused();
   for (const InteractionRef& ref : system.interactions()) {
     const bool couples = ref.rows > 0 || (ref.a != kGround && ref.b != kGround);
     map.pair.push_back(couples ? static_cast<int>(map.topology.pairs.size()) : -1);

@@ -69,9 +69,8 @@ double list_targets(BlockPlan& plan) {
 
 }  // namespace
 
-BlockLu::BlockLu() : fused_(has_fused_kernels()) {}
-
 void BlockLu::analyse(const KktTopology& topology) {
+  fused_ = topology.fused && has_fused_kernels();
   const NodeGraph graph = gather_nodes(topology);
   const EliminationOrder elimination = eliminate_least_degree_first(graph);
   plan_ = make_plan(graph, elimination);

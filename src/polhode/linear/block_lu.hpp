@@ -42,7 +42,6 @@ struct BlockPlan {
 /// and solve() allocate nothing. One object serves one thread.
 class BlockLu final : public LinearSolver {
  public:
-  BlockLu();
   [[nodiscard]] std::string name() const override { return "block_lu"; }
   void analyse(const KktTopology& topology) override;
   [[nodiscard]] bool factor(const KktValues& values) override;
@@ -69,7 +68,7 @@ class BlockLu final : public LinearSolver {
   std::vector<int> pivots_;
   mutable std::vector<double> work_;
   double flops_ = 0.0;
-  bool fused_ = false;  ///< The processor supports AVX2 and fused multiply-add.
+  bool fused_ = false;  ///< By AVX2 and fused multiply-add.
 };
 
 }  // namespace polhode

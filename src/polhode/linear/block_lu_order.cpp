@@ -134,7 +134,7 @@ EliminationOrder eliminate_least_degree_first(NodeGraph graph) {
       merged.clear();
       std::set_union(graph.neighbours[i].begin(), graph.neighbours[i].end(),
                      result.later[k].begin(), result.later[k].end(), std::back_inserter(merged));
-      std::erase_if(merged, [&](int j) { return j == i || j == k; });
+      std::erase_if(merged, [i, k = k](int j) { return j == i || j == k; });
       graph.neighbours[i] = merged;
     }
     for (int i : result.later[k])

@@ -20,6 +20,7 @@ struct KktPair {
 struct KktTopology {
   int bodies = 0, rows = 0;
   std::vector<KktPair> pairs;
+  bool fused = true;  ///< Products and sums may be rounded once, where the processor can.
 };
 
 /// Values of the linear system of a Newton iteration, or of the start:

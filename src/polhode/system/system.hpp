@@ -64,6 +64,9 @@ class System {
   void set_contacts(std::shared_ptr<BodyContacts> contacts) { contacts_ = std::move(contacts); }
   [[nodiscard]] const std::shared_ptr<BodyContacts>& contacts() const { return contacts_; }
   void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
+  /// Whether linear solvers may use fused multiply-add, by which results depend on the processor.
+  void set_fused(bool fused) { fused_ = fused; }
+  [[nodiscard]] bool fused() const { return fused_; }
   /// Makes the item-th interaction of a kind switchable.
   /// @throws std::logic_error if there is none.
   void set_switching(std::string_view kind, int item, Switching how);
@@ -137,6 +140,7 @@ class System {
   SpanningTree tree_;
   State initial_;
   Vec3 gravity_ = Vec3::Zero();
+  bool fused_ = true;
   int rows_ = 0;
   std::vector<double> carried_mass_;
   double mean_mass_ = 1.0, length_ = 1.0;
