@@ -50,8 +50,8 @@ CoordinateMotion centres_step(const GearCoordinate& c, const BodyStep& a, const 
   // By ψ: that of w through ½ψ_{n+1}, that of sine and cosine through ψ_α; ψ = −q.
   const Vec6 by_a = -0.5 * w_x * n_a - af * w * turned(S.mu_a, C.mu_a);
   const Vec6 by_b = -0.5 * w_x * n_b - af * w * turned(S.mu_b, C.mu_b);
-  const auto tangent = [&](const Mat6& of_S, const Mat6& of_C, const Vec6& by,
-                           const Vec6& change) -> Mat6 {
+  const auto tangent = [&, w = w](const Mat6& of_S, const Mat6& of_C, const Vec6& by,
+                                  const Vec6& change) -> Mat6 {
     return -w / rho * (cos * of_S - sin * of_C) + by * change.transpose();
   };
   q.D_aa = tangent(S.D_aa, C.D_aa, by_a, q.at_n1_a);

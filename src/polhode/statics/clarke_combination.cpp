@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
+#include <vector>
 
 #include <Eigen/LU>
 #include <polhode/statics/clarke_combination.hpp>

@@ -189,7 +189,7 @@ double EdgeContact::free_part(const NodeStep& from, const NodeStep& to,
     for (int i = 0; i < 2; ++i)
       for (int j = 2; j < 4; ++j) length = std::max(length, (way[i] - way[j]).norm());
     // A sharp edge that becomes active only at the end of the displacement is kept away at once.
-    const auto clearance_at = [&](const Vec3(&at)[4]) {
+    const auto clearance_at = [&, e = e, f = f](const Vec3(&at)[4]) {
       return sharp ? nearest_of_edges(at).distance - centre_ + law_.normal.tolerance
                    : clearance(e, f, at);
     };
