@@ -121,8 +121,7 @@ class Evaluation {
       g_1.distance = g_0.distance + closed_form_change();
     else if (value(g_1.distance) < data_.normal.reach())
       g_1.distance = with_value(g_1.distance, fine_distance());
-    end_point_ = value(g_1.point);
-    end_normal_ = value(g_1.normal);
+    end_point_ = value(g_1.point), end_normal_ = value(g_1.normal);
     kinematics(g_0, g_1);
     forces(g_0, g_1);
     closed_forms();
@@ -130,9 +129,8 @@ class Evaluation {
 
     Wrenches<T> w;
     w.force = lambda_ * N_;
-    V3<T> arm = point_N_;
-    w.moment_a = cross(arm - r_a_, w.force) + couple_;
-    w.moment_b = -cross(arm - r_b_, w.force) - couple_;
+    w.moment_a = cross(point_N_ - r_a_, w.force) + couple_;
+    w.moment_b = -cross(point_N_ - r_b_, w.force) - couple_;
     if (report) start_report(*report, g_0, g_1);
     if (data_.friction.acts() && !data_.history.in_impact() && data_.pair.weight > 0.0)
       add_friction(w, report);
@@ -148,10 +146,9 @@ class Evaluation {
     f.moment_b = value(w.moment_b);
     f.arm_a = end_point_ - value(e_a_.position());
     f.arm_b = end_point_ - value(e_b_.position());
-    const Vec3& n = end_normal_;
     const double k = std::max(0.0, stiffness_);
-    f.C = k * n * n.transpose() + friction_C_;
-    f.normal = n;
+    f.C = k * end_normal_ * end_normal_.transpose() + friction_C_;
+    f.normal = end_normal_;
     f.slide = slide_;
     f.lag = lag_;
     if (lag_ > 0.0) f.friction_slope = (k * rub_) * slide_.normalized();
