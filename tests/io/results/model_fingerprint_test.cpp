@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <gtest/gtest.h>
+#include <support/bound_specs.hpp>
 #include <support/scratch.hpp>
 
 namespace polhode::model_fingerprint_tests {
@@ -125,6 +126,43 @@ TEST(ModelFingerprint, LeavesOutWhatARunMayBeContinuedWith) {
   const std::string without = model_fingerprint(drawn);
   drawn.bodies[1].shapes[0].sizes[0] = 0.2;
   EXPECT_EQ(model_fingerprint(drawn), without);
+}
+
+/// Another value of the same type.
+struct Change {
+  void operator()(double* value) const { *value = *value == 0.5 ? 0.25 : 0.5; }
+  void operator()(int* value) const { ++*value; }
+  void operator()(bool* value) const { *value = !*value; }
+  void operator()(std::string* value) const { *value += "x"; }
+  void operator()(Vec3* value) const { value->y() += 0.5; }
+  void operator()(TimeFunctionPtr* value) const { *value = std::make_shared<Wave>(3.0); }
+  void operator()(const EnumReference& value) const { value.set(value.get() + 1); }
+  template <class T>
+  void operator()(std::vector<T>* value) const {
+    value->emplace_back();
+  }
+  template <class T>
+  void operator()(std::optional<T>* value) const {
+    value->emplace();
+  }
+};
+
+/// Fields of every table, so that a new one is covered.
+TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatARunMayNotBeContinuedWith) {
+  const std::string fingerprint = model_fingerprint(test::BoundSpecs().model());
+  for (const FieldTable* table : all_field_tables())
+    for (const Field& field : table->fields) {
+      test::BoundSpecs specs;
+      bool bound = false;
+      specs.each([&]<class Spec>(Spec& spec) {
+        if (!field.member.belongs_to<Spec>()) return;
+        std::visit(Change(), field.member.in(spec));
+        bound = true;
+      });
+      if (!bound) continue;
+      EXPECT_EQ(model_fingerprint(specs.model()) == fingerprint, field.may_change)
+          << table->title << ' ' << field.name;
+    }
 }
 
 /// What a mesh file holds counts, not where it lies.

@@ -7,25 +7,6 @@
 namespace polhode {
 namespace {
 
-/// Sets a value that is given in the file, and leaves the default otherwise.
-template <class Target, class Value>
-void assign(Target& target, const std::optional<Value>& value) {
-  if (value) target = *value;
-}
-
-/// A time, or auto.
-void read_step(ReadContext& context, Section& section, AnalysisSpec& analysis) {
-  const SourceNode* value = section.find("step");
-  if (!value || (value->is_text() && value->text == "auto")) return;
-  if (const std::string guess = value->is_text() ? closest(value->text, {"auto", "automatic"}) : "";
-      !guess.empty()) {
-    context.fault(*value, section.path("step"), quote(value->text) + " is not known",
-                  "Did you mean 'auto'? Give auto or a time.");
-    return;
-  }
-  analysis.step = section.number("step");
-}
-
 /// Rejects entries without meaning in an analysis of this type.
 void check_type(Section& section, const std::string& type) {
   const auto refuse = [&](const char* key, const std::string& goes_with) {
@@ -48,30 +29,7 @@ void read_analysis(ReadContext& context, const SourceNode& node, const SourceLoc
   analysis.place = place;
   Section section(context, node, place, "analysis", analysis_fields());
   if (!node.is_map()) return;
-  assign(analysis.type, section.choice("type"));
-  assign(analysis.duration, section.number("duration"));
-  read_step(context, section, analysis);
-  analysis.tolerance = section.number("tolerance");
-  assign(analysis.rho_inf, section.number("rho_inf"));
-  if (const auto order = section.choice("order")) analysis.order = std::stoi(*order);
-  assign(analysis.momentum_rate, section.choice("momentum_rate"));
-  assign(analysis.solver, section.choice("solver"));
-  assign(analysis.jacobian, section.choice("jacobian"));
-  assign(analysis.isa, section.choice("isa"));
-  assign(analysis.conserving, section.boolean("conserving"));
-  assign(analysis.newton_tolerance, section.number("newton_tolerance"));
-  if (const auto most = section.integer("max_iterations")) analysis.max_iterations = *most;
-  if (const auto parts = section.integer("load_steps")) analysis.load_steps = *parts;
-  assign(analysis.count, section.integer("count"));
-  assign(analysis.about, section.choice("about"));
-  assign(analysis.line_search, section.boolean("line_search"));
-  assign(analysis.max_step_rotation, section.number("max_step_rotation"));
-  assign(analysis.assembly_tolerance, section.number("assembly_tolerance"));
-  analysis.min_step = section.number("min_step");
-  analysis.max_step = section.number("max_step");
-  assign(analysis.smooth_multipliers, section.boolean("smooth_multipliers"));
-  assign(analysis.checkpoint_every, section.number("checkpoint_every"));
-
+  section.read_into(analysis);
   check_type(section, analysis.type);
   if (analysis.step && analysis.tolerance)
     section.fault("tolerance",
@@ -105,10 +63,7 @@ void read_output(ReadContext& context, const SourceNode& node, const SourceLocat
   OutputSpec& output = context.model.output;
   Section section(context, node, place, "output", output_fields());
   if (!node.is_map()) return;
-  output.every = section.number("every");
-  assign(output.hdf5, section.boolean("hdf5"));
-  assign(output.csv, section.boolean("csv"));
-  assign(output.paraview, section.boolean("paraview"));
+  section.read_into(output);
   const SourceNode* probes = section.find("probes");
   if (!probes || probes->kind == SourceNode::Kind::kEmpty) return;
   if (!probes->is_map()) {

@@ -215,7 +215,7 @@ class BeamReader {
                     beam_contact_fields());
     if (!node.is_map()) return;
     BeamContactSpec contact;
-    contact.radius = section.number("radius").value_or(0.0);
+    section.read_into(contact);
     read_contact_side(section, contact.side);
     if (contact.side.touches.value_or(true)) beam_.contact = contact;
   }
@@ -352,13 +352,7 @@ class CableReader {
     const std::size_t before = context_.diagnostics.size();
     if (const SourceNode* node = section_.find("through")) read_through(*node);
     read_cable_pull(context_, section_, cable_);
-    cable_.free_length = section_.number("free_length");
-    cable_.damping = section_.number("damping").value_or(0.0);
-    cable_.tension_only = section_.boolean("tension_only").value_or(true);
-    if (section_.choice("strain").value_or("engineering") == "green")
-      cable_.strain = BarStrain::green;
-    cable_.mass_per_length = section_.number("mass_per_length").value_or(0.0);
-    cable_.elements = section_.integer("elements").value_or(1);
+    section_.read_into(cable_);
     if (const SourceNode* node = section_.find("contact")) read_contact(*node);
     if (context_.diagnostics.size() == before) divide();
   }
@@ -369,8 +363,7 @@ class CableReader {
                     cable_contact_fields());
     if (!node.is_map()) return;
     CableContactSpec contact;
-    contact.radius = section.number("radius").value_or(0.0);
-    contact.self = section.boolean("self").value_or(false);
+    section.read_into(contact);
     read_contact_side(section, contact.side);
     cable_.contact = std::move(contact);
   }

@@ -8,15 +8,10 @@ namespace {
 
 HillMuscle read_muscle(ReadContext& context, const SourceNode& node, const std::string& path) {
   HillMuscle m;
+  m.max_force = m.optimal_length = 1.0;  // Stand-ins after an error: both are required.
   Section section(context, node, context.tree.place_of(node), path, muscle_fields());
   if (!node.is_map()) return m;
-  m.max_force = section.number("max_force").value_or(1.0);
-  m.optimal_length = section.number("optimal_length").value_or(1.0);
-  m.tendon_length = section.number("tendon_length").value_or(0.0);
-  m.pennation = section.number("pennation").value_or(0.0);
-  m.max_velocity = section.number("max_velocity").value_or(10.0);
-  m.damping = section.number("damping").value_or(0.0);
-  m.activation = section.time_number("activation");
+  section.read_into(m);
   return m;
 }
 

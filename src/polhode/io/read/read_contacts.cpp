@@ -13,11 +13,6 @@
 namespace polhode {
 namespace {
 
-template <class T>
-void assign(T& target, const std::optional<T>& value) {
-  if (value) target = *value;
-}
-
 /// Smallest restitution that a damper can produce.
 constexpr double kMinDamped = 0.05;
 
@@ -30,20 +25,19 @@ constexpr std::array kForceKeys{"gap_tolerance",      "stiffness",       "hertz_
 void read_law(Section& section, ContactLawSpec& law) {
   const auto potential = section.choice("law");
   const bool sound_law = potential || !section.has("law");
-  assign(law.potential, potential);
-  assign(law.gap_tolerance, section.number("gap_tolerance"));
+  if (potential) law.potential = *potential;
+  std::vector<std::string_view> by_hand{"law", "stiffness"};
   if (law.potential == "nonsmooth") {
     for (const char* key : kForceKeys)
       if (section.has(key))
         section.fault(key, "cannot be combined with the law nonsmooth",
                       "Leave it out: this law has restitution, friction, rolling_friction and "
                       "torsional_friction only.");
-    assign(law.restitution, section.number("restitution"));
-    assign(law.friction, section.number("friction"));
-    assign(law.rolling, section.number("rolling_friction"));
-    assign(law.torsion, section.number("torsional_friction"));
+    by_hand.insert(by_hand.end(), kForceKeys.begin(), kForceKeys.end());
+    section.read_into(law, by_hand);
     return;
   }
+  section.read_into(law, by_hand);
   const bool hertz = law.potential == "hertz";
   for (const char* key : {"stiffness", "hertz_stiffness"}) {
     const auto value = section.number(key);
@@ -54,12 +48,8 @@ void read_law(Section& section, ContactLawSpec& law) {
       section.fault(key, format("cannot be combined with the law {}", law.potential),
                     hertz ? "Use hertz_stiffness." : "Use stiffness, or law: hertz.");
   }
-  assign(law.reference_load, section.number("reference_load"));
   if (section.has("reference_load"))
     section.refuse_both("stiffness", "reference_load", "Give one of them.");
-  assign(law.reference_pressure, section.number("reference_pressure"));
-  assign(law.restitution, section.number("restitution"));
-  assign(law.rebound, section.choice("rebound"));
   if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
     section.fault("rebound", "damped cannot be combined with the barrier law",
                   "Use law: linear or hertz with it, or leave it out.");
@@ -67,31 +57,15 @@ void read_law(Section& section, ContactLawSpec& law) {
     section.fault("restitution",
                   format("a damper cannot give the restitution {}", shown(law.restitution)),
                   format("Give at least {}, or leave out 'rebound'.", shown(kMinDamped)));
-  assign(law.friction, section.number("friction"));
-  assign(law.static_friction, section.number("static_friction"));
   if (section.has("static_friction") && law.static_friction < law.friction)
     section.fault(
         "static_friction",
         format("{} is below friction, {}", shown(law.static_friction), shown(law.friction)),
         "Static friction is at least as large as sliding friction.");
-  assign(law.friction_across, section.number("friction_across"));
-  assign(law.direction, section.direction("direction"));
   if (section.has("direction") && law.friction_across == 0.0)
     section.fault("direction", "requires 'friction_across'", "Give both, or neither.");
   if (section.has("friction_across") && law.friction == 0.0)
     section.fault("friction_across", "requires 'friction'", "Give friction along direction.");
-  assign(law.rolling, section.number("rolling_friction"));
-  assign(law.torsion, section.number("torsional_friction"));
-  assign(law.friction_stiffness, section.number("friction_stiffness"));
-  assign(law.friction_damping, section.number("friction_damping"));
-}
-
-Combination combination(const std::string& word) {
-  if (word == "mean") return Combination::mean;
-  if (word == "minimum") return Combination::minimum;
-  if (word == "maximum") return Combination::maximum;
-  if (word == "product") return Combination::product;
-  return Combination::geometric_mean;
 }
 
 /// Reader of the section; errors go to the context.
@@ -117,20 +91,16 @@ class ContactsReader {
          [&](Section& section, const std::string& name) {
            ContactMaterialSpec material{name, section.place(), contacts_.standard.friction,
                                         contacts_.standard.restitution};
-           assign(material.friction, section.number("friction"));
-           assign(material.restitution, section.number("restitution"));
+           section.read_into(material);
            contacts_.materials.push_back(std::move(material));
          });
     each("pairs", contact_pair_fields(), "{between: [a, b], friction: 0.5}",
          [&](Section& section, const std::string& name) { read_pair(section, name); });
     if (const SourceNode* node = section_.find("exclude")) read_excluded(*node);
-    assign(contacts_.joint_neighbours, section_.boolean("joint_neighbours"));
     each("sensors", contact_sensor_fields(), "{between: [a, b]}",
          [&](Section& section, const std::string& name) { read_sensor(section, name); });
     contacts_.resolve_overlaps = section_.choice("overlaps").value_or("error") == "resolve";
-    contacts_.record = section_.boolean("record");
-    assign(contacts_.sweeps, section_.integer("sweeps"));
-    assign(contacts_.sweep_tolerance, section_.number("sweep_tolerance"));
+    section_.read_into(contacts_);
     for (const char* key : {"sweeps", "sweep_tolerance"})
       if (section_.has(key) && !contacts_.nonsmooth())
         section_.fault(key, "requires the law nonsmooth",
@@ -162,9 +132,7 @@ class ContactsReader {
   void read_combination(const SourceNode& node) {
     Section section(context_, node, context_.tree.place_of(node), section_.path("combine"),
                     contact_combination_fields());
-    if (!node.is_map()) return;
-    if (const auto way = section.choice("friction")) contacts_.friction = combination(*way);
-    if (const auto way = section.choice("restitution")) contacts_.restitution = combination(*way);
+    if (node.is_map()) section.read_into(contacts_);
   }
 
   /// Two bodies that have shapes, or one and a solid or cable; the ground itself has none.
@@ -395,10 +363,7 @@ ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
 
 void read_contact_side(Section& section, ContactSideSpec& side) {
   side.place = section.place();
-  side.touches = section.boolean("touches");
-  side.material = section.text("material");
-  side.groups = section.names("groups");
-  side.meets = section.names("meets");
+  section.read_into(side);
 }
 
 void read_solid_contact(ReadContext& context, const SourceNode& node, const std::string& path,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -143,7 +144,20 @@ class Section {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const SourceLocation& place() const { return place_; }
 
+  /// Reads the fields that are bound to members of this type of spec; members without a valid value
+  /// stay as they are.
+  /// @param by_hand  Keys that are left out, because they have rules of their own.
+  /// @throws std::logic_error if the table is that of another spec, or has no such keys.
+  template <class Spec>
+  void read_into(Spec& spec, const std::vector<std::string_view>& by_hand = {}) {
+    for (const std::string_view key : by_hand) static_cast<void>(table_.at(key));
+    for (const Field* field : fields_of<Spec>(table_))
+      if (std::find(by_hand.begin(), by_hand.end(), field->name) == by_hand.end())
+        read_value(*field, field->member.in(spec));
+  }
+
   std::optional<double> number(const std::string& name);
+  std::optional<double> step(const std::string& name);  ///< A time; nothing for auto.
   std::optional<std::vector<double>> number_list(const std::string& name);
   std::optional<int> integer(const std::string& name);
   std::optional<bool> boolean(const std::string& name);
@@ -169,6 +183,8 @@ class Section {
   bool refuse_both(const std::string& one, const std::string& other, const std::string& hint);
 
  private:
+  void read_value(const Field& field, const SpecValue& member);
+
   ReadContext& context_;
   const SourceNode& node_;
   SourceLocation place_;

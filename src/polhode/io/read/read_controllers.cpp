@@ -10,9 +10,7 @@ namespace polhode {
 
 namespace {
 
-void read_transfer_function(Section& section, ControllerSpec& controller) {
-  controller.numerator = section.number_list("numerator").value_or(std::vector<double>());
-  controller.denominator = section.number_list("denominator").value_or(std::vector<double>());
+void check_transfer_function(Section& section, const ControllerSpec& controller) {
   if (controller.numerator.empty() || controller.denominator.empty()) {
     if (!section.has("numerator") || !section.has("denominator"))
       section.fault("is an incomplete transfer function", "Give numerator and denominator.");
@@ -40,19 +38,13 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
       section.fault("setpoint", "uses a controller that is listed later",
                     "List that controller first.");
   }
-  controller.sample = section.number("sample");
+  section.read_into(controller);
   if (channel && !controller.sample && is_mean_of_step(channel->spec))
     section.fault("sample",
                   format("is missing: {} of a contact is a mean over the step, which a continuous "
                          "controller cannot use",
                          quote(channel->spec.name)),
                   "Give a sample time.");
-  controller.proportional = section.number("proportional").value_or(0.0);
-  controller.integral = section.number("integral").value_or(0.0);
-  controller.derivative = section.number("derivative").value_or(0.0);
-  controller.filter = section.number("filter").value_or(0.0);
-  controller.least = section.number("minimum").value_or(controller.least);
-  controller.most = section.number("maximum").value_or(controller.most);
   if (!(controller.least <= controller.most))
     section.fault("maximum", "is below the minimum", "Exchange them.");
   bool gains = false;
@@ -63,7 +55,7 @@ void read_controller(ReadContext& context, const SourceNode& node, ControllerSpe
   if (section.has("filter") && !section.has("derivative"))
     section.fault("filter", "requires a derivative gain", "Add derivative, or leave it out.");
   if (section.has("numerator") || section.has("denominator")) {
-    read_transfer_function(section, controller);
+    check_transfer_function(section, controller);
   } else if (!gains && !section.has_unknown_key()) {
     section.fault("has no gains",
                   "Give proportional, integral or derivative, or numerator and denominator.");

@@ -223,16 +223,8 @@ class JointReader {
     Section section(context_, *node, context_.tree.place_of(*node), section_.path("friction"),
                     kind->table);
     if (!node->is_map()) return;
-    const auto number = [&](const char* name) {
-      return kind->table.find(name) ? section.number(name).value_or(0.0) : 0.0;
-    };
-    JointFrictionSpec f{.mu = number("mu"),
-                        .radius = number("radius"),
-                        .face_radius = number("face_radius"),
-                        .length = number("length"),
-                        .constant = number("moment") + number("force"),
-                        .stiffness = section.number("stiffness"),
-                        .damping = section.number("damping")};
+    JointFrictionSpec f;
+    section.read_into(f);
     const bool by_arm =
         joint_.type == "revolute" || joint_.type == "spherical" || joint_.type == "universal";
     if (f.mu > 0.0 && by_arm && f.radius == 0.0 && f.face_radius == 0.0)
@@ -252,11 +244,8 @@ class JointReader {
                     : title == stroke_limit_fields().title ? stroke_limit_fields()
                                                            : distance_limit_fields());
     if (!node->is_map()) return std::nullopt;
-    JointLimitsSpec l{.lower = section.number("lower"),
-                      .upper = section.number("upper"),
-                      .restitution = section.number("restitution").value_or(0.0),
-                      .band = section.number("band"),
-                      .stiffness = section.number("stiffness")};
+    JointLimitsSpec l;
+    section.read_into(l);
     if (section.misses("lower") && section.misses("upper"))
       section.fault("no stop is given", "Give lower, upper, or both.");
     if (l.lower && l.upper && !(*l.lower < *l.upper))
@@ -289,7 +278,7 @@ class JointReader {
     Section section(context_, *node, context_.tree.place_of(*node), section_.path("breaks"),
                     strength_fields());
     if (!node->is_map()) return;
-    joint_.breaks = {section.number("force"), section.number("moment")};
+    section.read_into(joint_.breaks);
     if (section.misses("force") && section.misses("moment"))
       section.fault("no limit is given", "Give force, moment, or both.");
   }
@@ -301,10 +290,7 @@ class JointReader {
                     enforcement_fields());
     if (!node->is_map()) return;
     JointEnforcement e;
-    if (section.choice("type").value_or("") == "augmented")
-      e.law = JointEnforcement::Law::augmented;
-    e.stiffness = section.number("stiffness").value_or(0.0);
-    e.turning_stiffness = section.number("turning_stiffness").value_or(0.0);
+    section.read_into(e);
     joint_.enforcement = e;
     enforcement_at_ = node;
   }

@@ -44,9 +44,7 @@ class MaterialReader {
       return;
     if (!section.has("relaxation_time") && section.misses("shear"))
       section.fault("'shear' is missing", "Give relaxation_time, or shear and lame.");
-    v.relaxation_time = section.number("relaxation_time").value_or(0.0);
-    v.shear = section.number("shear").value_or(0.0);
-    v.lame = section.number("lame").value_or(0.0);
+    section.read_into(v);
   }
 
   void read_fibre(const SourceNode& node) {

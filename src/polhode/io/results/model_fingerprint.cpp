@@ -10,6 +10,7 @@
 
 #include <polhode/core/sha256.hpp>
 #include <polhode/io/results/model_fingerprint.hpp>
+#include <polhode/io/schema/field_table.hpp>
 #include <polhode/io/text/file_error.hpp>
 
 namespace polhode {
@@ -26,6 +27,13 @@ class Fingerprint {
   template <class... Values>
   void add(const Values&... values) {
     (one(values), ...);
+  }
+  /// Adds the bound fields of a spec, in the order of its table, without those with which a run may
+  /// be continued.
+  template <class Spec>
+  void add_fields(const Spec& spec, const FieldTable& table) {
+    for (const Field* field : fields_of<Spec>(table))
+      if (!field->may_change) field->member.visit(spec, [this](const auto& value) { one(value); });
   }
   std::string hex() { return hash_.hex(); }
 
@@ -84,7 +92,7 @@ class Fingerprint {
     }
   }
 
-  void one(const ContactSideSpec& s) { add(s.touches, s.material, s.groups, s.meets); }
+  void one(const ContactSideSpec& s) { add_fields(s, contact_side_fields()); }
   void one(const ShapeSpec& s) {
     add(s.type, s.sizes, s.scale, s.points, s.heights, s.columns, s.spacing, s.position,
         s.orientation, s.contact);
@@ -94,10 +102,11 @@ class Fingerprint {
     add(b.name, b.fixed, b.point_mass, b.mass, b.inertia, b.position, b.orientation, b.com,
         b.velocity, b.angular_velocity, b.contact);
   }
+  // By hand: each kind of joint has a table of its own.
   void one(const JointFrictionSpec& f) {
     add(f.mu, f.radius, f.face_radius, f.length, f.constant, f.stiffness, f.damping);
   }
-  void one(const JointLimitsSpec& l) { add(l.lower, l.upper, l.restitution, l.band, l.stiffness); }
+  void one(const JointLimitsSpec& l) { add_fields(l, angle_limit_fields()); }
   void one(const FrameMotion& m) {
     add(m.displacement, static_cast<int>(m.rotation), m.parameters, m.sequence);
   }
@@ -105,10 +114,8 @@ class Fingerprint {
     add(j.name, j.type, j.a, j.b, j.Z_a, j.Z_b, j.R_a, j.R_b, j.free, j.parameters, j.friction,
         j.limits, j.angle_limits, j.motion);
     // Absent entries leave the fingerprints of older models unchanged.
-    if (j.breaks.force || j.breaks.moment) add(j.breaks.force, j.breaks.moment);
-    if (j.enforcement)
-      add(static_cast<int>(j.enforcement->law), j.enforcement->stiffness,
-          j.enforcement->turning_stiffness);
+    if (j.breaks.force || j.breaks.moment) add_fields(j.breaks, strength_fields());
+    if (j.enforcement) add_fields(*j.enforcement, enforcement_fields());
   }
   void one(const ChannelSpec& c) {
     const ProbeSpec& of = c.of;
@@ -125,8 +132,8 @@ class Fingerprint {
     add(e.name, e.at, e.when, e.after, e.on, e.off, e.repeat, e.stop);
   }
   void one(const ControllerSpec& c) {
-    add(c.name, c.channel, c.setpoint, c.sample, c.proportional, c.integral, c.derivative, c.filter,
-        c.numerator, c.denominator, c.least, c.most);
+    add(c.name, c.channel, c.setpoint);
+    add_fields(c, controller_fields());
   }
   void one(const Selection& s) {
     add(s.kind, s.set, s.normal, s.level, s.value, s.least, s.most, s.centre, s.radius,
@@ -139,6 +146,7 @@ class Fingerprint {
     // Functions in code are represented by their presence only.
     if (l.of_motion.index() != 0) add(static_cast<int>(l.of_motion.index()));
   }
+  // By hand: not in the order of the table.
   void one(const ViscositySpec& v) { add(v.relaxation_time, v.lame, v.shear); }
   void one(const FibreSpec& f) { add(f.law, f.parameters, f.direction); }
   void one(const MaterialSpec& m) {
@@ -160,7 +168,10 @@ class Fingerprint {
         s.relaxation_time);
   }
   void one(const BeamBondSpec& b) { add(b.body, b.at_end); }
-  void one(const BeamContactSpec& c) { add(c.radius, c.side); }
+  void one(const BeamContactSpec& c) {
+    add_fields(c, beam_contact_fields());
+    add(c.side);
+  }
   void one(const BeamSpec::Element& e) { add(e.length, e.frame_1, e.frame_2); }
   void one(const BeamSpec& b) {
     add(b.name, b.points, b.arc, b.elements, b.section, b.up, b.residual_bending_flexibility,
@@ -168,28 +179,30 @@ class Fingerprint {
         b.mesh);
   }
   void one(const AttachmentSpec& a) { add(a.body, a.Z); }
-  void one(const CableContactSpec& c) { add(c.radius, c.self, c.side); }
-  void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
-  void one(const HillMuscle& m) {
-    add(m.max_force, m.optimal_length, m.tendon_length, m.pennation, m.max_velocity, m.damping,
-        m.activation);
+  void one(const CableContactSpec& c) {
+    add_fields(c, cable_contact_fields());
+    add(c.side);
   }
+  void one(const CableLineSpec::Piece& p) { add(p.a, p.b, p.free_length, p.mass); }
+  void one(const HillMuscle& m) { add_fields(m, muscle_fields()); }
   void one(const CableLineSpec& c) {
-    add(c.name, c.through, c.stiffness, c.free_length, c.damping, c.tension_only, c.strain,
-        c.mass_per_length, c.elements, c.contact, c.pieces);
+    add(c.name, c.through, c.stiffness);
+    add_fields(c, cable_fields());
+    add(c.contact, c.pieces);
     if (c.slides) add(c.tension, c.muscle);
     if (c.friction > 0.0) add(c.friction, c.wraps);
   }
-  void one(const ContactLawSpec& l) {
-    add(l.potential, l.gap_tolerance, l.stiffness, l.reference_load, l.reference_pressure,
-        l.restitution, l.rebound, l.friction, l.static_friction, l.friction_across, l.direction,
-        l.rolling, l.torsion, l.friction_stiffness, l.friction_damping);
+  void one(const ContactLawSpec& l) { add_fields(l, contact_law_fields()); }
+  void one(const ContactMaterialSpec& m) {
+    add(m.name);
+    add_fields(m, contact_material_fields());
   }
-  void one(const ContactMaterialSpec& m) { add(m.name, m.friction, m.restitution); }
   void one(const ContactPairSpec& p) { add(p.name, p.of_materials, p.a, p.b, p.sensor, p.law); }
   void one(const ContactsSpec& c) {
-    add(c.present, c.standard, c.materials, c.friction, c.restitution, c.pairs, c.excluded,
-        c.joint_neighbours, c.sweeps, c.sweep_tolerance);
+    add(c.present, c.standard, c.materials);
+    add_fields(c, contact_combination_fields());
+    add(c.pairs, c.excluded);
+    add_fields(c, contacts_fields());
   }
 
   Sha256 hash_;
@@ -206,8 +219,7 @@ std::string model_fingerprint(const Model& model) {
     for (const BodySpec& body : model.bodies) f.add(body.shapes);
   if (!model.events.empty()) f.add(model.events);
   if (!model.controllers.empty()) f.add(model.controllers);
-  const AnalysisSpec& a = model.analysis;
-  f.add(a.type, a.rho_inf, a.momentum_rate, a.conserving);
+  f.add_fields(model.analysis, analysis_fields());
   return f.hex();
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <polhode/io/schema/spec_member.hpp>
 #include <polhode/io/text/units.hpp>
 
 namespace polhode {
@@ -79,6 +81,11 @@ struct Field {
   std::string table{};     ///< Of kSection and kNamed: title of the section's table.
   std::string variable{};  ///< Of kLaw: its variable, x or v.
   Dimension of{};          ///< Dimension of the variable.
+  /// Where the value is stored, so that Section::read_into() reads it and the fingerprint of the
+  /// model has it; none: both are written by hand.
+  SpecMember member{};
+  /// A run may be continued with another value: the fingerprint leaves it out.
+  bool may_change = false;
   std::string since = "0.1";
 };
 
@@ -94,6 +101,18 @@ struct FieldTable {
   [[nodiscard]] const Field& at(std::string_view name) const;
   [[nodiscard]] std::vector<std::string> names() const;
 };
+
+/// The fields of a table that are bound to this type of spec, in the table's order.
+/// @throws std::logic_error if there are none: the table is that of another spec.
+template <class Spec>
+[[nodiscard]] std::vector<const Field*> fields_of(const FieldTable& table) {
+  std::vector<const Field*> fields;
+  for (const Field& field : table.fields)
+    if (field.member.belongs_to<Spec>()) fields.push_back(&field);
+  if (fields.empty())
+    throw std::logic_error("the field table '" + table.title + "' is that of another spec");
+  return fields;
+}
 
 /// A kind of joint, load, material ... and its keys.
 struct KindTable {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/schema/field_table.hpp>
+#include <polhode/model/beam_spec.hpp>
 
 namespace polhode {
 
@@ -181,7 +182,8 @@ const FieldTable& beam_contact_fields() {
                    .dimension = kLength,
                    .meaning = "Radius of the bar.",
                    .standard = "half the smaller of the section's height and width",
-                   .range = kPositive}}};
+                   .range = kPositive,
+                   .member = &BeamContactSpec::radius}}};
     const std::vector<Field>& side = contact_side_fields().fields;
     t.fields.insert(t.fields.end(), side.begin(), side.end());
     return t;
@@ -212,17 +214,20 @@ const FieldTable& cable_fields() {
            .dimension = kLength,
            .meaning = "Unstressed length of the whole cable.",
            .standard = "that at the start",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &CableLineSpec::free_length},
           {.name = "damping",
            .kind = kNumber,
            .dimension = kDamping,
            .meaning = "Damping of the whole cable: force per rate of elongation, while taut.",
            .standard = "0",
-           .range = kNotNegative},
+           .range = kNotNegative,
+           .member = &CableLineSpec::damping},
           {.name = "tension_only",
            .kind = kBoolean,
            .meaning = "Slack when shorter than its free length. false: a rod.",
-           .standard = "true"},
+           .standard = "true",
+           .member = &CableLineSpec::tension_only},
           {.name = "slides",
            .kind = kBoolean,
            .meaning = "The cable slides over its points between the ends: one tension in all "
@@ -252,19 +257,22 @@ const FieldTable& cable_fields() {
            .kind = kChoice,
            .meaning = "Measure of strain: l/L - 1, or (l^2/L^2 - 1)/2.",
            .standard = "engineering",
-           .choices = {"engineering", "green"}},
+           .choices = {"engineering", "green"},
+           .member = &CableLineSpec::strain},
           {.name = "mass_per_length",
            .kind = kNumber,
            .dimension = kMassPerLength,
            .meaning = "Mass per length: adds point masses (stay.0, stay.1, ...), with spherical "
                       "joints at its points.",
            .standard = "0",
-           .range = kNotNegative},
+           .range = kNotNegative,
+           .member = &CableLineSpec::mass_per_length},
           {.name = "elements",
            .kind = kInteger,
            .meaning = "Number of elements from one point to the next, if it has mass.",
            .standard = "1",
-           .range = {1.0, 1e6}},
+           .range = {1.0, 1e6},
+           .member = &CableLineSpec::elements},
           {.name = "contact",
            .kind = kSection,
            .meaning = "The cable touches bodies, beams and other cables as a round rope; needs "
@@ -285,39 +293,46 @@ const FieldTable& muscle_fields() {
            .dimension = kForce,
            .meaning = "Isometric force of the active muscle at the optimal length.",
            .required = true,
-           .range = kPositive},
+           .range = kPositive,
+           .member = &HillMuscle::max_force},
           {.name = "optimal_length",
            .kind = kNumber,
            .dimension = kLength,
            .meaning = "Optimal length of the fibres, at which their force is largest.",
            .required = true,
-           .range = kPositive},
+           .range = kPositive,
+           .member = &HillMuscle::optimal_length},
           {.name = "tendon_length",
            .kind = kNumber,
            .dimension = kLength,
            .meaning = "Length of the rigid tendon.",
            .standard = "0",
-           .range = kNotNegative},
+           .range = kNotNegative,
+           .member = &HillMuscle::tendon_length},
           {.name = "pennation",
            .kind = kNumber,
            .dimension = kAngle,
            .meaning = "Pennation angle at the optimal length; the muscle has constant width.",
            .standard = "0",
-           .range = {0.0, 1.4}},
+           .range = {0.0, 1.4},
+           .member = &HillMuscle::pennation},
           {.name = "max_velocity",
            .kind = kNumber,
            .meaning = "Largest speed of shortening, in optimal lengths a second.",
            .standard = "10",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &HillMuscle::max_velocity},
           {.name = "damping",
            .kind = kNumber,
            .meaning = "Damping of the fibres: force over max_force, by velocity over max_velocity.",
            .standard = "0",
-           .range = kNotNegative},
+           .range = kNotNegative,
+           .member = &HillMuscle::damping},
           {.name = "activation",
            .kind = kTimeNumber,
            .meaning = "Activation over time, from 0 to 1.",
-           .required = true},
+           .required = true,
+           .member = &HillMuscle::activation},
       }};
   return table;
 }
@@ -331,11 +346,13 @@ const FieldTable& cable_contact_fields() {
                    .dimension = kLength,
                    .meaning = "Radius of the cable.",
                    .required = true,
-                   .range = kPositive},
+                   .range = kPositive,
+                   .member = &CableContactSpec::radius},
                   {.name = "self",
                    .kind = kBoolean,
                    .meaning = "true: the cable also touches itself, where it is wound or folded.",
-                   .standard = "false"}}};
+                   .standard = "false",
+                   .member = &CableContactSpec::self}}};
     const std::vector<Field>& side = contact_side_fields().fields;
     t.fields.insert(t.fields.end(), side.begin(), side.end());
     return t;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/schema/field_table.hpp>
+#include <polhode/model/contact_spec.hpp>
 
 namespace polhode {
 
@@ -21,6 +22,11 @@ const Field kRestitution{.name = "restitution",
                          .standard = "0",
                          .range = {0.0, 1.0}};
 
+Field bound(Field field, const SpecMember& member) {
+  field.member = member;
+  return field;
+}
+
 std::vector<Field> law_fields() {
   return {
       {.name = "law",
@@ -30,7 +36,8 @@ std::vector<Field> law_fields() {
                   "penetration to the power 3/2. nonsmooth: impulses instead of forces, for many "
                   "bodies without joints; in default only.",
        .standard = "barrier",
-       .choices = {"barrier", "linear", "hertz", "nonsmooth"}},
+       .choices = {"barrier", "linear", "hertz", "nonsmooth"},
+       .member = &ContactLawSpec::potential},
       {.name = "gap_tolerance",
        .kind = kNumber,
        .dimension = kLength,
@@ -38,13 +45,15 @@ std::vector<Field> law_fields() {
            "Largest penetration: the barrier acts at gaps between minus this length and zero, "
            "between deformable surfaces and for cables between minus and plus this length.",
        .standard = "1e-3 of the smaller shape",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::gap_tolerance},
       {.name = "stiffness",
        .kind = kNumber,
        .dimension = kStiffness,
        .meaning = "Stiffness of the barrier or of the linear law, for each contact point.",
        .standard = "from weight, reference_load and step",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::stiffness},
       {.name = "hertz_stiffness",
        .kind = kNumber,
        .meaning = "Stiffness of law hertz: force over penetration^1.5, always in N/m^1.5.",
@@ -56,62 +65,72 @@ std::vector<Field> law_fields() {
        .meaning = "Normal force from which the stiffness is chosen: the barrier carries it at a "
                   "twentieth of gap_tolerance, springs at gap_tolerance.",
        .standard = "the weight of the lighter body",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::reference_load},
       {.name = "reference_pressure",
        .kind = kNumber,
        .dimension = kPressure,
        .meaning = "Pressure from which the stiffness of surfaces of solids and of cables (on their "
                   "diameter) is chosen: the barrier carries it in the middle of its band.",
        .standard = "from elasticity, density and step",
-       .range = kPositive},
-      kRestitution,
+       .range = kPositive,
+       .member = &ContactLawSpec::reference_pressure},
+      bound(kRestitution, &ContactLawSpec::restitution),
       {.name = "rebound",
        .kind = kChoice,
        .meaning = "Model of restitution: exit sets the speed of separation, exact at any step; "
                   "damped is a damper parallel to a linear or Hertz potential (Gonthier, Carvalho "
                   "and Martins), which needs some twenty steps in a contact.",
        .standard = "exit",
-       .choices = {"exit", "damped"}},
-      kFriction,
+       .choices = {"exit", "damped"},
+       .member = &ContactLawSpec::rebound},
+      bound(kFriction, &ContactLawSpec::friction),
       {.name = "static_friction",
        .kind = kNumber,
        .meaning = "Coefficient of static friction.",
        .standard = "as friction",
-       .range = kNotNegative},
+       .range = kNotNegative,
+       .member = &ContactLawSpec::static_friction},
       {.name = "friction_across",
        .kind = kNumber,
        .meaning = "Coefficient transverse to direction; friction is then that along it.",
        .standard = "as friction",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::friction_across},
       {.name = "direction",
        .kind = kDirection,
        .meaning =
            "Direction of friction, if friction_across is given; in coordinates of the first body.",
-       .standard = "x"},
+       .standard = "x",
+       .member = &ContactLawSpec::direction},
       {.name = "rolling_friction",
        .kind = kNumber,
        .dimension = kLength,
        .meaning = "Largest rolling moment over normal force.",
        .standard = "0",
-       .range = kNotNegative},
+       .range = kNotNegative,
+       .member = &ContactLawSpec::rolling},
       {.name = "torsional_friction",
        .kind = kNumber,
        .dimension = kLength,
        .meaning = "Largest spin moment (about the normal) over normal force.",
        .standard = "0",
-       .range = kNotNegative},
+       .range = kNotNegative,
+       .member = &ContactLawSpec::torsion},
       {.name = "friction_stiffness",
        .kind = kNumber,
        .dimension = kStiffness,
        .meaning = "Stiffness of the bristle in static friction.",
        .standard = "that of the normal force",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::friction_stiffness},
       {.name = "friction_damping",
        .kind = kNumber,
        .dimension = kDamping,
        .meaning = "Damping of the bristle in static friction.",
        .standard = "0.7 of the critical one",
-       .range = kPositive},
+       .range = kPositive,
+       .member = &ContactLawSpec::friction_damping},
   };
 }
 
@@ -173,7 +192,8 @@ const FieldTable& contacts_fields() {
            .kind = kBoolean,
            .meaning = "Bodies with a common joint can touch, and solids can touch the bodies they "
                       "are bonded to.",
-           .standard = "false"},
+           .standard = "false",
+           .member = &ContactsSpec::joint_neighbours},
           {.name = "sensors",
            .kind = kNamed,
            .meaning = "Pairs of bodies that pass through one another and report it, by name.",
@@ -188,18 +208,22 @@ const FieldTable& contacts_fields() {
            .kind = kInteger,
            .meaning = "With law: nonsmooth, largest number of Gauss-Seidel sweeps in a step.",
            .standard = "100",
-           .range = {1.0, 1e6}},
+           .range = {1.0, 1e6},
+           .member = &ContactsSpec::sweeps},
           {.name = "sweep_tolerance",
            .kind = kNumber,
            .meaning = "With law: nonsmooth, change of speed in a sweep at which a step has "
                       "converged, relative to gravity times the step.",
            .standard = "1e-3",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &ContactsSpec::sweep_tolerance},
           {.name = "record",
            .kind = kBoolean,
            .meaning = "Record results of every pair of bodies that may touch; false: only of those "
                       "named in pairs, sensors and probes.",
-           .standard = "true for at most 100 pairs"},
+           .standard = "true for at most 100 pairs",
+           .member = &ContactsSpec::record,
+           .may_change = true},
       }};
   return table;
 }
@@ -229,7 +253,8 @@ const FieldTable& contact_material_fields() {
   static const FieldTable table{"contact material",
                                 "A contact material. The law of two materials is combined from "
                                 "them, unless it is given in pairs.",
-                                {kFriction, kRestitution}};
+                                {bound(kFriction, &ContactMaterialSpec::friction),
+                                 bound(kRestitution, &ContactMaterialSpec::restitution)}};
   return table;
 }
 
@@ -243,12 +268,14 @@ const FieldTable& contact_combination_fields() {
         .kind = kChoice,
         .meaning = "Combination of the two coefficients of friction.",
         .standard = "geometric_mean",
-        .choices = ways},
+        .choices = ways,
+        .member = &ContactsSpec::friction},
        {.name = "restitution",
         .kind = kChoice,
         .meaning = "Combination of the two coefficients of restitution.",
         .standard = "minimum",
-        .choices = ways}}};
+        .choices = ways,
+        .member = &ContactsSpec::restitution}}};
   return table;
 }
 
@@ -261,19 +288,23 @@ const FieldTable& contact_side_fields() {
           {.name = "touches",
            .kind = kBoolean,
            .meaning = "false: the shape does not touch; it has mass and is drawn only.",
-           .standard = "true"},
+           .standard = "true",
+           .member = &ContactSideSpec::touches},
           {.name = "material",
            .kind = kText,
            .meaning = "Name of a contact material.",
-           .standard = "friction and restitution of contacts.default"},
+           .standard = "friction and restitution of contacts.default",
+           .member = &ContactSideSpec::material},
           {.name = "groups",
            .kind = kNames,
            .meaning = "Groups it belongs to; names are free.",
-           .standard = "[default]"},
+           .standard = "[default]",
+           .member = &ContactSideSpec::groups},
           {.name = "meets",
            .kind = kNames,
            .meaning = "Groups it can touch; two shapes touch if each accepts the other.",
-           .standard = "all"},
+           .standard = "all",
+           .member = &ContactSideSpec::meets},
       }};
   return table;
 }

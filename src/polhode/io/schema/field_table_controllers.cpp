@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/schema/field_table.hpp>
+#include <polhode/model/controller_spec.hpp>
 
 namespace polhode {
 
@@ -26,38 +27,50 @@ const FieldTable& controller_fields() {
              .dimension = kTime,
              .meaning = "Sample time; the output is constant between samples.",
              .standard = "it is continuous",
-             .range = kPositive},
+             .range = kPositive,
+             .member = &ControllerSpec::sample},
             {.name = "proportional",
              .kind = kNumber,
              .meaning = "Proportional gain, of the error.",
-             .standard = "0"},
+             .standard = "0",
+             .member = &ControllerSpec::proportional},
             {.name = "integral",
              .kind = kNumber,
              .meaning = "Integral gain, of the error's integral.",
-             .standard = "0"},
+             .standard = "0",
+             .member = &ControllerSpec::integral},
             {.name = "derivative",
              .kind = kNumber,
              .meaning =
                  "Derivative gain, of the error's rate; for channels whose rate is available.",
-             .standard = "0"},
+             .standard = "0",
+             .member = &ControllerSpec::derivative},
             {.name = "filter",
              .kind = kNumber,
              .dimension = kTime,
              .meaning = "Time constant of a first-order filter of that rate.",
              .standard = "0",
-             .range = kNotNegative},
+             .range = kNotNegative,
+             .member = &ControllerSpec::filter},
             {.name = "numerator",
              .kind = kNumberList,
              .meaning = "Numerator of a transfer function instead of gains: polynomial in s, the "
-                        "highest power first."},
+                        "highest power first.",
+             .member = &ControllerSpec::numerator},
             {.name = "denominator",
              .kind = kNumberList,
-             .meaning = "Denominator of the transfer function, of the same order or higher."},
+             .meaning = "Denominator of the transfer function, of the same order or higher.",
+             .member = &ControllerSpec::denominator},
             {.name = "minimum",
              .kind = kNumber,
              .meaning = "Limits of the output. The integral stops there.",
-             .standard = "none"},
-            {.name = "maximum", .kind = kNumber, .meaning = "Likewise.", .standard = "none"},
+             .standard = "none",
+             .member = &ControllerSpec::least},
+            {.name = "maximum",
+             .kind = kNumber,
+             .meaning = "Likewise.",
+             .standard = "none",
+             .member = &ControllerSpec::most},
         });
     return t;
   }();

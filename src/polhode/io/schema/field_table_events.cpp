@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/io/schema/field_table.hpp>
+#include <polhode/model/event_spec.hpp>
 
 namespace polhode {
 
@@ -86,12 +87,14 @@ const FieldTable& strength_fields() {
            .kind = kNumber,
            .dimension = kForce,
            .meaning = "Magnitude of the force.",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &JointStrengthSpec::force},
           {.name = "moment",
            .kind = kNumber,
            .dimension = kMoment,
            .meaning = "Magnitude of the moment at the joint's point.",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &JointStrengthSpec::moment},
       }};
   return table;
 }

@@ -4,6 +4,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/schema/field_table.hpp>
+#include <polhode/model/material_spec.hpp>
 #include <polhode/solids/materials/registry.hpp>
 
 namespace polhode {
@@ -117,18 +118,21 @@ const FieldTable& viscosity_fields() {
            .kind = kNumber,
            .dimension = kTime,
            .meaning = "Ratio of viscous to elastic moduli of the undeformed material.",
-           .range = kPositive},
+           .range = kPositive,
+           .member = &ViscositySpec::relaxation_time},
           {.name = "shear",
            .kind = kNumber,
            .dimension = kViscosity,
            .meaning = "Shear viscosity: the stress is 2 times this times the rate of strain.",
            .standard = "0",
-           .range = kNotNegative},
+           .range = kNotNegative,
+           .member = &ViscositySpec::shear},
           {.name = "lame",
            .kind = kNumber,
            .dimension = kViscosity,
            .meaning = "Viscous first Lamé constant: stress per rate of volume strain.",
-           .standard = "0"},
+           .standard = "0",
+           .member = &ViscositySpec::lame},
       }};
   return table;
 }
