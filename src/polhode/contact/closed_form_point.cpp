@@ -89,12 +89,12 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
   const Vec3 point = 0.5 * (p.at_n + p.at_n1);
   const Vec3 r_a = a.r_n + 0.5 * a.u, r_b = b.r_n + 0.5 * b.u;
   Vec3 N, n, c;
-  Vec3 end_normal;  // the gap at the end goes with it
+  Vec3 spring_normal;
   if (B.solid == Solid::half_space) {
     const Ends normal = turned(b, B.axes.col(2));
     N = 0.5 * (normal.at_n + normal.at_n1);
     n = N.normalized();
-    end_normal = normal.at_n1;
+    spring_normal = normal.at_n1;
     const double more = A.rounding - B.rounding;
     c = point - 0.25 * ((normal.at_n.dot(p.at_n - q.at_n) + more) * normal.at_n +
                         (normal.at_n1.dot(p.at_n1 - q.at_n1) + more) * normal.at_n1);
@@ -104,7 +104,7 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
     N = (w_0 + w_1) / (l_0 + l_1);
     const Vec3 sum = w_0 / l_0 + w_1 / l_1;
     n = sum.normalized();
-    end_normal = w_1 / l_1;
+    spring_normal = w_1 / l_1;
     c = 0.5 * (point + 0.5 * (q.at_n + q.at_n1)) + 0.25 * (B.rounding - A.rounding) * sum;
   }
 
@@ -116,6 +116,8 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
   out.moment_a = (point - r_a).cross(out.force);
   out.moment_b = -(point - r_b).cross(out.force);
   const double k = std::max(0.0, normal.stiffness);
+  const bool of_end = has_spring_of_end(data, k, n, spring_normal, context.dt);
+  if (!of_end) spring_normal = n;
   if (report) {
     *report = {};
     report->gap_n = gap_n;
@@ -148,11 +150,11 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
     out.moment_a += out.arm_a.cross(F);
     out.moment_b -= out.arm_b.cross(F);
     const double k_T = f.stiffness * factor * part;
-    out.C = k * end_normal * end_normal.transpose() - k_T * n * n.transpose();
+    out.C = k * spring_normal * spring_normal.transpose() - k_T * n * n.transpose();
     out.C.diagonal().array() += k_T;
     if (slides) {
       out.C -= (k_T / square) * middle * middle.transpose();
-      out.normal = end_normal;
+      out.normal = spring_normal;
       out.slide = middle;
       out.lag = k_T;
       out.friction_slope = (k * friction_slope(data, normal_force) / std::sqrt(square)) * middle;
@@ -169,16 +171,18 @@ PointForce closed_form_force(const PointData& data, double gap_n, double gap_n1,
           0.5 * f.stiffness * (after.squaredNorm() - data.history.bristle.squaredNorm());
     }
   } else {
-    out.C = k * end_normal * end_normal.transpose();
+    out.C = k * spring_normal * spring_normal.transpose();
     if (report && f.mu > 0.0) {
       report->after.normal = n;
       if (!data.history.in_impact())
         report->work.dissipated += 0.5 * f.stiffness * data.history.bristle.squaredNorm();
     }
   }
-  const Vec3 end_point = p.at_n1 - (A.rounding + 0.5 * gap_n1) * end_normal;
-  out.arm_a = end_point - a.r_n - a.u;
-  out.arm_b = end_point - b.r_n - b.u;
+  if (of_end) {
+    const Vec3 end_point = p.at_n1 - (A.rounding + 0.5 * gap_n1) * spring_normal;
+    out.arm_a = end_point - a.r_n - a.u;
+    out.arm_b = end_point - b.r_n - b.u;
+  }
   if (report) report->force = out.force;
   return out;
 }

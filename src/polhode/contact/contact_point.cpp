@@ -142,13 +142,13 @@ class Evaluation {
   PointForce spring(const Wrenches<T>& w) const {
     PointForce f;
     f.force = value(w.force);
-    f.moment_a = value(w.moment_a);
-    f.moment_b = value(w.moment_b);
-    f.arm_a = end_point_ - value(e_a_.position());
-    f.arm_b = end_point_ - value(e_b_.position());
+    f.moment_a = value(w.moment_a), f.moment_b = value(w.moment_b);
     const double k = std::max(0.0, stiffness_);
-    f.C = k * end_normal_ * end_normal_.transpose() + friction_C_;
-    f.normal = end_normal_;
+    const bool end = has_spring_of_end(data_, k, value(n_), end_normal_, context_.dt);
+    f.arm_a = end ? Vec3(end_point_ - value(e_a_.position())) : value(c_ - r_a_);
+    f.arm_b = end ? Vec3(end_point_ - value(e_b_.position())) : value(c_ - r_b_);
+    f.normal = end ? end_normal_ : value(n_);
+    f.C = k * f.normal * f.normal.transpose() + friction_C_;
     f.slide = slide_;
     f.lag = lag_;
     if (lag_ > 0.0) f.friction_slope = (k * rub_) * slide_.normalized();

@@ -82,6 +82,7 @@ struct PointData {
   /// Part of the normal force that is evaluated at the end of the step [-].
   double end_share = 0.0;
   double length = 1.0;  ///< L of the pair [m].
+  double mass = 0.0;    ///< Reduced mass of both bodies [kg].
   FrictionShare share;  ///< In this step.
   PointHistory history;
 };
@@ -132,16 +133,26 @@ void add_contact(const PointData& data, const BodyStep& a, const BodyStep& b,
 struct PointForce {
   Vec3 force = Vec3::Zero();                              ///< On a, at t_{n+αf} [N].
   Vec3 moment_a = Vec3::Zero(), moment_b = Vec3::Zero();  ///< About the centres of mass [N m].
-  /// From the centres of mass to the point at t_{n+1} [m].
+  /// From the centres of mass to the point [m].
   Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
   Mat3 C = Mat3::Zero();       ///< Symmetric stiffness between the points of a and b there [N/m].
-  Vec3 normal = Vec3::Zero();  ///< At t_{n+1}: unit, from b to a.
+  Vec3 normal = Vec3::Zero();  ///< Unit, from b to a.
   Vec3 slide = Vec3::Zero();   ///< Deflection of a sliding bristle [m]; zero if it sticks.
   Vec3 friction_slope =
       Vec3::Zero();  ///< Derivative of its force on a by the displacement along the normal [N/m].
   /// Lagged stiffness, force over deflection, which C lacks along the slide [N/m].
   double lag = 0.0;
 };
+
+/// Whether the spring of a point has the normal and arms of the end of the step, along which the
+/// gap changes, instead of the mean ones of the force: where tangential increments that leave the
+/// mean gap would change the force by more than inertia does. @eq{contact-spring}
+/// @param stiffness  Along the normal [N/m].
+[[nodiscard]] inline bool has_spring_of_end(const PointData& data, double stiffness,
+                                            const Vec3& mean_normal, const Vec3& end_normal,
+                                            double dt) {
+  return stiffness * (end_normal - mean_normal).norm() * dt * dt > 2.0 * data.mass;
+}
 
 /// Force of the point, equal to that of add_contact(), and the spring that approximates its
 /// tangent.

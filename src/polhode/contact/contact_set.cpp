@@ -178,6 +178,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
   const double rounding = a.shape.rounding + b.shape.rounding;
   PointData& d = p.data;
   d.length = std::min(a.shape.size, b.shape.size);
+  d.mass = mass;
   d.normal.potential = law.potential;
   d.normal.tolerance =
       law.tolerance > 0.0 ? law.tolerance : 1e-3 * std::min(a.shape.detail, b.shape.detail);
