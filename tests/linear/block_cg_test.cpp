@@ -207,6 +207,34 @@ TEST(BlockCg, HoldsRowsAsADirectSolverDoes) {
   }
 }
 
+/// A hinged body that another one hits at an arm, with a stiffness far above inertia: rows that
+/// nearly oppose the contact hold to the rounding of the displacement.
+TEST(BlockCg, HoldsTheRowsOfABodyInAStiffContact) {
+  for (const double stiffness : {1.0, 1e3, 1e5}) {
+    ManyBodies c;
+    c.blocks.assign(2, Mat6::Identity());
+    for (Mat6& B : c.blocks) B.bottomRightCorner<3, 3>() *= 0.01;
+    c.springs.push_back({1,
+                         0,
+                         {0.0, 0.0, -0.1},
+                         {0.25, 0.01, 0.1},
+                         stiffness * Vec3::UnitZ() * Vec3::UnitZ().transpose()});
+    std::vector<BlockCg::Row> rows;
+    for (int k = 0; k < 5; ++k)
+      rows.push_back({kGround, 0, Vec6::Zero(), Vec6::Unit(k), 1e-3 * (k + 1)});
+    const std::vector<Vec6> rhs = numbers(2, 5);
+    BlockCg cg;
+    set(cg, c);
+    cg.set_ties({});
+    ASSERT_TRUE(cg.set_rows(rows));
+    std::vector<Vec6> x;
+    cg.solve(rhs, x, 1e-10, 100, 0);
+    for (int k = 0; k < 5; ++k)
+      EXPECT_NEAR(x[0][k], -1e-3 * (k + 1), 2e-6 * flat(x).lpNorm<Eigen::Infinity>())
+          << k << " at " << stiffness;
+  }
+}
+
 /// What Newton iterations do: the rest of one solution is what the next one is asked for.
 TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
   for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness

@@ -23,7 +23,7 @@ constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
 /// Displacement over distance above which balls may pass each other: then the gap along the line of
 /// centres counts.
 constexpr double kFar = 0.5;
-/// How often linear gaps are corrected by those of the moved bodies.
+/// How often gaps are linearised anew about the moved bodies.
 constexpr int kCorrections = 2;
 /// Bound of the displacements after collisions, as a multiple of the largest one before.
 constexpr double kPushed = 2.0;
@@ -31,6 +31,7 @@ constexpr double kPushed = 2.0;
 /// A body's motion and its response to forces.
 struct PredictedBody {
   Vec6 about = Vec6::Zero();  ///< Increment about which rows are linear.
+  Vec6 free = Vec6::Zero();   ///< Increment without contacts and multipliers.
   Vec6 increment = Vec6::Zero();
   double inverse_mass = 0.0;            ///< [1/kg]
   Mat3 inverse_inertia = Mat3::Zero();  ///< World [1/(kg m²)].
@@ -74,7 +75,8 @@ struct BodyAtPoint {
 struct PredictedContact {
   const PointData* data = nullptr;
   const SpherePairCache* balls = nullptr;
-  Vec3 normal = Vec3::Zero();  ///< At t_n, from b to a.
+  Vec3 normal_n, place_n;  ///< At t_n; the normal is from b to a.
+  Vec3 normal;             ///< Of the force.
   BodyAtPoint a, b;
   double correction = 0.0;           ///< Of the linear gap [m].
   double mobility = 0.0;             ///< Along the normal [1/kg].
@@ -178,19 +180,29 @@ class Sweeps {
     }
   }
 
-  /// Corrects linear gaps by those of the moved bodies. @returns the largest correction, as a part
-  /// of the clearance.
-  double correct(std::span<const BodyStep> steps, std::span<const PredictedBody> bodies) {
+  /// Linearises anew about the moved bodies, with the normals and arms of the middle of the step:
+  /// all but balls. @returns the largest change of a gap or, where friction acts, of a slip, as a
+  /// part of the clearance.
+  double linearise(std::span<const BodyStep> steps, std::vector<PredictedBody>& bodies) {
     double largest = 0.0;
     std::vector<BodyStep> moved;
     for (PredictedContact& m : contacts_) {
-      if (m.balls->holds || (m.normal_force == 0.0 && m.gap() > m.balls->reach)) continue;
-      if (moved.empty()) moved = at_increments(steps, bodies);
       const double linear = m.gap();
-      const double gap = gap_n1(*m.data, m.balls->gap_n, moved[m.balls->a], moved[m.balls->b]);
-      m.correction += gap - linear;
-      largest = std::max(largest, std::abs(gap - linear) / clearance(m, linear));
+      if (m.balls->holds || (m.normal_force == 0.0 && linear > m.balls->reach)) continue;
+      if (moved.empty()) moved = at_increments(steps, bodies);
+      const Vec3 slip = m.slip();
+      const double gap = linearise(m, moved[m.balls->a], moved[m.balls->b]);
+      double change = std::abs(gap - linear);
+      if (m.has_friction) change = std::max(change, (m.slip() - slip).norm());
+      largest = std::max(largest, change / clearance(m, linear));
     }
+    if (moved.empty()) return 0.0;
+    for (PredictedBody& body : bodies) body.increment = body.free;
+    for (const PredictedRows& r : rows_) {
+      r.a->increment += r.by_a * (r.rows->change / K_);
+      r.b->increment += r.by_b * (r.rows->change / K_);
+    }
+    for (const PredictedContact& m : contacts_) m.push(m.normal_force * m.normal + m.friction);
     return largest;
   }
 
@@ -208,6 +220,23 @@ class Sweeps {
     return moved;
   }
   /// Depth of a gap within the law's band, or its clearance if that is less [m].
+  /// @returns the gap at the end of the step [m].
+  static double linearise(PredictedContact& m, const BodyStep& a, const BodyStep& b) {
+    const PointData& d = *m.data;
+    const Gap<double> end =
+        polhode::contact::gap(d.pair, *d.a, *d.b, Placement<double>(a.r_n1, a.Lambda_n1, 0),
+                              Placement<double>(b.r_n1, b.Lambda_n1, 6));
+    const Vec3 place = 0.5 * (m.place_n + value(end.point));
+    m.normal = (m.normal_n + value(end.normal)).normalized();
+    m.a.arm = place - a.r_n - 0.5 * a.u;
+    m.b.arm = place - b.r_n - 0.5 * b.u;
+    m.friction -= m.normal.dot(m.friction) * m.normal;
+    m.find_mobilities();
+    m.correction = 0.0;
+    const double gap = gap_n1(d, m.balls->gap_n, a, b);
+    m.correction = gap - m.gap();
+    return gap;
+  }
   static double clearance(const PredictedContact& m, double gap) {
     const double tolerance = m.data->normal.tolerance, reach = m.balls->reach;
     return std::min({std::min(gap, reach) - m.balls->least_gap, tolerance,
@@ -287,7 +316,7 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   for (int b = 0; b < ground; ++b) {
     PredictedBody& body = bodies[b];
     body.about = increments[b];
-    body.increment = free[b].increment;
+    body.free = body.increment = free[b].increment;
     if (free[b].has_loads) {
       body.response = &responses.emplace_back(K * free[b].response);
     } else {
@@ -308,7 +337,8 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
     PredictedContact& m = contacts.emplace_back();
     m.data = &p.data;
     m.balls = &balls;
-    m.normal = p.normal_n;
+    m.normal = m.normal_n = p.normal_n;
+    m.place_n = p.place_n;
     m.a = {&bodies[balls.a], p.place_n - steps[balls.a].r_n};
     m.b = {&bodies[balls.b], p.place_n - steps[balls.b].r_n};
     m.has_friction = p.data.friction.mu > 0.0 && !h.in_impact();
@@ -324,7 +354,7 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   std::vector<PredictedRows> rows = with_effects(free_rows, bodies);
   Sweeps sweeps(rows, contacts, K, context.dt);
   sweeps.run();
-  for (int k = 0; k < kCorrections && sweeps.correct(steps, bodies) > kAgreed; ++k) sweeps.run();
+  for (int k = 0; k < kCorrections && sweeps.linearise(steps, bodies) > kAgreed; ++k) sweeps.run();
   for (int b = 0; b < ground; ++b) increments[b] = bodies[b].increment;
 }
 

@@ -183,6 +183,7 @@ void BlockCg::eliminate() {
   sort_neighbours();
   inverse_.resize(diagonal_.size());
   for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    if (alone_[k] == 2) continue;
     Block pivot = diagonal_[k];
     for (int i = first_[k]; i < later_[k]; ++i) {
       const Neighbour& s = neighbours_[i];

@@ -79,10 +79,12 @@ class BlockCg {
   static Four cross(Four a, Four b);
   static Pair times(const Block& block, const Pair& x);
   static double dot(const Pair& x, const Pair& y);
+  static double dot(const Vec6& x, const Pair& y);
   static void add(const Spring& spring, Four arm, Block& block);
   static bool invert(const Block& block, Block& inverse);
   void multiply();
   void invert_pivot(std::size_t body, const Block& pivot);
+  Mat6 invert_precisely(int body);
   void sort_neighbours();
   void eliminate();
   /// z = M⁻¹ r with the preconditioner M. @returns r·z.
@@ -113,7 +115,7 @@ class BlockCg {
   std::vector<Block> diagonal_;               ///< With springs.
   std::vector<Block> inverse_;                ///< Of the pivots of the sweeps.
   bool eliminated_ = false;                   ///< inverse_ is up to date.
-  /// Bodies of rows or ties: no springs of theirs take part in the sweeps.
+  /// Whose springs take no part in the sweeps: 1 with ties, 2 with rows, whose inverse_ is set.
   std::vector<char> alone_;
   std::vector<Spring> springs_;
   /// A spring as one of its bodies sees it.
@@ -129,9 +131,10 @@ class BlockCg {
     int a, b;
   };
   std::vector<ScaledTie> ties_;
+  /// In double precision: with stiff contacts D is badly conditioned.
   struct ScaledRow {
-    Pair on_a, on_b;        ///< Scaled so that D has a unit diagonal.
-    Pair along_a, along_b;  ///< M⁻¹ times these.
+    Vec6 on_a, on_b;        ///< Scaled so that D has a unit diagonal.
+    Vec6 along_a, along_b;  ///< M⁻¹ times these.
     double scale;
     int a, b;
   };

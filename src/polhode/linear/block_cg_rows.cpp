@@ -2,14 +2,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include <polhode/linear/block_cg_blocks.hpp>
 
 namespace polhode {
 
 namespace {
 
-/// Addition to the unit diagonal of D, of the size of its single-precision rounding.
-constexpr double kRedundant = 1e-6;
+/// Addition to the unit diagonal of D, for redundant rows.
+constexpr double kRedundant = 1e-12;
 
 }  // namespace
 
@@ -31,45 +33,68 @@ void BlockCg::set_ties(std::span<const Tie> ties) {
   }
 }
 
+double BlockCg::dot(const Vec6& x, const Pair& y) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += x[i] * y.moved[i] + x[3 + i] * y.turned[i];
+  return sum;
+}
+
+/// Inverse of a body's diagonal block in double precision, also stored rounded.
+Mat6 BlockCg::invert_precisely(int body) {
+  const auto k = static_cast<std::size_t>(body);
+  const auto wide = [](const Block& block) {
+    Mat6 M;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 3; ++i) {
+        M(i, j) = block.column[j].moved[i];
+        M(3 + i, j) = block.column[j].turned[i];
+      }
+    return Mat6(0.5 * (M + M.transpose()));
+  };
+  Eigen::LLT<Mat6> factors(wide(diagonal_[k]));
+  if (factors.info() != Eigen::Success) factors.compute(wide(own_[moving_[k]]));
+  const Mat6 inverse = factors.solve(Mat6::Identity());
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 3; ++i) {
+      inverse_[k].column[j].moved[i] = static_cast<float>(inverse(i, j));
+      inverse_[k].column[j].turned[i] = static_cast<float>(inverse(3 + i, j));
+    }
+  return inverse;
+}
+
 bool BlockCg::set_rows(std::span<const Row> rows) {
   const auto count = static_cast<int>(moving_.size()), n = static_cast<int>(rows.size());
-  inverse_.resize(moving_.size());
+  inverse_.resize(moving_.size(), Block{});
   rows_.clear();
   row_bodies_.clear();
   row_values_.setZero(n);
   carried_.setZero(n);
-  std::vector<char> taken(moving_.size(), 0);
+  std::vector<Mat6> inverses;
+  std::vector<int> inverse_of(moving_.size(), -1);
   for (int i = 0; i < n; ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
     ScaledRow r{};
     r.a = row.a == kGround ? count : place_[row.a];
     r.b = row.b == kGround ? count : place_[row.b];
-    for (const int place : {r.a, r.b}) {
-      if (place == count || taken[place]) continue;
-      taken[place] = alone_[place] = 1;
-      invert_pivot(place, diagonal_[place]);
-      row_bodies_.push_back(place);
-    }
-    const auto pair = [&](int place, const Vec6& G) {
-      Pair p{};
-      for (int k = 0; place != count && k < 3; ++k) {
-        p.moved[k] = static_cast<float>(per_length_ * G[k]);
-        p.turned[k] = static_cast<float>(per_turn_ * G[3 + k]);
+    const auto put = [&](int place, const Vec6& G, Vec6& on, Vec6& along) {
+      on.setZero();
+      along.setZero();
+      if (place == count) return;
+      if (inverse_of[place] < 0) {
+        inverse_of[place] = static_cast<int>(inverses.size());
+        inverses.push_back(invert_precisely(place));
+        alone_[place] = 2;
+        row_bodies_.push_back(place);
       }
-      return p;
+      on << per_length_ * G.head<3>(), per_turn_ * G.tail<3>();
+      along = inverses[static_cast<std::size_t>(inverse_of[place])] * on;
     };
-    r.on_a = pair(r.a, row.G_a);
-    r.on_b = pair(r.b, row.G_b);
-    if (r.a != count) r.along_a = times(inverse_[r.a], r.on_a);
-    if (r.b != count) r.along_b = times(inverse_[r.b], r.on_b);
-    const double size = dot(r.on_a, r.along_a) + dot(r.on_b, r.along_b);
+    put(r.a, row.G_a, r.on_a, r.along_a);
+    put(r.b, row.G_b, r.on_b, r.along_b);
+    const double size = r.on_a.dot(r.along_a) + r.on_b.dot(r.along_b);
     if (!std::isfinite(size)) return false;
     r.scale = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;  // no body moves along it
-    const auto factor = static_cast<float>(r.scale);
-    for (Pair* p : {&r.on_a, &r.on_b, &r.along_a, &r.along_b}) {
-      p->moved *= factor;
-      p->turned *= factor;
-    }
+    for (Vec6* p : {&r.on_a, &r.on_b, &r.along_a, &r.along_b}) *p *= r.scale;
     row_values_[i] = -r.scale * row.g;
     rows_.push_back(r);
   }
@@ -93,7 +118,7 @@ bool BlockCg::factor_rows() {
     };
     for (const int i : rows_of[static_cast<std::size_t>(place)])
       for (const int j : rows_of[static_cast<std::size_t>(place)])
-        if (i >= j) entries.emplace_back(i, j, 0.5 * (dot(on(i), along(j)) + dot(on(j), along(i))));
+        if (i >= j) entries.emplace_back(i, j, 0.5 * (on(i).dot(along(j)) + on(j).dot(along(i))));
   }
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, kRedundant);
   Eigen::SparseMatrix<double> D(n, n);
@@ -115,11 +140,13 @@ void BlockCg::project(Vectors& r) {
   carried_ += w;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const ScaledRow& row = rows_[i];
-    const auto by = static_cast<float>(w[static_cast<Eigen::Index>(i)]);
-    const auto take = [&](int place, const Pair& on) {
+    const double by = w[static_cast<Eigen::Index>(i)];
+    const auto take = [&](int place, const Vec6& on) {
       if (static_cast<std::size_t>(place) >= r.size()) return;
-      r[place].moved -= by * on.moved;
-      r[place].turned -= by * on.turned;
+      for (int k = 0; k < 3; ++k) {
+        r[place].moved[k] -= static_cast<float>(by * on[k]);
+        r[place].turned[k] -= static_cast<float>(by * on[3 + k]);
+      }
     };
     take(row.a, row.on_a);
     take(row.b, row.on_b);
@@ -132,8 +159,7 @@ double BlockCg::force_of_rows() const {
   double size = 0.0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double by = std::abs(w[static_cast<Eigen::Index>(i)]);
-    for (const Pair* p : {&rows_[i].on_a, &rows_[i].on_b})
-      size = std::max(size, by * std::sqrt(dot(*p, *p)));
+    for (const Vec6* p : {&rows_[i].on_a, &rows_[i].on_b}) size = std::max(size, by * p->norm());
   }
   return size;
 }
@@ -143,17 +169,17 @@ BlockCg::Vectors BlockCg::fulfil_rows(double size, Vectors& b) {
   const Vec w = D_.solve(row_values_) / size;
   p_.assign(n + 1, Pair{});
   y_.assign(n + 1, Pair{});
+  std::vector<Vec6> sums(n + 1, Vec6::Zero());  // their terms may cancel
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const ScaledRow& row = rows_[i];
-    const auto by = static_cast<float>(w[static_cast<Eigen::Index>(i)]);
-    const auto go = [&](int place, const Pair& along) {
-      if (static_cast<std::size_t>(place) == n) return;
-      p_[place].moved += by * along.moved;
-      p_[place].turned += by * along.turned;
-    };
-    go(row.a, row.along_a);
-    go(row.b, row.along_b);
+    sums[row.a] += w[static_cast<Eigen::Index>(i)] * row.along_a;
+    sums[row.b] += w[static_cast<Eigen::Index>(i)] * row.along_b;
   }
+  for (const int place : row_bodies_)
+    for (int k = 0; k < 3; ++k) {
+      p_[place].moved[k] = static_cast<float>(sums[place][k]);
+      p_[place].turned[k] = static_cast<float>(sums[place][3 + k]);
+    }
   multiply();
   subtract_friction(p_, y_);
   for (std::size_t k = 0; k < n; ++k) {

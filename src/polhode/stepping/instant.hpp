@@ -25,7 +25,7 @@ struct PositionReport {
 /// Result of the projection of velocities.
 struct VelocityReport {
   double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
-  double scale = 0.0;            ///< Largest sum of magnitudes of the terms of a row of G v.
+  double scale = 0.0;            ///< Largest speed of a body, or sum of magnitudes of a row of G v.
   double residual = 0.0;         ///< Largest |G v| now.
   double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;
