@@ -94,5 +94,13 @@ TEST(SurfaceGap, LetsBodiesSlideOverFlatTrianglesAsOverThePlane) {
     }
 }
 
+TEST(SurfaceGap, IsNotThatOfAHalfSpaceForAWholeSurface) {
+  const Shape flat = field(0.1, 5, [](double, double) { return 0.0; });
+  const Mat3 upright = Mat3::Identity();
+  const Placement<double> at(Vec3::Zero(), upright, 6);
+  EXPECT_THROW(static_cast<void>(point_over_solid(v3(Vec3(0.0, 0.0, 0.2)), 0.0, flat, at)),
+               std::logic_error);
+}
+
 }  // namespace
 }  // namespace polhode::surface_gap_tests

@@ -64,5 +64,47 @@ TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
   }
 }
 
+/// What a law says of contact at rest and of an impact agrees with its own force, of every law of
+/// model files. The barrier's statements are of small depths.
+TEST(NormalLaw, StatesStiffnessDepthAndDurationOfItsOwnForce) {
+  for (const PotentialWord& known : kPotentialWords) {
+    EXPECT_EQ(potential_of(known.word), known.potential);
+    const double load = 40.0, mass = 3.0, speed = 0.7;
+    NormalLaw law;
+    law.potential = known.potential;
+    law.tolerance = 2e-3;
+    law.upper = 0.0;
+    law.lower = -law.tolerance;
+    const bool spring = law.is_spring();
+    EXPECT_EQ(std::isinf(law.floor()), spring) << known.word;
+
+    const auto [k, bristle] = law.stiffness_under(load, 0.0);
+    law.stiffness = k;
+    const double depth = law.depth_under(load), close = spring ? 1e-12 : 0.1;
+    EXPECT_NEAR(law.force(-depth), load, close * load) << known.word;
+    EXPECT_NEAR(-law.force_and_slope(-depth).slope, law.slope_under(load),
+                2.0 * close * law.slope_under(load))
+        << known.word;
+    EXPECT_LT(depth, spring ? 1.4 * law.tolerance : 0.06 * law.tolerance) << known.word;
+    EXPECT_GT(bristle, 0.1 * load / law.tolerance) << known.word;
+    if (spring) {
+      EXPECT_NEAR(law.bristle_stiffness(), bristle, 1e-12 * bristle) << known.word;
+    }
+    EXPECT_GE(law.stiffness_under(load, 1e9).bristle, 1e9) << known.word;
+
+    law.stiffness = law.stiffness_in_impact(mass, speed);
+    const double energy = 0.5 * mass * speed * speed;
+    EXPECT_LE(-law.gap_of(energy), (1.0 + 1e-9) * law.tolerance) << known.word;
+    const double stated = law.impact_duration(mass, speed), dt = 1e-5 * stated;
+    double gap = -0.5 * dt * speed, v = -speed, t = 0.0;
+    for (; gap < 0.0; t += dt) {
+      v += dt / mass * law.force(gap);
+      gap += dt * v;
+    }
+    EXPECT_NEAR(v, speed, 1e-3 * speed) << known.word;
+    EXPECT_NEAR(t, stated, (spring ? 1e-3 : 0.05) * stated) << known.word;
+  }
+}
+
 }  // namespace
 }  // namespace polhode::contact::normal_law_tests

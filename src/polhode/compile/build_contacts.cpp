@@ -22,10 +22,7 @@ namespace {
 
 contact::ContactLaw contact_law(const ContactLawSpec& spec) {
   contact::ContactLaw law;
-  using contact::NormalPotential;
-  law.potential = spec.potential == "linear"  ? NormalPotential::linear
-                  : spec.potential == "hertz" ? NormalPotential::hertz
-                                              : NormalPotential::barrier;
+  law.potential = contact::potential_of(spec.potential).value_or(contact::NormalPotential::barrier);
   law.stiffness = spec.stiffness;
   law.tolerance = spec.gap_tolerance;
   law.reference_load = spec.reference_load;

@@ -38,6 +38,21 @@ constexpr double kCablePressure = 1e-3;
 /// that, so that edges add nothing to the pressure, even if their band ends at the initial gap.
 constexpr double kEdgeBand = 0.1;
 
+/// Potential between surfaces. Where the law is Hertz's it is the barrier, since the solid itself
+/// has the compliance of that law.
+contact::NormalPotential potential_between_surfaces(const std::string& word) {
+  using contact::NormalPotential;
+  const auto potential = contact::potential_of(word).value_or(NormalPotential::barrier);
+  switch (potential) {
+    case NormalPotential::barrier:
+    case NormalPotential::linear:
+      return potential;
+    case NormalPotential::hertz:
+      return NormalPotential::barrier;
+  }
+  return potential;
+}
+
 /// Young's modulus at small strains [Pa].
 double modulus(const Model& model, const SolidSpec& solid) {
   const MaterialSpec& spec =
@@ -385,9 +400,9 @@ class SurfacesBuilder {
   [[nodiscard]] SurfaceLaw law_of(const ContactLawSpec& spec, const SurfaceMaterial& material,
                                   double edge, double smallest, Band place) const {
     SurfaceLaw law;
-    if (spec.potential == "linear") law.normal.potential = contact::NormalPotential::linear;
+    law.normal.potential = potential_between_surfaces(spec.potential);
     law.normal.tolerance = spec.gap_tolerance > 0.0 ? spec.gap_tolerance : kTolerance * smallest;
-    const bool barrier = law.normal.potential == contact::NormalPotential::barrier;
+    const bool barrier = !law.normal.is_spring();
     if (barrier && place == Band::below) law.normal.upper = 0.0;
     const double band = barrier ? law.normal.band() : 2.0 * law.normal.tolerance;
     double& k = law.normal.stiffness;

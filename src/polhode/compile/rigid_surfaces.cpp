@@ -7,6 +7,9 @@
 #include <polhode/compile/contact_shapes.hpp>
 #include <polhode/compile/rigid_surfaces.hpp>
 #include <polhode/compile/shape_surface.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/core/format.hpp>
+#include <polhode/core/names.hpp>
 #include <polhode/geometry/polyhedron.hpp>
 
 namespace polhode {
@@ -27,6 +30,11 @@ constexpr double kMaxOfBore = 0.9;
 
 bool has_triangles(const ShapeSpec& shape) {
   return shape.type == "mesh" || shape.type == "height_field" || shape.type == "tube";
+}
+
+/// Whether the surface is that of a convex solid without a form of its own in RigidSurface.
+bool is_other_convex(const ShapeSpec& shape) {
+  return shape.type == "cone" || shape.type == "ellipsoid" || shape.type == "hull";
 }
 
 TriangleSurface triangles_of(const ShapeSpec& shape) {
@@ -95,10 +103,16 @@ RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape, dou
     s.kind = RigidSurface::Kind::mesh;
     s.triangles = std::make_shared<RigidMesh>(
         contact_shape(where, {}, shape, rounding(smallest_detail(shape), kMaxOfTriangles)));
-  } else if (shape.type != "plane") {
+  } else if (shape.type == "plane") {
+    s.kind = RigidSurface::Kind::plane;
+  } else if (is_other_convex(shape)) {
     s.kind = RigidSurface::Kind::convex;
     s.solid = std::make_shared<contact::Shape>(
         contact_shape(where, {}, shape, rounding(half_size(shape), kMaxOfHulls)));
+  } else {
+    throw InputError(where,
+                     format("solids and cables cannot touch the shape {}", quote(shape.type)),
+                     "Give the body a mesh of that shape, or exclude the pair from contact");
   }
   return s;
 }

@@ -34,6 +34,7 @@ struct CableSizes {
 /// the tolerance of the gap, as far as the shape allows. A tube has round sides, except for cables
 /// that could touch its bore on both sides: for them it consists of triangles.
 /// @param radius  Of a cable [m].
+/// @throws InputError if it has no form for a kind of shape.
 [[nodiscard]] RigidSurface rigid_surface(const std::string& where, const ShapeSpec& shape,
                                          double tolerance, double radius = 0.0);
 

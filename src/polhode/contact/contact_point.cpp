@@ -208,7 +208,7 @@ class Evaluation {
     if constexpr (std::is_same_v<T, double>)
       stiffness_ = normal_force(data_, g_0.distance, g_1.distance, context_.dt).stiffness;
     lambda_ = law.quotient(g_0.distance, g_1.distance);
-    const bool spring = law.potential != NormalPotential::barrier;
+    const bool spring = law.is_spring();
     if (spring) add_share(g_1);
     if (data_.rate_damping > 0.0) {
       const T factor = 1.0 - (data_.rate_damping / context_.dt) * change_;

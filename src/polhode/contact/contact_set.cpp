@@ -12,14 +12,6 @@ namespace polhode::contact {
 
 namespace {
 
-/// Stiffness of resting contact, with which a point carries its load at a twentieth of the
-/// tolerance: k d̂ of the barrier over the load there, 3/(1/s² − 3 + 2s) at s = 0.95.
-constexpr double kRestStiffness = 373.0;
-/// Slope of that barrier under its load, which is also the stiffness of the bristle: with a much
-/// softer bristle bodies rock, and Newton does not converge between sticking and sliding.
-constexpr double kRestSlope = 38.6;
-/// Stiffness of a linear spring that carries the load within the tolerance.
-constexpr double kSoftStiffness = 0.75;
 /// Damping ratio of resting contact with e < 1.
 constexpr double kRestDamping = 0.3;
 /// Largest tolerance of rounded shapes, as a part of their rounding radius.
@@ -40,7 +32,7 @@ void check_law(const ContactLaw& law) {
   for (const double x : {law.stiffness, law.tolerance, law.friction.rolling, law.friction.torsion,
                          law.friction.stiffness, law.friction.damping})
     if (!(x >= 0.0)) refuse("a constant of the contact law", x, "Give it zero or positive");
-  if (law.damped && law.potential == NormalPotential::barrier)
+  if (law.damped && !is_spring(law.potential))
     refuse("the damped rebound with the barrier", law.restitution,
            "Choose the linear or the Hertz law for it, or leave out rebound: damped");
   if (law.damped && law.restitution < 0.05)
@@ -62,9 +54,7 @@ double damping_number(double e) {
 
 /// c of resting contact [s/m]. @param load  Weight on the point [N].
 double rest_damping(const NormalLaw& law, double k, double mass, double load) {
-  double slope = k;
-  if (law.potential == NormalPotential::barrier) slope = 2.0 * std::sqrt(k * load / law.tolerance);
-  if (law.potential == NormalPotential::hertz) slope = 1.5 * std::cbrt(k * k * load);
+  const double slope = law.with_stiffness(k).slope_under(load);
   return 2.0 * kRestDamping * std::sqrt(slope * mass) / load;
 }
 
@@ -76,8 +66,9 @@ double rest_damping(const NormalLaw& law, double k, double mass, double load) {
 void ContactSet::damp_load(Point& p) const {
   const PointHistory& h = p.data.history;
   const double gravity = system_->gravity().norm();
-  const bool spring = p.data.normal.potential != NormalPotential::barrier;
-  if (!spring || !p.open_stiffness || h.in_impact() || !(p.data.rate_damping > 0.0)) return;
+  if (!p.data.normal.is_spring() || !p.open_stiffness || h.in_impact() ||
+      !(p.data.rate_damping > 0.0))
+    return;
   if (p.rest_damping == 0.0 || (p.damped && h.approach < 0.0)) return;
   const double mass = std::max(p.mass, h.force / gravity);
   p.data.rate_damping = rest_damping(p.data.normal, h.stiffness, mass, mass * gravity);
@@ -172,8 +163,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
     return s.body == kGround ? 0.0 : 1.0 / carried_mass_[s.body];
   };
   const double mass = 1.0 / (inverse_mass(a) + inverse_mass(b));
-  const bool barrier = law.potential == NormalPotential::barrier;
-  const bool hertz = law.potential == NormalPotential::hertz;
+  const bool spring = is_spring(law.potential);
   const bool plane = !a.shape.bounded() || !b.shape.bounded();
   const double rounding = a.shape.rounding + b.shape.rounding;
   PointData& d = p.data;
@@ -186,21 +176,15 @@ void ContactSet::complete_law(Point& p, double dt) const {
   const double tolerance = d.normal.tolerance;
   const double weight = mass * system_->gravity().norm();
   // Springs let heavier bodies than they were chosen for pass, and any body may lie on any other.
-  const double rests = barrier ? weight : heaviest_ * system_->gravity().norm();
+  const double rests = spring ? heaviest_ * system_->gravity().norm() : weight;
   const double load = law.reference_load > 0.0 ? law.reference_load : rests;
   // A damper works over the duration of a contact, which must not depend on the step.
   const double by_step = law.damped && load > 0.0 ? 0.0 : mass / (dt * dt);
-  const double soft = std::max(kSoftStiffness * load / tolerance, by_step);
-  double k = law.stiffness, k_T = law.stiffness;
-  p.open_stiffness = k == 0.0;
-  if (k == 0.0) {
-    k_T = barrier ? std::max(kRestSlope * load / tolerance, by_step) : soft;
-    k = barrier ? std::max(kRestStiffness * load / tolerance, by_step)
-        : hertz ? soft / std::sqrt(tolerance)
-                : soft;
-  } else if (hertz) {
-    k_T = k * std::sqrt(tolerance);
-  }
+  p.open_stiffness = law.stiffness == 0.0;
+  const NormalLaw stated = d.normal.with_stiffness(law.stiffness);
+  const auto [k, k_T] = p.open_stiffness
+                            ? d.normal.stiffness_under(load, by_step)
+                            : NormalLaw::Stiffness{stated.stiffness, stated.bristle_stiffness()};
   p.mass = mass;
   p.rest_stiffness = k;
   p.bristle_stiffness = k_T;
@@ -216,7 +200,7 @@ void ContactSet::complete_law(Point& p, double dt) const {
     set_band(p, h.stiffness, h.reach, h.floor);
   else
     set_band(p, k, 0.0, -tolerance);
-  if (!barrier) p.least_gap = plane ? -std::numeric_limits<double>::infinity() : -0.9 * rounding;
+  if (spring) p.least_gap = plane ? -std::numeric_limits<double>::infinity() : -0.9 * rounding;
   set_phase(p, h.phase);
 
   d.friction = law.friction;
@@ -383,7 +367,7 @@ double ContactSet::gap_at_end(int point, const BodyStep& a, const BodyStep& b) c
 /// started from the surface again would create energy. @eq{turn-law}
 bool ContactSet::is_slack(const Point& p, double gap) {
   const NormalLaw& law = p.data.normal;
-  return law.potential != NormalPotential::barrier && gap >= law.reach() && gap < 0.0;
+  return law.is_spring() && gap >= law.reach() && gap < 0.0;
 }
 
 Work ContactSet::commit(State& state, std::span<const BodyStep> steps, const StepContext& context) {

@@ -205,8 +205,6 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   void store_again(Point& p, double stiffness, double energy) const;
   void keep_part(Point& p, double part) const;
   void damp_load(Point& p) const;
-  [[nodiscard]] static double contact_time(const Point& p, double stiffness, double speed);
-  [[nodiscard]] double impact_stiffness(const Point& p, double speed) const;
   void begin_phase(Point& p, double speed, double dt) const;
   [[nodiscard]] PairImpact row_at(const Point& p, const State& state) const;
   [[nodiscard]] double weight_now(const Point& p, const State& state) const;

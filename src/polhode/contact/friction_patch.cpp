@@ -35,7 +35,7 @@ struct Patch {
   double load = 0.0;     ///< Σ λ [N].
   double change = 0.0;   ///< Σ |Δλ| over the step [N].
   double fastest = 0.0;  ///< Largest mean slip speed of a point over the step [m/s].
-  double depth = 0.0;    ///< Equilibrium depth, see rest_depth() [m].
+  double depth = 0.0;    ///< Equilibrium depth, see NormalLaw [m].
   bool slips = false, all_slip = true;
 };
 
@@ -50,19 +50,6 @@ bool belongs(const PointData& d) {
   const FrictionLaw& f = d.friction;
   const bool round = f.mu_across <= 0.0 || f.mu_across == f.mu;
   return f.mu > 0.0 && f.mu_static > f.mu && round && d.pair.weight > 0.0;
-}
-
-/// Depth at which the law carries a weight [N] in equilibrium [m].
-double rest_depth(const NormalLaw& law, double stiffness, double weight) {
-  switch (law.potential) {
-    case NormalPotential::barrier:
-      return std::sqrt(weight * law.tolerance / stiffness);
-    case NormalPotential::linear:
-      return weight / stiffness;
-    case NormalPotential::hertz:
-      break;
-  }
-  return std::pow(weight / stiffness, 2.0 / 3.0);
 }
 
 double held_by(const PointData& d) { return d.friction.stiffness * d.history.bristle.norm(); }
@@ -124,8 +111,8 @@ void ContactSet::release_patches(std::span<const BodyStep> steps, double dt) {
     patch.change += std::abs(load - p.data.share.load);
     patch.slips = patch.slips || p.data.history.slips;
     patch.all_slip = patch.all_slip && p.data.history.slips;
-    patch.depth =
-        std::max(patch.depth, rest_depth(p.data.normal, p.rest_stiffness, p.mass * gravity));
+    const NormalLaw at_rest = p.data.normal.with_stiffness(p.rest_stiffness);
+    patch.depth = std::max(patch.depth, at_rest.depth_under(p.mass * gravity));
     before[p.pair].slips = before[p.pair].slips || p.data.share.slides;
     before[p.pair].limit += p.data.friction.mu_static * p.data.share.load;
     before[p.pair].held += p.data.share.held;

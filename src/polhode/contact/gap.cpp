@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
@@ -224,9 +226,9 @@ Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Plac
       if (is_tube(b)) return over_tube(x, rho_a, b, at_b);
       break;
     case Solid::half_space:
-      break;
+      return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);
   }
-  return over_plane(x, at_b.point(b.centre), at_b.vector(b.axes.col(2)), rho_a, b.rounding);
+  throw std::logic_error("point_over_solid: a surface of triangles has a gap per triangle only");
 }
 
 template <class T>

@@ -2,7 +2,6 @@
 // Impacts and resting contact: the phases of a point from closing to opening.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <polhode/contact/contact_set.hpp>
@@ -15,13 +14,6 @@ namespace {
 /// Share of the force of dissipative resting contact that is evaluated at the end of the step.
 /// @eq{contact-plastic}
 constexpr double kRestShare = 0.5;
-/// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
-constexpr double kImpactStiffness = 1.14e4;
-/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
-/// w²).
-constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
-/// Duration of a Hertz impact over the ratio of greatest depth and speed.
-constexpr double kHertzTime = 2.9432;
 /// Steps per impact that a damper needs.
 constexpr double kResolved = 20.0;
 /// Smallest distance between a gap and the floor of its barrier, as a part of the tolerance.
@@ -52,7 +44,7 @@ void ContactSet::set_band(Point& p, double stiffness, double upper, double lower
   law.stiffness = p.data.history.stiffness = stiffness;
   law.upper = p.data.history.reach = upper;
   law.lower = p.data.history.floor = lower;
-  if (law.potential == NormalPotential::barrier) p.least_gap = lower;
+  if (!law.is_spring()) p.least_gap = lower;
 }
 
 void ContactSet::set_phase(Point& p, ContactPhase phase) const {
@@ -73,7 +65,7 @@ void ContactSet::set_phase(Point& p, ContactPhase phase) const {
 /// acted on the path to it, as at the start, stores no energy.
 void ContactSet::start_band(Point& p) const {
   const NormalLaw& law = p.data.normal;
-  if (law.potential != NormalPotential::barrier || of_surface(p.data.pair.kind)) return;
+  if (law.is_spring() || of_surface(p.data.pair.kind)) return;
   const double least = kMinBand * law.tolerance, standard = -law.tolerance;
   const double lower = std::min(standard, p.gap_n - least);
   const double narrower = std::min(1.0, (p.gap_n - lower) / law.tolerance);
@@ -84,33 +76,9 @@ void ContactSet::start_band(Point& p) const {
 /// at its gap.
 /// @eq{turn-law}
 void ContactSet::store_again(Point& p, double stiffness, double energy) const {
-  NormalLaw law = p.data.normal;
-  law.stiffness = stiffness;
+  const NormalLaw law = p.data.normal.with_stiffness(stiffness);
   const double upper = law.reach_for(p.data.history.gap, energy);
   set_band(p, stiffness, upper, p.data.history.floor);
-}
-
-/// Stiffness that stops the bodies within the tolerance [N/m]; Hertz [N/m^{3/2}].
-double ContactSet::impact_stiffness(const Point& p, double speed) const {
-  const double tolerance = p.data.normal.tolerance;
-  const double per_square = speed * speed / (tolerance * tolerance);
-  switch (p.data.normal.potential) {
-    case NormalPotential::linear:
-      return kLinearImpact * p.mass * per_square;
-    case NormalPotential::hertz:
-      return kHertzImpact * p.mass * per_square / std::sqrt(tolerance);
-    case NormalPotential::barrier:
-      break;
-  }
-  return kImpactStiffness * p.mass * per_square;
-}
-
-/// Duration of an elastic impact on a spring of that stiffness [s].
-double ContactSet::contact_time(const Point& p, double stiffness, double speed) {
-  const double m = p.mass, w = -speed;
-  if (p.data.normal.potential == NormalPotential::hertz)
-    return kHertzTime * std::pow(1.25 * m * w * w / stiffness, 0.4) / w;
-  return std::numbers::pi * std::sqrt(m / stiffness);
 }
 
 /// Largest speed of resting contact under a force: what the force adds in two steps, and what a
@@ -134,7 +102,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   const auto impact = [&](double slow) {
     h.restitution = p.restitution < 1.0 && -p.restitution * speed < slow ? 0.0 : p.restitution;
     set_phase(p, ContactPhase::compression);
-    return std::max(p.rest_stiffness, impact_stiffness(p, speed));
+    return std::max(p.rest_stiffness, p.data.normal.stiffness_in_impact(p.mass, -speed));
   };
   if (h.closed) {
     damp_load(p);
@@ -151,17 +119,19 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
   h.approach = 0.0;
   if (p.damped && p.open_stiffness && speed < 0.0) {
     const double rests = gravity > 0.0 ? p.rest_stiffness : 0.0;
-    k = std::max(rests, impact_stiffness(p, speed));
+    k = std::max(rests, p.data.normal.stiffness_in_impact(p.mass, -speed));
   }
-  if (p.damped && speed < 0.0 && contact_time(p, k, speed) > kResolved * std::abs(dt)) {
+  const auto duration = [&](double stiffness) {
+    return p.data.normal.with_stiffness(stiffness).impact_duration(p.mass, -speed);
+  };
+  if (p.damped && speed < 0.0 && duration(k) > kResolved * std::abs(dt)) {
     h.approach = speed;
     set_phase(p, ContactPhase::landing);
   } else if (-speed > slow) {
     k = impact(slow);
-    const bool own = !p.open_stiffness && p.data.normal.potential != NormalPotential::barrier;
+    const bool own = !p.open_stiffness && p.data.normal.is_spring();
     const double stiffness = p.open_stiffness ? k : p.rest_stiffness;
-    p.unresolved =
-        (own || p.damped) && contact_time(p, stiffness, speed) < kResolved * std::abs(dt);
+    p.unresolved = (own || p.damped) && duration(stiffness) < kResolved * std::abs(dt);
   } else {
     set_phase(p, ContactPhase::landing);
   }
@@ -181,7 +151,7 @@ void ContactSet::keep_part(Point& p, double part) const {
   const double k = std::max(part * h.stiffness, p.rest_stiffness);
   store_again(p, k, part * whole);
   const double deepest = -p.data.normal.tolerance;
-  if (p.data.normal.potential != NormalPotential::barrier && h.reach < deepest)
+  if (p.data.normal.is_spring() && h.reach < deepest)
     set_band(p, k, std::min(deepest, p.data.normal.reach_for(h.gap, whole)), h.floor);
 }
 
@@ -282,8 +252,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
   const auto rests = [&] {
     if (!h.closed) return;
     const double energy = p.data.normal.energy(h.gap);
-    NormalLaw law = p.data.normal;
-    law.stiffness = p.rest_stiffness;
+    const NormalLaw law = p.data.normal.with_stiffness(p.rest_stiffness);
     if (p.open_stiffness && law.reach_for(h.gap, energy) <= 0.0)
       store_again(p, p.rest_stiffness, energy);
     set_phase(p, ContactPhase::rest);
@@ -304,7 +273,6 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
     work.dissipated += released;
     p.impact_loss += released;
   };
-  const bool barrier = p.data.normal.potential == NormalPotential::barrier;
   switch (h.phase) {
     case ContactPhase::landing:
       if (p.restitution == 1.0 || p.speed_n >= 0.0 || !(speed > 0.0)) return {};
@@ -316,7 +284,7 @@ std::optional<PairImpact> ContactSet::impact_of(Point& p, const State& state, Wo
       impact.wanted = exit_speed(p, n, speed);
       if (h.closed && h.restitution < 1.0) {
         const double e = h.restitution;
-        if (barrier || p.open_stiffness) {
+        if (!p.data.normal.is_spring() || p.open_stiffness) {
           keep_part(p, e * e);
         } else if (e > 0.0) {
           set_band(p, e * e * h.stiffness, h.reach, h.floor);

@@ -10,7 +10,7 @@ namespace polhode::contact {
 NormalForce normal_force(const PointData& data, double gap_n, double gap_n1, double dt) {
   NormalLaw::WithSlope f = data.normal.quotient_and_slope(gap_n, gap_n1);
   const double quotient = f.value, weight = data.pair.weight, share = data.end_share;
-  const bool spring = data.normal.potential != NormalPotential::barrier;
+  const bool spring = data.normal.is_spring();
   const auto add_share = [&](bool now) {
     if (!now || !(share > 0.0 && weight > 0.0)) return;
     const NormalLaw::WithSlope end = data.normal.force_and_slope(gap_n1);

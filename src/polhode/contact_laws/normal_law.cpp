@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <polhode/contact_laws/normal_law.hpp>
 
 namespace polhode::contact {
 
+namespace {
+
+/// Stiffness of resting contact, with which a point carries its load at a twentieth of the
+/// tolerance: k d̂ of the barrier over the load there, 3/(1/s² − 3 + 2s) at s = 0.95.
+constexpr double kRestStiffness = 373.0;
+/// Slope of that barrier under its load, which is also the stiffness of the bristle: with a much
+/// softer bristle bodies rock, and Newton does not converge between sticking and sliding.
+constexpr double kRestSlope = 38.6;
+/// Stiffness of a linear spring that carries the load within the tolerance.
+constexpr double kSoftStiffness = 0.75;
+/// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
+constexpr double kImpactStiffness = 1.14e4;
+/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
+/// w²).
+constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
+/// Duration of an impact over the ratio of greatest depth and speed, of Hertz's law and of the
+/// barrier at small depths, where its force is k δ²/d̂.
+constexpr double kHertzTime = 2.9432, kBarrierTime = 2.8044;
+
+}  // namespace
+
 double NormalLaw::floor() const {
-  if (potential != NormalPotential::barrier) return -std::numeric_limits<double>::infinity();
+  if (is_spring()) return -std::numeric_limits<double>::infinity();
   return lower ? *lower : -tolerance;
 }
 
@@ -70,6 +93,80 @@ double NormalLaw::reach_for(double gap, double energy) const {
       return gap + std::pow(2.5 * energy / stiffness, 0.4);
   }
   return gap;
+}
+
+NormalLaw::Stiffness NormalLaw::stiffness_under(double load, double least) const {
+  const auto spring = [&] { return std::max(kSoftStiffness * load / tolerance, least); };
+  switch (potential) {
+    case NormalPotential::barrier:
+      return {std::max(kRestStiffness * load / tolerance, least),
+              std::max(kRestSlope * load / tolerance, least)};
+    case NormalPotential::linear:
+      return {spring(), spring()};
+    case NormalPotential::hertz:
+      return {spring() / std::sqrt(tolerance), spring()};
+  }
+  return {stiffness, stiffness};
+}
+
+double NormalLaw::bristle_stiffness() const {
+  switch (potential) {
+    case NormalPotential::barrier:
+    case NormalPotential::linear:
+      return stiffness;
+    case NormalPotential::hertz:
+      return stiffness * std::sqrt(tolerance);
+  }
+  return stiffness;
+}
+
+double NormalLaw::slope_under(double load) const {
+  switch (potential) {
+    case NormalPotential::barrier:
+      return 2.0 * std::sqrt(stiffness * load / tolerance);
+    case NormalPotential::linear:
+      return stiffness;
+    case NormalPotential::hertz:
+      return 1.5 * std::cbrt(stiffness * stiffness * load);
+  }
+  return stiffness;
+}
+
+double NormalLaw::depth_under(double load) const {
+  switch (potential) {
+    case NormalPotential::barrier:
+      return std::sqrt(load * tolerance / stiffness);
+    case NormalPotential::linear:
+      return load / stiffness;
+    case NormalPotential::hertz:
+      return std::pow(load / stiffness, 2.0 / 3.0);
+  }
+  return 0.0;
+}
+
+double NormalLaw::stiffness_in_impact(double mass, double speed) const {
+  const double per_square = speed * speed / (tolerance * tolerance);
+  switch (potential) {
+    case NormalPotential::barrier:
+      return kImpactStiffness * mass * per_square;
+    case NormalPotential::linear:
+      return kLinearImpact * mass * per_square;
+    case NormalPotential::hertz:
+      return kHertzImpact * mass * per_square / std::sqrt(tolerance);
+  }
+  return stiffness;
+}
+
+double NormalLaw::impact_duration(double mass, double speed) const {
+  switch (potential) {
+    case NormalPotential::barrier:
+      return kBarrierTime * std::cbrt(1.5 * mass * speed * speed * tolerance / stiffness) / speed;
+    case NormalPotential::linear:
+      return std::numbers::pi * std::sqrt(mass / stiffness);
+    case NormalPotential::hertz:
+      return kHertzTime * std::pow(1.25 * mass * speed * speed / stiffness, 0.4) / speed;
+  }
+  return 0.0;
 }
 
 NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include <polhode/math/dual.hpp>
 
@@ -9,6 +11,34 @@ namespace polhode::contact {
 
 /// Potentials of a gap.
 enum class NormalPotential { barrier, linear, hertz };
+
+/// Words of the potentials in model files.
+struct PotentialWord {
+  std::string_view word;
+  NormalPotential potential;
+};
+inline constexpr std::array kPotentialWords{PotentialWord{"barrier", NormalPotential::barrier},
+                                            PotentialWord{"linear", NormalPotential::linear},
+                                            PotentialWord{"hertz", NormalPotential::hertz}};
+
+/// Potential of a word; none for impulses, which have no potential.
+[[nodiscard]] constexpr std::optional<NormalPotential> potential_of(std::string_view word) {
+  for (const PotentialWord& known : kPotentialWords)
+    if (known.word == word) return known.potential;
+  return std::nullopt;
+}
+
+/// Whether surfaces may overlap, the deeper the higher the load: by a spring, not by a barrier.
+[[nodiscard]] constexpr bool is_spring(NormalPotential potential) {
+  switch (potential) {
+    case NormalPotential::barrier:
+      return false;
+    case NormalPotential::linear:
+    case NormalPotential::hertz:
+      return true;
+  }
+  return true;
+}
 
 /// Potential b(g) of a contact point as a function of its gap g, with its force and its quotient.
 ///
@@ -22,6 +52,8 @@ enum class NormalPotential { barrier, linear, hertz };
 ///
 /// The quotient λ = −(b(g_1) − b(g_0))/(g_1 − g_0) is written without the difference, so it has no
 /// 0/0; it is never negative. With it the step conserves the energy exactly. @eq{contact-quotient}
+///
+/// What a law differs in is here: each function has a switch over all potentials.
 struct NormalLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 1.0;   ///< k [N/m]; Hertz: [N/m^{3/2}].
@@ -37,12 +69,38 @@ struct NormalLaw {
   /// Gap that no step may reach [m]; −∞ if the law allows overlaps.
   [[nodiscard]] double floor() const;
   [[nodiscard]] double band() const { return end() - floor(); }
+  [[nodiscard]] bool is_spring() const { return contact::is_spring(potential); }
+  [[nodiscard]] NormalLaw with_stiffness(double k) const {
+    NormalLaw law = *this;
+    law.stiffness = k;
+    return law;
+  }
 
   [[nodiscard]] double energy(double gap) const;  ///< b [J]
   /// Gap with this energy; reach() if it is zero.
   [[nodiscard]] double gap_of(double energy) const;
   /// Activation distance with which the law stores an energy at a gap [m]. @eq{contact-same-energy}
   [[nodiscard]] double reach_for(double gap, double energy) const;
+
+  /// Stiffness of a law in the units of its k, and of the bristle of friction beside it [N/m].
+  struct Stiffness {
+    double normal, bristle;
+  };
+  /// Stiffness that carries a load [N] within the tolerance. @eq{contact-stiffness}
+  /// @eq{spring-stiffness} @param least  Smallest stiffness, for the tolerance as depth [N/m].
+  [[nodiscard]] Stiffness stiffness_under(double load, double least) const;
+  /// Stiffness of the bristle beside a given k [N/m].
+  [[nodiscard]] double bristle_stiffness() const;
+  /// Slope −f' at the gap in equilibrium with a load [N/m].
+  [[nodiscard]] double slope_under(double load) const;
+  /// Depth in equilibrium with a load; of a barrier below its activation distance [m].
+  [[nodiscard]] double depth_under(double load) const;
+  /// k that stops a mass within the tolerance. @eq{contact-stiffness} @eq{spring-stiffness}
+  /// @param speed  Of approach [m/s].
+  [[nodiscard]] double stiffness_in_impact(double mass, double speed) const;
+  /// Duration of an elastic impact [s]. @param speed  Of approach [m/s].
+  [[nodiscard]] double impact_duration(double mass, double speed) const;
+
   template <class T>
   [[nodiscard]] T force(const T& gap) const;  ///< f = −b' [N]
   template <class T>
@@ -59,9 +117,7 @@ struct NormalLaw {
 
  private:
   /// Upper end of the band [m].
-  [[nodiscard]] double end() const {
-    return upper ? *upper : potential == NormalPotential::barrier ? tolerance : 0.0;
-  }
+  [[nodiscard]] double end() const { return upper ? *upper : is_spring() ? 0.0 : tolerance; }
   /// s where it starts to act.
   [[nodiscard]] double first() const { return later ? (*later - floor()) / band() : 1.0; }
   [[nodiscard]] static double chained(double, const WithSlope& f) { return f.value; }

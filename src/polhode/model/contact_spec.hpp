@@ -41,7 +41,7 @@ struct ContactSideSpec {
 
 /// Contact law of two surfaces. Zero, unless another meaning is given: chosen from the bodies.
 struct ContactLawSpec {
-  std::string potential = "barrier";    ///< barrier, linear, hertz, nonsmooth.
+  std::string potential = "barrier";    ///< A word of contact::kPotentialWords, or nonsmooth.
   double gap_tolerance = 0.0;           ///< Half the band of the barrier [m].
   double stiffness = 0.0;               ///< [N/m]; hertz [N/m^1.5].
   double reference_load = 0.0;          ///< At which the gap of the barrier is zero [N].

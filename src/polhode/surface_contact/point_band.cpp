@@ -8,7 +8,6 @@ namespace polhode {
 namespace {
 
 using contact::ContactPhase;
-using contact::NormalPotential;
 
 /// Part of its band that remains for a point that starts at the lower end of it.
 constexpr double kLeftOfBand = 0.05;
@@ -21,7 +20,7 @@ constexpr int kHalvings = 60;
 
 double lowered_for(const SurfaceLaw& law, double gap_at_start) {
   const contact::NormalLaw& normal = law.normal;
-  if (normal.potential != NormalPotential::barrier || !(gap_at_start < normal.reach())) return 0.0;
+  if (normal.is_spring() || !(gap_at_start < normal.reach())) return 0.0;
   return std::min(normal.reach() - gap_at_start, (1.0 - kLeftOfBand) * normal.band());
 }
 
@@ -92,7 +91,7 @@ double lowered_to_press(const SurfaceLaw& law, std::span<const GapTerm> terms, d
 PointPhase PointPhase::in_step(const SurfaceLaw& law, double gap, double speed,
                                LoweredLaw own) const {
   PointPhase now = *this;
-  if (law.normal.potential != NormalPotential::barrier || !open()) return now;
+  if (law.normal.is_spring() || !open()) return now;
   now.set(ContactPhase::rest);
   if (!(gap >= own(law, lowered).normal.reach() && speed < 0.0)) return now;
   now.set(ContactPhase::compression);

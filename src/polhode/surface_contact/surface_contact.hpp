@@ -137,7 +137,7 @@ class SurfaceContact final : public ElementGroup,
   }
   /// Whether points may get within surfaces, as iterates of statics do, see GapQuery.
   [[nodiscard]] bool sided(const NodeStep& step) const {
-    return !step.context.conserving || law_.normal.potential != contact::NormalPotential::barrier;
+    return !step.context.conserving || law_.normal.is_spring();
   }
   [[nodiscard]] static std::size_t place_of(int point) {
     return PointMemory::kCount * static_cast<std::size_t>(point);

@@ -23,7 +23,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 void SurfaceContact::clearances(const NodeStep& step, const double* /*history*/,
                                 std::vector<double>& list) const {
-  if (law_.normal.potential != contact::NormalPotential::barrier) return;
+  if (law_.normal.is_spring()) return;
   const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i)
     list.push_back((distance(local(step.x_n1, i), floor + kFarReport * band) - floor) / band);
@@ -61,7 +61,7 @@ bool SurfaceContact::goes_through(const Vec3& from, const Vec3& to) const {
 /// coordinates.
 double SurfaceContact::free_part(const NodeStep& from, const NodeStep& to,
                                  const double* /*history*/) const {
-  if (law_.normal.potential != contact::NormalPotential::barrier) return 1.0;
+  if (law_.normal.is_spring()) return 1.0;
   double most = free_of_stretch(from, to);
   const double floor = law_.normal.floor(), band = 2.0 * law_.normal.tolerance;
   for (int i = 0; i < size(); ++i) {
@@ -120,7 +120,7 @@ Work SurfaceContact::work(const NodeStep& step, const double* history,
                           const double* /*scratch*/) const {
   Work w;
   const bool instant = step.x_n == step.x_n1;
-  const bool gets_in = law_.normal.potential != contact::NormalPotential::barrier;
+  const bool gets_in = law_.normal.is_spring();
   for (int i = 0; i < size(); ++i) {
     const PointMemory memory = memory_of(history, i);
     const double area = points_.points[static_cast<std::size_t>(i)].area;

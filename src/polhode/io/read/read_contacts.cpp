@@ -6,6 +6,7 @@
 #include <polhode/compile/build_contacts.hpp>
 #include <polhode/compile/build_surface_contacts.hpp>
 #include <polhode/compile/contact_sides.hpp>
+#include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
@@ -50,8 +51,9 @@ void read_law(Section& section, ContactLawSpec& law) {
   }
   if (section.has("reference_load"))
     section.refuse_both("stiffness", "reference_load", "Give one of them.");
-  if (law.rebound == "damped" && law.potential == "barrier" && sound_law)
-    section.fault("rebound", "damped cannot be combined with the barrier law",
+  const auto known = contact::potential_of(law.potential);
+  if (law.rebound == "damped" && known && !contact::is_spring(*known) && sound_law)
+    section.fault("rebound", format("damped cannot be combined with the {} law", law.potential),
                   "Use law: linear or hertz with it, or leave it out.");
   else if (law.rebound == "damped" && law.restitution < kMinDamped)
     section.fault("restitution",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <polhode/contact_laws/normal_law.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/model/contact_spec.hpp>
 
@@ -27,6 +28,14 @@ Field bound(Field field, const SpecMember& member) {
   return field;
 }
 
+std::vector<std::string> law_words() {
+  std::vector<std::string> words;
+  for (const contact::PotentialWord& known : contact::kPotentialWords)
+    words.emplace_back(known.word);
+  words.emplace_back("nonsmooth");
+  return words;
+}
+
 std::vector<Field> law_fields() {
   return {
       {.name = "law",
@@ -36,7 +45,7 @@ std::vector<Field> law_fields() {
                   "penetration to the power 3/2. nonsmooth: impulses instead of forces, for many "
                   "bodies without joints; in default only.",
        .standard = "barrier",
-       .choices = {"barrier", "linear", "hertz", "nonsmooth"},
+       .choices = law_words(),
        .member = &ContactLawSpec::potential},
       {.name = "gap_tolerance",
        .kind = kNumber,

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <polhode/compile/rigid_surfaces.hpp>
+#include <polhode/core/error.hpp>
+#include <polhode/geometry/shapes.hpp>
+
+namespace polhode::rigid_surfaces_tests {
+namespace {
+
+ShapeSpec shape_of(const std::string& type, std::vector<double> sizes) {
+  ShapeSpec shape;
+  shape.type = type;
+  shape.sizes = std::move(sizes);
+  return shape;
+}
+
+TEST(RigidSurfaces, HaveAFormForEveryKindOfShapeOfSizes) {
+  for (const ShapeKind& kind : shape_kinds()) {
+    std::vector<double> sizes(kind.sizes.size(), 0.2);
+    if (kind.misfit)
+      sizes = kind.name == "tube" ? std::vector{0.4, 0.2, 0.3} : std::vector{0.2, 0.5};
+    const RigidSurface surface = rigid_surface("a", shape_of(kind.name, sizes), 1e-4);
+    EXPECT_NE(surface.kind, RigidSurface::Kind::plane) << kind.name;
+    EXPECT_GT(surface.distance(Vec3(0.0, 0.0, 1.0), 2.0, true), 0.5) << kind.name;
+    EXPECT_GT(surface.distance(Vec3(1.0, 0.0, 0.0), 2.0, true), 0.5) << kind.name;
+  }
+  EXPECT_EQ(rigid_surface("a", shape_of("plane", {}), 1e-4).kind, RigidSurface::Kind::plane);
+}
+
+TEST(RigidSurfaces, RefuseAKindWithoutAForm) {
+  try {
+    static_cast<void>(rigid_surface("rock and pad", shape_of("frustum", {0.3, 0.2, 0.4}), 1e-4));
+    FAIL() << "a frustum is not known";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.where(), "rock and pad");
+    EXPECT_THAT(e.what_is_wrong(), testing::HasSubstr("frustum"));
+  }
+}
+
+}  // namespace
+}  // namespace polhode::rigid_surfaces_tests
