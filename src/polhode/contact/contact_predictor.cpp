@@ -219,7 +219,6 @@ class Sweeps {
     }
     return moved;
   }
-  /// Depth of a gap within the law's band, or its clearance if that is less [m].
   /// @returns the gap at the end of the step [m].
   static double linearise(PredictedContact& m, const BodyStep& a, const BodyStep& b) {
     const PointData& d = *m.data;
@@ -237,6 +236,7 @@ class Sweeps {
     m.correction = gap - m.gap();
     return gap;
   }
+  /// Depth of a gap within the law's band, or its clearance if that is less [m].
   static double clearance(const PredictedContact& m, double gap) {
     const double tolerance = m.data->normal.tolerance, reach = m.balls->reach;
     return std::min({std::min(gap, reach) - m.balls->least_gap, tolerance,
@@ -256,6 +256,7 @@ class Sweeps {
   }
 
   void update(PredictedContact& m) {
+    if (!(m.mobility > 0.0)) return;
     const double now = m.gap(), gap_without = now - m.mobility * m.normal_force;
     if (gap_without >= m.balls->reach && m.normal_force == 0.0) return;
     const double gap = gap_with(m, gap_without, now, K_ / m.mobility, dt_);
@@ -301,9 +302,9 @@ std::vector<PredictedRows> with_effects(std::span<PointwiseContacts::FreeRows> l
 }  // namespace
 
 /// Predictor by Gauss-Seidel iteration over points of contact and constraint rows, with the laws of
-/// the step itself. Gaps of balls are exact, others linear and then corrected. Without it the
-/// fastest pair would limit the step of all bodies, and Newton's method would find in many
-/// iterations which points slide. @eq{contact-predictor}
+/// the step itself. Gaps of balls are exact, others are linear. Without it the fastest pair would
+/// limit the step of all bodies, and Newton's method would find in many iterations which points
+/// slide. @eq{contact-predictor}
 void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& context,
                          std::span<const FreeMotion> free, std::span<FreeRows> free_rows,
                          std::vector<Vec6>& increments) const {
@@ -355,7 +356,8 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   Sweeps sweeps(rows, contacts, K, context.dt);
   sweeps.run();
   for (int k = 0; k < kCorrections && sweeps.linearise(steps, bodies) > kAgreed; ++k) sweeps.run();
-  for (int b = 0; b < ground; ++b) increments[b] = bodies[b].increment;
+  for (int b = 0; b < ground; ++b)
+    if (bodies[b].increment.allFinite()) increments[b] = bodies[b].increment;
 }
 
 }  // namespace polhode::contact
