@@ -44,10 +44,8 @@ VelocityReport InstantSolver::project_velocities(State& state) {
       true);
   report.residual = report.residual_before;
   report.scale = largest_scale;
-  for (int b = 0; b < bodies; ++b) {  // rows of bodies at rest have no scale of their own
-    const Vec6 v = velocity(b);
-    report.scale = std::max({report.scale, v.head<3>().norm(), v.tail<3>().norm()});
-  }
+  for (int b = 0; b < bodies; ++b)  // rows of bodies at rest have no scale of their own
+    report.scale = std::max(report.scale, s.steps[b].v_n1.norm());
   if (report.residual <= 32.0 * kInstantRoundOff * largest_scale) return report;
 
   s.put_masses_and_rows(state);
