@@ -25,9 +25,9 @@ struct PositionReport {
 /// Result of the projection of velocities.
 struct VelocityReport {
   double residual_before = 0.0;  ///< Largest |G v| as given [m/s or 1/s].
-  double scale = 0.0;            ///< Largest speed of a body, or sum of magnitudes of a row of G v.
-  double residual = 0.0;         ///< Largest |G v| now.
-  double largest_change = 0.0;   ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
+  double scale = 0.0;           ///< Largest speed of a body [m/s], or row sum of magnitudes of G v.
+  double residual = 0.0;        ///< Largest |G v| now.
+  double largest_change = 0.0;  ///< Of a velocity |Δv| [m/s] or ℓ|Δω| [m/s].
   int changed_body = -1;
   int solves = 0;  ///< 0: G v was already at round-off.
 };
