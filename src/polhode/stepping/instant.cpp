@@ -45,7 +45,7 @@ VelocityReport InstantSolver::project_velocities(State& state) {
   report.residual = report.residual_before;
   report.scale = largest_scale;
   for (int b = 0; b < bodies; ++b)  // rows of bodies at rest have no scale of their own
-    report.scale = std::max(report.scale, s.steps[b].v_n1.norm());
+    report.scale = std::max(report.scale, s.steps[b].v_n1.lpNorm<Eigen::Infinity>());
   if (report.residual <= 32.0 * kInstantRoundOff * largest_scale) return report;
 
   s.put_masses_and_rows(state);
