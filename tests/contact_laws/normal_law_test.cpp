@@ -64,8 +64,8 @@ TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
   }
 }
 
-/// What a law says of contact at rest and of an impact agrees with its own force, of every law of
-/// model files. The barrier's statements are of small depths.
+/// Stiffness, depth and duration of every law of model files, against integration of its own force.
+/// Those of the barrier hold for small depths.
 TEST(NormalLaw, StatesStiffnessDepthAndDurationOfItsOwnForce) {
   for (const PotentialWord& known : kPotentialWords) {
     EXPECT_EQ(potential_of(known.word), known.potential);

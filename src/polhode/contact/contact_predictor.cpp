@@ -23,8 +23,8 @@ constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
 /// Displacement over distance above which balls may pass each other: then the gap along the line of
 /// centres counts.
 constexpr double kFar = 0.5;
-/// How often gaps are linearised anew about the moved bodies.
-constexpr int kCorrections = 2;
+/// Maximum number of linearisations about the moved bodies.
+constexpr int kLinearisations = 2;
 /// Bound of the displacements after collisions, as a multiple of the largest one before.
 constexpr double kPushed = 2.0;
 
@@ -355,7 +355,8 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   std::vector<PredictedRows> rows = with_effects(free_rows, bodies);
   Sweeps sweeps(rows, contacts, K, context.dt);
   sweeps.run();
-  for (int k = 0; k < kCorrections && sweeps.linearise(steps, bodies) > kAgreed; ++k) sweeps.run();
+  for (int k = 0; k < kLinearisations && sweeps.linearise(steps, bodies) > kAgreed; ++k)
+    sweeps.run();
   for (int b = 0; b < ground; ++b)
     if (bodies[b].increment.allFinite()) increments[b] = bodies[b].increment;
 }

@@ -20,8 +20,8 @@ constexpr double kRestSlope = 38.6;
 constexpr double kSoftStiffness = 0.75;
 /// k d̂²/(m w²) with which a barrier stops a mass within a twentieth of its band.
 constexpr double kImpactStiffness = 1.14e4;
-/// The same numbers of springs that stop a mass at the tolerance: k δ²/(m w²), k δ^{5/2}/(m
-/// w²).
+/// Dimensionless stiffness of springs that stop a mass at the tolerance: k δ²/(m w²), of Hertz's
+/// law k δ^{5/2}/(m w²).
 constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
 /// Duration of an impact over the ratio of greatest depth and speed, of Hertz's law and of the
 /// barrier at small depths, where its force is k δ²/d̂.

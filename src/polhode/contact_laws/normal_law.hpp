@@ -53,7 +53,8 @@ inline constexpr std::array kPotentialWords{PotentialWord{"barrier", NormalPoten
 /// The quotient λ = −(b(g_1) − b(g_0))/(g_1 − g_0) is written without the difference, so it has no
 /// 0/0; it is never negative. With it the step conserves the energy exactly. @eq{contact-quotient}
 ///
-/// What a law differs in is here: each function has a switch over all potentials.
+/// Differences between laws are in this class alone: each function has a switch over all
+/// potentials.
 struct NormalLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 1.0;   ///< k [N/m]; Hertz: [N/m^{3/2}].

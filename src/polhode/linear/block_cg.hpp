@@ -12,10 +12,10 @@ namespace polhode {
 /// Conjugate gradient solver for bodies coupled only by springs between points: a symmetric
 /// positive definite matrix of one 6×6 block per body and one spring per contact, never assembled.
 /// It is preconditioned by a forward and a backward sweep over the bodies, (D + L) D⁻¹ (D + Lᵀ)
-/// with L the blocks below the diagonal and D the pivots of an elimination without fill, exact
-/// where no loop of contacts exists, as two points between the same bodies make (Meurant, Computer
-/// Solution of Large Linear Systems, 1999, section 8.5). Friction that follows normal forces is
-/// unsymmetric: GMRES adds it, preconditioned by the conjugate gradients.
+/// with L the blocks below the diagonal and D the pivots of an elimination without fill (Meurant,
+/// Computer Solution of Large Linear Systems, 1999, section 8.5). It is exact if contacts form no
+/// loop; several points between the same two bodies are a loop. Friction that follows normal forces
+/// is unsymmetric: GMRES adds it, preconditioned by the conjugate gradients.
 ///
 /// A few joints, springs and motors may couple bodies as well. Their rows are enforced by
 /// projection (Gould, Hribar and Nocedal, SIAM J. Sci. Comput. 23, 2001): with M the matrix of the

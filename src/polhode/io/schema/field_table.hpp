@@ -81,10 +81,10 @@ struct Field {
   std::string table{};     ///< Of kSection and kNamed: title of the section's table.
   std::string variable{};  ///< Of kLaw: its variable, x or v.
   Dimension of{};          ///< Dimension of the variable.
-  /// Where the value is stored, so that Section::read_into() reads it and the fingerprint of the
-  /// model has it; none: both are written by hand.
+  /// Member of the spec that stores the value, for Section::read_into() and the fingerprint of the
+  /// model; none: both are written by hand.
   SpecMember member{};
-  /// A run may be continued with another value: the fingerprint leaves it out.
+  /// Field with another value of which a run may be continued: not part of the fingerprint.
   bool may_change = false;
   std::string since = "0.1";
 };
