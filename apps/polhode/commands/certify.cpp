@@ -16,14 +16,14 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct CertifyOptions {
   ModelArguments model;
   std::string folder, isa;
   CertifyRequest request;
   bool json = false;
 };
 
-int certify_file(Options& options) {
+int certify_file(CertifyOptions& options) {
   const Model model = load_model(options.model);
   CertifyRequest& request = options.request;
   const bool keep = !options.folder.empty();
@@ -70,7 +70,7 @@ void add_within_option(CLI::App& command, CertifyRequest& request) {
 }
 
 Action add_certify(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CertifyOptions>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
   command
       .add_option("-o,--output", options->folder,

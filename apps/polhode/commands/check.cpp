@@ -17,7 +17,7 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct CheckOptions {
   ModelArguments model;
   bool tangents = false, json = false;
   double at = 0.0;  ///< Time at which tangents are compared [s].
@@ -227,7 +227,7 @@ nlohmann::ordered_json tangents_json(const TangentReport& report) {
           {"left_out", report.left_out}};
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   Simulation simulation(load_model(options.model));
   RankReport rank = rank_report(simulation.system(), simulation.state());
   for (const BodySpec& body : simulation.model().bodies)
@@ -314,7 +314,7 @@ int check(const Options& options) {
 }  // namespace
 
 Action add_check(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
   add_set_option(command, options->model);
   command.add_flag("--tangents", options->tangents,

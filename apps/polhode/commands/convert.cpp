@@ -19,13 +19,13 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct ConvertOptions {
   FilmRequest film;  ///< Including the names of both files.
   std::vector<std::string> channels;
   std::string size;
 };
 
-void write_table(const Options& options, const std::string& ending) {
+void write_table(const ConvertOptions& options, const std::string& ending) {
   const ResultsReader results(results_path(options.film.results));
   if (ending == ".csv")
     write_file_atomically(options.film.output, channels_csv(results, options.channels), false);
@@ -33,7 +33,7 @@ void write_table(const Options& options, const std::string& ending) {
     write_parquet(results, options.channels, options.film.output);
 }
 
-void write_grids(const Options& options) {
+void write_grids(const ConvertOptions& options) {
   const std::string path = results_path(options.film.results);
   const ResultsReader results(path);
   std::optional<Model> model;
@@ -54,7 +54,7 @@ bool read_size(const std::string& text, FilmRequest& film) {
           film.width >= 16 && film.height >= 16 && film.width <= 8192 && film.height <= 8192);
 }
 
-int convert(Options& options) {
+int convert(ConvertOptions& options) {
   const std::string ending = std::filesystem::path(options.film.output).extension().string();
   if (ending == ".csv" || ending == ".parquet") {
     write_table(options, ending);
@@ -83,7 +83,7 @@ int convert(Options& options) {
 }  // namespace
 
 Action add_convert(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConvertOptions>();
   command.add_option("RESULTS", options->film.results, "Results (results.h5 or their folder)")
       ->required();
   command

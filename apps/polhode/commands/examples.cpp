@@ -17,7 +17,7 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct ExamplesOptions {
   std::string name, output;
   std::vector<std::string> sets;
 };
@@ -70,7 +70,7 @@ std::map<std::string, std::string> values_of(const std::vector<std::string>& set
   return values;
 }
 
-std::string text_of(const Options& options) {
+std::string text_of(const ExamplesOptions& options) {
   std::vector<std::string> names;
   for (const ModelGenerator& generator : model_generators()) {
     if (generator.name == options.name) return generate_model(generator, values_of(options.sets));
@@ -93,7 +93,7 @@ std::string text_of(const Options& options) {
 }  // namespace
 
 Action add_examples(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExamplesOptions>();
   command.add_option("NAME", options->name, "Example to write; left out: list them");
   command.add_option("--set", options->sets, "A value of a generated model, e.g. N=40")
       ->take_all()

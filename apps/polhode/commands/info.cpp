@@ -26,7 +26,7 @@ namespace {
 /// Largest number of lines in tables of a large model.
 constexpr std::size_t kMaxLines = 40;
 
-struct Options {
+struct InfoOptions {
   ModelArguments model;
   std::string kinds;
   bool json = false;
@@ -93,7 +93,7 @@ std::string joined(const std::vector<std::string>& list) {
   return text;
 }
 
-void print_kinds(const Options& options) {
+void print_kinds(const InfoOptions& options) {
   const std::vector<KindLine> lines = kind_lines(options.kinds);
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -262,7 +262,7 @@ std::string describe_json(const Simulation& simulation) {
 }  // namespace
 
 Action add_info(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)");
   add_set_option(command, options->model);
   command

@@ -16,14 +16,14 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct ModesOptions {
   ModelArguments model;
   std::string folder, about;
   int count = 0;
   bool json = false, quiet = false;
 };
 
-int modes(const Options& options) {
+int modes(const ModesOptions& options) {
   Model model = load_model(options.model);
   if (options.count > 0) model.analysis.count = options.count;
   if (!options.about.empty()) model.analysis.about = options.about;
@@ -122,7 +122,7 @@ int run_modes(Model model, const ModelArguments& arguments, std::string folder, 
 }
 
 Action add_modes(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ModesOptions>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
   command
       .add_option("-o,--output", options->folder,

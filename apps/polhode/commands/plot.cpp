@@ -14,7 +14,7 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::string results, output;
   std::vector<std::string> channels;
 };
@@ -31,7 +31,7 @@ std::string time_label(const ResultsReader& results, const std::string& path) {
 }  // namespace
 
 Action add_plot(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlotOptions>();
   command.add_option("RESULTS", options->results, "Results (results.h5 or their folder)")
       ->required();
   command.add_option(

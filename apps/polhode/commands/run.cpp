@@ -28,7 +28,7 @@ namespace {
 constexpr const char* kCheckpointName = "checkpoint.pst";
 constexpr const char* kPageName = "view.html";
 
-struct Options {
+struct RunOptions {
   ModelArguments model;
   std::string folder, restart, isa;
   std::optional<double> wall_limit;
@@ -36,12 +36,12 @@ struct Options {
   CertifyRequest certificate;
 };
 
-std::string results_folder(const Options& options) {
+std::string results_folder(const RunOptions& options) {
   if (!options.folder.empty()) return options.folder;
   return std::filesystem::path(options.model.file).replace_extension(".results").string();
 }
 
-Simulation make_simulation(const Options& options, Model model) {
+Simulation make_simulation(const RunOptions& options, Model model) {
   if (options.restart.empty()) return Simulation(std::move(model));
   State state = read_checkpoint(options.restart, model, build_system(model));
   return {std::move(model), std::move(state)};
@@ -90,7 +90,7 @@ void show_results(const std::string& folder, bool quiet) {
   open_browser(std::filesystem::absolute(page).string());
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   const double start = wall_clock();
   Model model = load_model(options.model);
   if (options.certify) check_certifiable(model);
@@ -166,7 +166,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action add_run(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   command.add_option("MODEL", options->model.file, "Model file (YAML or JSON)")->required();
   command
       .add_option("-o,--output", options->folder,

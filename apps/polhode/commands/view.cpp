@@ -9,7 +9,7 @@ namespace polhode::cli {
 
 namespace {
 
-struct Options {
+struct ViewOptions {
   ViewRequest request;
   std::vector<std::string> inputs;
   std::string html, zip;
@@ -20,7 +20,7 @@ struct Options {
 }  // namespace
 
 Action add_view(CLI::App& command) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ViewOptions>();
   command
       .add_option("FILE", options->inputs,
                   "Results (results.h5 or their folder), or a model before it runs; a second one "
