@@ -49,6 +49,40 @@ double approach_by_turn(const Vec3& theta, const Vec3& n, std::span<const Vec3> 
   return most + left * theta.squaredNorm() * farthest;
 }
 
+/// Path of a point of a, seen from body b, while both follow their increments.
+struct PathSeenFromB {
+  const BodyStep &a, &b;
+  const Vec6 &x_a, &x_b;
+  Vec3 Z;  ///< The point, in body coordinates of a.
+
+  struct Where {
+    Mat3 L_a, L_b;
+    Vec3 y;  ///< The point, in body coordinates of b.
+  };
+  [[nodiscard]] Where at(double part) const {
+    Where w{cay(part * x_a.tail<3>()) * a.Lambda_n1, cay(part * x_b.tail<3>()) * b.Lambda_n1,
+            Vec3::Zero()};
+    w.y = w.L_b.transpose() *
+          (a.r_n1 + part * x_a.head<3>() + w.L_a * Z - b.r_n1 - part * x_b.head<3>());
+    return w;
+  }
+  /// Longest way along this part of the increments, at a distance of the point from the centre of
+  /// mass of a [m].
+  [[nodiscard]] double way(double part, double distance) const {
+    return part * ((x_a.head<3>() - x_b.head<3>()).norm() + x_a.tail<3>().norm() * distance);
+  }
+  /// Bound of the distance from the chord of the path from y [m].
+  [[nodiscard]] double bulge(double part, const Vec3& y, double distance) const {
+    const double turn_a = part * x_a.tail<3>().norm(), turn_b = part * x_b.tail<3>().norm();
+    const double far = way(part, distance);
+    return 0.25 *
+           (turn_a * turn_a * distance + turn_b * turn_b * (y.norm() + far) + 2.0 * turn_b * far);
+  }
+};
+
+/// Number of halvings of the rest of the increment in the search for a part in front of a plane.
+constexpr int kShorterParts = 4;
+
 /// Points that span side a (or b) of a feature pair, if they are few. @returns how many.
 int few_points(const Shape& s, const FeaturePair& f, bool side_a, std::array<Vec3, 2>& points) {
   const bool corner = f.kind == GapKind::point_solid || f.kind == GapKind::point_triangle ||
@@ -187,7 +221,9 @@ double ContactSet::filter(std::span<const BodyStep> steps, std::span<const Vec6>
 
 /// Conservative advancement. Along r + a Δr, cay(a Δθ)Λ two convex features approach along their
 /// present normal n no faster than v = −n·(Δr_a − Δr_b) + |Δθ_a| ρ_a + |Δθ_b| ρ_b, so a gap can be
-/// followed by steps of its own size.
+/// followed by steps of its own size. A single point also stays clear of b as long as it is in
+/// front of the plane that separates both now and turns with b: it may roll or slide along a
+/// turning face.
 /// @eq{contact-filter}
 double ContactSet::advance(const Followed& followed, std::span<const BodyStep> steps,
                            std::span<const Vec6> increments, double most) {
@@ -204,6 +240,20 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const GapKind kind = p.data.pair.kind;
   const bool hollow =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
+  std::array<Vec3, 2> ends;
+  const bool single = !hollow && few_points(*p.data.a, p.data.pair, true, ends) == 1;
+  const PathSeenFromB path{a, b, x_a, x_b, single ? ends[0] : Vec3::Zero()};
+  const auto part_in_front = [&](const Gap<double>& g, double from) {
+    const PathSeenFromB::Where now = path.at(from);
+    const Vec3 n = now.L_b.transpose() * value(g.normal);
+    double part = most - from;
+    for (int k = 0; k <= kShorterParts; ++k, part *= 0.5) {
+      const double end = g.distance + n.dot(path.at(from + part).y - now.y);
+      const double bulge = path.bulge(part, now.y, path.Z.norm());
+      if (std::min(g.distance, end) - bulge >= followed.least) return part;
+    }
+    return 0.0;
+  };
   double done = 0.0, last = 0.0;
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
@@ -226,8 +276,9 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
     else
       speed += x_b.tail<3>().norm() *
                ((a.r_n1 - b.r_n1).norm() + x_a.norm() + p.data.a->reach + p.data.b->centre.norm());
-    const double step = speed > 0.0 ? (g.distance - followed.least) / speed
-                                    : std::numeric_limits<double>::infinity();
+    double step = speed > 0.0 ? (g.distance - followed.least) / speed
+                              : std::numeric_limits<double>::infinity();
+    if (single && step < most - done) step = std::max(step, part_in_front(g, done));
     if (step >= most - done) return most;
     tightest_ = followed.point;
     // Bodies that separate from a narrow gap start with small advances, each larger than the last.
@@ -258,23 +309,11 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
   const Vec3 Z = corner ? A.corners[p.data.pair.i] : part.centre;
   const double farthest = corner ? 0.0 : part.half.maxCoeff(), round = A.rounding + B.rounding;
   const double lever_a = corner ? Z.norm() : A.reach;
-  struct Where {
-    Mat3 L_a, L_b;
-    Vec3 y;  ///< Of Z, in body coordinates of b.
-  };
-  const auto at = [&](double part_of_way) {
-    Where w{cay(part_of_way * x_a.tail<3>()) * a.Lambda_n1,
-            cay(part_of_way * x_b.tail<3>()) * b.Lambda_n1, Vec3::Zero()};
-    w.y = w.L_b.transpose() *
-          (a.r_n1 + part_of_way * x_a.head<3>() + w.L_a * Z - b.r_n1 - part_of_way * x_b.head<3>());
-    return w;
-  };
-  const Where start = at(0.0), end = at(most);
+  using Where = PathSeenFromB::Where;
+  const PathSeenFromB path{a, b, x_a, x_b, Z};
+  const Where start = path.at(0.0), end = path.at(most);
   const Vec3 relative = x_a.head<3>() - x_b.head<3>();
-  const double turn_a = most * x_a.tail<3>().norm(), turn_b = most * x_b.tail<3>().norm();
-  const double way = most * relative.norm() + turn_a * lever_a;
-  const double bulge = 0.25 * (turn_a * turn_a * lever_a +
-                               turn_b * turn_b * (start.y.norm() + way) + 2.0 * turn_b * way);
+  const double bulge = path.bulge(most, start.y, lever_a);
   const double band = p.data.normal.reach() - p.least_gap;
   const double wide = round + farthest + bulge + std::max(0.0, p.least_gap + kKept * band);
   // Reusable list: the gaps of single triangles evaluated below start no search.
@@ -330,7 +369,7 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
     bool least_known = first >= p.least_gap;
     double done = 0.0, last = 0.0;
     for (int k = 0; k < 200 && done < most; ++k) {
-      const Where w = at(done);
+      const Where w = path.at(done);
       const auto next = [&](double gap, const Vec3& n) {
         const double v = speed(n, w.L_a, most - done);
         return gap < least ? 0.0
