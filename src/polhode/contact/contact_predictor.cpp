@@ -16,10 +16,13 @@ namespace {
 /// Maximum number of Gauss-Seidel sweeps over all points. They end when no gap changes by more than
 /// this part of its depth or clearance, and no friction force by more than this part of its bound.
 constexpr int kSweeps = 100, kMaxIterations = 30;
-constexpr double kAgreed = 0.1;
+constexpr double kAgreed = 0.03;
+/// Motion of a point's bodies since its last update, as a part of its depth or clearance, below
+/// which a sweep leaves it out.
+constexpr double kUnmoved = 0.03;
 /// Depth, as a part of the tolerance, below which its changes are compared with this.
 constexpr double kLeastDepth = 0.1;
-constexpr double kExactEnough = 1e-3;  ///< Part of the clearance that remains.
+constexpr double kExactEnough = 1e-2;  ///< Part of the clearance that remains.
 /// Displacement over distance above which balls may pass each other: then the gap along the line of
 /// centres counts.
 constexpr double kFar = 0.5;
@@ -36,6 +39,14 @@ struct PredictedBody {
   double inverse_mass = 0.0;            ///< [1/kg]
   Mat3 inverse_inertia = Mat3::Zero();  ///< World [1/(kg m²)].
   const Mat6* response = nullptr;  ///< With loads instead of both: increment by a wrench over K.
+  double reach = 0.0;              ///< Distance of its points from the centre of mass [m].
+  double moved = 0.0;              ///< Path of its points by all forces, at most [m].
+
+  void move(const Vec3& u, const Vec3& theta) {
+    increment.head<3>() += u;
+    increment.tail<3>() += theta;
+    moved += u.norm() + reach * theta.norm();
+  }
 };
 
 /// A body at a point of contact.
@@ -50,11 +61,11 @@ struct BodyAtPoint {
   void push(const Vec3& force) const {
     PredictedBody& b = *body;
     if (b.response) {
-      b.increment += *b.response * wrench(force);
-      return;
+      const Vec6 change = *b.response * wrench(force);
+      b.move(change.head<3>(), change.tail<3>());
+    } else {
+      b.move(b.inverse_mass * force, b.inverse_inertia * arm.cross(force));
     }
-    b.increment.head<3>() += b.inverse_mass * force;
-    b.increment.tail<3>() += b.inverse_inertia * arm.cross(force);
   }
   /// Displacement of the point along t by a unit force along s.
   [[nodiscard]] double mobility(const Vec3& t, const Vec3& s) const {
@@ -82,6 +93,8 @@ struct PredictedContact {
   double mobility = 0.0;             ///< Along the normal [1/kg].
   double tangential_mobility = 0.0;  ///< The largest one across it [1/kg].
   double normal_force = 0.0;         ///< Over K [kg m].
+  double seen = 0.0;                 ///< Path of both bodies at the last update [m].
+  double unmoved = -1.0;             ///< Further path without a new update [m].
   bool has_friction = false;     ///< Outside impacts, whose friction is an impulse at their end.
   Vec3 bristle = Vec3::Zero();   ///< At t_n, in the tangent plane [m].
   Vec3 friction = Vec3::Zero();  ///< On a, over K [kg m].
@@ -106,6 +119,7 @@ struct PredictedContact {
     const Vec3 u = relative();
     return u - normal.dot(u) * normal;
   }
+  [[nodiscard]] double path() const { return a.body->moved + b.body->moved; }
   void find_mobilities() {
     const auto along = [&](const Vec3& t, const Vec3& s) {
       return a.mobility(t, s) + b.mobility(t, s);
@@ -180,15 +194,20 @@ class Sweeps {
     }
   }
 
-  /// Linearises anew about the moved bodies, with the normals and arms of the middle of the step:
-  /// all but balls. @returns the largest change of a gap or, where friction acts, of a slip, as a
-  /// part of the clearance.
+  /// Linearises anew about the moved bodies, with the normals and arms of the middle of the step.
+  /// @returns the largest change of a gap or, where friction acts, of a slip, as a part of the
+  /// clearance.
   double linearise(std::span<const BodyStep> steps, std::vector<PredictedBody>& bodies) {
     double largest = 0.0;
     std::vector<BodyStep> moved;
     for (PredictedContact& m : contacts_) {
       const double linear = m.gap();
-      if (m.balls->holds || (m.normal_force == 0.0 && linear > m.balls->reach)) continue;
+      if (m.normal_force == 0.0 && linear > m.balls->reach) continue;
+      m.unmoved = -1.0;
+      if (m.balls->holds) {
+        if (m.balls->distance > 0.0) largest = std::max(largest, turn(m) / clearance(m, linear));
+        continue;
+      }
       if (moved.empty()) moved = at_increments(steps, bodies);
       const Vec3 slip = m.slip();
       const double gap = linearise(m, moved[m.balls->a], moved[m.balls->b]);
@@ -196,7 +215,7 @@ class Sweeps {
       if (m.has_friction) change = std::max(change, (m.slip() - slip).norm());
       largest = std::max(largest, change / clearance(m, linear));
     }
-    if (moved.empty()) return 0.0;
+    if (largest == 0.0) return 0.0;
     for (PredictedBody& body : bodies) body.increment = body.free;
     for (const PredictedRows& r : rows_) {
       r.a->increment += r.by_a * (r.rows->change / K_);
@@ -218,6 +237,19 @@ class Sweeps {
       s.Lambda_n1 = cay(s.theta) * s.Lambda_n;
     }
     return moved;
+  }
+  /// Turns the normal of two balls to that of the whole step, along which its force acts.
+  /// @returns the displacement by the change of the force [m]. @eq{contact-gap-change}
+  static double turn(PredictedContact& m) {
+    const Vec3 apart =
+        m.balls->offset + m.a.body->increment.head<3>() - m.b.body->increment.head<3>();
+    const Vec3 normal = (m.balls->offset + apart) / (m.balls->distance + apart.norm());
+    const double turned = (normal - m.normal).norm();
+    m.normal = normal;
+    m.a.arm = -m.a.arm.norm() * normal;
+    m.b.arm = m.b.arm.norm() * normal;
+    m.friction -= normal.dot(m.friction) * normal;
+    return m.mobility * m.normal_force * turned;
   }
   /// @returns the gap at the end of the step [m].
   static double linearise(PredictedContact& m, const BodyStep& a, const BodyStep& b) {
@@ -248,27 +280,34 @@ class Sweeps {
     const Vec6 g =
         of.g + of.G_a * (r.a->increment - r.a->about) + of.G_b * (r.b->increment - r.b->about);
     const Vec6 change = -(r.inverse * g), on_a = r.by_a * change, on_b = r.by_b * change;
-    r.a->increment += on_a;
-    r.b->increment += on_b;
+    r.a->move(on_a.head<3>(), on_a.tail<3>());
+    r.b->move(on_b.head<3>(), on_b.tail<3>());
     r.rows->change += K_ * change;
     change_ =
         std::max({change_, on_a.head<3>().norm() / tolerance_, on_b.head<3>().norm() / tolerance_});
   }
 
   void update(PredictedContact& m) {
-    if (!(m.mobility > 0.0)) return;
+    if (!(m.mobility > 0.0) || m.path() - m.seen <= m.unmoved) return;
     const double now = m.gap(), gap_without = now - m.mobility * m.normal_force;
-    if (gap_without >= m.balls->reach && m.normal_force == 0.0) return;
+    m.seen = m.path();
+    m.unmoved = now - m.balls->reach;
+    if (m.normal_force == 0.0 && m.unmoved >= 0.0) return;
     const double gap = gap_with(m, gap_without, now, K_ / m.mobility, dt_);
     const double normal = (gap - gap_without) / m.mobility, more = normal - m.normal_force;
     change_ = std::max(change_, m.mobility * std::abs(more) / clearance(m, gap));
     m.normal_force = normal;
     m.push(more * m.normal);
-    if (!m.has_friction) return;
+    m.unmoved = kUnmoved * clearance(m, gap);
+    if (m.has_friction) update_friction(m);
+    m.seen = m.path();
+  }
+  void update_friction(PredictedContact& m) {
     const Vec3 free = m.slip() - m.tangential_mobility * m.friction;
     const Vec3 friction = friction_with(m, free, K_, dt_), change = friction - m.friction;
-    if (normal > 0.0)
-      change_ = std::max(change_, K_ * change.norm() / friction_limit(*m.data, K_ * normal));
+    if (m.normal_force > 0.0)
+      change_ =
+          std::max(change_, K_ * change.norm() / friction_limit(*m.data, K_ * m.normal_force));
     m.friction = friction;
     m.push(change);
   }
@@ -317,6 +356,7 @@ void ContactSet::predict(std::span<const BodyStep> steps, const StepContext& con
   for (int b = 0; b < ground; ++b) {
     PredictedBody& body = bodies[b];
     body.about = increments[b];
+    body.reach = reach_of_body_[b];
     body.free = body.increment = free[b].increment;
     if (free[b].has_loads) {
       body.response = &responses.emplace_back(K * free[b].response);
