@@ -85,7 +85,7 @@ void ContactSet::store_again(Point& p, double stiffness, double energy) const {
 /// body gets that is pressed into its band from rest.
 double ContactSet::slow_speed(const Point& p, double force, double dt) const {
   const double a = std::max(system_->gravity().norm(), force / p.mass);
-  const double depth = std::sqrt(p.mass * a * p.data.normal.tolerance / p.rest_stiffness);
+  const double depth = p.data.normal.with_stiffness(p.rest_stiffness).depth_under(p.mass * a);
   return kSlowReboundSteps * std::max(a * std::abs(dt), std::sqrt(a * depth));
 }
 

@@ -57,7 +57,7 @@ Stop::Stop(const JointLimits& limits, const double* history, const CoordinateSte
     if (limits.inertia > 0.0) {
       // Speed of the coordinate when pressed into its band from rest, from its depth under load.
       const double a = std::abs(acceleration_);
-      const double depth = std::sqrt(limits.inertia * a * tolerance / limits.law.stiffness);
+      const double depth = limits.law.depth_under(limits.inertia * a);
       slow = std::max(slow, kSlowSteps * std::sqrt(a * depth));
     }
     if (!lasts || limits.restitution == 1.0 || !(-w > slow) || step.dt == 0.0) return;
@@ -101,8 +101,7 @@ bool Stop::pressed() const {
   if (limits_.restitution == 1.0 || !(step_.dt > 0.0)) return false;
   const double before = law_.force_and_slope(gap_n_).value;
   const double a = std::max(std::abs(acceleration_), before / limits_.inertia);
-  const double depth =
-      std::sqrt(limits_.inertia * a * limits_.law.tolerance / limits_.law.stiffness);
+  const double depth = limits_.law.depth_under(limits_.inertia * a);
   const double slow = kSlowSteps * std::max(a * step_.dt, std::sqrt(a * depth));
   const double force = law_.quotient_and_slope(gap_n_, gap_n1_).value;
   return (force - before) * step_.dt > limits_.inertia * slow;
