@@ -178,6 +178,35 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
     }
 }
 
+/// A ball that rolls and slides along the face of a heavy turning paddle: the gap stays a small
+/// part of the band while both move, seen from the paddle on a curve. @tests{contact-filter}
+TEST(ContactCgEngine, FollowsABallAlongATurningFace) {
+  for (const double dt : {10e-3, 5e-3, 1e-3, 1e-4}) {
+    Scene s;
+    s.cg_residual = 1e-6;
+    BodyMotion turning = at({0.0, 0.0, 0.15});
+    turning.W = {0.0, 0.0, 3.0};
+    const int paddle = s.add_box("paddle", {0.6, 0.06, 0.2}, 200.0, turning);
+    const int ball = s.add_ball("ball", 0.1, 1.0, at({0.15, 0.1301, 0.1}));
+    s.add_joint("revolute", kGround, paddle, {0.0, 0.0, 0.15});
+    s.add_floor();
+    s.law(0.5, 0.0);
+    s.begin(dt);
+    int steps = 0, iterations = 0;
+    while (s.state.t < 0.2) {
+      ASSERT_TRUE(s.step()) << s.last.text();
+      ++steps;
+      iterations += s.last.iterations;
+    }
+    EXPECT_EQ(s.cuts, 0) << dt;
+    EXPECT_LT(iterations, (dt > 5e-3 ? 15 : dt > 5e-4 ? 8 : 4) * steps) << dt;
+    const BodyMotion m = s.motion(ball), p = s.motion(paddle);
+    EXPECT_GT(std::hypot(m.r.x(), m.r.y()), 0.22) << dt;  // farther from the axis than at the start
+    const Vec3 seen = p.Lambda().transpose() * (m.r - p.r);
+    EXPECT_NEAR(seen.y(), 0.13, 1e-3) << dt;
+  }
+}
+
 /// A layer of balls that falls on another without rebound, with the narrow band of the default and
 /// friction: impacts far longer than the band, and points between floor and neighbours that slide.
 /// @tests{contact-slide-damping}
