@@ -22,6 +22,8 @@ constexpr int kMaxCarried = 30;
 constexpr double kHeld = 1e-13;
 /// Relative change of a target speed below which the speed is kept.
 constexpr double kSameSpeed = 1e-12;
+/// Part of the dissipation by friction in a step that impulses may return.
+constexpr double kReturnable = 0.5;
 
 }  // namespace
 
@@ -324,7 +326,23 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
   rows[2].apply(friction[2], v);
 }
 
-/// Resolves an island. Impulses that would add energy are scaled back until they do not.
+/// Energy that friction of resting contact has dissipated in this step and that impulses may
+/// return: less normal impulse leaves less friction. Half of it by the slip at the end, which may
+/// be faster than during the step.
+double ImpactResolver::returnable(std::span<const Row> rows) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < rows.size(); ++i) {
+    if (!rows[i + 1].has_friction || rows[i].has_friction) continue;
+    const Impact& impact = rows_[rows[i].impact].impact;
+    const double work = impact.friction_impulse.dot(rows[i + 1].before * impact.along +
+                                                    rows[i + 2].before * impact.across);
+    sum += kReturnable * std::max(0.0, -work);
+  }
+  return sum;
+}
+
+/// Resolves an island. Impulses that would add energy to the step are scaled back until they do
+/// not.
 /// @eq{turn-law}
 void ImpactResolver::settle(State& state, const Island& island, std::vector<Row> rows) {
   std::vector<Vec6> v = velocities(state, island);
@@ -349,9 +367,11 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
     first += row.impulse * row.before;
     second += row.impulse * (row.speed(v) - row.before);
   }
-  const double part = first + 0.5 * second <= 0.0 || !(second > 0.0)
-                          ? 1.0
-                          : std::clamp(-2.0 * first / second, 0.0, 1.0);
+  const double most_added = returnable(rows);
+  double part = 1.0;
+  if (first + 0.5 * second > most_added && second > 0.0)
+    part = std::clamp((std::sqrt(first * first + 2.0 * second * most_added) - first) / second, 0.0,
+                      1.0);
   std::vector<Vec6> jumps(island.bodies.size());
   for (std::size_t i = 0; i < jumps.size(); ++i) jumps[i] = part * (v[i] - start[i]);
   if (!island.nodes.empty()) solver_->press_nodes(on_nodes(island, rows, part));

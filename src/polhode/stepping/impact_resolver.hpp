@@ -75,6 +75,7 @@ class ImpactResolver {
   [[nodiscard]] double speed(const State& state, int row) const;
   void find_held(const std::vector<Row>& rows, std::vector<Vec6> v);
   void share_held(std::vector<Row>& rows, std::vector<Vec6> v) const;
+  [[nodiscard]] double returnable(std::span<const Row> rows) const;
   [[nodiscard]] Work turn_surfaces(State& state) const;
   void tell_surfaces(State& state) const;
   double apply_friction(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
