@@ -7,6 +7,9 @@
 #include <vector>
 
 #include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/round_solids/cone.hpp>
+#include <polhode/contact/round_solids/cylinder.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/shapes.hpp>
 
