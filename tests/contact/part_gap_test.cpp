@@ -2,6 +2,8 @@
 // Parts of round solids over faces and edges, against samples of many points.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact_laws/normal_law.hpp>
 
@@ -15,10 +17,17 @@ using namespace test;
 
 std::vector<NamedShape> round_shapes() {
   const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
-  return {{"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
-          {"cone", cone("cone", 0.8, 0.9, place)},
-          {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)}};
+  std::vector<NamedShape> all;
+  for (const RoundSolid* solid : round_solids()) {
+    const std::string name(solid->name);
+    const std::vector<double> sizes = fitting_sizes(*find_shape_kind(name), {0.7, 0.9, 0.5});
+    all.push_back({name, solid->shape(name, sizes, place, 0.0)});
+  }
+  return all;
 }
+
+/// Number of parts that can come near faces.
+int parts_of(const Shape& round) { return std::max(1, static_cast<int>(round.flat_ends.size())); }
 
 /// Least distance of points spread over an ellipsoid from a solid: at most the true one more by
 /// what lies between the points.
@@ -47,7 +56,7 @@ TEST(PartGap, IsTheLeastOfManyPoints) {
         const Mat3 L_a = m.q.toRotationMatrix(), L_b = Random(trial).frame();
         const Vec3 r = 1.1 * random.direction();
         const Placement<double> at_a(r, L_a, 0), at_b(Vec3::Zero(), L_b, 6);
-        for (int which = 0; which < (round.name == "cylinder" ? 2 : 1); ++which) {
+        for (int which = 0; which < parts_of(round.shape); ++which) {
           const Shape part = part_of(round.shape, which);
           const double expected = sampled(part, b, at_a, at_b);
           if (expected < 0.0) continue;
@@ -134,7 +143,7 @@ TEST(PartGap, HasOneGapOverTrianglesOfAPlane) {
         const V3<double> x = extreme_point(part, 0, v3(Vec3::UnitZ()), at);
         return x.z - part.rounding - field.rounding - field.corners[0].z();
       };
-      const int parts = round.name == "cylinder" ? 2 : 1;
+      const int parts = parts_of(round.shape);
       r.z() -= parts == 2 ? std::min(least(0), least(1)) : least(0);
       std::vector<OrderedPair> found;
       const Placement<double> at(r, L, 0);

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include <polhode/compile/contact_shapes.hpp>
 #include <polhode/contact/feature_pairs.hpp>
+#include <polhode/contact/round_solids/cone.hpp>
+#include <polhode/contact/round_solids/cylinder.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/shapes.hpp>
 
 #include "support/random_steps.hpp"
+#include "support/shape_sizes.hpp"
 
 namespace polhode::test {
 
@@ -56,23 +62,34 @@ inline contact::Shape round_tube(double outer, double inner, double length,
                        shape_surface(*find_shape_kind("tube"), sizes, 48), place);
 }
 
-/// One of every kind, about a metre in size, not centred in its body.
+/// One of every kind, about a metre in size, not centred in its body. Kinds that are not named here
+/// follow after those that are.
 inline std::vector<NamedShape> every_shape() {
   using namespace contact;
   const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};
   std::vector<double> heights;
   for (int i = 0; i < 36; ++i) heights.push_back(0.1 * std::sin(1.3 * i) * std::cos(0.7 * i));
-  return {{"sphere", sphere("sphere", 0.8, place)},
-          {"capsule", capsule("capsule", 0.4, 0.8, place)},
-          {"box", box("box", {0.8, 0.7, 0.5}, place)},
-          {"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
-          {"cone", cone("cone", 0.8, 0.9, place)},
-          {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)},
-          {"hull", hull("hull", stone(5), place)},
-          {"mesh", mesh("mesh", torus(0.35, 0.15), place)},
-          {"height_field", height_field("height_field", 6, 0.3, heights, place)},
-          {"plane", plane(place)},
-          {"tube", round_tube(0.8, 0.5, 0.7, place)}};
+  std::vector<NamedShape> all{
+      {"sphere", sphere("sphere", 0.8, place)},
+      {"capsule", capsule("capsule", 0.4, 0.8, place)},
+      {"box", box("box", {0.8, 0.7, 0.5}, place)},
+      {"cylinder", cylinder("cylinder", 0.7, 0.9, place)},
+      {"cone", cone("cone", 0.8, 0.9, place)},
+      {"ellipsoid", ellipsoid("ellipsoid", {0.9, 0.7, 0.5}, place)},
+      {"hull", hull("hull", stone(5), place)},
+      {"mesh", mesh("mesh", torus(0.35, 0.15), place)},
+      {"height_field", height_field("height_field", 6, 0.3, heights, place)},
+      {"plane", plane(place)},
+      {"tube", round_tube(0.8, 0.5, 0.7, place)}};
+  for (const ShapeKind& kind : shape_kinds()) {
+    if (std::any_of(all.begin(), all.end(), [&](const auto& s) { return s.name == kind.name; }))
+      continue;
+    ShapeSpec spec;
+    spec.type = kind.name;
+    spec.sizes = fitting_sizes(kind, {0.8, 0.9, 0.6});
+    all.push_back({kind.name, contact_shape(kind.name, place, spec)});
+  }
+  return all;
 }
 
 }  // namespace polhode::test

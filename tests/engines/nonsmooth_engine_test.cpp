@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <polhode/contact/round_solids/cone.hpp>
+#include <polhode/contact/round_solids/cylinder.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/engines/nonsmooth_engine.hpp>
 #include <polhode/system/state_archive.hpp>

@@ -9,21 +9,16 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/geometry/shapes.hpp>
+#include <support/shape_sizes.hpp>
 
 namespace polhode::shapes_tests {
 namespace {
 
-/// Sizes that fit each kind, all different so that no two can be mistaken for each other.
-std::vector<double> sample_sizes(const ShapeKind& kind) {
-  if (kind.name == "tube") return {0.5, 0.3, 1.7};
-  const std::vector<double> all{0.5, 1.2, 0.9};
-  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(kind.sizes.size())};
-}
-
 class EveryShape : public testing::TestWithParam<const char*> {
  protected:
   const ShapeKind& kind_ = *find_shape_kind(GetParam());
-  const std::vector<double> sizes_ = sample_sizes(kind_);
+  /// All different, so that no two can be mistaken for each other.
+  const std::vector<double> sizes_ = test::fitting_sizes(kind_, {0.5, 1.2, 0.9});
   const MassProperties exact_ = shape_mass_properties("shape", kind_, sizes_, 1.0);
 
   /// Relative error of the inertia of the triangulated shape.

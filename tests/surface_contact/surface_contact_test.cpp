@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <polhode/contact/round_solids/cone.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/geometry/hull.hpp>
 #include <polhode/math/cayley.hpp>

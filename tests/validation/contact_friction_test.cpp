@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <polhode/contact/round_solids/ellipsoid.hpp>
+
 #include "contact/scene.hpp"
 #include "support/paths.hpp"
 

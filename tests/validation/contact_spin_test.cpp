@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <polhode/contact/round_solids/ellipsoid.hpp>
+
 #include "contact/scene.hpp"
 
 namespace polhode::contact_spin_tests {

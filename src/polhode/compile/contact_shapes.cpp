@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/compile/contact_shapes.hpp>
 #include <polhode/compile/shape_surface.hpp>
+#include <polhode/contact/round_solids/round_solid.hpp>
 #include <polhode/contact/tube.hpp>
 
 namespace polhode {
 
-contact::Shape contact_shape(const std::string& where, contact::ShapePlace place,
+contact::Shape contact_shape(const std::string& where, const contact::ShapePlace& place,
                              const ShapeSpec& shape, double rounding) {
   const std::vector<double>& size = shape.sizes;
   const std::string& type = shape.type;
@@ -16,13 +17,8 @@ contact::Shape contact_shape(const std::string& where, contact::ShapePlace place
                                       : contact::sphere(where, size[0], place);
   }
   if (type == "box") return contact::box(where, {size[0], size[1], size[2]}, place, rounding);
-  if (type == "ellipsoid") return contact::ellipsoid(where, {size[0], size[1], size[2]}, place);
-  if (type == "cylinder") return contact::cylinder(where, size[0], size[1], place);
-  if (type == "cone") {
-    // The model file refers to the centroid, a quarter of the length above the base.
-    place.origin += 0.25 * size[1] * place.axes.col(2);
-    return contact::cone(where, size[0], size[1], place, rounding);
-  }
+  if (const contact::RoundSolid* round = contact::find_round_solid(type))
+    return round->shape(where, size, place, rounding);
   if (type == "plane") return contact::plane(place);
   if (type == "hull") return contact::hull(where, hull_points(shape), place, rounding);
   if (type == "height_field")

@@ -7,6 +7,7 @@
 #include <polhode/compile/contact_shapes.hpp>
 #include <polhode/compile/rigid_surfaces.hpp>
 #include <polhode/compile/shape_surface.hpp>
+#include <polhode/contact/round_solids/round_solid.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
@@ -34,7 +35,7 @@ bool has_triangles(const ShapeSpec& shape) {
 
 /// Whether the surface is that of a convex solid without a form of its own in RigidSurface.
 bool is_other_convex(const ShapeSpec& shape) {
-  return shape.type == "cone" || shape.type == "ellipsoid" || shape.type == "hull";
+  return shape.type == "hull" || contact::find_round_solid(shape.type);
 }
 
 TriangleSurface triangles_of(const ShapeSpec& shape) {

@@ -40,11 +40,9 @@ std::vector<Vec3> places_within(const contact::Shape& shape, double spacing) {
     for (int k = 1; k < parts; ++k) list.emplace_back(p + (q - p) * k / parts);
   }
   if (!shape.round()) return list;
-  const double beside = shape.solid == contact::Solid::cone ? 0.5 : 1.0;  // at mid height
   for (int k = 0; k < 3; ++k)
     for (const double sign : {-1.0, 0.0, 1.0})
-      list.emplace_back(shape.centre +
-                        sign * (k < 2 ? beside : 1.0) * shape.half[k] * shape.axes.col(k));
+      list.emplace_back(shape.centre + sign * shape.chords[k] * shape.axes.col(k));
   return list;
 }
 

@@ -60,8 +60,7 @@ class Finder {
         continue;
       }
       // A fixed point of a rim acts on a plane where the rim lies flat.
-      const bool rim =
-          stands || a_.solid == Solid::cylinder || (a_.solid == Solid::cone && i != cone_apex());
+      const bool rim = stands || i < a_.rim_corners;
       add({GapKind::point_solid, i, 0, 1.0,
            rim && b_.solid == Solid::half_space ? Fade::flat : Fade::none});
     }
@@ -85,8 +84,9 @@ class Finder {
   /// Adds the pairs of a round side a.
   void round() {
     if (!a_.round() && !stands_on_plane()) return;
-    const int parts = a_.solid == Solid::cylinder || stands_on_plane() ? 2 : 1;
-    const Fade fade = a_.solid == Solid::ellipsoid ? Fade::none : Fade::parallel;
+    const bool whole = a_.flat_ends.empty();
+    const int parts = whole ? 1 : static_cast<int>(a_.flat_ends.size());
+    const Fade fade = whole ? Fade::none : Fade::parallel;
     if (b_.solid == Solid::half_space) {
       for (int i = 0; i < parts; ++i) push({GapKind::extreme_plane, i, 0, 1.0, fade});
       return;
@@ -109,7 +109,7 @@ class Finder {
       }
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
     // part; only capsules have an edge without faces.
-    if (a_.solid == Solid::ellipsoid && b_.solid != Solid::segment) return;
+    if (whole && b_.solid != Solid::segment) return;
     for (int j : edges_)
       if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
   }
@@ -185,7 +185,6 @@ class Finder {
   [[nodiscard]] bool stands_on_plane() const {
     return is_tube(a_) && b_.solid == Solid::half_space && !each_triangle_;
   }
-  [[nodiscard]] int cone_apex() const { return static_cast<int>(a_.corners.size()) - 1; }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }
   [[nodiscard]] bool out_of_ball(const Vec3& x, double radius) const {

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/round_solids/round_solid.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/nearest.hpp>
@@ -53,129 +54,6 @@ Gap<T> over_segment(const V3<T>& x, double rho_a, const Shape& b, int edge,
   return g;
 }
 
-/// Point in the half plane through the axis of a cylinder or cone: h along the axis, q from it.
-template <class T>
-struct Meridian {
-  T h, q;
-  V3<T> axis, outward;  ///< Unit.
-
-  Meridian(const V3<T>& x, const Shape& b, const Placement<T>& at_b) {
-    axis = at_b.vector(b.axes.col(2));
-    const V3<T> w = x - at_b.point(b.centre);
-    h = dot(axis, w);
-    const V3<T> across = w - h * axis;
-    if (value(dot(across, across)) > 0.0) {
-      q = norm(across);
-      outward = (T(1.0) / q) * across;
-    } else {
-      q = T(0.0);
-      outward = at_b.vector(b.axes.col(0));
-    }
-  }
-  [[nodiscard]] V3<T> point(const Placement<T>& at_b, const Shape& b, double h_0,
-                            double q_0) const {
-    return at_b.point(b.centre) + h_0 * axis + q_0 * outward;
-  }
-};
-
-template <class T>
-Gap<T> over_cylinder(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
-  const Meridian<T> m(x, b, at_b);
-  const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
-  const double side = h < 0.0 ? -1.0 : 1.0;
-  const bool beside = q > R, beyond = std::abs(h) > H;
-  if (beside && beyond) return between_points(x, m.point(at_b, b, side * H, R), rho_a, b.rounding);
-  if (beside || (!beyond && R - q < H - std::abs(h)))
-    return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
-  return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
-}
-
-/// Nearest point of a ring with a rectangular section: two round faces and two flat ones.
-template <class T>
-Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
-  const Meridian<T> m(x, b, at_b);
-  const double R = b.half[0], r = b.half[1], H = b.half[2], h = value(m.h), q = value(m.q);
-  const double side = h < 0.0 ? -1.0 : 1.0, beyond = std::abs(h) - H;
-  const double outside = q - R, inside = r - q;
-  const auto end = [&] {
-    return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
-  };
-  const auto outer = [&] {
-    return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
-  };
-  const auto inner = [&] {
-    return over_plane(x, m.point(at_b, b, 0.0, r), -m.outward, rho_a, b.rounding);
-  };
-  if (beyond > 0.0) {
-    if (outside <= 0.0 && inside <= 0.0) return end();
-    return between_points(x, m.point(at_b, b, side * H, outside > 0.0 ? R : r), rho_a, b.rounding);
-  }
-  if (outside > 0.0 || (outside >= inside && outside >= beyond)) return outer();
-  if (inside > 0.0 || inside >= beyond) return inner();
-  return end();
-}
-
-template <class T>
-Gap<T> over_cone(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
-  const Meridian<T> m(x, b, at_b);
-  const double R = b.half[0], H = b.half[2], h = value(m.h), q = value(m.q);
-  const double slant = std::hypot(R, 2.0 * H), n_q = 2.0 * H / slant, n_h = R / slant;
-  const double along = ((q - R) * -R + (h + H) * 2.0 * H) / slant;  // from the rim to the apex
-  const double above = (q - R) * n_q + (h + H) * n_h;               // over the flank
-  const double below = -H - h;                                      // under the base
-  const auto flank = [&] {
-    return over_plane(x, m.point(at_b, b, -H, R), n_q * m.outward + n_h * m.axis, rho_a,
-                      b.rounding);
-  };
-  const auto base = [&] {
-    return over_plane(x, m.point(at_b, b, -H, 0.0), -m.axis, rho_a, b.rounding);
-  };
-  if (above <= 0.0 && below <= 0.0) return above > below ? flank() : base();
-  if (above > 0.0 && along >= 0.0) {
-    if (along < slant) return flank();
-    return between_points(x, at_b.point(b.centre + H * b.axes.col(2)), rho_a, b.rounding);
-  }
-  if (q <= R) return base();
-  return between_points(x, m.point(at_b, b, -H, R), rho_a, b.rounding);
-}
-
-/// Root with derivatives, by one Newton step in T from the root found in plain numbers.
-template <class T>
-Gap<T> over_ellipsoid(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
-  const V3<T> w = x - at_b.point(b.centre);
-  V3<T> axis[3];
-  T y[3];
-  Vec3 Y;
-  for (int i = 0; i < 3; ++i) {
-    axis[i] = at_b.vector(b.axes.col(i));
-    y[i] = dot(axis[i], w);
-    Y[i] = value(y[i]);
-  }
-  T t(nearest_on_ellipsoid(b.half, Y));
-  // At the middle of the shortest axis the root is double: a step might leave on the wrong side.
-  const double shortest = b.half.minCoeff();
-  const bool double_root = value(t) < -(1.0 - 1e-6) * shortest * shortest;
-  for (int step = double_root ? 2 : 0; step < (std::is_same_v<T, Fine> ? 2 : 1); ++step) {
-    T f(-1.0);
-    double slope = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const T d = b.half[i] * b.half[i] + t;
-      const T part = b.half[i] * y[i] / d;
-      f = f + part * part;
-      slope -= 2.0 * value(part) * value(part) / value(d);
-    }
-    t = t - (1.0 / slope) * f;
-  }
-  V3<T> normal = constant<T>(Vec3::Zero()), nearest = at_b.point(b.centre);
-  for (int i = 0; i < 3; ++i) {
-    const double square = b.half[i] * b.half[i];
-    const T share = y[i] / (t + square);
-    normal = normal + share * axis[i];
-    nearest = nearest + (square * share) * axis[i];
-  }
-  return over_plane(x, nearest, unit(normal), rho_a, b.rounding);
-}
-
 template <class T>
 Gap<T> edges(const Shape& a, const Shape& b, int i, int j, const Placement<T>& at_a,
              const Placement<T>& at_b) {
@@ -216,12 +94,8 @@ Gap<T> point_over_solid(const V3<T>& x, double rho_a, const Shape& b, const Plac
       const PolyhedronRegion r = nearest_on_polyhedron(b, at_b.to_body(value(x)));
       return over_triangle(x, rho_a, b, r.triangle, r.region, at_b);
     }
-    case Solid::cylinder:
-      return over_cylinder(x, rho_a, b, at_b);
-    case Solid::cone:
-      return over_cone(x, rho_a, b, at_b);
-    case Solid::ellipsoid:
-      return over_ellipsoid(x, rho_a, b, at_b);
+    case Solid::round:
+      return b.round_solid->formulas<T>().over(x, rho_a, b, at_b);
     case Solid::surface:
       if (is_tube(b)) return over_tube(x, rho_a, b, at_b);
       break;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/nearest.hpp>
@@ -289,15 +290,17 @@ V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T
 
 Shape part_of(const Shape& a, int which) {
   Shape part;
-  part.solid = Solid::ellipsoid;
+  part.solid = Solid::round;
+  part.round_solid = &ellipsoid_solid();
   part.rounding = a.rounding;
   part.axes = a.axes;
   part.centre = a.centre;
   part.half = a.half;
-  if (a.solid == Solid::ellipsoid) return part;
-  const double bulge = std::min(kBulge * a.half[0], 0.5 * a.half[2]);
-  part.half[2] = bulge;
-  part.centre += (which == 0 ? bulge - a.half[2] : a.half[2] - bulge) * a.axes.col(2);
+  if (a.flat_ends.empty()) return part;
+  const auto& [height, radius] = a.flat_ends[static_cast<std::size_t>(which)];
+  const double bulge = std::min(kBulge * radius, 0.5 * a.half[2]);
+  part.half = {radius, radius, bulge};
+  part.centre += (height < 0.0 ? height + bulge : height - bulge) * a.axes.col(2);
   return part;
 }
 

@@ -6,64 +6,17 @@
 #include <Eigen/LU>
 
 #include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/round_solids/ellipsoid.hpp>
+#include <polhode/contact/round_solids/round_shape.hpp>
 
 namespace polhode::contact {
 
 namespace {
 
-/// Radius to which the rims of two cylinders or cones are rounded against each other, as a part of
-/// their size: their support functions are then smooth.
-constexpr double kSmooth = 1e-2;
-
-/// Components of the support point of a round solid: ellipsoids by their semi-axes.
-struct Parts {
-  Vec3 body;          ///< The ellipsoid, the disc of a cylinder, the base of a cone.
-  Vec3 needle;        ///< Of a cylinder, added to its disc.
-  double apex = 0.0;  ///< Of a cone: distance from its centre to the apex, and also to the base.
-  double softness = 0.0;  ///< Of a cone, where apex and base are equally far [m].
-
-  explicit Parts(const Shape& s) {
-    const double R = s.half[0] + s.rounding, H = s.half[2] + s.rounding, e = kSmooth;
-    if (s.solid == Solid::cylinder) {
-      // h one + r e = H along the axis and r one + h e = R across it.
-      const double one = std::sqrt(1.0 + e * e), h = one * H - e * R, r = one * R - e * H;
-      body = {r * one, r * one, r * e};
-      needle = {h * e, h * e, h * one};
-    } else if (s.solid == Solid::cone) {
-      body = {R, R, e * R};
-      apex = H - e * R;
-      softness = e * R;
-    } else {
-      body = s.half + Vec3::Constant(s.rounding);
-    }
-  }
-};
-
-/// x = centre + Σ B²n/|Bn|, the support point of a sum of ellipsoids with semi-axes B along `axes`.
+/// Support point of a round solid, from its centre, in the unit direction n.
 template <class T>
-V3<T> of_ellipsoid(const Vec3& B, const V3<T>* axes, const T* n) {
-  const T length =
-      sqrt(B[0] * B[0] * (n[0] * n[0]) + B[1] * B[1] * (n[1] * n[1]) + B[2] * B[2] * (n[2] * n[2]));
-  V3<T> x = constant<T>(Vec3::Zero());
-  for (int i = 0; i < 3; ++i) x = x + (B[i] * B[i] * n[i] / length) * axes[i];
-  return x;
-}
-
-/// Support point of a round solid, from its centre, in the unit direction n; smooth in n.
-///
-/// A cylinder is a needle plus a disc of the same extents, a cone the smooth maximum of its apex
-/// and its base. @eq{contact-round-support}
-template <class T>
-V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& direction) {
-  const T n[3] = {dot(axes[0], direction), dot(axes[1], direction), dot(axes[2], direction)};
-  const Parts parts(s);
-  const V3<T> body = of_ellipsoid<T>(parts.body, axes, n);
-  if (s.solid == Solid::ellipsoid) return body;
-  if (s.solid == Solid::cylinder) return body + of_ellipsoid<T>(parts.needle, axes, n);
-  const V3<T> apex = parts.apex * axes[2], base = body - apex, d = apex - base;
-  const double soft = parts.softness * parts.softness;
-  const T more = dot(d, direction), root = sqrt(more * more + soft);
-  return 0.5 * (apex + base + (more / root) * d + (soft / root) * direction);
+V3<T> support(const Shape& s, const V3<T>* axes, const V3<T>& n) {
+  return s.round_solid->formulas<T>().support(s, axes, n);
 }
 
 /// Support point of a shape in the world.
@@ -83,38 +36,9 @@ Mat3 values(const Axes<T>& axes) {
   return columns;
 }
 
-/// Support point from the centre of its shape, and its derivative by the direction.
-struct Curved {
-  Vec3 x;
-  Mat3 D;
-};
-
-/// Like `of_ellipsoid`, along the axes. The derivative of B²n/|Bn| is (B² − x xᵀ)/|Bn|.
-Curved curved_ellipsoid(const Vec3& B, const Vec3& n) {
-  const Vec3 squares = B.cwiseAbs2();
-  const double length = B.cwiseProduct(n).norm();
-  Curved c;
-  c.x = squares.cwiseProduct(n) / length;
-  c.D = (Mat3(squares.asDiagonal()) - c.x * c.x.transpose()) / length;
-  return c;
-}
-
-/// Like `support`, with plain numbers.
-Curved curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
-  const Parts parts(s);
-  const Vec3 n = axes.transpose() * direction;
-  Curved c = curved_ellipsoid(parts.body, n);
-  if (s.solid == Solid::cylinder) {
-    const Curved needle = curved_ellipsoid(parts.needle, n);
-    c = {c.x + needle.x, c.D + needle.D};
-  } else if (s.solid == Solid::cone) {
-    const Vec3 apex = parts.apex * Vec3::UnitZ(), base = c.x - apex, d = apex - base;
-    const double more = d.dot(n), soft = parts.softness * parts.softness;
-    const double root = std::sqrt(more * more + soft);
-    c.x = 0.5 * (apex + base + (more / root) * d + (soft / root) * n);
-    c.D = 0.5 * ((1.0 - more / root) * c.D + (soft / root) * Mat3::Identity() +
-                 (soft / (root * root * root)) * (d - more * n) * d.transpose());
-  }
+/// Like `support`, in the world, with its derivative by the direction.
+CurvedSupport curved_support(const Shape& s, const Mat3& axes, const Vec3& direction) {
+  const CurvedSupport c = s.round_solid->curved_support(s, axes.transpose() * direction);
   return {axes * c.x, axes * c.D * axes.transpose()};
 }
 
@@ -127,7 +51,8 @@ Shape needle(const Shape& b, int edge) {
   const Vec3 &p = b.corners[b.edges[edge].i], &q = b.corners[b.edges[edge].j];
   Shape s;
   const double length = (q - p).norm(), thickness = std::min(b.rounding, kSlender * length);
-  s.solid = Solid::ellipsoid;
+  s.solid = Solid::round;
+  s.round_solid = &ellipsoid_solid();
   s.centre = 0.5 * (p + q);
   s.half = {0.5 * length, thickness, thickness};
   s.axes.col(0) = (q - p).normalized();
@@ -157,7 +82,7 @@ Separation separate(const Shape& a, const Shape& b, const Mat3& axes_a, const Ma
   Separation s;
   s.n = start.squaredNorm() > 0.0 ? Vec3(start.normalized()) : Vec3::UnitZ();
   const auto offset = [&](const Vec3& n, Mat3* D) {
-    const Curved on_a = curved_support(a, axes_a, -n), on_b = curved_support(b, axes_b, n);
+    const CurvedSupport on_a = curved_support(a, axes_a, -n), on_b = curved_support(b, axes_b, n);
     if (D) *D = on_a.D + on_b.D;
     return Vec3(between + on_a.x - on_b.x);
   };
@@ -223,15 +148,15 @@ Gap<T> smooth_gap(const Shape& a, const Shape& b, const Placement<T>& at_a,
 template <class T>
 V3<T> extreme_point(const Shape& a, int which, const V3<T>& n, const Placement<T>& at_a) {
   const Axes<T> at(a, at_a);
-  if (a.solid == Solid::ellipsoid) {
+  if (a.flat_ends.empty()) {
     const T components[3] = {-dot(at.axis[0], n), -dot(at.axis[1], n), -dot(at.axis[2], n)};
     return at.centre + of_ellipsoid<T>(a.half, at.axis, components);
   }
-  const double height = which == 0 ? -a.half[2] : a.half[2];
+  const auto& [height, radius] = a.flat_ends[static_cast<std::size_t>(which)];
   const T x = -dot(at.axis[0], n), y = -dot(at.axis[1], n);
   const T across = sqrt(x * x + y * y + 1e-24);
-  return at.centre + height * at.axis[2] + (a.half[0] * x / across) * at.axis[0] +
-         (a.half[0] * y / across) * at.axis[1];
+  return at.centre + height * at.axis[2] + (radius * x / across) * at.axis[0] +
+         (radius * y / across) * at.axis[1];
 }
 
 template <class T>

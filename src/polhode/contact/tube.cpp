@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <polhode/contact/gap_parts.hpp>
+#include <polhode/contact/round_solids/meridian.hpp>
 #include <polhode/contact/tube.hpp>
 
 namespace polhode::contact {
@@ -21,6 +23,7 @@ Shape tube(std::string_view where, double outer, double inner, double length,
   s.half = {R, r, 0.5 * length - s.rounding};
   s.centre = place.origin;
   s.axes = place.axes;
+  s.flat_ends = {{-s.half[2], R}, {s.half[2], R}};
   s.detail = 0.5 * std::min(0.5 * (outer - inner), length);
   s.points.clear();
   for (int i = 0; i < static_cast<int>(s.corners.size()); ++i) {
@@ -31,5 +34,34 @@ Shape tube(std::string_view where, double outer, double inner, double length,
   }
   return s;
 }
+
+/// Nearest point of a ring with a rectangular section: two round faces and two flat ones.
+template <class T>
+Gap<T> over_tube(const V3<T>& x, double rho_a, const Shape& b, const Placement<T>& at_b) {
+  const Meridian<T> m(x, b, at_b);
+  const double R = b.half[0], r = b.half[1], H = b.half[2], h = value(m.h), q = value(m.q);
+  const double side = h < 0.0 ? -1.0 : 1.0, beyond = std::abs(h) - H;
+  const double outside = q - R, inside = r - q;
+  const auto end = [&] {
+    return over_plane(x, m.point(at_b, b, side * H, 0.0), side * m.axis, rho_a, b.rounding);
+  };
+  const auto outer = [&] {
+    return over_plane(x, m.point(at_b, b, 0.0, R), m.outward, rho_a, b.rounding);
+  };
+  const auto inner = [&] {
+    return over_plane(x, m.point(at_b, b, 0.0, r), -m.outward, rho_a, b.rounding);
+  };
+  if (beyond > 0.0) {
+    if (outside <= 0.0 && inside <= 0.0) return end();
+    return between_points(x, m.point(at_b, b, side * H, outside > 0.0 ? R : r), rho_a, b.rounding);
+  }
+  if (outside > 0.0 || (outside >= inside && outside >= beyond)) return outer();
+  if (inside > 0.0 || inside >= beyond) return inner();
+  return end();
+}
+
+template Gap<double> over_tube(const V3<double>&, double, const Shape&, const Placement<double>&);
+template Gap<Dual> over_tube(const V3<Dual>&, double, const Shape&, const Placement<Dual>&);
+template Gap<Fine> over_tube(const V3<Fine>&, double, const Shape&, const Placement<Fine>&);
 
 }  // namespace polhode::contact

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <polhode/geometry/shape.hpp>
+#include <polhode/contact/gap.hpp>
 
 namespace polhode::contact {
 
@@ -33,5 +33,10 @@ namespace polhode::contact {
   const auto& c = tube.triangles[triangle];
   return on_inner_side(tube, c[0]) && on_inner_side(tube, c[1]) && on_inner_side(tube, c[2]);
 }
+
+/// Gap of a ball of radius rho around the point x against a tube with round faces.
+template <class T>
+[[nodiscard]] Gap<T> over_tube(const V3<T>& x, double rho, const Shape& b,
+                               const Placement<T>& at_b);
 
 }  // namespace polhode::contact

@@ -2,22 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/hull.hpp>
 #include <polhode/geometry/polyhedron.hpp>
 #include <polhode/geometry/shape.hpp>
+#include <polhode/geometry/shape_checks.hpp>
 #include <polhode/geometry/triangle_tree.hpp>
 
 namespace polhode::contact {
-
-namespace {
-
-constexpr double kRounding = 1e-3;       ///< Default radius of edges, as a part of the size.
-constexpr int kRimPoints = 12;           ///< Number of fixed points on a rim, for standing on it.
-constexpr double kStandingRadius = 0.9;  ///< Radius of those against faces, as a part of the rim's.
 
 void check_positive(std::string_view where, std::string_view what, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -31,12 +25,14 @@ void check_rounding(std::string_view where, double rounding, double most) {
                      "Give a smaller radius of edges and corners, or leave it out");
 }
 
-void finish_bounds(Shape& s, const Vec3& centre, double radius) {
+void set_bounds(Shape& s, const Vec3& centre, double radius) {
   s.bound_centre = centre;
   s.bound_radius = radius;
   s.size = radius;
   s.reach = centre.norm() + radius;
 }
+
+namespace {
 
 void all_corners_meet(Shape& s) {
   for (int i = 0; i < static_cast<int>(s.corners.size()); ++i) s.points.push_back(i);
@@ -49,7 +45,7 @@ void bound_corners(Shape& s) {
   const Vec3 centre = 0.5 * (low + high);
   double radius = 0.0;
   for (const Vec3& x : s.corners) radius = std::max(radius, (x - centre).norm());
-  finish_bounds(s, centre, radius + s.rounding);
+  set_bounds(s, centre, radius + s.rounding);
   s.reach = 0.0;
   for (const Vec3& x : s.corners) s.reach = std::max(s.reach, x.norm() + s.rounding);
 }
@@ -121,26 +117,6 @@ Shape polyhedron(std::string_view where, const TriangleSurface& outside, double 
   return s;
 }
 
-/// Adds the points of a rim, and those that support it when it stands on a face: slightly inside,
-/// so that a tilted rim rolls on its disc.
-void add_rim(Shape& s, double z) {
-  for (const double part : {1.0, kStandingRadius})
-    for (int k = 0; k < kRimPoints; ++k) {
-      const double angle = 2.0 * std::numbers::pi * k / kRimPoints, R = part * s.half[0];
-      (part == 1.0 ? s.points : s.face_points).push_back(static_cast<int>(s.corners.size()));
-      s.corners.push_back(s.centre + s.axes * Vec3(R * std::cos(angle), R * std::sin(angle), z));
-    }
-}
-
-Shape round_body(Solid solid, const Vec3& half, const ShapePlace& place) {
-  Shape s;
-  s.solid = solid;
-  s.centre = place.origin;
-  s.axes = place.axes;
-  s.half = half;
-  return s;
-}
-
 }  // namespace
 
 Shape sphere(std::string_view where, double diameter, const ShapePlace& place) {
@@ -186,55 +162,11 @@ Shape box(std::string_view where, const Vec3& size, const ShapePlace& place, dou
   return s;
 }
 
-Shape cylinder(std::string_view where, double diameter, double length, const ShapePlace& place) {
-  check_positive(where, "diameter", diameter);
-  check_positive(where, "length", length);
-  const double rounding = 0.5 * kRounding * std::min(diameter, length);
-  const double radius = 0.5 * diameter - rounding;
-  Shape s = round_body(Solid::cylinder, {radius, radius, 0.5 * length - rounding}, place);
-  s.rounding = rounding;
-  s.detail = 0.5 * std::min(diameter, length);
-  add_rim(s, -s.half[2]);
-  add_rim(s, s.half[2]);
-  finish_bounds(s, s.centre, std::hypot(radius, s.half[2]) + rounding);
-  return s;
-}
-
-Shape cone(std::string_view where, double diameter, double length, const ShapePlace& place,
-           double rounding) {
-  check_positive(where, "diameter", diameter);
-  check_positive(where, "length", length);
-  const double radius = 0.5 * diameter;
-  check_rounding(where, rounding, 0.25 * std::min(radius, length));
-  if (rounding == 0.0) rounding = 0.5 * kRounding * std::min(radius, length);
-  // Cone whose base and lateral surface are offset inward by the rounding.
-  const double above_base = rounding, below_apex = rounding * std::hypot(radius, length) / radius;
-  const double core_length = length - above_base - below_apex;
-  const double core_radius = radius * core_length / length;
-  Shape s = round_body(Solid::cone, {core_radius, core_radius, 0.5 * core_length}, place);
-  s.centre += 0.5 * (above_base - below_apex) * s.axes.col(2);
-  s.rounding = rounding;
-  s.detail = 0.5 * std::min(radius, length);
-  add_rim(s, -s.half[2]);
-  s.points.push_back(static_cast<int>(s.corners.size()));
-  s.face_points.push_back(s.points.back());
-  s.corners.push_back(s.centre + s.half[2] * s.axes.col(2));
-  finish_bounds(s, s.centre, std::hypot(radius, 0.5 * length) + below_apex);
-  return s;
-}
-
-Shape ellipsoid(std::string_view where, const Vec3& size, const ShapePlace& place) {
-  for (int i = 0; i < 3; ++i) check_positive(where, "size", size[i]);
-  const double rounding = 0.5 * kRounding * size.minCoeff();
-  Shape s = round_body(Solid::ellipsoid, 0.5 * size - Vec3::Constant(rounding), place);
-  s.rounding = rounding;
-  s.detail = 0.5 * size.minCoeff();
-  finish_bounds(s, place.origin, 0.5 * size.maxCoeff());
-  return s;
-}
-
 Shape plane(const ShapePlace& place) {
-  Shape s = round_body(Solid::half_space, Vec3::Zero(), place);
+  Shape s;
+  s.solid = Solid::half_space;
+  s.centre = place.origin;
+  s.axes = place.axes;
   s.bound_radius = s.size = s.detail = s.reach = std::numeric_limits<double>::infinity();
   return s;
 }

@@ -12,9 +12,17 @@
 namespace polhode::contact {
 
 class TriangleTree;
+struct RoundSolid;
 
 /// Kinds of the solid of a shape for a nearby point.
-enum class Solid { ball, segment, polyhedron, cylinder, cone, ellipsoid, half_space, surface };
+enum class Solid {
+  ball,
+  segment,
+  polyhedron,
+  round,  ///< Cylinder, cone, ellipsoid, ...: see RoundSolid.
+  half_space,
+  surface
+};
 
 /// Placement of a shape in its body: origin and axes in body coordinates, from the centre of mass.
 struct ShapePlace {
@@ -40,6 +48,11 @@ struct Shape {
     Vec3 normal = Vec3::UnitZ();
     double offset = 0.0;
   };
+  /// Disc across the third axis.
+  struct FlatEnd {
+    double height = 0.0;  ///< Along the axis, from the centre [m].
+    double radius = 0.0;
+  };
 
   Solid solid = Solid::ball;
   double rounding = 0.0;  ///< ρ [m].
@@ -55,9 +68,14 @@ struct Shape {
   std::vector<Plane> planes;                       ///< Of polyhedron, by triangle.
   std::shared_ptr<const TriangleTree> tree;        ///< Of a surface.
 
-  Vec3 centre = Vec3::Zero();        ///< Of sphere, cylinder, cone (mid height), ellipsoid ...
-  Mat3 axes = Mat3::Identity();      ///< Columns; cylinder and cone along the third.
+  const RoundSolid* round_solid = nullptr;  ///< Formulas of Solid::round.
+  std::vector<FlatEnd> flat_ends;           ///< Of a round solid or tube; an ellipsoid has none.
+  int rim_corners = 0;  ///< Number of corners, the first ones, on rims of a round solid.
+
+  Vec3 centre = Vec3::Zero();        ///< Of sphere, round solid (mid height), tube ...
+  Mat3 axes = Mat3::Identity();      ///< Columns; round solids lie along the third.
   Vec3 half = Vec3::Zero();          ///< Semi-axes; cylinder and cone: (R, R, half height).
+  Vec3 chords = Vec3::Zero();        ///< Round solid: from its centre to its surface, along axes.
   Vec3 bound_centre = Vec3::Zero();  ///< Bounding ball; a plane has none.
   double bound_radius = 0.0;         ///< [m]; infinite for a plane.
   double size = 0.0;                 ///< L: bounding radius, of a surface its median edge [m].
@@ -66,9 +84,7 @@ struct Shape {
 
   [[nodiscard]] bool bounded() const { return solid != Solid::half_space; }
   /// Whether it has a smooth convex surface besides corners and edges.
-  [[nodiscard]] bool round() const {
-    return solid == Solid::cylinder || solid == Solid::cone || solid == Solid::ellipsoid;
-  }
+  [[nodiscard]] bool round() const { return solid == Solid::round; }
 };
 
 /// Lengths are those of the model file: diameters and full lengths; along z of the placement.
@@ -80,14 +96,6 @@ struct Shape {
 /// @param rounding  Radius of edges and corners; 0: 1e-3 of the smallest half size.
 [[nodiscard]] Shape box(std::string_view where, const Vec3& size, const ShapePlace& place = {},
                         double rounding = 0.0);
-[[nodiscard]] Shape cylinder(std::string_view where, double diameter, double length,
-                             const ShapePlace& place = {});
-/// Base at −length/2, apex at +length/2 of z.
-[[nodiscard]] Shape cone(std::string_view where, double diameter, double length,
-                         const ShapePlace& place = {}, double rounding = 0.0);
-/// @param size  Full lengths of the axes.
-[[nodiscard]] Shape ellipsoid(std::string_view where, const Vec3& size,
-                              const ShapePlace& place = {});
 /// Half space below z = 0 of the placement.
 [[nodiscard]] Shape plane(const ShapePlace& place = {});
 /// Convex hull of points, which must span a volume.

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <polhode/contact/gap.hpp>
+
+namespace polhode::contact {
+
+/// Support point of a round solid from its centre, in its own axes, and its derivative by the
+/// direction.
+struct CurvedSupport {
+  Vec3 x;
+  Mat3 D;
+};
+
+/// What a kind of round solid computes with numbers of one type.
+template <class T>
+struct RoundFormulas {
+  /// Gap of a ball of radius rho around the point x against the solid b.
+  Gap<T> (*over)(const V3<T>& x, double rho, const Shape& b, const Placement<T>& at_b);
+  /// Support point, from the centre, in the unit direction n; smooth in n, rounding included.
+  /// @param axes  The three of the solid, in the world.
+  V3<T> (*support)(const Shape& s, const V3<T>* axes, const V3<T>& n);
+};
+
+/// A kind of convex solid with a smooth surface that is not a polyhedron. It is an ellipsoid, or
+/// has `flat_ends`; other code knows a kind by these and by this record alone.
+struct RoundSolid {
+  std::string_view name;  ///< In shape_kinds().
+  /// @param sizes  Those of shape_kinds(), checked.
+  /// @param place  Of the centroid.
+  /// @param rounding  Of edges and corners, if the kind has a choice; 0: its default [m].
+  /// @throws InputError if a size or the rounding is rejected.
+  Shape (*shape)(std::string_view where, std::span<const double> sizes, const ShapePlace& place,
+                 double rounding);
+  /// As RoundFormulas::support(), with n in the solid's own axes.
+  CurvedSupport (*curved_support)(const Shape& s, const Vec3& n);
+  RoundFormulas<double> plain;
+  RoundFormulas<Dual> dual;
+  RoundFormulas<Fine> fine;
+
+  template <class T>
+  [[nodiscard]] const RoundFormulas<T>& formulas() const {
+    if constexpr (std::is_same_v<T, Dual>)
+      return dual;
+    else if constexpr (std::is_same_v<T, Fine>)
+      return fine;
+    else
+      return plain;
+  }
+};
+
+/// Record of a class of static functions with the names of those of RoundSolid and RoundFormulas.
+template <class Kind>
+constexpr RoundSolid record_of(std::string_view name) {
+  return {name,
+          Kind::shape,
+          Kind::curved_support,
+          {Kind::template over<double>, Kind::template support<double>},
+          {Kind::template over<Dual>, Kind::template support<Dual>},
+          {Kind::template over<Fine>, Kind::template support<Fine>}};
+}
+
+/// Every kind of round solid.
+[[nodiscard]] std::span<const RoundSolid* const> round_solids();
+
+/// The kind of that name, or null.
+[[nodiscard]] const RoundSolid* find_round_solid(std::string_view name);
+
+}  // namespace polhode::contact
