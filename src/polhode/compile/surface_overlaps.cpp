@@ -135,15 +135,6 @@ class Finder {
 
 }  // namespace
 
-std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces) {
-  std::vector<LoadedFaces> list;
-  for (const FaceBlock& block : faces.blocks) {
-    list.push_back({block.type, block.nodes});
-    for (int& node : list.back().nodes) node += solid.first_node;
-  }
-  return list;
-}
-
 MeshSurface solid_boundary(const SolidMap& solid) {
   return triangulated(system_faces(solid, select_faces("", solid.plan.mesh, {})));
 }

@@ -17,8 +17,6 @@ struct SideOverlap {
   double free_gap = 0.0;    ///< Gap without force [m].
 };
 
-/// Faces of a solid by the system's node numbers.
-[[nodiscard]] std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces);
 /// Complete boundary of a solid.
 [[nodiscard]] MeshSurface solid_boundary(const SolidMap& solid);
 
