@@ -24,9 +24,9 @@ REGISTRIES = {
 KIND_FILES = {
     "src/polhode/solids/materials": "docs/reference/materials.md",
 }
-# Loads on solids are kinds of the model file only: load("name", ...) in the field table.
-SOLID_LOADS = "src/polhode/io/schema/field_table_kinds.cpp"
-SOLID_LOAD = re.compile(r'\bload\("(\w+)",')
+# Loads on solids say .name = "name" in their own files, and share the page of the loads on bodies.
+SOLID_LOADS = "src/polhode/solids/loads"
+SOLID_LOAD = re.compile(r'\{\.name = "(\w+)"')
 KIND = re.compile(r'^ {6}\{"(\w+)",', re.M)
 OWN_KIND = re.compile(r'\bkKind = "(\w+)"')
 TOP = ("src", "apps", "tests", "docs", "tools", "scripts", "cmake", "benchmarks", "examples", "changes", "python",
@@ -66,7 +66,8 @@ def check_kinds(problems):
     for folder, page in KIND_FILES.items():
         texts = [path.read_text() for path in (ROOT / folder).glob("*.hpp")]
         found[folder] = ({kind for text in texts for kind in OWN_KIND.findall(text)}, page)
-    found["src/polhode/loads/registry.cpp"][0].update(SOLID_LOAD.findall((ROOT / SOLID_LOADS).read_text()))
+    for path in (ROOT / SOLID_LOADS).glob("*.hpp"):
+        found["src/polhode/loads/registry.cpp"][0].update(SOLID_LOAD.findall(path.read_text()))
     for registry, (registered, page) in found.items():
         text = (ROOT / page).read_text() if (ROOT / page).exists() else ""
         rows = re.findall(r"^\|\s*`?(\w+)`?\s*\|", text, re.M)

@@ -80,6 +80,18 @@ TEST(BuildSolids, HandTheInstructionSetToTheKernelsOfElements) {
   EXPECT_EQ(message(model), "");
 }
 
+TEST(BuildSolids, RefuseALoadWithoutItsValue) {
+  Model model = two_bodies_and_a_pad();
+  LoadSpec load;
+  load.name = "press";
+  load.solid = 0;
+  load.type = "pressure";
+  model.loads = {load};
+  EXPECT_EQ(message(model), "loads.press: 'pressure' is missing. Give its value.");
+  model.loads[0].type = "traction";
+  EXPECT_EQ(message(model), "loads.press: 'traction' is missing. Give its value.");
+}
+
 TEST(BuildSolids, WeighsASolidAndFindsItsCentre) {
   SystemMap map;
   const Model model = two_bodies_and_a_pad();

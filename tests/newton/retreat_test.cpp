@@ -5,7 +5,7 @@
 
 #include <polhode/engines/coupled_engine.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/traction.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 #include <polhode/solids/mesh/selection.hpp>

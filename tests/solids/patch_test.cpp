@@ -7,7 +7,7 @@
 
 #include <solids/solid_step.hpp>
 
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/traction.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 
 namespace polhode::test::patch_tests {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/traction.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 #include <polhode/solids/solid_elements.hpp>

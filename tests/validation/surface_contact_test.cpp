@@ -8,6 +8,7 @@
 
 #include <polhode/engines/coupled_engine.hpp>
 #include <polhode/equations/node_motion.hpp>
+#include <polhode/solids/loads/pressure.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 #include <polhode/solids/solid_elements.hpp>

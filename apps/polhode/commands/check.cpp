@@ -157,8 +157,8 @@ nlohmann::ordered_json surfaces_json(const Simulation& simulation) {
   const Model& model = simulation.model();
   for (const ContactMap::Surface& s : simulation.contact_map().surfaces) {
     const TouchingGroup group = touching_group(simulation, s);
-    list.push_back({{is_cable_side(s.own) ? "cable" : "solid", model.side_name(s.own)},
-                    {is_solid_side(s.side) ? "on_solid" : "body", model.side_name(s.side)},
+    list.push_back({{s.own.is_cable() ? "cable" : "solid", model.side_name(s.own)},
+                    {s.side.is_solid() ? "on_solid" : "body", model.side_name(s.side)},
                     {group.edges ? "edges" : "points", group.places},
                     {"gap_tolerance", group.law.normal.tolerance},
                     {"stiffness_per_area", group.law.normal.stiffness},

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -8,10 +7,10 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/shapes.hpp>
-#include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
 #include <polhode/solids/elements/registry.hpp>
+#include <polhode/solids/loads/registry.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/mesh/generators.hpp>
 
@@ -57,11 +56,13 @@ std::vector<KindLine> kind_lines(const std::string& kinds) {
       for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
       lines.push_back(std::move(line));
     }
-  if (kinds == "loads")  // those on solids are kinds of the model file only
-    for (const KindTable& kind : load_tables()) {
-      const auto same = [&](const KindLine& line) { return line.name == kind.name; };
-      if (std::any_of(lines.begin(), lines.end(), same)) continue;
-      lines.push_back({kind.name, kind.table.meaning, "", {}});
+  if (kinds == "loads")
+    for (const SolidLoadKind& kind : solid_load_kinds()) {
+      KindLine line{kind.name, kind.meaning, "", {}};
+      for (const auto& function : {kind.value, kind.vector})
+        if (function) line.takes.push_back(function->name);
+      for (const Parameter& p : kind.parameters) line.takes.push_back(with_unit(p));
+      lines.push_back(std::move(line));
     }
   if (kinds == "materials")
     for (const MaterialKind& kind : material_kinds()) {

@@ -50,7 +50,7 @@ class ContactsBuilder {
 
   std::shared_ptr<contact::ContactSet> build() {
     for (const ContactPairSpec& pair : spec_.pairs)
-      if (of_bodies(pair)) named_.insert({pair.a, pair.b});
+      if (of_bodies(pair)) named_.insert({pair.a.index, pair.b.index});
     add_shapes();
     add_laws();
     exclude();
@@ -68,7 +68,7 @@ class ContactsBuilder {
 
  private:
   [[nodiscard]] static bool of_bodies(const ContactPairSpec& pair) {
-    return !pair.of_materials && !is_surface_side(pair.a) && !is_surface_side(pair.b);
+    return !pair.of_materials && pair.a.is_body() && pair.b.is_body();
   }
   [[nodiscard]] bool has_surfaces() const {
     return !model_.solids.empty() || has_touching_cables(model_);
@@ -139,7 +139,7 @@ class ContactsBuilder {
       if (of_bodies(pair)) excluded_.erase(std::minmax(pair.a, pair.b));
     for (const auto& [a, b] : spec_.excluded) excluded_.insert(std::minmax(a, b));
     for (const auto& [a, b] : excluded_)
-      if (!is_surface_side(a) && !is_surface_side(b)) set_->exclude(a, b);
+      if (a.is_body() && b.is_body()) set_->exclude(a.index, b.index);
   }
 
   [[nodiscard]] bool may_meet(int a, int b) const {
@@ -158,11 +158,10 @@ class ContactsBuilder {
       if (kept.insert(std::minmax(a, b)).second) map_.pairs.push_back({a, b, sensor});
     };
     for (const ContactPairSpec& pair : spec_.pairs)
-      if (of_bodies(pair)) keep(pair.a, pair.b, pair.sensor ? pair.name : "");
+      if (of_bodies(pair)) keep(pair.a.index, pair.b.index, pair.sensor ? pair.name : "");
     for (const Reported& asked : reported(model_))
-      if (asked.of->kind == "contact" && !is_surface_side(asked.of->pair[0]) &&
-          !is_surface_side(asked.of->pair[1]))
-        keep(asked.of->pair[0], asked.of->pair[1], "");
+      if (asked.of->kind == "contact" && asked.of->pair[0].is_body() && asked.of->pair[1].is_body())
+        keep(asked.of->pair[0].index, asked.of->pair[1].index, "");
     if (!spec_.record.value_or(true)) return;
     std::vector<std::pair<int, int>> found;
     for (int a = 0; a < static_cast<int>(shapes_of_.size()); ++a)
@@ -201,7 +200,8 @@ class ContactsBuilder {
   const std::vector<int>& bodies_;
   ContactMap& map_;
   std::shared_ptr<contact::ContactSet> set_;
-  std::set<std::pair<int, int>> named_, excluded_;
+  std::set<std::pair<int, int>> named_;  ///< By Model::bodies.
+  std::set<std::pair<Side, Side>> excluded_;
   std::map<ContactLawKey, int> classes_;
   std::vector<std::vector<int>> shapes_of_;
 };

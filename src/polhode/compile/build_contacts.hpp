@@ -22,7 +22,7 @@ struct ContactMap {
   /// A recorded pair of sides: of sensors, of pairs with their own law, of probes, and, in small
   /// models, all pairs that may be in contact.
   struct Pair {
-    int a = 0, b = 0;    ///< Sides, see contact_spec.hpp.
+    Side a, b;
     std::string sensor;  ///< Name of the sensor, or empty.
   };
   std::vector<Pair> pairs;
@@ -31,8 +31,8 @@ struct ContactMap {
   /// Faces of one kind of a solid against one shape of a body; or points of its surface against
   /// that of a solid, with another entry for the opposite direction; or the centre line of a cable.
   struct Surface {
-    int own = 0;            ///< Side with the points, of a solid or of a cable.
-    int side = 0;           ///< Opposite side, see contact_spec.hpp.
+    Side own;               ///< With the points, of a solid or of a cable.
+    Side side;              ///< Opposite one.
     std::size_t shape = 0;  ///< Of a body.
     int group = 0;          ///< Of elements, in System::nodes().
     const SurfaceContactInterface* touching = nullptr;  ///< That group; owned by the System.

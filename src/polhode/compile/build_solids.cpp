@@ -5,7 +5,7 @@
 #include <polhode/compile/solid_parts.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/registry.hpp>
 #include <polhode/solids/materials/registry.hpp>
 #include <polhode/solids/solid_elements.hpp>
 
@@ -153,46 +153,53 @@ SolidMap add_solid(System& system, const Model& model, int solid, const std::vec
   return SolidBuilder(system, model, solid, body).build();
 }
 
+std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces) {
+  std::vector<LoadedFaces> list;
+  for (const FaceBlock& block : faces.blocks) {
+    list.push_back({block.type, block.nodes});
+    for (int& node : list.back().nodes) node += solid.first_node;
+  }
+  return list;
+}
+
 std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid) {
   const std::string where = format("loads.{}", load.name);
-  const Mesh& mesh = solid.plan.mesh;
-  const std::vector<Vec3> X = positions(solid.plan, solid.first_node);
-  std::vector<int> groups;
-  const auto add = [&](std::unique_ptr<ElementGroup> group) {
-    groups.push_back(system.add_elements(std::move(group)));
+  const SolidLoadKind& kind = solid_load_kind(where + ".type", load.type);
+  const auto require = [&](const std::optional<TimeParameter>& key, bool given) {
+    if (key && !given)
+      throw InputError(where, format("'{}' is missing", key->name), "Give its value");
   };
-  if (load.type == "nodal_force") {
-    std::vector<int> nodes = select_nodes(where + ".nodes", mesh, load.selection);
-    for (int& node : nodes) node += solid.first_node;
-    add(make_nodal_force(where, std::move(nodes), X, load.vector.value()));
-    return groups;
+  require(kind.value, load.value != nullptr);
+  require(kind.vector, load.vector.has_value());
+  const Mesh& mesh = solid.plan.mesh;
+  SolidLoadDescription d{.name = where,
+                         .value = load.value,
+                         .vector = load.vector.value_or(TimeVector{}),
+                         .values = load.parameters,
+                         .X = positions(solid.plan, solid.first_node),
+                         .density = solid.plan.density};
+  for (const Parameter& p : kind.parameters)
+    if (p.standard) d.values.try_emplace(p.name, *p.standard);
+  if (load.follower)
+    d.follower = load.keeps == "work" ? FollowerRule::kWork : FollowerRule::kMomentum;
+  switch (kind.place) {
+    case SolidLoadPlace::faces:
+      d.faces = system_faces(solid, select_faces(where + ".surface", mesh, load.selection));
+      break;
+    case SolidLoadPlace::nodes:
+      d.nodes = select_nodes(where + ".nodes", mesh, load.selection);
+      for (int& node : d.nodes) node += solid.first_node;
+      break;
+    case SolidLoadPlace::elements:
+      for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+        d.elements.push_back({solid.plan.elements[b], mesh.blocks[b].nodes});
+        for (int& node : d.elements.back().nodes) node += solid.first_node;
+      }
+      break;
   }
-  if (load.type == "body_force") {
-    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-      std::vector<int> nodes = mesh.blocks[b].nodes;
-      for (int& node : nodes) node += solid.first_node;
-      add(make_body_force(where, solid.plan.elements[b], nodes, X, load.vector.value(),
-                          solid.plan.density));
-    }
-    return groups;
-  }
-  std::vector<LoadedFaces> faces;
-  for (const FaceBlock& block : select_faces(where + ".surface", mesh, load.selection).blocks) {
-    faces.push_back({block.type, block.nodes});
-    for (int& node : faces.back().nodes) node += solid.first_node;
-  }
-  if (load.type == "traction") {
-    add(make_traction(where, faces, X, load.vector.value()));
-  } else if (load.type != "pressure") {
-    throw InputError(where + ".type", format("'{}' does not act on solids", load.type),
-                     "Use pressure, traction, body_force or nodal_force");
-  } else if (load.follower) {
-    const FollowerRule rule = load.keeps == "work" ? FollowerRule::kWork : FollowerRule::kMomentum;
-    for (auto& group : make_follower_pressure(where, faces, load.value, rule))
-      add(std::move(group));
-  } else {
-    add(make_dead_pressure(where, faces, X, load.value));
-  }
+  std::vector<int> groups;
+  for (std::unique_ptr<ElementGroup>& group : kind.make(d))
+    groups.push_back(system.add_elements(std::move(group)));
   return groups;
 }
 

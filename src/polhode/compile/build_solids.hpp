@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <polhode/compile/plan_solid.hpp>
+#include <polhode/solids/loads/loaded_faces.hpp>
 #include <polhode/system/system.hpp>
 
 namespace polhode {
@@ -29,9 +30,13 @@ struct SolidMap {
 [[nodiscard]] SolidMap add_solid(System& system, const Model& model, int solid,
                                  const std::vector<int>& body);
 
+/// Faces of a solid by the System's node numbers.
+[[nodiscard]] std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces);
+
 /// Adds a load on a solid, a LoadSpec whose `solid` is set.
 /// @returns the groups of elements that apply it, one for each shape of face.
-/// @throws InputError if its selection is empty.
+/// @throws InputError if its type does not act on solids, its value is missing, or its selection is
+/// empty.
 std::vector<int> add_solid_load(System& system, const LoadSpec& load, const SolidMap& solid);
 
 }  // namespace polhode

@@ -71,13 +71,13 @@ class SurfacesBuilder {
   void build() {
     const std::vector<SurfacePair> pairs = plan_surface_contacts(model_);
     for (const SurfacePair& pair : pairs) {
-      if (is_cable_side(pair.own) && is_cable_side(pair.side))
+      if (pair.own.is_cable() && pair.side.is_cable())
         add_cables(pair);
-      else if (is_cable_side(pair.own) && is_solid_side(pair.side))
+      else if (pair.own.is_cable() && pair.side.is_solid())
         add_cable_on_solid(pair);
-      else if (is_cable_side(pair.own))
+      else if (pair.own.is_cable())
         add_cable(pair);
-      else if (is_solid_side(pair.side))
+      else if (pair.side.is_solid())
         add_solids(pair);
       else
         add(pair);
@@ -89,7 +89,7 @@ class SurfacesBuilder {
   /// Adds elements to the system, and their owners to the map.
   template <class Elements>
   void add_elements(const SurfacePair& pair, std::unique_ptr<Elements> elements) {
-    ContactMap::Surface surface{pair.own, pair.side, is_surface_side(pair.side) ? 0 : pair.shape};
+    ContactMap::Surface surface{pair.own, pair.side, !pair.side.is_body() ? 0 : pair.shape};
     surface.touching = elements.get();
     if constexpr (std::same_as<Elements, SolidContact>) surface.on_mesh = elements.get();
     surface.group = system_.add_elements(std::move(elements));
@@ -97,11 +97,11 @@ class SurfacesBuilder {
   }
 
   void add(const SurfacePair& pair) {
-    const int own = solid_of_side(pair.own);
+    const int own = pair.own.index;
     const SolidMap& solid = solids_[static_cast<std::size_t>(own)];
-    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side.index)];
     const ShapeSpec& shape = body.shapes[pair.shape];
-    const int carrier = bodies_[static_cast<std::size_t>(pair.side)];
+    const int carrier = bodies_[static_cast<std::size_t>(pair.side.index)];
     const std::vector<LoadedFaces> faces = faces_of(solid);
     // Nodes bonded to a body are not in contact with its shapes.
     std::vector<int> left_out;
@@ -129,18 +129,18 @@ class SurfacesBuilder {
 
   /// Name of a pair: "rope on post".
   [[nodiscard]] std::string name_of(const SurfacePair& pair) const {
-    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side.index)];
     return format("{} on {}", model_.side_name(pair.own),
                   body.shapes.size() > 1 ? format("{}.{}", body.name, pair.shape) : body.name);
   }
 
-  const CableLine& line_of(int side) {
+  const CableLine& line_of(const Side& side) {
     auto [at, fresh] = lines_.try_emplace(side);
     if (fresh) at->second = add_cable_line(system_, model_, cable_of(side), bodies_);
     return at->second;
   }
-  [[nodiscard]] const CableLineSpec& cable_of(int side) const {
-    return model_.cables[static_cast<std::size_t>(cable_of_side(side))];
+  [[nodiscard]] const CableLineSpec& cable_of(const Side& side) const {
+    return model_.cables[static_cast<std::size_t>(side.index)];
   }
 
   /// Adds two cables, or one with itself.
@@ -166,8 +166,8 @@ class SurfacesBuilder {
 
   /// Adds the centre line of a cable, which stays at its radius from the other surface.
   void add_cable(const SurfacePair& pair) {
-    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
-    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side)];
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(pair.own.index)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(pair.side.index)];
     const ShapeSpec& shape = body.shapes[pair.shape];
     const CableLine& line = line_of(pair.own);
     const CableSizes sizes = cable_sizes(shape, line.radius);
@@ -177,13 +177,14 @@ class SurfacesBuilder {
     const RigidSurface surface = rigid_surface(where, shape, law.normal.tolerance, line.radius);
     CablePoints points = cable_points(line, spacing(shape, line.radius));
     points.points.through = sizes.through;
-    const SurfacePlace place = place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side)]);
+    const SurfacePlace place =
+        place_of(body, shape, bodies_[static_cast<std::size_t>(pair.side.index)]);
     const std::vector<Vec3> X = positions();
     const std::vector<double> gaps =
         SurfaceContact(where, points.points, X, surface, place, law).gaps(X);
     leave_out_attachments(
         points, cable, line,
-        [&](const AttachmentSpec& a) { return is_fastened_to(model_, a, pair.side); },
+        [&](const AttachmentSpec& a) { return is_fastened_to(model_, a, pair.side.index); },
         [&](int point) {
           return gaps[static_cast<std::size_t>(point)] < -0.5 * law.normal.tolerance;
         });
@@ -194,8 +195,8 @@ class SurfacesBuilder {
 
   /// Adds the centre line of a cable against the triangles of a solid.
   void add_cable_on_solid(const SurfacePair& pair) {
-    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(cable_of_side(pair.own))];
-    const int s = solid_of_side(pair.side);
+    const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(pair.own.index)];
+    const int s = pair.side.index;
     const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
     const CableLine& line = line_of(pair.own);
     const std::vector<Vec3> X = positions();
@@ -264,7 +265,7 @@ class SurfacesBuilder {
 
   /// Adds points of each of both surfaces against the triangles of the other, at half their area.
   void add_solids(const SurfacePair& pair) {
-    const int own = solid_of_side(pair.own), partner = solid_of_side(pair.side);
+    const int own = pair.own.index, partner = pair.side.index;
     const bool self = partner == own;
     const std::vector<Vec3> X = positions();
     const int solids[2] = {own, partner};
@@ -298,8 +299,8 @@ class SurfacesBuilder {
     };
     for (int k = 0; k < (self ? 1 : 2); ++k) {
       SurfacePair sides = pair;
-      sides.own = side_of_solid(solids[k]);
-      sides.side = side_of_solid(solids[1 - k]);
+      sides.own = Side::of_solid(solids[k]);
+      sides.side = Side::of_solid(solids[1 - k]);
       add_elements(sides, contact(k));
     }
     add_edges(pair, surfaces, X, law, start);
@@ -416,9 +417,9 @@ class SurfacesBuilder {
 
   /// Records pairs: named ones first, then all others unless there are too many.
   void keep(const std::vector<SurfacePair>& pairs) {
-    std::set<std::pair<int, int>> kept;
-    const auto keep = [&](int a, int b) {
-      if ((is_surface_side(a) || is_surface_side(b)) && kept.insert(std::minmax(a, b)).second)
+    std::set<std::pair<Side, Side>> kept;
+    const auto keep = [&](const Side& a, const Side& b) {
+      if ((!a.is_body() || !b.is_body()) && kept.insert(std::minmax(a, b)).second)
         map_.pairs.push_back({a, b, ""});
     };
     for (const ContactPairSpec& pair : model_.contacts.pairs)
@@ -434,7 +435,7 @@ class SurfacesBuilder {
   const std::vector<int>& bodies_;
   const std::vector<SolidMap>& solids_;
   ContactMap& map_;
-  std::map<int, CableLine> lines_;  ///< By side.
+  std::map<Side, CableLine> lines_;  ///< By side.
 };
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace polhode {
 
 /// A surface of a solid or a cable and a shape of a body, or two surfaces, that may be in contact.
 struct SurfacePair {
-  int own = 0;            ///< Side of a solid or of a cable, see contact_spec.hpp.
-  int side = 0;           ///< Opposite side: a body, another one of these or itself.
+  Side own;               ///< A solid or a cable.
+  Side side;              ///< Opposite side: a body, another one of these or itself.
   std::size_t shape = 0;  ///< Of a body.
   ContactLawSpec law;
 };

@@ -49,6 +49,12 @@ void for_sides(const Model& model, Visit&& visit) {
   for (const CableLineSpec& cable : model.cables) visit(contact_side(cable));
 }
 
+/// Whether a pair of the model is that of x and y, in either order; −1 and the ground are in none.
+template <class T>
+bool is_pair_of(const T& x, const T& y, const T& a, const T& b) {
+  return x != T(-1) && y != T(-1) && std::minmax(x, y) == std::minmax(a, b);
+}
+
 /// Side of an object with a single shape.
 ContactSide side_of(const ContactSideSpec& spec, const std::string& path) {
   return {.touches = spec.touches.value_or(true),
@@ -157,9 +163,10 @@ StatedLaw law_between(const ContactsSpec& contacts, const ContactLawKey& x,
   for (const bool of_materials : {false, true})
     for (const ContactPairSpec& pair : contacts.pairs) {
       if (pair.of_materials != of_materials) continue;
-      const int a = of_materials ? x.material : x.side, b = of_materials ? y.material : y.side;
-      if (a == -1 || b == -1 || std::minmax(a, b) != std::minmax(pair.a, pair.b)) continue;
-      return {pair.law, &pair};
+      const bool found =
+          of_materials ? is_pair_of(x.material, y.material, pair.materials[0], pair.materials[1])
+                       : is_pair_of(x.side, y.side, pair.a, pair.b);
+      if (found) return {pair.law, &pair};
     }
   ContactLawSpec law = contacts.standard;
   const ContactMaterialSpec both = combined_surface(contacts, x.material, y.material);

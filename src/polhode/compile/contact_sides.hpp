@@ -55,8 +55,8 @@ class ContactGroups {
 
 /// Key of the law of one side of a contact.
 struct ContactLawKey {
-  int material = -1;   ///< Index into ContactsSpec::materials, or −1.
-  int side = kGround;  ///< See contact_spec.hpp; kGround: no pair names it.
+  int material = -1;    ///< Index into ContactsSpec::materials, or −1.
+  Side side = kGround;  ///< The ground: no pair names it.
   auto operator<=>(const ContactLawKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 

@@ -36,9 +36,9 @@ class SurfacePlanner {
 
   std::vector<SurfacePair> plan() {
     for (std::size_t s = 0; s < model_.solids.size(); ++s)
-      add_bodies(side_of_solid(static_cast<int>(s)), contact_side(model_.solids[s]));
+      add_bodies(Side::of_solid(static_cast<int>(s)), contact_side(model_.solids[s]));
     for (std::size_t c = 0; c < model_.cables.size(); ++c)
-      add_bodies(side_of_cable(static_cast<int>(c)), contact_side(model_.cables[c]));
+      add_bodies(Side::of_cable(static_cast<int>(c)), contact_side(model_.cables[c]));
     for (std::size_t s = 0; s < model_.solids.size(); ++s)
       for (std::size_t t = s; t < model_.solids.size(); ++t)
         add_solids(static_cast<int>(s), static_cast<int>(t));
@@ -60,16 +60,16 @@ class SurfacePlanner {
   /// Whether contact between two sides is neither excluded nor prevented by bonds; named pairs are
   /// always included. A cable may be in contact with the bodies it is attached to, except near the
   /// attachments.
-  [[nodiscard]] bool sides_meet(int own, int body) const {
-    const std::pair<int, int> key = std::minmax(own, body);
+  [[nodiscard]] bool sides_meet(const Side& own, int body) const {
+    const std::pair<Side, Side> key = std::minmax(own, Side(body));
     if (excluded_.contains(key)) return false;
-    if (is_cable_side(own) || named_.contains(key) || model_.contacts.joint_neighbours) return true;
-    const auto& bonds = model_.solids[static_cast<std::size_t>(solid_of_side(own))].bonded;
+    if (own.is_cable() || named_.contains(key) || model_.contacts.joint_neighbours) return true;
+    const auto& bonds = model_.solids[static_cast<std::size_t>(own.index)].bonded;
     return std::none_of(bonds.begin(), bonds.end(),
                         [&](const BondSpec& bond) { return bond.body == body; });
   }
 
-  void add_bodies(int own, const ContactSide& side) {
+  void add_bodies(const Side& own, const ContactSide& side) {
     if (!side.touches) return;
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
       if (!sides_meet(own, static_cast<int>(b))) continue;
@@ -81,7 +81,7 @@ class SurfacePlanner {
     }
   }
 
-  void add(int own, const ContactSide& of_own, int body, std::size_t shape,
+  void add(const Side& own, const ContactSide& of_own, int body, std::size_t shape,
            const ContactSide& of_shape) {
     const BodySpec& spec = model_.bodies[static_cast<std::size_t>(body)];
     const std::string& name = model_.side_name(own);
@@ -94,7 +94,7 @@ class SurfacePlanner {
     if (const std::string key = strange_key(stated.law); !key.empty())
       fault(where,
             format("'{}' and '{}' touch by a law with {}, which {} do not support", name, spec.name,
-                   key, is_cable_side(own) ? "cables" : "surfaces of solids"),
+                   key, own.is_cable() ? "cables" : "surfaces of solids"),
             "Give the pair its own law in contacts.pairs, without this key, with zero, or with the "
             "value of friction");
     if (model_.analysis.type != "dynamics" && stated.law.friction > 0.0)
@@ -107,15 +107,14 @@ class SurfacePlanner {
 
   /// A band that is wide compared with the triangles of a shape or the radius of a cable would
   /// extend through them.
-  void check_tolerance(const std::string& where, int own, const BodySpec& body, std::size_t k,
-                       const ContactLawSpec& law) {
+  void check_tolerance(const std::string& where, const Side& own, const BodySpec& body,
+                       std::size_t k, const ContactLawSpec& law) {
     const ShapeSpec& shape = body.shapes[k];
     if (!(law.gap_tolerance > 0.0) || law.potential == "linear") return;
-    const bool cable = is_cable_side(own);
+    const bool cable = own.is_cable();
     const double most =
-        cable ? widest_tolerance(
-                    shape,
-                    model_.cables[static_cast<std::size_t>(cable_of_side(own))].contact->radius)
+        cable ? widest_tolerance(shape,
+                                 model_.cables[static_cast<std::size_t>(own.index)].contact->radius)
               : widest_tolerance(shape);
     if (law.gap_tolerance > most)
       fault(where,
@@ -131,7 +130,7 @@ class SurfacePlanner {
     const SolidSpec &one = model_.solids[static_cast<std::size_t>(s)],
                     &two = model_.solids[static_cast<std::size_t>(t)];
     if (s == t && !one.self_contact) return;
-    add_surfaces(side_of_solid(s), contact_side(one), side_of_solid(t), contact_side(two),
+    add_surfaces(Side::of_solid(s), contact_side(one), Side::of_solid(t), contact_side(two),
                  "surfaces of solids", "meshes");
   }
 
@@ -140,15 +139,15 @@ class SurfacePlanner {
     const CableLineSpec &one = model_.cables[static_cast<std::size_t>(c)],
                         &two = model_.cables[static_cast<std::size_t>(d)];
     if (c == d && !touches_itself(one)) return;
-    add_surfaces(side_of_cable(c), contact_side(one), side_of_cable(d), contact_side(two), "cables",
-                 "cables");
+    add_surfaces(Side::of_cable(c), contact_side(one), Side::of_cable(d), contact_side(two),
+                 "cables", "cables");
   }
 
   void add_cable_on_solid(int c, int s) {
     const CableLineSpec& cable = model_.cables[static_cast<std::size_t>(c)];
     const SolidSpec& solid = model_.solids[static_cast<std::size_t>(s)];
     const std::optional<StatedLaw> stated =
-        add_surfaces(side_of_cable(c), contact_side(cable), side_of_solid(s), contact_side(solid),
+        add_surfaces(Side::of_cable(c), contact_side(cable), Side::of_solid(s), contact_side(solid),
                      "cables", "cables");
     const double most = widest_tolerance(cable.contact ? cable.contact->radius : 0.0);
     if (stated && stated->law.gap_tolerance > most)
@@ -161,7 +160,7 @@ class SurfacePlanner {
 
   /// Adds two surfaces without a shape, or one with itself. @returns their law, unless contact is
   /// excluded.
-  std::optional<StatedLaw> add_surfaces(int own, const ContactSide& a, int side,
+  std::optional<StatedLaw> add_surfaces(const Side& own, const ContactSide& a, const Side& side,
                                         const ContactSide& b, const char* they,
                                         const char* passing) {
     if (!a.touches || !b.touches || (own != side && !groups_meet(a, b))) return {};
@@ -200,11 +199,11 @@ class SurfacePlanner {
   /// Checks pairs of a solid or a cable with itself that are named without enabled self-contact.
   void check_named() {
     for (const ContactPairSpec& pair : model_.contacts.pairs) {
-      if (pair.of_materials || pair.a != pair.b || !is_surface_side(pair.a)) continue;
-      const bool cable = is_cable_side(pair.a);
-      const bool self =
-          cable ? touches_itself(model_.cables[static_cast<std::size_t>(cable_of_side(pair.a))])
-                : model_.solids[static_cast<std::size_t>(solid_of_side(pair.a))].self_contact;
+      if (pair.of_materials || pair.a != pair.b || pair.a.is_body()) continue;
+      const bool cable = pair.a.is_cable();
+      const bool self = cable
+                            ? touches_itself(model_.cables[static_cast<std::size_t>(pair.a.index)])
+                            : model_.solids[static_cast<std::size_t>(pair.a.index)].self_contact;
       const std::string& name = model_.side_name(pair.a);
       if (!self)
         fault(format("contacts.pairs.{}", pair.name), format("'{}' does not touch itself", name),
@@ -221,7 +220,7 @@ class SurfacePlanner {
   const Model& model_;
   std::vector<InputError>* faults_;
   ContactGroups groups_;
-  std::set<std::pair<int, int>> excluded_, named_;
+  std::set<std::pair<Side, Side>> excluded_, named_;
   std::set<std::string> told_;
   std::vector<SurfacePair> list_;
 };

@@ -57,7 +57,7 @@ class Finder {
       free_gap_ = kFree * surface.touching->law().normal.tolerance;
       if (const auto found = surface.touching->overlap(instant))
         note(surface.own, surface.side, *found);
-      if (is_solid_side(surface.own) && !is_surface_side(surface.side))
+      if (surface.own.is_solid() && surface.side.is_body())
         look_for_body(surface);
       else if (surface.on_mesh)
         look_for_points(surface, *surface.on_mesh);
@@ -69,17 +69,17 @@ class Finder {
   /// Finds overlaps of a shape of a body with a solid, which may have no point in the shape. Parts
   /// bonded to the body are ignored.
   void look_for_body(const ContactMap::Surface& surface) {
-    const auto& bonds = model_.solids[static_cast<std::size_t>(solid_of_side(surface.own))].bonded;
+    const auto& bonds = model_.solids[static_cast<std::size_t>(surface.own.index)].bonded;
     if (std::any_of(bonds.begin(), bonds.end(),
-                    [&](const BondSpec& bond) { return bond.body == surface.side; }))
+                    [&](const BondSpec& bond) { return surface.side == bond.body; }))
       return;
     if (!seen_.emplace(surface.own, surface.side, surface.shape).second) return;
-    const BodySpec& body = model_.bodies[static_cast<std::size_t>(surface.side)];
+    const BodySpec& body = model_.bodies[static_cast<std::size_t>(surface.side.index)];
     const ShapeSpec& spec = body.shapes[surface.shape];
     if (spec.type == "plane") return;  // a half space
     const contact::Shape shape =
         contact_shape(shape_path(body, surface.shape), shape_place(body, spec), spec);
-    const int carrier = map_.body[static_cast<std::size_t>(surface.side)];
+    const int carrier = map_.body[static_cast<std::size_t>(surface.side.index)];
     const BodyStep at =
         carrier == kGround ? BodyStep::ground(1.0) : system_.instant(state_, carrier);
     const SolidInside& solid = inside(surface.own);
@@ -101,15 +101,15 @@ class Finder {
         note(surface.own, surface.side, *found);
   }
 
-  const SolidInside& inside(int side) {
-    const int solid = solid_of_side(side);
+  const SolidInside& inside(const Side& side) {
+    const int solid = side.index;
     const auto known = inside_.find(solid);
     if (known != inside_.end()) return known->second;
     const MeshSurface boundary = solid_boundary(map_.solids[static_cast<std::size_t>(solid)]);
     return inside_.try_emplace(solid, boundary, state_.node_x.data()).first->second;
   }
 
-  void note(int own, int side, const SurfaceOverlap& found) {
+  void note(const Side& own, const Side& side, const SurfaceOverlap& found) {
     const auto known = std::find_if(list_.begin(), list_.end(), [&](const SideOverlap& o) {
       return std::minmax(o.own, o.side) == std::minmax(own, side);
     });
@@ -127,20 +127,11 @@ class Finder {
   StepContext still_;
   double free_gap_ = 0.0;  ///< Of the present surface [m].
   std::vector<SideOverlap> list_;
-  std::set<std::tuple<int, int, std::size_t>> seen_;
+  std::set<std::tuple<Side, Side, std::size_t>> seen_;
   std::map<int, SolidInside> inside_;  ///< By Model::solids.
 };
 
 }  // namespace
-
-std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces) {
-  std::vector<LoadedFaces> list;
-  for (const FaceBlock& block : faces.blocks) {
-    list.push_back({block.type, block.nodes});
-    for (int& node : list.back().nodes) node += solid.first_node;
-  }
-  return list;
-}
 
 MeshSurface solid_boundary(const SolidMap& solid) {
   return triangulated(system_faces(solid, select_faces("", solid.plan.mesh, {})));

@@ -11,14 +11,12 @@ namespace polhode {
 
 /// Two overlapping sides, one of them a solid or a cable.
 struct SideOverlap {
-  int own = 0, side = 0;    ///< See contact_spec.hpp.
+  Side own, side;
   double depth = 0.0;       ///< [m]; 0: in contact.
   Vec3 out = Vec3::Zero();  ///< Unit, world: direction of exit of `own`; zero if not known.
   double free_gap = 0.0;    ///< Gap without force [m].
 };
 
-/// Faces of a solid by the system's node numbers.
-[[nodiscard]] std::vector<LoadedFaces> system_faces(const SolidMap& solid, const Surface& faces);
 /// Complete boundary of a solid.
 [[nodiscard]] MeshSurface solid_boundary(const SolidMap& solid);
 

@@ -16,7 +16,7 @@ struct BodyMotion {
   Vec3 h_dot = Vec3::Zero();
 
   [[nodiscard]] Mat3 Lambda() const { return q.toRotationMatrix(); }
-  [[nodiscard]] Vec3 omega() const { return q * W; }  ///< World angular velocity [rad/s].
+  [[nodiscard]] Vec3 omega() const;  ///< World angular velocity [rad/s].
 };
 
 }  // namespace polhode

@@ -77,6 +77,8 @@ void check_mass_properties(std::string_view where, double mass, const Mat3& iner
         "No distribution of mass has these; check the values and their units" + sign_note);
 }
 
+Mat3 inertia_at(const Mat3& Lambda, const Mat3& J_r) { return Lambda * J_r * Lambda.transpose(); }
+
 Mat3 inertia_about(const MassProperties& properties, const Vec3& point) {
   return properties.inertia + point_inertia(properties.mass, point - properties.com);
 }

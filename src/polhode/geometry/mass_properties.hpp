@@ -36,9 +36,7 @@ struct PrincipalAxes {
 void check_mass_properties(std::string_view where, double mass, const Mat3& inertia);
 
 /// Inertia at the orientation Lambda: J = Λ·J_r·Λᵀ [kg m²]. @eq{eq:rbm-moi-rotation}
-[[nodiscard]] inline Mat3 inertia_at(const Mat3& Lambda, const Mat3& J_r) {
-  return Lambda * J_r * Lambda.transpose();
-}
+[[nodiscard]] Mat3 inertia_at(const Mat3& Lambda, const Mat3& J_r);
 
 /// Inertia about another point, axes kept (parallel-axes theorem) [kg m²].
 /// @param point  In the coordinates of properties.com [m].

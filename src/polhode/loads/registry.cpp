@@ -463,7 +463,7 @@ int LoadKind::report_size() const {
 }
 
 std::string LoadKind::function_key() const {
-  for (const DriveParameter& drive : drives)
+  for (const TimeParameter& drive : drives)
     if (drive.name == "force" || drive.name == "moment" || drive.name == "pull") return drive.name;
   return vector;
 }

@@ -29,13 +29,6 @@ struct LoadChannel {
   int size = 1;      ///< 1 or 3.
 };
 
-/// A function of time of a kind of load.
-struct DriveParameter {
-  std::string name;     ///< Key in the model file.
-  std::string unit;     ///< SI.
-  std::string meaning;  ///< One line.
-};
-
 /// A function of a coordinate or its rate of a kind of load.
 struct LawParameter {
   std::string name;      ///< Key in the model file.
@@ -59,7 +52,7 @@ struct LoadKind {
   LoadPlace place = LoadPlace::body;
   std::string vector;  ///< Key of its vector: force [N] or moment [N m]; "" for none.
   std::vector<Parameter> parameters;
-  std::vector<DriveParameter> drives;  ///< One of them is given.
+  std::vector<TimeParameter> drives;  ///< One of them is given.
   bool turns = false;  ///< Exerts a moment even at the centre of mass; on a body, needs no point.
   void (*add)(System&, const LoadDescription&) = nullptr;
   std::vector<LoadChannel> channels;  ///< Reported quantities, see report.

@@ -8,26 +8,9 @@
 
 #include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
+#include <polhode/model/side.hpp>
 
 namespace polhode {
-
-// Sides of contact: a body, by its index into Model::bodies, the surface of a solid, or a cable.
-/// Upper bound of the number of solids; the sides of cables are numbered behind theirs.
-inline constexpr int kMaxSolids = 1 << 24;
-/// The side of a solid, by its index into Model::solids.
-[[nodiscard]] constexpr int side_of_solid(int solid) { return kGround - 1 - solid; }
-/// The side of a cable, by its index into Model::cables.
-[[nodiscard]] constexpr int side_of_cable(int cable) { return kGround - 1 - kMaxSolids - cable; }
-/// Whether a side is a solid or a cable.
-[[nodiscard]] constexpr bool is_surface_side(int side) { return side < kGround; }
-[[nodiscard]] constexpr bool is_cable_side(int side) { return side < kGround - kMaxSolids; }
-[[nodiscard]] constexpr bool is_solid_side(int side) {
-  return is_surface_side(side) && !is_cable_side(side);
-}
-/// Index into Model::solids of a side that is a solid's.
-[[nodiscard]] constexpr int solid_of_side(int side) { return kGround - 1 - side; }
-/// Index into Model::cables of a side that is a cable's.
-[[nodiscard]] constexpr int cable_of_side(int side) { return kGround - 1 - kMaxSolids - side; }
 
 /// Contact settings of a shape; absent ones are the body's, then the model's. Also of the surface
 /// of a solid, or of a whole beam or cable.
@@ -69,7 +52,8 @@ struct ContactPairSpec {
   std::string name;
   SourceLocation place;
   bool of_materials = false;
-  int a = 0, b = 0;  ///< Sides, or indices into ContactsSpec::materials.
+  Side a, b;                       ///< Of a pair of sides.
+  std::array<int, 2> materials{};  ///< Of a pair of materials: into ContactsSpec::materials.
   bool sensor = false;
   ContactLawSpec law;
 };
@@ -85,8 +69,8 @@ struct ContactsSpec {
   std::vector<ContactMaterialSpec> materials;
   Combination friction = Combination::geometric_mean;
   Combination restitution = Combination::minimum;
-  std::vector<ContactPairSpec> pairs;        ///< Including sensors.
-  std::vector<std::array<int, 2>> excluded;  ///< Sides without contact.
+  std::vector<ContactPairSpec> pairs;         ///< Including sensors.
+  std::vector<std::array<Side, 2>> excluded;  ///< Sides without contact.
   /// Contact also between bodies with a common joint, and between solids and the bodies they are
   /// bonded to.
   bool joint_neighbours = false;

@@ -31,10 +31,10 @@ const std::string& Model::body_name(int body) const {
   return body == kGround ? ground : bodies.at(static_cast<std::size_t>(body)).name;
 }
 
-const std::string& Model::side_name(int side) const {
-  if (is_cable_side(side)) return cables.at(static_cast<std::size_t>(cable_of_side(side))).name;
-  if (is_solid_side(side)) return solids.at(static_cast<std::size_t>(solid_of_side(side))).name;
-  return body_name(side);
+const std::string& Model::side_name(const Side& side) const {
+  if (side.is_cable()) return cables.at(static_cast<std::size_t>(side.index)).name;
+  if (side.is_solid()) return solids.at(static_cast<std::size_t>(side.index)).name;
+  return body_name(side.index);
 }
 
 int Model::joint_index(const std::string& name) const {

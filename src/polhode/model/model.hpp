@@ -187,7 +187,7 @@ struct Model {
       const std::string& name) const;  ///< kGround for "ground"; throws InputError if unknown.
   [[nodiscard]] const std::string& body_name(int body) const;  ///< "ground" for kGround.
   /// Name of a side of contact.
-  [[nodiscard]] const std::string& side_name(int side) const;
+  [[nodiscard]] const std::string& side_name(const Side& side) const;
   [[nodiscard]] int joint_index(const std::string& name) const;  ///< Throws InputError if unknown.
   [[nodiscard]] int material_index(
       const std::string& name) const;                            ///< Throws InputError if unknown.

@@ -7,6 +7,7 @@
 
 #include <polhode/core/source_location.hpp>
 #include <polhode/core/types.hpp>
+#include <polhode/model/side.hpp>
 
 namespace polhode {
 
@@ -16,7 +17,7 @@ struct ProbeSpec {
   SourceLocation place;
   std::string kind;             ///< body, joint, load, solid, beam, cable, contact, controller.
   std::string target;           ///< Its name.
-  std::array<int, 2> pair{};    ///< Of a contact probe: sides.
+  std::array<Side, 2> pair{};   ///< Of a contact probe: sides.
   Vec3 point = Vec3::Zero();    ///< Of a body probe: from the centre of mass, body axes; of a
                                 ///< solid probe: in the mesh's own coordinates [m].
   std::optional<int> node;      ///< Of a solid probe, instead of point: the first node is 0.

@@ -12,9 +12,9 @@ namespace {
 /// Reason why a pair cannot be switched; empty if it can.
 std::string not_of_bodies(const ContactPairSpec& pair) {
   if (pair.of_materials) return "is a pair of materials";
-  for (const int side : {pair.a, pair.b})
-    if (is_surface_side(side))
-      return is_cable_side(side) ? "is the contact of a cable" : "is the contact of a solid";
+  for (const Side& side : {pair.a, pair.b})
+    if (!side.is_body())
+      return side.is_cable() ? "is the contact of a cable" : "is the contact of a solid";
   return {};
 }
 
@@ -49,7 +49,7 @@ std::optional<std::array<int, 2>> switched_contact(const Model& model, const std
   if (!no_bodies.empty())
     throw InputError(name, format("'{}' {}, which cannot be switched", name, no_bodies),
                      "Name a pair of bodies in contacts.pairs");
-  return std::array{found->a, found->b};
+  return std::array{found->a.index, found->b.index};
 }
 
 }  // namespace polhode

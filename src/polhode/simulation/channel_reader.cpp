@@ -82,9 +82,9 @@ double ChannelReader::value(const Simulation& simulation) const {
 double ChannelReader::far_gap(const Simulation& simulation) const {
   const auto [a, b] = target_.spec.pair;
   const contact::ContactSet* contacts = simulation.contact_set();
-  if (target_.spec.kind != "contact" || !contacts || is_surface_side(a) || is_surface_side(b))
+  if (target_.spec.kind != "contact" || !contacts || !a.is_body() || !b.is_body())
     return std::numeric_limits<double>::infinity();
-  return contacts->distance(a, b, instants_of(simulation.system(), simulation.state()));
+  return contacts->distance(a.index, b.index, instants_of(simulation.system(), simulation.state()));
 }
 
 }  // namespace polhode

@@ -50,7 +50,7 @@ void ContactStatistics::resume(const State& state) {
 
 void ContactStatistics::see(const State& state) {
   if (!contacts_) return;
-  std::map<std::pair<int, int>, std::size_t> place;
+  std::map<std::pair<Side, Side>, std::size_t> place;
   for (std::size_t k = 0; k < map_->pairs.size(); ++k)
     place[std::minmax(map_->pairs[k].a, map_->pairs[k].b)] = k;
   ContactReport none;
@@ -64,8 +64,8 @@ void ContactStatistics::see(const State& state) {
   seen.impact_loss = seen.friction_loss = seen.unresolved = 0.0;
   for (const contact::ShapePairReport& r : contacts_->reports()) {
     if (r.points > 0) ++seen.touching;
-    const int a = map_->body[static_cast<std::size_t>(r.a)];
-    const int b = map_->body[static_cast<std::size_t>(r.b)];
+    const Side a = map_->body[static_cast<std::size_t>(r.a)];
+    const Side b = map_->body[static_cast<std::size_t>(r.b)];
     if (!contacts_->law(r.a, r.b).sensor) seen.least_gap = std::fmin(seen.least_gap, r.gap);
     seen.impact_loss += r.impact_loss;
     seen.friction_loss += r.dissipated - r.impact_loss;

@@ -148,10 +148,10 @@ class Separation {
     return moved;
   }
 
-  [[nodiscard]] int number(int side) const {
-    if (is_cable_side(side)) return -1;
-    if (is_solid_side(side)) return parts_.number_of_solid(solid_of_side(side));
-    return map_.body[static_cast<std::size_t>(side)];
+  [[nodiscard]] int number(const Side& side) const {
+    if (side.is_cable()) return -1;
+    if (side.is_solid()) return parts_.number_of_solid(side.index);
+    return map_.body[static_cast<std::size_t>(side.index)];
   }
 
   void begin_surfaces() {

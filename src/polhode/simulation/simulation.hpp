@@ -203,7 +203,7 @@ class Simulation {
   /// Report of contact_map().pairs[pair] over the last step.
   [[nodiscard]] ContactReport contact(int pair) const;
   /// Index into contact_map().pairs of two sides. @throws InputError if there is no such pair.
-  [[nodiscard]] int contact_pair(int side_a, int side_b) const;
+  [[nodiscard]] int contact_pair(const Side& a, const Side& b) const;
   [[nodiscard]] ContactLosses contact_losses() const;
   /// Contact points of bodies with force in the last step; shapes as in contact_map().body.
   [[nodiscard]] const std::vector<contact::TouchingPoint>& contact_points() const;

@@ -225,19 +225,18 @@ bool Simulation::has_contacts() const {
 ContactReport Simulation::contact(int pair) const {
   const ContactMap& map = impl_->map.contact;
   const ContactMap::Pair& sides = map.pairs.at(static_cast<std::size_t>(pair));
-  if (is_surface_side(sides.a) || is_surface_side(sides.b))
+  if (!sides.a.is_body() || !sides.b.is_body())
     return surface_report(impl_->system, impl_->state, map, sides);
   return impl_->contacts.report(pair);
 }
 
-int Simulation::contact_pair(int side_a, int side_b) const {
+int Simulation::contact_pair(const Side& a, const Side& b) const {
   const std::vector<ContactMap::Pair>& pairs = contact_map().pairs;
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(side_a, side_b))
-      return static_cast<int>(k);
+    if (std::minmax(pairs[k].a, pairs[k].b) == std::minmax(a, b)) return static_cast<int>(k);
   throw InputError("contacts",
-                   format("results of '{}' and '{}' are not recorded", model().side_name(side_a),
-                          model().side_name(side_b)),
+                   format("results of '{}' and '{}' are not recorded", model().side_name(a),
+                          model().side_name(b)),
                    "Name the pair in contacts.pairs or a probe, or set contacts.record: true");
 }
 

@@ -24,7 +24,7 @@ ContactReport surface_report(const System& system, const State& state, const Con
   ContactReport report;
   report.gap = std::numeric_limits<double>::quiet_NaN();
   for (const ContactMap::Surface& surface : map.surfaces) {
-    const int own = surface.own;
+    const Side own = surface.own;
     if (std::minmax(own, surface.side) != std::minmax(pair.a, pair.b)) continue;
     const SurfaceReport r = report_of(system, state, surface);
     const double sign = own == pair.a ? 1.0 : -1.0;  // reports are of forces on the solid

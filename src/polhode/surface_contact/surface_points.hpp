@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/loaded_faces.hpp>
 
 namespace polhode {
 

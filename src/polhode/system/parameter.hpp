@@ -18,4 +18,11 @@ struct Parameter {
   std::string meaning;  ///< One line, including the default behaviour.
 };
 
+/// A function of time of a kind of load.
+struct TimeParameter {
+  std::string name;     ///< Key in the model file.
+  std::string unit;     ///< SI.
+  std::string meaning;  ///< One line.
+};
+
 }  // namespace polhode

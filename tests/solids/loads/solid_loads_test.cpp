@@ -9,7 +9,10 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/solids/elements/reference_data.hpp>
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/body_force.hpp>
+#include <polhode/solids/loads/nodal_force.hpp>
+#include <polhode/solids/loads/pressure.hpp>
+#include <polhode/solids/loads/traction.hpp>
 
 namespace polhode::test::solid_loads_tests {
 namespace {

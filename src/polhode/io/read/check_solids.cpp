@@ -7,6 +7,7 @@
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
+#include <polhode/solids/loads/registry.hpp>
 
 namespace polhode {
 namespace {
@@ -28,10 +29,16 @@ std::vector<std::string> parts_of(std::string_view path) {
 void check_load(const LoadSpec& load, const SolidPlan& plan, std::vector<InputError>& faults) {
   const std::string where = format("loads.{}", load.name);
   try {
-    if (load.type == "nodal_force")
-      static_cast<void>(select_nodes(where + ".nodes", plan.mesh, load.selection));
-    else if (load.type != "body_force")
-      static_cast<void>(select_faces(where + ".surface", plan.mesh, load.selection));
+    switch (solid_load_kind(where + ".type", load.type).place) {
+      case SolidLoadPlace::faces:
+        static_cast<void>(select_faces(where + ".surface", plan.mesh, load.selection));
+        break;
+      case SolidLoadPlace::nodes:
+        static_cast<void>(select_nodes(where + ".nodes", plan.mesh, load.selection));
+        break;
+      case SolidLoadPlace::elements:
+        break;
+    }
   } catch (const InputError& e) {
     faults.push_back(e);
   }

@@ -138,7 +138,7 @@ class ContactsReader {
   }
 
   /// Two bodies that have shapes, or one and a solid or cable; the ground itself has none.
-  std::optional<std::array<int, 2>> read_sides(Section& section) {
+  std::optional<std::array<Side, 2>> read_sides(Section& section) {
     const SourceNode* node = section.find("between");
     if (!node) return std::nullopt;
     const auto pair = read_side_pair(context_, *node, section.path("between"));
@@ -147,13 +147,12 @@ class ContactsReader {
     return pair;
   }
 
-  bool check_bodies(const std::array<int, 2>& pair, const SourceNode& node,
+  bool check_bodies(const std::array<Side, 2>& pair, const SourceNode& node,
                     const std::string& path) {
     for (std::size_t k = 0; k < 2; ++k) {
-      if (is_solid_side(pair[k])) continue;
-      if (is_cable_side(pair[k])) {
-        const CableLineSpec& cable =
-            context_.model.cables[static_cast<std::size_t>(cable_of_side(pair[k]))];
+      if (pair[k].is_solid()) continue;
+      if (pair[k].is_cable()) {
+        const CableLineSpec& cable = context_.model.cables[static_cast<std::size_t>(pair[k].index)];
         if (cable.contact) continue;
         context_.fault(node.children[k], path,
                        format("the cable {} does not touch", quote(cable.name)),
@@ -165,15 +164,15 @@ class ContactsReader {
                        "Name a fixed body with a shape.");
         return false;
       }
-      const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(pair[k])];
+      const BodySpec& body = context_.model.bodies[static_cast<std::size_t>(pair[k].index)];
       if (!body.shapes.empty()) continue;
-      if (context_.body_is_sound[static_cast<std::size_t>(pair[k])])
+      if (context_.body_is_sound[static_cast<std::size_t>(pair[k].index)])
         context_.fault(node.children[k], path, format("the body {} has no shape", quote(body.name)),
                        "Give it a shape, or leave the pair out.");
       return false;
     }
-    const auto fixed = [&](int b) {
-      return !is_surface_side(b) && context_.model.bodies[static_cast<std::size_t>(b)].fixed;
+    const auto fixed = [&](const Side& b) {
+      return b.is_body() && context_.model.bodies[static_cast<std::size_t>(b.index)].fixed;
     };
     if (!fixed(pair[0]) || !fixed(pair[1])) return true;
     context_.fault(node, path, "both bodies are fixed", "Name at least one that moves.");
@@ -191,17 +190,20 @@ class ContactsReader {
         section.fault("names no pair", "Give 'between' with two bodies, or 'materials' with two.");
       return;
     }
-    std::optional<std::array<int, 2>> ends;
+    bool known = false;
     if (section.has("materials")) {
       pair.of_materials = true;
-      ends = read_materials(section);
-      if (ends) {
-        const auto combined = combined_surface(contacts_, (*ends)[0], (*ends)[1]);
+      if (const auto materials = read_materials(section)) {
+        known = true;
+        pair.materials = *materials;
+        const auto combined = combined_surface(contacts_, pair.materials[0], pair.materials[1]);
         pair.law.friction = combined.friction;
         pair.law.restitution = combined.restitution;
       }
-    } else {
-      ends = read_sides(section);
+    } else if (const auto sides = read_sides(section)) {
+      known = true;
+      pair.a = (*sides)[0];
+      pair.b = (*sides)[1];
     }
     read_law(section, pair.law);
     if ((pair.law.potential == "nonsmooth") != contacts_.nonsmooth())
@@ -210,13 +212,16 @@ class ContactsReader {
           format("{} cannot be combined with {} in contacts.default", pair.law.potential,
                  contacts_.standard.potential),
           "The law nonsmooth applies to all pairs: give it in contacts.default, or nowhere.");
-    if (!ends) return;
-    if (!pair.of_materials) check_law_of_sides(section, *ends);
-    pair.a = (*ends)[0];
-    pair.b = (*ends)[1];
+    if (!known) return;
+    if (!pair.of_materials) check_law_of_sides(section, {pair.a, pair.b});
+    const auto same = [&](const ContactPairSpec& other) {
+      const auto& [m, n] = pair.materials;
+      return pair.of_materials
+                 ? std::minmax(other.materials[0], other.materials[1]) == std::minmax(m, n)
+                 : std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b);
+    };
     for (const ContactPairSpec& other : contacts_.pairs)
-      if (other.of_materials == pair.of_materials &&
-          std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b))
+      if (other.of_materials == pair.of_materials && same(other))
         section.fault(pair.of_materials ? "materials" : "between",
                       format("{} already defines this pair", quote(other.name)),
                       "Keep one of them.");
@@ -224,14 +229,14 @@ class ContactsReader {
   }
 
   /// Rejects law keys for points on surfaces, and vice versa.
-  void check_law_of_sides(Section& section, const std::array<int, 2>& sides) {
-    if (!is_surface_side(sides[0]) && !is_surface_side(sides[1])) {
+  void check_law_of_sides(Section& section, const std::array<Side, 2>& sides) {
+    if (sides[0].is_body() && sides[1].is_body()) {
       if (section.has("reference_pressure"))
         section.fault("reference_pressure", "is not a key for a pair of bodies",
                       "It is for surfaces of solids and cables: use reference_load.");
       return;
     }
-    const bool cable = is_cable_side(sides[0]) || is_cable_side(sides[1]);
+    const bool cable = sides[0].is_cable() || sides[1].is_cable();
     const std::string not_of =
         format("cannot be combined with {}", cable ? "a cable" : "the surface of a solid");
     for (const char* key : {"stiffness", "hertz_stiffness", "reference_load", "rebound",
@@ -291,7 +296,7 @@ class ContactsReader {
     if (!section.has("between")) return;
     const auto ends = read_sides(section);
     if (!ends) return;
-    if (is_surface_side((*ends)[0]) || is_surface_side((*ends)[1])) {
+    if (!(*ends)[0].is_body() || !(*ends)[1].is_body()) {
       section.fault("between", "a sensor cannot have solids or cables",
                     "Name two bodies; for a solid or cable a probe reports gap and force.");
       return;
@@ -379,8 +384,8 @@ void read_solid_contact(ReadContext& context, const SourceNode& node, const std:
   read_contact_side(section, solid.contact);
 }
 
-std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
-                                                 const std::string& path) {
+std::optional<std::array<Side, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
+                                                  const std::string& path) {
   const auto is_solid = [&](const SourceNode& child) {
     return child.is_text() && context.solids.contains(child.text);
   };
@@ -389,9 +394,12 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
   };
   if (!node.is_list() || node.children.size() != 2 ||
       std::none_of(node.children.begin(), node.children.end(),
-                   [&](const SourceNode& child) { return is_solid(child) || is_cable(child); }))
-    return read_body_pair(context, node, path);
-  std::array<int, 2> sides{};
+                   [&](const SourceNode& child) { return is_solid(child) || is_cable(child); })) {
+    const auto bodies = read_body_pair(context, node, path);
+    if (!bodies) return std::nullopt;
+    return std::array<Side, 2>{(*bodies)[0], (*bodies)[1]};
+  }
+  std::array<Side, 2> sides{};
   for (std::size_t k = 0; k < 2; ++k) {
     const SourceNode& child = node.children[k];
     const bool solid = is_solid(child), cable = is_cable(child);
@@ -409,8 +417,8 @@ std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const Sou
       return std::nullopt;
     }
     if (cable && !context.cables.at(child.text)) return std::nullopt;  // already reported
-    sides[k] = cable ? side_of_cable(*context.cables.at(child.text))
-                     : side_of_solid(context.solids.at(child.text));
+    sides[k] = cable ? Side::of_cable(*context.cables.at(child.text))
+                     : Side::of_solid(context.solids.at(child.text));
   }
   return sides;
 }

@@ -231,9 +231,9 @@ ContactSideSpec read_contact_side(ReadContext& context, const SourceNode& node,
 void read_contact_side(Section& section, ContactSideSpec& side);
 void read_solid_contact(ReadContext& context, const SourceNode& node, const std::string& path,
                         SolidSpec& solid);
-/// Two bodies, or a body and a solid: sides of contact.
-std::optional<std::array<int, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
-                                                 const std::string& path);
+/// Two sides of contact.
+std::optional<std::array<Side, 2>> read_side_pair(ReadContext& context, const SourceNode& node,
+                                                  const std::string& path);
 void read_joints(ReadContext& context, const SourceNode& node);
 void read_contacts(ReadContext& context, const SourceNode& node);
 void read_materials(ReadContext& context, const SourceNode& node);

@@ -9,6 +9,7 @@
 #include <polhode/io/read/time_function.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/solids/loads/registry.hpp>
 
 namespace polhode {
 namespace {
@@ -49,7 +50,7 @@ class LoadReader {
 
   void read() {
     if (table_.find("solid")) {
-      read_on_solid();
+      read_on_solid(solid_load_kind(section_.path("type"), load_.type));
     } else {
       read_on_bodies(load_kind(load_.type));
     }
@@ -120,7 +121,7 @@ class LoadReader {
   }
 
   /// A load on nodes or faces of a deformable solid.
-  void read_on_solid() {
+  void read_on_solid(const SolidLoadKind& kind) {
     if (const SourceNode* value = section_.find("solid"))
       if (const auto solid = read_solid_name(context_, *value, section_.path("solid")))
         load_.solid = *solid;
@@ -129,13 +130,12 @@ class LoadReader {
       if (auto selection = read_selections(context_, *section_.find(key), section_.path(key)))
         load_.selection = std::move(*selection);
     }
-    if (table_.find("pressure")) load_.value = section_.time_number("pressure");
-    if (table_.find("follower")) load_.follower = section_.boolean("follower").value_or(true);
-    if (table_.find("keeps"))
-      if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
-    for (const char* key : {"traction", "acceleration", "force"})
-      if (table_.find(key))
-        if (const auto vector = section_.time_vector(key)) load_.vector = *vector;
+    if (kind.value) load_.value = section_.time_number(kind.value->name);
+    if (kind.vector)
+      if (const auto vector = section_.time_vector(kind.vector->name)) load_.vector = *vector;
+    if (!kind.can_follow) return;
+    load_.follower = section_.boolean("follower").value_or(true);
+    if (const auto keeps = section_.choice("keeps")) load_.keeps = *keeps;
   }
 
   void read_bodies() {
@@ -264,7 +264,7 @@ class LoadReader {
   void read_drive(const LoadKind& kind) {
     if (kind.drives.empty()) return;
     std::string keys;
-    for (const DriveParameter& d : kind.drives) {
+    for (const TimeParameter& d : kind.drives) {
       keys += (keys.empty() ? "" : ", ") + d.name;
       if (!section_.has(d.name)) continue;
       if (!load_.drive.empty()) {

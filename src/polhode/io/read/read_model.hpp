@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <polhode/io/text/diagnostics.hpp>
+#include <polhode/io/text/model_errors.hpp>
 #include <polhode/model/model.hpp>
 
 namespace polhode {

@@ -93,23 +93,23 @@ void read_contact_probe(ReadContext& context, Section& section, ProbeSpec& probe
     section.fault("contact", "the model has no contacts", "Add 'contacts: {}'.");
     return;
   }
-  for (const int body : *pair) {
-    if (is_solid_side(body)) continue;
-    if (is_cable_side(body)) {
-      const CableLineSpec& cable =
-          context.model.cables[static_cast<std::size_t>(cable_of_side(body))];
+  for (const Side& side : *pair) {
+    if (side.is_solid()) continue;
+    if (side.is_cable()) {
+      const CableLineSpec& cable = context.model.cables[static_cast<std::size_t>(side.index)];
       if (cable.contact) continue;
       section.fault("contact", format("the cable {} does not touch", quote(cable.name)),
                     "Give it contact: {radius: ...}, or leave the probe out.");
       return;
     }
-    const bool ground = body == kGround;
-    if (!ground && !context.model.bodies[static_cast<std::size_t>(body)].shapes.empty()) continue;
+    const bool ground = side == kGround;
+    if (!ground && !context.model.bodies[static_cast<std::size_t>(side.index)].shapes.empty())
+      continue;
     section.fault(
         "contact",
         ground ? std::string("the ground has no shapes")
                : format("the body {} has no shape",
-                        quote(context.model.bodies[static_cast<std::size_t>(body)].name)),
+                        quote(context.model.bodies[static_cast<std::size_t>(side.index)].name)),
         ground ? "Name a fixed body with a shape." : "Give it a shape, or leave the probe out.");
     return;
   }

@@ -197,7 +197,20 @@ class Fingerprint {
     add(m.name);
     add_fields(m, contact_material_fields());
   }
-  void one(const ContactPairSpec& p) { add(p.name, p.of_materials, p.a, p.b, p.sensor, p.law); }
+  /// One number, as in fingerprints of older models: solids and cables are below the ground.
+  void one(const Side& side) {
+    constexpr int kCables = 1 << 24;
+    if (side.is_body()) return one(side.index);
+    one(kGround - 1 - side.index - (side.is_cable() ? kCables : 0));
+  }
+  void one(const ContactPairSpec& p) {
+    add(p.name, p.of_materials);
+    if (p.of_materials)
+      add(p.materials);
+    else
+      add(p.a, p.b);
+    add(p.sensor, p.law);
+  }
   void one(const ContactsSpec& c) {
     add(c.present, c.standard, c.materials);
     add_fields(c, contact_combination_fields());

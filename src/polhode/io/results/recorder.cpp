@@ -127,9 +127,9 @@ Recorder::Recorder(const Simulation& simulation, const std::string& folder,
     for (const SolidSpec& solid : model.solids) names.push_back(solid.name);
     for (const CableLineSpec& cable : model.cables) names.push_back(cable.name);
     const auto number_of = [bodies = static_cast<int>(model.bodies.size()),
-                            solids = static_cast<int>(model.solids.size())](int side) {
-      if (is_cable_side(side)) return bodies + solids + cable_of_side(side);
-      return is_solid_side(side) ? bodies + solid_of_side(side) : side;
+                            solids = static_cast<int>(model.solids.size())](const Side& side) {
+      if (side.is_cable()) return bodies + solids + side.index;
+      return side.is_solid() ? bodies + side.index : side.index;
     };
     // Sides of surfaces are numbered after the shapes of bodies, see touching_points().
     std::vector<int> side = simulation.contact_map().body;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
+#include <optional>
 
 #include <polhode/core/format.hpp>
 #include <polhode/io/schema/field_table.hpp>
 #include <polhode/joints/registry.hpp>
 #include <polhode/loads/registry.hpp>
+#include <polhode/solids/loads/registry.hpp>
 
 namespace polhode {
 
@@ -198,13 +200,6 @@ const Field kAxle{.name = "axle",
                   .meaning = "The wheel's axle at the start, world; without effect for a ball.",
                   .standard = "y"};
 
-KindTable load(const std::string& name, const std::string& meaning,
-               const std::vector<Field>& more) {
-  KindTable kind{name, {"load " + name, meaning, {type_field("load", name)}}};
-  kind.table.fields.insert(kind.table.fields.end(), more.begin(), more.end());
-  return kind;
-}
-
 KindTable load_table(const LoadKind& kind) {
   KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
   std::vector<Field>& fields = result.table.fields;
@@ -293,11 +288,59 @@ KindTable load_table(const LoadKind& kind) {
                       .standard = "the only one of its kind",
                       .choices = kind.turns ? std::vector<std::string>{"rx", "ry", "rz"}
                                             : std::vector<std::string>{"x", "y", "z"}});
-  for (const DriveParameter& d : kind.drives)
+  for (const TimeParameter& d : kind.drives)
     fields.push_back({.name = d.name,
                       .kind = kTimeNumber,
                       .dimension = read_unit(d.unit).unit.value().dimension,
                       .meaning = sentence(d.meaning)});
+  return result;
+}
+
+const Field kLoadSolid{
+    .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
+const Field kLoadFaces{.name = "surface",
+                       .kind = kSelection,
+                       .meaning = "Faces of the solid's boundary.",
+                       .standard = "the whole boundary",
+                       .table = "selection"};
+const Field kLoadNodes{.name = "nodes",
+                       .kind = kSelection,
+                       .meaning = "The nodes.",
+                       .required = true,
+                       .table = "selection"};
+const Field kFollower{.name = "follower",
+                      .kind = kBoolean,
+                      .meaning =
+                          "A follower pressure: normal to the deformed faces, on their deformed "
+                          "area; else as on the undeformed solid.",
+                      .standard = "true"};
+const Field kKeeps{
+    .name = "keeps",
+    .kind = kChoice,
+    .meaning =
+        "What a follower pressure conserves exactly over a step: zero force and moment "
+        "on a closed surface, or the work, pressure times change of volume.",
+    .standard = "momentum",
+    .choices = {"momentum", "work"}};
+
+KindTable solid_load_table(const SolidLoadKind& kind) {
+  KindTable result{kind.name, {"load " + kind.name, sentence(kind.meaning), {}}};
+  std::vector<Field>& fields = result.table.fields;
+  const auto add_function = [&](const std::optional<TimeParameter>& p, FieldKind of) {
+    if (p)
+      fields.push_back({.name = p->name,
+                        .kind = of,
+                        .dimension = read_unit(p->unit).unit.value().dimension,
+                        .meaning = sentence(p->meaning),
+                        .required = true});
+  };
+  fields = {type_field("load", kind.name), kLoadSolid};
+  if (kind.place == SolidLoadPlace::faces) fields.push_back(kLoadFaces);
+  if (kind.place == SolidLoadPlace::nodes) fields.push_back(kLoadNodes);
+  add_function(kind.value, kTimeNumber);
+  add_function(kind.vector, kTimeVector);
+  if (kind.can_follow) fields.insert(fields.end(), {kFollower, kKeeps});
+  for (const Parameter& p : kind.parameters) fields.push_back(parameter_field(p));
   return result;
 }
 
@@ -313,67 +356,10 @@ const std::vector<KindTable>& joint_tables() {
 }
 
 const std::vector<KindTable>& load_tables() {
-  const Field solid{
-      .name = "solid", .kind = kSolid, .meaning = "The solid it acts on.", .required = true};
-  const Field surface{.name = "surface",
-                      .kind = kSelection,
-                      .meaning = "Faces of the solid's boundary.",
-                      .standard = "the whole boundary",
-                      .table = "selection"};
-  static const std::vector<KindTable> tables = [&] {
+  static const std::vector<KindTable> tables = [] {
     std::vector<KindTable> list;
     for (const LoadKind& kind : load_kinds()) list.push_back(load_table(kind));
-    const std::vector<KindTable> on_solids = {
-        load("pressure",
-             "A pressure on faces of a deformable solid, against their outward normals.",
-             {solid,
-              surface,
-              {.name = "pressure",
-               .kind = kTimeNumber,
-               .dimension = kPressure,
-               .meaning = "Positive is compression.",
-               .required = true},
-              {.name = "follower",
-               .kind = kBoolean,
-               .meaning = "A follower pressure: normal to the deformed faces, on their deformed "
-                          "area; else as on the undeformed solid.",
-               .standard = "true"},
-              {.name = "keeps",
-               .kind = kChoice,
-               .meaning =
-                   "What a follower pressure conserves exactly over a step: zero force and moment "
-                   "on a closed surface, or the work, pressure times change of volume.",
-               .standard = "momentum",
-               .choices = {"momentum", "work"}}}),
-        load("traction", "A force per area on faces of a deformable solid.",
-             {solid,
-              surface,
-              {.name = "traction",
-               .kind = kTimeVector,
-               .dimension = kPressure,
-               .meaning = "Force per undeformed area, world components.",
-               .required = true}}),
-        load("body_force", "A force on a deformable solid in proportion to its mass.",
-             {solid,
-              {.name = "acceleration",
-               .kind = kTimeVector,
-               .dimension = kAcceleration,
-               .meaning = "Force per mass, world components, in addition to gravity.",
-               .required = true}}),
-        load("nodal_force", "A force on each of some nodes of a deformable solid.",
-             {solid,
-              {.name = "nodes",
-               .kind = kSelection,
-               .meaning = "The nodes.",
-               .required = true,
-               .table = "selection"},
-              {.name = "force",
-               .kind = kTimeVector,
-               .dimension = kForce,
-               .meaning = "Force on each of the nodes, world components.",
-               .required = true}}),
-    };
-    list.insert(list.end(), on_solids.begin(), on_solids.end());
+    for (const SolidLoadKind& kind : solid_load_kinds()) list.push_back(solid_load_table(kind));
     return list;
   }();
   return tables;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,6 +74,26 @@ class DeadLoad final : public ElementGroup {
   std::vector<Share> shares_;
   TimeVector value_;
   bool constant_ = true;
+};
+
+/// Shares of a dead load, summed by node and ascending.
+class NodeShares {
+ public:
+  /// @param X  Reference positions of all nodes [m], which must outlive this.
+  explicit NodeShares(std::span<const Vec3> X) : X_(X) {}
+  void add(int node, const Mat3& B) {
+    const auto [at, is_new] = sum_.try_emplace(node, B);
+    if (!is_new) at->second += B;
+  }
+  [[nodiscard]] std::vector<DeadLoad::Share> all() const {
+    std::vector<DeadLoad::Share> shares;
+    for (const auto& [node, B] : sum_) shares.push_back({node, B, X_[node]});
+    return shares;
+  }
+
+ private:
+  std::span<const Vec3> X_;
+  std::map<int, Mat3> sum_;
 };
 
 }  // namespace polhode

@@ -94,4 +94,14 @@ Work FollowerPressure::work(const NodeStep& step, const double* /*history*/,
   return w;
 }
 
+ElementGroups make_follower_pressure(const std::string& name, std::span<const LoadedFaces> faces,
+                                     const TimeFunctionPtr& pressure, FollowerRule rule) {
+  check_faces(name, faces);
+  ElementGroups groups;
+  for (const LoadedFaces& f : faces)
+    if (!f.nodes.empty())
+      groups.push_back(std::make_unique<FollowerPressure>(name, f, pressure, rule));
+  return groups;
+}
+
 }  // namespace polhode

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <polhode/core/time_function.hpp>
-#include <polhode/solids/loads/solid_loads.hpp>
+#include <polhode/solids/loads/solid_load.hpp>
 
 namespace polhode {
 
@@ -53,5 +53,13 @@ class FollowerPressure final : public ElementGroup {
   FollowerRule rule_;
   std::vector<Point> points_;
 };
+
+/// Pressure against the present outward normals and areas [Pa]: one group for each shape of face.
+/// @param name  Path of the load in the user's model.
+/// @throws InputError if there are no faces, or faces of an unknown shape.
+[[nodiscard]] ElementGroups make_follower_pressure(const std::string& name,
+                                                   std::span<const LoadedFaces> faces,
+                                                   const TimeFunctionPtr& pressure,
+                                                   FollowerRule rule = FollowerRule::kMomentum);
 
 }  // namespace polhode

@@ -181,6 +181,8 @@ void move(Mesh& mesh, const Mat3& R, const Vec3& x) {
   for (Vec3& X : mesh.nodes) X = R * X + x;
 }
 
+double Extent::size() const { return (most - least).norm(); }
+
 Extent extent(const Mesh& mesh) {
   if (mesh.nodes.empty()) return {};
   Extent box{mesh.nodes[0], mesh.nodes[0]};

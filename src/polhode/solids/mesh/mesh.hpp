@@ -88,7 +88,7 @@ void move(Mesh& mesh, const Mat3& R, const Vec3& x);
 struct Extent {
   Vec3 least = Vec3::Zero();
   Vec3 most = Vec3::Zero();
-  [[nodiscard]] double size() const { return (most - least).norm(); }
+  [[nodiscard]] double size() const;  ///< Length of the diagonal [m].
 };
 [[nodiscard]] Extent extent(const Mesh& mesh);
 
