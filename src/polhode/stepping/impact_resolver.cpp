@@ -282,48 +282,62 @@ void ImpactResolver::sweep(std::vector<Row>& rows, double most, std::vector<Vec6
   }
 }
 
-/// Resolves an impact that shares its bodies with no other one, by Routh's method from the energy
-/// stored at t_n to that at t_{n+1}. Without restitution the step itself dissipates: then friction
-/// alone acts until the normal velocity reverses. @eq{routh}
-void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
-  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
-  if (!course->turns && course->restitution == 0.0) {
-    if (!(rows[1].mobility + rows[2].mobility > kHeld * rows[0].mobility)) return;
-    for (int sweep = 0; sweep < kMaxSweeps; ++sweep)
-      if (!(apply_friction(rows[1], rows[2], impact.given, v) > kConverged * impact.given)) return;
-    return;
+/// Friction of all points without further normal impulses.
+void ImpactResolver::apply_friction(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    double change = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i + 2 < rows.size(); i += 3) {
+      if (!(rows[i + 1].mobility + rows[i + 2].mobility > kHeld * rows[i].mobility)) continue;
+      const double given = rows_[rows[i].impact].impact.given;
+      largest = std::max(largest, given);
+      change = std::max(change, apply_friction(rows[i + 1], rows[i + 2], given, v));
+    }
+    if (!(change > kConverged * largest)) break;
   }
+}
+
+Vec3 impulse_by_routh(const Mat3& K, const Eigen::Vector2d& mu, const ImpactCourse& course,
+                      const Vec3& before, const Vec3& now) {
   SingleImpact single;
-  single.mu = impact.mu;
-  single.mu_across = impact.mu_across;
-  single.restitution = course->restitution;
-  Vec3 now;
-  for (int i = 0; i < 3; ++i) {
-    now[i] = rows[i].speed(v);
-    for (int j = 0; j < 3; ++j) single.mobility(i, j) = rows[i].speed_by(rows[j]);
-  }
-  const Mat3& K = single.mobility;
-  if (!(K(0, 0) > 0.0)) return;
-  single.velocity = now - impact.given * K.col(0);
+  single.mobility = K;
+  single.mu = mu[0];
+  single.mu_across = mu[1];
+  single.restitution = course.restitution;
+  single.velocity = before;
   if (single.restitution > 0.0) {
     // A frictionless step changes the normal velocity by the stored energy and by gravity.
     const double square =
-        now[0] * now[0] + course->fallen + 2.0 * K(0, 0) * (course->stored_n1 - course->stored_n);
-    single.velocity[0] = std::copysign(std::sqrt(std::max(0.0, square)), single.velocity[0]);
-    single.stored = course->stored_n;
-    if (course->turns)
-      single.kept = single.restitution * single.restitution * course->stored_n1;
+        now[0] * now[0] + course.fallen + 2.0 * K(0, 0) * (course.stored_n1 - course.stored_n);
+    single.velocity[0] = std::copysign(std::sqrt(std::max(0.0, square)), before[0]);
+    single.stored = course.stored_n;
+    if (course.turns)
+      single.kept = single.restitution * single.restitution * course.stored_n1;
     else
-      single.until = course->stored_n1;
+      single.until = course.stored_n1;
   }
   const SingleImpactEnd end = end_of(single);
-  const double square = end.velocity[0] * end.velocity[0] - course->fallen;
+  const double square = end.velocity[0] * end.velocity[0] - course.fallen;
   const double wanted = std::copysign(std::sqrt(std::max(0.0, square)), end.velocity[0]);
   const Vec3 friction(0.0, end.impulse[1], end.impulse[2]);
-  const double normal = (wanted - now[0] - K.row(0).dot(friction)) / K(0, 0);
-  rows[0].apply(std::max(normal, -impact.given), v);
-  rows[1].apply(friction[1], v);
-  rows[2].apply(friction[2], v);
+  return {(wanted - now[0] - K.row(0).dot(friction)) / K(0, 0), friction[1], friction[2]};
+}
+
+/// Resolves an impact that shares its bodies with no other one. @eq{routh}
+void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const {
+  const auto& [bodies, impact, course, slow] = rows_[rows.front().impact];
+  if (friction_alone(*course)) return apply_friction(rows, v);
+  Mat3 K;
+  Vec3 now;
+  for (int i = 0; i < 3; ++i) {
+    now[i] = rows[i].speed(v);
+    for (int j = 0; j < 3; ++j) K(i, j) = rows[i].speed_by(rows[j]);
+  }
+  if (!(K(0, 0) > 0.0)) return;
+  const Vec3 impulse = impulse_by_routh(K, {impact.mu, impact.mu_across}, *course,
+                                        now - impact.given * K.col(0), now);
+  rows[0].apply(std::max(impulse[0], -impact.given), v);
+  rows[1].apply(impulse[1], v);
+  rows[2].apply(impulse[2], v);
 }
 
 /// Energy that friction of resting contact has dissipated in this step and that impulses may
@@ -354,10 +368,14 @@ void ImpactResolver::settle(State& state, const Island& island, std::vector<Row>
     most = std::max(most, row.mobility);
   }
   if (!(most > 0.0)) return;
-  if (PairImpact& only = rows_[island.rows.front()];
-      island.rows.size() == 1 && rows.size() == 3 && only.course) {
-    follow(rows, v);
-    if (only.course->turns || only.course->restitution > 0.0) only.impact.wanted = rows[0].speed(v);
+  const bool alone =
+      island.rows.size() == 1 && rows.size() == 3 && rows_[island.rows.front()].course.has_value();
+  if (alone) follow(rows, v);
+  if (alone || (lands_flat(island, rows) && follow_flat(rows, v))) {
+    for (std::size_t i = 0; i < rows.size(); i += 3) {
+      PairImpact& r = rows_[rows[i].impact];
+      if (!friction_alone(*r.course)) r.impact.wanted = rows[i].speed(v);
+    }
   } else {
     sweep(rows, most, v);
   }

@@ -80,7 +80,10 @@ class ImpactResolver {
   void tell_surfaces(State& state) const;
   double apply_friction(Row& along, Row& across, double normal, std::vector<Vec6>& v) const;
   void sweep(std::vector<Row>& rows, double most, std::vector<Vec6>& v) const;
+  void apply_friction(std::vector<Row>& rows, std::vector<Vec6>& v) const;
   void follow(std::vector<Row>& rows, std::vector<Vec6>& v) const;
+  [[nodiscard]] bool lands_flat(const Island& island, const std::vector<Row>& rows) const;
+  [[nodiscard]] bool follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) const;
   /// @returns the energy loss of solids' nodes beyond that given by their bodies' velocities [J].
   double jump(State& state, const Island& island, const std::vector<Vec6>& jumps);
   /// Impulses of rows on free nodes, 3 each.

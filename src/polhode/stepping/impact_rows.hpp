@@ -25,6 +25,20 @@ inline void join(std::vector<int>& tie, int a, int b) {
 
 }  // namespace impact_rows
 
+/// Whether friction alone acts at the end of a step: without restitution until the normal velocity
+/// reverses, since the step itself dissipates.
+inline bool friction_alone(const ImpactCourse& course) {
+  return !course.turns && course.restitution == 0.0;
+}
+
+/// Impulse at a point, along its normal and two tangents, that changes the velocity at the end of
+/// the step to that of Routh's method from the energy stored at t_n to that at t_{n+1}. @eq{routh}
+/// @param K  Mobility. @param before  Velocity without the normal impulse of the step.
+/// @param now  At its end.
+[[nodiscard]] Vec3 impulse_by_routh(const Mat3& K, const Eigen::Vector2d& mu,
+                                    const ImpactCourse& course, const Vec3& before,
+                                    const Vec3& now);
+
 /// A relative velocity J v, and the island's response to a unit impulse along it.
 struct ImpactResolver::Row {
   int impact = 0;  ///< Its number.
