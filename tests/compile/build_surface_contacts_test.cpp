@@ -44,7 +44,7 @@ const std::string kAlone = "exclude: [[plate, floor], [plate, roller], [roller, 
 std::vector<std::string> met(const Model& model) {
   std::vector<std::string> names;
   for (const SurfacePair& pair : plan_surface_contacts(model))
-    names.push_back(model.bodies[static_cast<std::size_t>(pair.side)].name);
+    names.push_back(model.bodies[static_cast<std::size_t>(pair.side.index)].name);
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -71,7 +71,8 @@ TEST(BuildSurfaceContacts, TakesTheLawOfThePairThenOfMaterialsThenCombined) {
     const Model model = model_of(contacts, "contact: {material: soft}",
                                  "{duration: 1 s, step: 10 ms}", ", contact: {material: ice}");
     for (const SurfacePair& pair : plan_surface_contacts(model))
-      if (model.bodies[static_cast<std::size_t>(pair.side)].name == body) return pair.law.friction;
+      if (model.bodies[static_cast<std::size_t>(pair.side.index)].name == body)
+        return pair.law.friction;
     return -1.0;
   };
   const std::string materials = "materials: {ice: {friction: 0.04}, soft: {friction: 1}}";
@@ -91,7 +92,7 @@ struct Built {
 
   Built(const std::string& contacts, const std::string& pad) : simulation(model_of(contacts, pad)) {
     for (const ContactMap::Surface& s : simulation.contact_map().surfaces)
-      if (simulation.model().bodies[static_cast<std::size_t>(s.side)].name == "floor")
+      if (simulation.model().bodies[static_cast<std::size_t>(s.side.index)].name == "floor")
         contact = &dynamic_cast<const SurfaceContact&>(simulation.system().nodes().group(s.group));
   }
 };
