@@ -150,6 +150,25 @@ TEST(SingleImpact, FollowsSlipAlongItsCurveInSpace) {
   }
 }
 
+/// A slip that ends and resumes in the plane, with round-off across it: the search for its
+/// direction starts and ends there.
+TEST(SingleImpact, ResumesSlipWhateverRoundOffIsAcross) {
+  SingleImpact s;
+  s.mu = s.mu_across = 0.5;
+  s.restitution = 0.3;
+  for (const double noise : {0.0, -4.4e-16, 4.4e-16, -1e-12})
+    for (const double other : {0.0, -5.5e-17, 1e-17}) {
+      s.mobility << 3.4358, 1.17189, noise, 1.17189, 1.56381, other, noise, other, 3.75065;
+      s.velocity = {-2.0, -1.0, 0.0};
+      const SingleImpactEnd end = end_of(s);
+      // Slip ends at p = 1/(K₁₀ + μ K₁₁), then resumes the other way.
+      const double p = 1.0 / (1.17189 + 0.5 * 1.56381);
+      EXPECT_NEAR(end.impulse[1], 0.5 * p - 0.5 * (end.impulse[0] - p), 1e-9) << noise;
+      EXPECT_GT(end.velocity[1], 0.0) << noise;
+      EXPECT_NEAR(end.impulse[2], 0.0, 1e-9) << noise;
+    }
+}
+
 /// A slip that is slow beside the approach takes no more steps than another: the corner of a box.
 // @tests{routh}
 TEST(SingleImpact, FollowsSlowSlip) {

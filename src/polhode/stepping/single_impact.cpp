@@ -75,17 +75,20 @@ class Course {
     const Vec2 holding =
         -K.completeOrthogonalDecomposition().solve(Vec2(law_.mobility.col(0).tail<2>()));
     if (std::hypot(holding.x() / law_.mu, holding.y() / law_.mu_across) <= 1.0) return holding;
-    const auto direction = [](double angle) { return Vec2(std::cos(angle), std::sin(angle)); };
-    const auto turning = [&](double angle) {
-      return cross(direction(angle), slip_rate(friction(direction(angle))));
+    const auto direction = [](double at) { return Vec2(std::cos(at), std::sin(at)); };
+    const auto turning = [&](double at) {
+      return cross(direction(at), slip_rate(friction(direction(at))));
     };
     Vec2 best = direction(0.0);
     double fastest = -kEndless;
+    const auto angle = [](int i) { return 2.0 * std::numbers::pi * i / kDirections; };
+    const double first = turning(0.0);
+    double at_b = first;
     for (int i = 0; i < kDirections; ++i) {
-      double a = 2.0 * std::numbers::pi * i / kDirections;
-      double b = 2.0 * std::numbers::pi * (i + 1) / kDirections;
-      const double at_a = turning(a);
-      if (at_a * turning(b) > 0.0) continue;
+      double a = angle(i), b = angle(i + 1);
+      const double at_a = at_b;
+      at_b = i + 1 < kDirections ? turning(b) : first;  // not by the rounded sine of 2π
+      if (at_a * at_b > 0.0) continue;
       for (int k = 0; k < 60; ++k) {
         const double middle = 0.5 * (a + b);
         (at_a * turning(middle) > 0.0 ? a : b) = middle;
