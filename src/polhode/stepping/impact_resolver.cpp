@@ -355,9 +355,7 @@ double ImpactResolver::returnable(std::span<const Row> rows) const {
   return sum;
 }
 
-/// Resolves an island. Impulses that would add energy to the step are scaled back until they do
-/// not.
-/// @eq{turn-law}
+/// Resolves an island. Impulses that would add energy to the step are scaled back. @eq{turn-law}
 void ImpactResolver::settle(State& state, const Island& island, std::vector<Row> rows) {
   std::vector<Vec6> v = velocities(state, island);
   const std::vector<Vec6> start = v;
