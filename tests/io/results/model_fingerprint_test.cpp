@@ -94,6 +94,8 @@ TEST(ModelFingerprint, ChangesWithEverythingThatTheMotionDependsOn) {
       {"friction", [](Model& m) { m.contacts.standard.friction = 0.3; }},
       {"material of contact", [](Model& m) { m.contacts.materials[0].restitution = 0.3; }},
       {"a pair's law", [](Model& m) { m.contacts.pairs[0].law.potential = "hertz"; }},
+      {"a pair's solid", [](Model& m) { m.contacts.pairs[0].b = Side::of_solid(0); }},
+      {"a pair's cable", [](Model& m) { m.contacts.pairs[0].b = Side::of_cable(0); }},
       {"exclusion",
        [](Model& m) {
          m.contacts.excluded.push_back({0, 1});

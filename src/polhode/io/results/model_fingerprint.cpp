@@ -33,7 +33,8 @@ class Fingerprint {
   template <class Spec>
   void add_fields(const Spec& spec, const FieldTable& table) {
     for (const Field* field : fields_of<Spec>(table))
-      if (!field->may_change) field->member.visit(spec, [this](const auto& value) { one(value); });
+      if (!field->may_change)
+        field->member.visit(spec, [this](const auto& value) { this->one(value); });
   }
   std::string hex() { return hash_.hex(); }
 
