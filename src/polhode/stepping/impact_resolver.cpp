@@ -342,9 +342,11 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
 
 /// Energy that friction of resting contact has dissipated in this step and that impulses may
 /// return: less normal impulse leaves less friction. Half of it by the slip at the end, which may
-/// be faster than during the step.
+/// be faster than during the step. None where an impact, or impulses of this instant, act too.
 double ImpactResolver::returnable(std::span<const Row> rows) const {
   double sum = 0.0;
+  for (const Row& row : rows)
+    if (rows_[row.impact].course || settled_[row.impact].normal != 0.0) return 0.0;
   for (std::size_t i = 0; i + 2 < rows.size(); ++i) {
     if (!rows[i + 1].has_friction || rows[i].has_friction) continue;
     const Impact& impact = rows_[rows[i].impact].impact;
