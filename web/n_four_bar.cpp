@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The N-four-bar mechanism with 40 cells, 1 s in steps of 10 ms: prints where B0 is, and the hash
-// of the motion of all bodies. scripts/web.sh compares a web page's digits with this machine's.
+// of the motion of all bodies. scripts/web.sh compares them between WebAssembly and a native build.
 #include <cstdio>
 #include <exception>
 #include <string>

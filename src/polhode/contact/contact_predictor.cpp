@@ -40,7 +40,7 @@ struct PredictedBody {
   Mat3 inverse_inertia = Mat3::Zero();  ///< World [1/(kg m²)].
   const Mat6* response = nullptr;  ///< With loads instead of both: increment by a wrench over K.
   double reach = 0.0;              ///< Distance of its points from the centre of mass [m].
-  double moved = 0.0;              ///< Path of its points by all forces, at most [m].
+  double moved = 0.0;              ///< Bound of the path of its points by all forces [m].
 
   void move(const Vec3& u, const Vec3& theta) {
     increment.head<3>() += u;

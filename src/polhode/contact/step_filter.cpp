@@ -66,15 +66,15 @@ struct PathSeenFromB {
           (a.r_n1 + part * x_a.head<3>() + w.L_a * Z - b.r_n1 - part * x_b.head<3>());
     return w;
   }
-  /// Longest way along this part of the increments, at a distance of the point from the centre of
+  /// Bound of the length of this part of the path, for a distance of the point from the centre of
   /// mass of a [m].
-  [[nodiscard]] double way(double part, double distance) const {
+  [[nodiscard]] double length(double part, double distance) const {
     return part * ((x_a.head<3>() - x_b.head<3>()).norm() + x_a.tail<3>().norm() * distance);
   }
   /// Bound of the distance from the chord of the path from y [m].
   [[nodiscard]] double bulge(double part, const Vec3& y, double distance) const {
     const double turn_a = part * x_a.tail<3>().norm(), turn_b = part * x_b.tail<3>().norm();
-    const double far = way(part, distance);
+    const double far = length(part, distance);
     return 0.25 *
            (turn_a * turn_a * distance + turn_b * turn_b * (y.norm() + far) + 2.0 * turn_b * far);
   }

@@ -17,9 +17,9 @@ namespace {
 /// largest angle between their normals.
 constexpr double kFlat = 1e-3;
 
-/// Several points as one: columns of impulses, and means of velocities, along a common normal and
-/// two common tangents. Normal impulses are distributed so that all normal velocities change alike;
-/// tangential ones are equal.
+/// Equivalent single point of several: columns of impulses, and means of velocities, along a common
+/// normal and two common tangents. Normal impulses are distributed so that all normal velocities
+/// change alike; tangential ones are equal.
 struct OnePoint {
   Mat impulses;  ///< 3m x 3: of all rows, by unit impulses of the one point.
   Mat means;     ///< 3m x 3: its velocities are means' times those of all rows.
@@ -99,15 +99,15 @@ bool ImpactResolver::follow_flat(std::vector<Row>& rows, std::vector<Vec6>& v) c
         impact.across.dot(r.impact.along), impact.across.dot(r.impact.across);
     turns.push_back(turn);
   }
-  const OnePoint one = one_point(K, turns);
   const Vec before = now - K * given;
   for (Eigen::Index i = 0; i < m; ++i)
     if (!(std::abs(before[3 * i] - before[0]) <= kFlat * std::abs(before[0]))) return false;
-  if (!(one.mobility(0, 0) > 0.0)) return false;
   if (friction_alone(*course)) {
     apply_friction(rows, v);
     return true;
   }
+  const OnePoint one = one_point(K, turns);
+  if (!(one.mobility(0, 0) > 0.0)) return false;
   ImpactCourse whole = *course;
   whole.stored_n = stored_n;
   whole.stored_n1 = stored_n1;

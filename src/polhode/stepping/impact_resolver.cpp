@@ -340,9 +340,10 @@ void ImpactResolver::follow(std::vector<Row>& rows, std::vector<Vec6>& v) const 
   rows[2].apply(impulse[2], v);
 }
 
-/// Energy that friction of resting contact has dissipated in this step and that impulses may
-/// return: less normal impulse leaves less friction. Half of it by the slip at the end, which may
-/// be faster than during the step. None where an impact, or impulses of this instant, act too.
+/// Part of the dissipation by friction of resting contacts in this step that their impulses may
+/// return: with less normal force there is less friction. Half of what follows from the slip at the
+/// end, which may be up to twice the mean slip of the step. None where an impact, or an earlier
+/// impulse of this instant, acts as well.
 double ImpactResolver::returnable(std::span<const Row> rows) const {
   double sum = 0.0;
   for (const Row& row : rows)

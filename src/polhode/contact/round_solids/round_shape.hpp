@@ -29,7 +29,7 @@ template <class T>
   return x;
 }
 
-/// The same for the direction n in the world.
+/// Support point of that sum for a direction n in the world.
 template <class T>
 [[nodiscard]] V3<T> of_ellipsoid(const Vec3& B, const V3<T>* axes, const V3<T>& n) {
   const T components[3] = {dot(axes[0], n), dot(axes[1], n), dot(axes[2], n)};

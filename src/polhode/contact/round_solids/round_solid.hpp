@@ -15,7 +15,7 @@ struct CurvedSupport {
   Mat3 D;
 };
 
-/// What a kind of round solid computes with numbers of one type.
+/// Gap and support function of a kind of round solid, for numbers of one type.
 template <class T>
 struct RoundFormulas {
   /// Gap of a ball of radius rho around the point x against the solid b.

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// The same force on each node [N]; absent components are zero.
+/// Equal forces on all nodes [N]; absent components are zero.
 /// @param name  Path of the load in the user's model.
 /// @param X     Reference positions of all nodes [m].
 /// @throws InputError if there are no nodes.
