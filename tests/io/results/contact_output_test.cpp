@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <utility>
 
 #include <polhode/core/error.hpp>
 #include <polhode/io/read/read_model.hpp>
@@ -114,10 +116,14 @@ TEST(ContactOutput, ARunGoesOnFromACheckpointBitForBit) {
 }
 
 TEST(ContactOutput, ReactionsAndAccelerationsAtAnInstantTakeTheForcesOfContact) {
-  Simulation simulation(read_model_text(kModel, "m.yaml"));
-  simulation.run();
-  const int block = simulation.model().body_index("block");
-  EXPECT_LT(simulation.point(block, Vec3::Zero()).acceleration.norm(), 1e-6) << "it rests";
+  // Half a second after it stopped the block still creeps in its bristles, the less the finer.
+  for (const auto& [step, bound] : {std::pair{"5 ms", 1e-5}, {"0.5 ms", 1e-9}}) {
+    Simulation simulation(
+        read_model_text(kModel, "m.yaml", {std::string("analysis.step=") + step}));
+    simulation.run();
+    const int block = simulation.model().body_index("block");
+    EXPECT_LT(simulation.point(block, Vec3::Zero()).acceleration.norm(), bound) << step;
+  }
 }
 
 TEST(ContactOutput, NumericalDampingIsAcceptedWithAWarning) {
