@@ -8,6 +8,7 @@
 
 #include <polhode/core/error.hpp>
 #include <polhode/engines/contact_cg_engine.hpp>
+#include <polhode/equations/line_search.hpp>
 #include <polhode/kernels/dispatch.hpp>
 
 namespace polhode {
@@ -24,14 +25,13 @@ constexpr double kFrictionBelow = 1.0;
 constexpr int kCrowdDirections = 3;
 /// Remaining part of the residual above which an increment needs that coupling of friction.
 constexpr double kSlow = 0.2;
-constexpr int kMaxCuts = 2;
 /// Part of the target residual above which bodies are still moved, together with others within so
 /// many contacts of them. If these are most of all bodies, all are moved.
 constexpr double kLate = 0.02, kMaxCrowd = 0.7;
 constexpr int kRings = 2;
-/// Part of the merit by which an increment has to reduce it. An increment with hardly any reduction
-/// alternates between sticking and sliding: half of it gives nearly the whole reduction.
-constexpr double kDecrease = 0.25;
+/// Line search that asks for a considerable reduction: an increment with hardly any alternates
+/// between sticking and sliding, and half of it gives nearly the whole reduction.
+constexpr LineSearchRule kReduceMuch{0.25, 2, 0.1, 0.5, 0.25};
 constexpr double kCrowdRoundOff = 4.4e-16;
 /// Remaining violation of joint rows that is accepted if iterations do not reduce it, as a part of
 /// ℓ.
@@ -378,7 +378,7 @@ Iteration ContactCgEngine::iterate(const State& state, Trial& trial, bool, doubl
   }
   ++searches_;
   contacts_->cover(steps_, trial.context, x_);
-  double part = std::min(damping, contacts_->filter(steps_, x_));
+  const double most = std::min(damping, contacts_->filter(steps_, x_));
   const double before = merit_, residual_before = residual_,
                per_length = 1.0 / system_->length_scale();
   double at_stake = 0.0;
@@ -386,7 +386,8 @@ Iteration ContactCgEngine::iterate(const State& state, Trial& trial, bool, doubl
     at_stake += sizes_[b];
     start_[b] << steps_[b].u, steps_[b].theta;
   }
-  for (int cut = 0;; ++cut) {
+  const auto apply = [&](double part) {
+    done.applied = part;
     done.increment = done.rotation = 0.0;
     for (const int b : moving_) {
       const Vec3 D_r = x_[b].head<3>(), D_theta = x_[b].tail<3>();
@@ -400,15 +401,11 @@ Iteration ContactCgEngine::iterate(const State& state, Trial& trial, bool, doubl
       trial.lambda[row_number_[i]] =
           start_lambda_[i] + part * cg_.multipliers()[static_cast<Eigen::Index>(i)];
     evaluate(state, trial);
-    const double left = at_stake - (before - merit_);
-    if (cut == kMaxCuts || left <= (1.0 - kDecrease * part) * at_stake || residual_ < enough_)
-      break;
-    // minimum of a parabola
-    const double best = at_stake / (left - (1.0 - 2.0 * part) * at_stake) * part;
-    part *= std::isfinite(merit_) ? std::clamp(best, 0.1, 0.5) : 0.25;
-  }
-  done.applied = part;
-  if (part == 1.0 && residual_before < kFrictionBelow)
+    return done.increment;
+  };
+  const auto merit_left = [&] { return residual_ < enough_ ? -1.0 : at_stake - (before - merit_); };
+  search_along(kReduceMuch, at_stake, most, apply, merit_left);
+  if (done.applied == 1.0 && residual_before < kFrictionBelow)
     slow_ = slow_ || residual_ > kSlow * residual_before;
   // The residual decides: the increment is no measure of the next one.
   if (residual_ < enough_ && rows_hold()) {

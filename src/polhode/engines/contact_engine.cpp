@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <polhode/engines/contact_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
-#include <polhode/equations/merit_search.hpp>
+#include <polhode/equations/line_search.hpp>
 #include <polhode/equations/node_motion.hpp>
 
 namespace polhode {
+
+namespace {
+
+/// Scaled residual that is round-off, as a part of ℓ.
+constexpr double kRoundOff = 1e-14;
+
+}  // namespace
 
 ContactEngine::ContactEngine(const System& system, const std::string& solver, MomentumRate form)
     : system_(&system),
@@ -60,20 +67,22 @@ Iteration ContactEngine::iterate(const State& state, Trial& trial, bool refactor
   }
   done.solved = true;
   const Trial start = trial;
-  MeritSearch search(merit_of_bodies(*system_, rhs_), std::min(damping, touching_.filter()));
-  for (;;) {
+  const auto apply = [&](double part) {
+    trial.blocks = start.blocks;
+    trial.lambda = start.lambda;
     done.increment = done.rotation = 0.0;
-    done.applied = search.part();
-    apply_increments(*system_, state, trial, x_, search.part(), done, worst_body_);
-    if (!search.wants(done.increment)) break;
+    done.applied = part;
+    apply_increments(*system_, state, trial, x_, part, done, worst_body_);
+    return done.increment;
+  };
+  const auto merit = [&] {
     assemble(state, trial, false);
     const double after = merit_of_bodies(*system_, rhs_);
     const double size = rhs_.lpNorm<Eigen::Infinity>();
-    if (std::isfinite(after) && size < 1e-14 * system_->length_scale()) break;
-    if (search.accepts(after)) break;
-    trial.blocks = start.blocks;
-    trial.lambda = start.lambda;
-  }
+    return std::isfinite(after) && size < kRoundOff * system_->length_scale() ? -1.0 : after;
+  };
+  search_along(kReduceMerit, merit_of_bodies(*system_, rhs_), std::min(damping, touching_.filter()),
+               apply, merit);
   return done;
 }
 

@@ -6,7 +6,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/engines/coupled_engine.hpp>
 #include <polhode/engines/sparse_engine.hpp>
-#include <polhode/equations/merit_search.hpp>
+#include <polhode/equations/line_search.hpp>
 
 namespace polhode {
 
@@ -19,8 +19,6 @@ constexpr int kFactorAlways = 3000;
 constexpr double kWorstContraction = 0.5;
 constexpr int kCoupledPatience = 8;
 constexpr double kStepChange = 0.2;
-/// Largest number of halvings of an increment that inverts elements.
-constexpr int kCoupledHalvings = 8;
 /// Increment below which no element is inverted: no iterate is stored.
 constexpr double kHarmless = 1e-3;
 /// Largest number of renewals of the contact pairs in one iteration.
@@ -87,11 +85,18 @@ bool CoupledEngine::must_factor(const Trial& trial, bool refactor) const {
 
 bool CoupledEngine::take_elements(const State& state, Trial& trial, bool factor, Iteration& done) {
   ElementReport elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
-  for (int i = 0; i < kCoupledHalvings && before_.kept() && !(elements.least_volume > 0.0); ++i) {
-    retreat(state, trial, 0.5);
-    elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
-  }
   if (elements.least_volume > 0.0) return true;
+  if (before_.kept()) {
+    const auto apply = [&](double part) {
+      retreat(state, trial, part / part_);
+      return last_increment_;
+    };
+    const auto merit = [&] {
+      elements = nodes_.assemble(state, trial, factor, condensation_.turns(trial));
+      return elements.least_volume > 0.0 ? kAdmissible : kInadmissible;
+    };
+    if (search_along(kUntilAdmissible, 1.0, 0.5 * part_, apply, merit)) return true;
+  }
   done.reason = format("{} is inverted (det F = {:.2g})",
                        system_->nodes().element_name(nodes_.worst_group(), elements.worst_element),
                        elements.least_volume);
@@ -174,31 +179,34 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   else
     before_.forget();
   part_ = touching_ ? std::min(damping, touching_->filter()) : damping;
-  const double before = searches_ ? merit(state, trial) : 0.0;
-  move(state, trial, part_, done);
-  move_nodes(state, trial, part_, done);
-  if (!std::isfinite(done.increment)) done.solved = false;
-  if (searches_ && done.solved) {
-    search(state, trial, before, done);
-    done.applied = part_;
-  }
+  apply(state, trial, done);
   ++step_iterations_;
   if (last_increment_ > 0.0 && !factor) contraction_ = done.increment / last_increment_;
   last_increment_ = done.increment;
   return done;
 }
 
-/// Line search on the merit; it is infinite for inverted elements, which have no residual.
-void CoupledEngine::search(const State& state, Trial& trial, double before, Iteration& done) {
-  MeritSearch search(before, part_);
-  while (search.wants(done.increment)) {
+/// Applies part_ of the increment; with contacts less of it, until the merit decreases. Inverted
+/// elements have no residual.
+void CoupledEngine::apply(const State& state, Trial& trial, Iteration& done) {
+  const double before = searches_ ? merit(state, trial) : 0.0;
+  move(state, trial, part_, done);
+  move_nodes(state, trial, part_, done);
+  if (!std::isfinite(done.increment)) done.solved = false;
+  if (!searches_ || !done.solved) return;
+  const double round_off = kNoForce * std::pow(system_->length_scale(), 2) * system_->mean_mass();
+  const auto shorten = [&](double part) {
+    if (part != part_) retreat(state, trial, part / part_);
+    return done.increment;
+  };
+  const auto reduced = [&] {
     const ElementReport elements = nodes_.assemble(state, trial, false, condensation_.turns(trial));
-    const double after =
-        elements.least_volume > 0.0 ? merit(state, trial) : std::numeric_limits<double>::infinity();
-    if (after < kNoForce * std::pow(system_->length_scale(), 2) * system_->mean_mass()) return;
-    if (search.accepts(after)) return;
-    retreat(state, trial, search.part() / part_);
-  }
+    if (!(elements.least_volume > 0.0)) return kInadmissible;
+    const double after = merit(state, trial);
+    return after < round_off ? -1.0 : after;
+  };
+  search_along(kReduceMerit, before, part_, shorten, reduced);
+  done.applied = part_;
 }
 
 /// @eq{eq:ga-Newton-iterations}

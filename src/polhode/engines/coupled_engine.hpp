@@ -65,8 +65,7 @@ class CoupledEngine final : public NewtonEngine {
   [[nodiscard]] bool solve(const State& state, const Trial& trial);
   /// R·M⁻¹R of bodies, rows and nodes, whose residuals have been assembled.
   [[nodiscard]] double merit(const State& state, const Trial& trial);
-  /// Shortens an increment that raises the merit.
-  void search(const State& state, Trial& trial, double before, Iteration& done);
+  void apply(const State& state, Trial& trial, Iteration& done);
   void move(const State& state, Trial& trial, double damping, Iteration& done);
   void move_nodes(const State& state, Trial& trial, double damping, Iteration& done);
   void shift_nodes(const State& state, Trial& trial) const;
@@ -77,7 +76,7 @@ class CoupledEngine final : public NewtonEngine {
   NodeSystem nodes_;
   NewtonSystem newton_;
   std::optional<BodyContactAssembler> touching_;  ///< If bodies may be in contact.
-  bool searches_ = false;                         ///< Line search on the merit, see MeritSearch.
+  bool searches_ = false;                         ///< Line search on the merit.
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Vec6> shares_;
   std::vector<double> du_;

@@ -7,12 +7,15 @@
 #include <Eigen/LU>
 
 #include <polhode/engines/impulse_newton.hpp>
+#include <polhode/equations/line_search.hpp>
 
 namespace polhode {
 
 namespace {
 
-constexpr int kMaxIterations = 60, kMaxHalvings = 8;
+constexpr int kMaxIterations = 60;
+/// Halvings of a step that exceeds the merits of previous iterates.
+constexpr LineSearchRule kHalve{0.0, 8, 0.5, 0.5, 0.5};
 /// Number of previous iterates whose merit must not be exceeded; it may rise above the last one.
 constexpr std::size_t kLookBack = 5;
 /// Part of the diagonal of D added to it, so that points that share a load become unique.
@@ -59,11 +62,12 @@ class Solution {
       const Vec step = J_.partialPivLu().solve(-F_);
       if (!step.allFinite()) return false;
       const double allowed = *std::max_element(merits.begin(), merits.end());
-      double part = 1.0;
-      Vec next = p_ + step;
-      for (int k = 0; k < kMaxHalvings && !(residual(next, false) < allowed); ++k)
-        next = p_ + (part *= 0.5) * step;
-      p_ = next;
+      const Vec start = p_;
+      const auto apply = [&](double part) {
+        p_ = start + part * step;
+        return part;
+      };
+      search_along(kHalve, allowed, 1.0, apply, [&] { return residual(p_, false); });
     }
     return false;
   }

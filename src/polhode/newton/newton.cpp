@@ -4,8 +4,7 @@
 #include <limits>
 
 #include <polhode/core/format.hpp>
-#include <polhode/equations/iterate_snapshot.hpp>
-#include <polhode/newton/barrier_guard.hpp>
+#include <polhode/newton/globalization.hpp>
 #include <polhode/newton/newton.hpp>
 
 namespace polhode {
@@ -44,50 +43,9 @@ constexpr double kNewtonDiverged = 1e3;
 /// Tolerance on the sum of further increments with a reused factorisation, as a part of the
 /// tolerance.
 constexpr double kLeftByKeptFactor = 1e-4;
-/// Increment above which the line search is active.
-constexpr double kLarge = 0.05;
 /// Tolerated leak of the multipliers, Σ|λ g|, as a part of the energy.
 constexpr double kEnergyLeak = 1e-14;
 constexpr double kNewtonRoundOff = 4.4e-16;
-
-/// Line search: returns to the previous iterate after an increment that increased, and takes less
-/// of it.
-class LineSearch {
- public:
-  LineSearch(bool active, const System& system, const State& state, Trial& trial,
-             NewtonEngine& engine)
-      : active_(active), system_(system), state_(state), trial_(trial), engine_(engine) {}
-
-  [[nodiscard]] double damping() const { return damping_; }
-
-  /// Before an iteration: stores the iterate if the last increment was large.
-  void before(double last_increment) {
-    kept_ = active_ && last_increment > kLarge;
-    if (!kept_) return;
-    engine_.end_step(state_, trial_);  // stores the multipliers in the trial
-    iterate_.keep(system_, trial_);
-  }
-  /// After an iteration: true if it was undone.
-  bool undid(double increment, double last_increment) {
-    if (!kept_ || increment <= 2.0 * last_increment || damping_ < 0.2) {
-      damping_ = std::min(1.0, 2.0 * damping_);
-      return false;
-    }
-    iterate_.restore(system_, trial_);
-    engine_.resume(state_, trial_);
-    damping_ *= 0.5;
-    return true;
-  }
-
- private:
-  bool active_, kept_ = false;
-  const System& system_;
-  const State& state_;
-  Trial& trial_;
-  NewtonEngine& engine_;
-  IterateSnapshot iterate_;
-  double damping_ = 1.0;
-};
 
 }  // namespace
 
@@ -97,12 +55,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   report.t = trial.context.t_n;
   report.dt = trial.context.dt;
   report.increments.reserve(kUsualIterations);
-  BarrierGuard guard(system, state, trial, engine);
-  guard.hold_prediction();
+  Globalization globalization(system, state, trial, engine, options.line_search);
+  globalization.limit_prediction();
   engine.begin_step(state, trial);
   std::fill(trial.lambda_centre.begin(), trial.lambda_centre.end(), 0.0);
 
-  LineSearch search(options.line_search, system, state, trial, engine);
   bool close = false;           // an increment was below the tolerance
   bool iterated_again = false;  // an extra iteration followed
   int slow = 0;                 // consecutive iterations that hardly contracted
@@ -124,14 +81,11 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
   };
   for (int it = 0; it < most_iterations(); ++it) {
     const double last = report.increments.empty() ? 0.0 : report.increments.back();
-    search.before(last);
     const bool refactor = options.jacobian == JacobianPolicy::every_iteration ||
                           (options.jacobian == JacobianPolicy::automatic
                                ? !close || slowly_contracting
                                : (options.jacobian == JacobianPolicy::every_step && it == 0));
-    guard.before();
-    const Iteration done = guard.hold(engine.iterate(state, trial, refactor, search.damping()),
-                                      refactor, search.damping());
+    const Iteration done = globalization.iterate(last, refactor);
     ++report.iterations;
     if (!done.solved) {
       fail(done.reason.empty() ? "the linear system is singular, or a value is not finite"
@@ -141,7 +95,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       return report;
     }
     const double e = done.increment;
-    if (!guard.near() && search.undid(e, last)) continue;
+    if (globalization.undone()) continue;
     report.increments.push_back(e);
     report.rotation = done.rotation;
     if (done.applied < 1.0) {  // limited by barriers or contacts: no measure of convergence
@@ -150,7 +104,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
       continue;
     }
     if (e > kNewtonDiverged) return fail("diverges"), report;
-    slow = last > 0.0 && !close && !engine.may_grow() && !guard.near() && e > 0.9 * last &&
+    slow = last > 0.0 && !close && !engine.may_grow() && !globalization.near() && e > 0.9 * last &&
                    e > options.tolerance
                ? slow + 1
                : 0;
@@ -174,7 +128,7 @@ NewtonReport solve_newton(const System& system, const State& state, Trial& trial
     double remainder = e * contraction * contraction;
     if (system.only_constraints()) remainder = std::min(remainder, kCurvature * e * last);
     slowly_contracting = iterated_again && contraction > kSlowContraction;
-    const bool leaves = guard.near() && e > kLeaves * last;
+    const bool leaves = globalization.near() && e > kLeaves * last;
     if (!leaves) stalled = iterated_again && !kept && e > kGains * least ? stalled + 1 : 0;
     if (stalled == 0) least = e;
     if (iterated_again && !kept && remainder > left && stalled < kStalled) continue;

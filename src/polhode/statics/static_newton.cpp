@@ -5,6 +5,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/equations/iterate_snapshot.hpp>
+#include <polhode/equations/line_search.hpp>
 #include <polhode/equations/node_motion.hpp>
 #include <polhode/math/quaternion.hpp>
 #include <polhode/statics/static_newton.hpp>
@@ -20,8 +21,6 @@ constexpr double kFloor = 16.0;
 constexpr double kRotationCap = 1.9;
 /// Increment, in sizes of the model, above which the iteration has diverged.
 constexpr double kStaticDiverged = 1e6;
-/// Largest number of halvings of an increment that inverts elements.
-constexpr int kStaticHalvings = 8;
 /// Increment below which stagnation is rounding, if the residual is at rounding too.
 constexpr double kClose = 1e-5;
 /// Residual of a constraint that counts as satisfied [m or -].
@@ -263,6 +262,35 @@ double StaticNewton::apply(double part, StaticStep& step) {
   return most;
 }
 
+/// Applies part of x_ and assembles there: less of it as long as elements are inverted.
+/// @returns whether none is.
+bool StaticNewton::search(double most, StaticStep& step, ElementReport& elements) {
+  const bool nodes = !system_->nodes().empty();
+  const State before = nodes ? work_ : State{};
+  const std::vector<double> unknowns = element_unknowns(*system_, trial_);
+  double applied = 0.0, increment = 0.0;
+  const auto shorten = [&](double part) {
+    if (applied == 0.0) {
+      increment = apply(part, step);
+      step.increments.push_back(increment);
+    } else {
+      const std::vector<double> inside =
+          part_way(unknowns, element_unknowns(*system_, trial_), part / applied);
+      work_ = before;
+      apply(part, step);
+      set_element_unknowns(*system_, inside, trial_);
+    }
+    applied = part;
+    return increment;
+  };
+  const auto merit = [&] {
+    if (!(increment < kStaticDiverged)) return kAdmissible;
+    elements = assemble();
+    return elements.least_volume > 0.0 ? kAdmissible : kInadmissible;
+  };
+  return search_along(kUntilAdmissible, 1.0, most, shorten, merit);
+}
+
 StaticStep StaticNewton::solve(State& state, double load_factor, const State* start) {
   StaticStep step;
   step.load_factor = load_factor;
@@ -278,25 +306,13 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     step.reason = std::move(reason);
     return step;
   };
-  State before;
-  std::vector<double> unknowns_before;
-  double part = 1.0;
-  int halvings = 0;
+  ElementReport elements = assemble();
+  const auto inverted = [&] {
+    step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
+    return fail(format("an element is inverted (det F = {:.2g})", elements.least_volume));
+  };
+  if (!(elements.least_volume > 0.0)) return inverted();
   for (;;) {
-    const ElementReport elements = assemble();
-    if (!(elements.least_volume > 0.0)) {
-      step.worst = system_->nodes().element_name(nodes_.worst_group(), elements.worst_element);
-      if (step.iterations == 0 || ++halvings > kStaticHalvings)
-        return fail(format("an element is inverted (det F = {:.2g})", elements.least_volume));
-      const std::vector<double> inside =
-          part_way(unknowns_before, element_unknowns(*system_, trial_), 0.5);
-      work_ = before;
-      part *= 0.5;
-      apply(part, step);
-      set_element_unknowns(*system_, inside, trial_);
-      continue;
-    }
-    halvings = 0;
     const Balance balance = balanced(step);
     aim(given_);
     const bool arrived =
@@ -320,14 +336,10 @@ StaticStep StaticNewton::solve(State& state, double load_factor, const State* st
     double turn = 0.0;
     for (int b = 0; b < system_->body_count(); ++b)
       turn = std::max(turn, x_.segment<3>(6 * b + 3).norm());
-    part = std::min(turn > kRotationCap ? kRotationCap / turn : 1.0, free_part_of_increment());
-    if (!system_->nodes().empty()) {
-      before = work_;
-      unknowns_before = element_unknowns(*system_, trial_);
-    }
-    const double e = apply(part, step);
-    step.increments.push_back(e);
-    if (!(e < kStaticDiverged)) return fail("diverges");
+    const double most =
+        std::min(turn > kRotationCap ? kRotationCap / turn : 1.0, free_part_of_increment());
+    if (!search(most, step, elements)) return inverted();
+    if (!(step.increments.back() < kStaticDiverged)) return fail("diverges");
   }
   if (const std::string refusal = refused(step); !refusal.empty()) return fail(refusal);
   step.converged = true;

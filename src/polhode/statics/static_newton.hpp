@@ -85,6 +85,7 @@ class StaticNewton {
   [[nodiscard]] double free_part(const State& at, const double* from, const double* to) const;
   [[nodiscard]] double free_part_of_increment();
   double apply(double part, StaticStep& step);
+  [[nodiscard]] bool search(double most, StaticStep& step, ElementReport& elements);
   void commit(State& state, double load_factor);
   [[nodiscard]] std::string refused(StaticStep& step) const;
   void count_unstable(StaticStep& step);

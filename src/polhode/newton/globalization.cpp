@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <polhode/newton/barrier_guard.hpp>
+#include <polhode/newton/globalization.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,10 @@ namespace {
 constexpr double kLeave = 0.1;
 /// Reduction of step fractions, as the path to a barrier is not straight.
 constexpr double kShorterWay = 0.98;
-constexpr int kGuardRepeats = 20;
+constexpr int kMaxRepeats = 20;
+/// Increment above which growth is undone, factor by which it has to grow, and damping below which
+/// it is accepted.
+constexpr double kLarge = 0.05, kGrowth = 2.0, kLeastDamping = 0.2;
 
 double smallest(const std::vector<double>& clearances) {
   double least = std::numeric_limits<double>::infinity();
@@ -24,17 +27,21 @@ double smallest(const std::vector<double>& clearances) {
 
 }  // namespace
 
-BarrierGuard::BarrierGuard(const System& system, const State& state, Trial& trial,
-                           NewtonEngine& engine)
-    : system_(system), state_(state), trial_(trial), engine_(engine) {
+Globalization::Globalization(const System& system, const State& state, Trial& trial,
+                             NewtonEngine& engine, bool undoes_growth)
+    : system_(system),
+      state_(state),
+      trial_(trial),
+      engine_(engine),
+      undoes_growth_(undoes_growth) {
   const Nodes& nodes = system.nodes();
   for (int g = 0; g < nodes.group_count(); ++g)
     if (const BarrierConstraint* points = nodes.group(g).barrier_constraint())
       points_.push_back({points, state.element_history.data() + nodes.first_history(g)});
-  idle_ = system.barriers().empty() && points_.empty();
+  barriers_ = !system.barriers().empty() || !points_.empty();
 }
 
-void BarrierGuard::measure(std::vector<double>& clearance) const {
+void Globalization::measure(std::vector<double>& clearance) const {
   clearance.clear();
   for (int i : system_.barriers()) {
     const InteractionRef& ref = system_.interactions()[i];
@@ -46,12 +53,12 @@ void BarrierGuard::measure(std::vector<double>& clearance) const {
   for (const Watched& w : points_) w.points->clearances(step, w.history, clearance);
 }
 
-void BarrierGuard::measure_start() {
+void Globalization::measure_start() {
   measure(from_);
   if (!points_.empty()) from_x_ = trial_.node_x;
 }
 
-double BarrierGuard::part() const {
+double Globalization::admissible_part() const {
   double most = 1.0;
   for (std::size_t i = 0; i < from_.size(); ++i) {
     const double leave = kLeave * std::min(from_[i], 1.0);
@@ -70,8 +77,8 @@ double BarrierGuard::part() const {
   return most;
 }
 
-void BarrierGuard::hold_prediction() {
-  if (idle_) return;
+void Globalization::limit_prediction() {
+  if (!barriers_) return;
   const std::vector<TrialBlock> predicted = trial_.blocks;
   const std::vector<double> node_u = trial_.node_u;
   const auto go = [&](double part) {
@@ -86,36 +93,55 @@ void BarrierGuard::hold_prediction() {
   measure_start();
   go(1.0);
   double taken = 1.0;
-  for (int repeat = 0; repeat < kGuardRepeats; ++repeat) {
-    const double fits = part();
+  for (int repeat = 0; repeat < kMaxRepeats; ++repeat) {
+    const double fits = admissible_part();
     if (fits >= 1.0) break;
-    taken = repeat + 1 < kGuardRepeats ? taken * fits : 0.0;
+    taken = repeat + 1 < kMaxRepeats ? taken * fits : 0.0;
     go(taken);
     measure(to_);
   }
 }
 
-void BarrierGuard::before() {
-  if (idle_) return;
-  measure_start();
+void Globalization::keep(double last) {
+  large_ = undoes_growth_ && last > kLarge;
+  if (barriers_) measure_start();
+  if (!barriers_ && !large_) return;
   engine_.end_step(state_, trial_);  // stores the multipliers in the trial
   iterate_.keep(system_, trial_);
 }
 
-Iteration BarrierGuard::hold(Iteration done, bool refactor, double damping) {
-  if (idle_) return done;
+void Globalization::go_back() {
+  iterate_.restore(system_, trial_);
+  engine_.resume(state_, trial_);
+}
+
+Iteration Globalization::limit(Iteration done, bool refactor) {
+  if (!barriers_) return done;
   double applied = 1.0;
-  for (int repeat = 0; done.solved && repeat < kGuardRepeats; ++repeat) {
+  for (int repeat = 0; done.solved && repeat < kMaxRepeats; ++repeat) {
     measure(to_);
-    const double fits = part();
+    const double fits = admissible_part();
     if (fits >= 1.0) break;
     applied *= fits;
-    iterate_.restore(system_, trial_);
-    engine_.resume(state_, trial_);
-    done = engine_.iterate(state_, trial_, refactor, damping * applied);
+    go_back();
+    done = engine_.iterate(state_, trial_, refactor, damping_ * applied);
   }
   near_ = std::min(smallest(from_), smallest(to_)) < 1.0;
   done.applied *= applied;
+  return done;
+}
+
+void Globalization::undo_growth(double increment, double last) {
+  undone_ = large_ && increment > kGrowth * last && damping_ >= kLeastDamping;
+  damping_ = undone_ ? 0.5 * damping_ : std::min(1.0, 2.0 * damping_);
+  if (undone_) go_back();
+}
+
+Iteration Globalization::iterate(double last, bool refactor) {
+  keep(last);
+  undone_ = false;
+  const Iteration done = limit(engine_.iterate(state_, trial_, refactor, damping_), refactor);
+  if (done.solved && !near_) undo_growth(done.increment, last);
   return done;
 }
 
