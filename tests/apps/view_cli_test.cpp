@@ -55,7 +55,7 @@ TEST_F(ViewCommand, SaysWhatIsWrong) {
   EXPECT_EQ(run({"view", "model.results", "--set", "a=1", "--html", "x.html"}).code, 2);
 }
 
-/// Answer of a server on the loopback address.
+/// Response of a server on the loopback address to a request.
 std::string ask(int port, const std::string& request) {
   const int s = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces that code gives as functions of the motion: tangents, work, parts that stand elsewhere.
+// Forces given by code as functions of the motion: tangents, work, parts at other poses.
 #include <cmath>
 
 #include <loads/load_samples.hpp>
@@ -11,7 +11,7 @@
 namespace polhode::test::load_function_tests {
 namespace {
 
-/// Depends on all that it may read, none of it linearly.
+/// A function that depends nonlinearly on all of its arguments.
 PointFunction anything(bool with_derivative) {
   PointFunction f;
   f.value = [](const PointReading& x) -> Vec3 {
