@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An iterate that turns elements inside out is gone back from before the step is given up.
+// Step length of Newton's method where an iterate inverts elements: it is reduced before the step
+// is rejected.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +91,7 @@ TEST(Retreat, SavesALoadStepToo) {
   }
 }
 
-// A material that gives way under so much pressure: there is nothing to find.
+// A pressure above the maximum that the material can carry: there is no solution.
 TEST(Retreat, EndsWithTheWorstElementNamedWhereThereIsNoWay) {
   System system;
   press(system, "hex8_standard", kLinear, 1.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids against each other over one step.
+// Contact between surfaces of solids over one step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTolerance = 0.3;
 
-/// Nodes of two plates of faces above each other, the second one being met, that both move.
+/// Nodes of two moving plates of faces above each other; the second one is the triangulated side.
 struct Scene : MovingNodes {
   std::vector<LoadedFaces> lower, upper;
   std::vector<int> carriers;
@@ -93,8 +93,8 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
       }
 }
 
-// Increments of Newton follow the force where a point slides from one triangle to the next: along a
-// way of half a plate it has no jump, so its changes from place to place halve with their distance.
+// Continuity of the force where a point slides from one triangle to the next: along a path of half
+// a plate its changes between positions halve with their distance.
 // @tests{mesh-friction}
 TEST(SolidContact, RubsWithoutJumpsFromTriangleToTriangle) {
   for (const unsigned seed : {1U, 2U, 3U}) {
@@ -173,7 +173,7 @@ TEST(SolidContact, KeepsMomentaWhenStepsDampToo) {
   EXPECT_LT(moment.norm(), 1e-12);
 }
 
-/// Plates of three and of four elements, parallel: a uniform gap loads every node by its share of
+/// Plates of three and of four elements, parallel: a uniform gap loads every node with its part of
 /// the pressure.
 TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
   Scene s;
@@ -215,7 +215,7 @@ TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
     still.context.dt = 0.0;
     return contact.work(still.start(), history.data(), nullptr).stored;
   };
-  // To another height; the force on the upper plate.
+  // Step to another height; returns the force on the upper plate.
   const auto go = [&](double z) {
     s.x_n = s.x_n1;
     std::fill(s.u.begin(), s.u.end(), 0.0);
@@ -233,12 +233,12 @@ TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
   EXPECT_EQ(forces(contact, s, history).norm(), 0.0);
   EXPECT_GT(go(0.3), 0.0);
   EXPECT_GT(stored(), 0.0);
-  EXPECT_GT(go(0.4), 0.0) << "given back";
+  EXPECT_GT(go(0.4), 0.0) << "while opening";
   EXPECT_EQ(stored(), 0.0);
   EXPECT_EQ(go(0.59), 0.0) << "still within the band of others";
   EXPECT_EQ(go(0.4), 0.0);
   EXPECT_EQ(go(0.61), 0.0);
-  EXPECT_GT(go(0.4), 0.0) << "opened, and closed again";
+  EXPECT_GT(go(0.4), 0.0) << "closed again after opening";
   EXPECT_NEAR(stored(), 4.0 * law(0.0).normal.energy(0.1), 1e-12);
 }
 
@@ -260,7 +260,7 @@ TEST(SolidContact, StopsPointsThatWouldPassThrough) {
   const double most = part({0, 0, -100.0});
   EXPECT_GT(most, 0.002);
   EXPECT_LT(most, 0.0045);
-  // Farther than triangles were looked for.
+  // A displacement beyond the search radius of triangles.
   const SolidContact near = s.contact(l, 1.0);
   std::vector<double> short_sight(near.history_size());
   near.initialize(short_sight.data());
