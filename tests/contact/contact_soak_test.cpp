@@ -114,10 +114,10 @@ Outcome soak(unsigned seed, double duration) {
 }
 
 TEST(ContactSoak, RandomScenesKeepTheirBalances) {
-  const char* asked = std::getenv("POLHODE_SOAK");
-  const int scenes = asked ? std::atoi(asked) : 6;
+  const char* wanted = std::getenv("POLHODE_SOAK");
+  const int scenes = wanted ? std::atoi(wanted) : 6;
   for (int k = 1; k <= scenes; ++k) {
-    const Outcome o = soak(static_cast<unsigned>(k), asked ? 5.0 : 0.6);
+    const Outcome o = soak(static_cast<unsigned>(k), wanted ? 5.0 : 0.6);
     EXPECT_TRUE(o.finished) << "scene " << k << ": " << o.message;
     EXPECT_LT(o.rise, 1e-12) << "scene " << k;
     EXPECT_LT(o.drift, 1e-9) << "scene " << k;

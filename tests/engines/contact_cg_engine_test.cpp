@@ -10,7 +10,7 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode::crowd_engine_tests {
+namespace polhode::contact_cg_engine_tests {
 namespace {
 
 using namespace test;
@@ -55,12 +55,12 @@ double iterations_to(Scene& s, double end) {
 }
 
 TEST(ContactCgEngine, MovesAHeapAsTheDirectEngineDoes) {
-  Heap crowd(1e-9), direct(0.0);
+  Heap iterative(1e-9), direct(0.0);
   // A heap of impacts is chaotic: later the motions of the engines diverge.
-  ASSERT_TRUE(crowd.run(0.14)) << crowd.last.text();
+  ASSERT_TRUE(iterative.run(0.14)) << iterative.last.text();
   ASSERT_TRUE(direct.run(0.14)) << direct.last.text();
   for (int b = 0; b < 24; ++b)
-    EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
+    EXPECT_LT((iterative.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
 }
 
 // The remaining residual acts as a force for the time of the run; at steps below 1 ms it is
@@ -319,11 +319,11 @@ void add_joints(Scene& s) {
 
 TEST(ContactCgEngine, MovesAHeapWithJointsAsTheDirectEngineDoes) {
   for (const double dt : {2e-3, 2e-4}) {
-    Heap crowd(1e-9, add_joints, dt), direct(0.0, add_joints, dt);
-    ASSERT_TRUE(crowd.run(0.1)) << crowd.last.text();
+    Heap iterative(1e-9, add_joints, dt), direct(0.0, add_joints, dt);
+    ASSERT_TRUE(iterative.run(0.1)) << iterative.last.text();
     ASSERT_TRUE(direct.run(0.1)) << direct.last.text();
     for (int b = 0; b < 25; ++b)
-      EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b << " at " << dt;
+      EXPECT_LT((iterative.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b << " at " << dt;
   }
 }
 
@@ -371,4 +371,4 @@ TEST(ContactCgEngine, RefusesWhatIsTooStiffForIt) {
 }
 
 }  // namespace
-}  // namespace polhode::crowd_engine_tests
+}  // namespace polhode::contact_cg_engine_tests

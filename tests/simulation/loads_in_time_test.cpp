@@ -39,7 +39,7 @@ End end_of(Model model) {
   return {s.body(0).r.x(), s.body(0).v.x(), r};
 }
 
-/// Every way to choose steps, as `set(model)` and a name.
+/// All kinds of step control, as `set(model)` and a name.
 template <class Test>
 void for_all_steps(const Model& model, const Test& test) {
   for (const int order : {2, 6, 8})

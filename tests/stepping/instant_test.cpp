@@ -69,7 +69,7 @@ TEST(AssemblePositions, NamesJointsThatContradictOneAnother) {
   m.joint("right", "spherical", kGround, rod, {1.0, 0, 0});
   m.model.joints.back().Z_a = {1.2, 0.0, 0.0};
   const int other = m.body("other", {0.5, 3, 0});
-  m.joint("innocent", "spherical", kGround, other, {0, 3, 0});
+  m.joint("separate", "spherical", kGround, other, {0, 3, 0});
   const System system = m.system();
   State state = system.initial_state();
   const PositionReport report = assemble_positions(system, state);

@@ -33,8 +33,8 @@ inline std::string fault_of(const std::string& text) {
   return "";
 }
 
-/// Whether the error message of a model contains a text.
-inline bool tells(const std::string& text, const std::string& wanted) {
+/// Expects the error message of a model to contain a text. @returns whether it does.
+inline bool expect_fault(const std::string& text, const std::string& wanted) {
   const std::string fault = fault_of(text);
   EXPECT_NE(fault.find(wanted), std::string::npos) << fault;
   return fault.find(wanted) != std::string::npos;

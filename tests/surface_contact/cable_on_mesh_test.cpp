@@ -135,9 +135,9 @@ TEST(CableOnMesh, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
           EXPECT_LT(sum.norm(), 1e-12 * (1.0 + f.norm()));
           EXPECT_LT(moment.norm(), 1e-12 * (1.0 + f.norm()));
           contact.commit(s.step(), history.data(), nullptr);
-          const SurfaceReport told = contact.report(history.data());
-          EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-12 * size);
-          EXPECT_LT((told.force - on_cable).norm(), 1e-12 * (1.0 + f.norm()));
+          const SurfaceReport report = contact.report(history.data());
+          EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-12 * size);
+          EXPECT_LT((report.force - on_cable).norm(), 1e-12 * (1.0 + f.norm()));
           still.x_n = s.x_n1;
           EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored,
                       1e-12 * size);

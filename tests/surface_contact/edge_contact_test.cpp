@@ -150,7 +150,7 @@ TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
       const EdgeContact contact = s.contact(mu);
       std::vector<double> history = history_of(contact);
       Random random(seed + 10);
-      double told = 0.0;
+      double reported = 0.0;
       for (int k = 0; k < 6; ++k) {
         const Vec f = forces(contact, s, history);
         ASSERT_GT(f.norm(), 1e-3);
@@ -173,8 +173,8 @@ TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
         const SurfaceReport r = contact.report(history.data());
-        told += w.dissipated;
-        EXPECT_NEAR(r.friction_loss, told, 1e-13);
+        reported += w.dissipated;
+        EXPECT_NEAR(r.friction_loss, reported, 1e-13);
         EXPECT_LT((r.force - on_first).norm(), 1e-12);
         EXPECT_NEAR(contact.work(s.instant(true), history.data(), nullptr).stored, w.stored, 1e-12);
         const std::vector<SurfacePointReport> points =

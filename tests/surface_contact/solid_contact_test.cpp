@@ -148,11 +148,11 @@ TEST(SolidContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
         EXPECT_LT(sum.norm(), 1e-12);
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
-        const SurfaceReport told = contact.report(history.data());
-        EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-13);
+        const SurfaceReport report = contact.report(history.data());
+        EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-13);
         Vec3 on_upper = Vec3::Zero();
         for (int i = 9; i < 13; ++i) on_upper += f.segment<3>(3 * i);
-        EXPECT_LT((told.force - on_upper).norm(), 1e-12);
+        EXPECT_LT((report.force - on_upper).norm(), 1e-12);
         still.x_n = s.x_n1;
         EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
       }

@@ -296,13 +296,13 @@ TEST(SurfaceContact, DoesExactlyTheWorkItStoresAndTakes) {
       EXPECT_GE(w.dissipated, 0.0);
       EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12);
       contact.commit(s.nodes.step(), history.data(), nullptr);
-      const SurfaceReport told = contact.report(history.data());
-      EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-14);
-      EXPECT_NEAR(told.impulse, told.normal_force * s.nodes.context.dt, 1e-14);
+      const SurfaceReport report = contact.report(history.data());
+      EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-14);
+      EXPECT_NEAR(report.impulse, report.normal_force * s.nodes.context.dt, 1e-14);
       Vec3 sum = Vec3::Zero();
       for (std::size_t i = 0; i < s.X.size(); ++i)
         sum += f.segment<3>(3 * static_cast<Eigen::Index>(i));
-      EXPECT_LT((told.force - sum).norm(), 1e-13) << "on the solid";
+      EXPECT_LT((report.force - sum).norm(), 1e-13) << "on the solid";
       still.x_n = s.nodes.x_n1;
       EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Impacts of points of surfaces on rigid shapes, in whole models.
+// Impacts of points of surfaces on rigid shapes, in complete models.
 #include <gtest/gtest.h>
 
 #include <polhode/core/format.hpp>

@@ -128,11 +128,11 @@ TEST(CableFriction, GoesOnAfterARestartBitForBit) {
 }
 
 TEST(CableFriction, TellsWhatIsWrong) {
-  tells(weights(3.0, "friction: 0.2, tension: 3"),
-        "cables.rope.friction: cannot be combined with tension.");
-  tells(weights(3.0, "friction: 0.2, wraps: [1]"),
-        "cables.rope.wraps: has 1 numbers for 2 points between the ends.");
-  tells(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: requires 'friction'.");
+  expect_fault(weights(3.0, "friction: 0.2, tension: 3"),
+               "cables.rope.friction: cannot be combined with tension.");
+  expect_fault(weights(3.0, "friction: 0.2, wraps: [1]"),
+               "cables.rope.wraps: has 1 numbers for 2 points between the ends.");
+  expect_fault(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: requires 'friction'.");
 }
 
 }  // namespace polhode::test::cable_friction_tests

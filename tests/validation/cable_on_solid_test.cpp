@@ -114,7 +114,7 @@ analysis: {duration: 2 ms, step: 1 ms}
 /// Cables that start within a solid are refused, except where the cable is attached to a body to
 /// which the solid is bonded.
 TEST(CableOnSolid, RefusesStartsWithin) {
-  const auto told = [](const std::string& bonded, double height) -> std::string {
+  const auto error_of = [](const std::string& bonded, double height) -> std::string {
     try {
       Simulation(read_model_text(format(R"(
 format: 1
@@ -137,9 +137,9 @@ analysis: {{duration: 0.1 ms, step: 0.1 ms}}
     }
     return {};
   };
-  EXPECT_THAT(told("", 0.053), HasSubstr("rope in pad by 0.002 m"));
-  EXPECT_EQ(told("", 0.0552), "");
-  EXPECT_EQ(told(", bonded: {core: zmin}", 0.053), "") << "leaves the body it is attached to";
+  EXPECT_THAT(error_of("", 0.053), HasSubstr("rope in pad by 0.002 m"));
+  EXPECT_EQ(error_of("", 0.0552), "");
+  EXPECT_EQ(error_of(", bonded: {core: zmin}", 0.053), "") << "leaves the body it is attached to";
 }
 
 /// A cable that is pulled down across a soft block: the contact force balances the forces of its

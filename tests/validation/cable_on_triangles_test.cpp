@@ -185,7 +185,7 @@ analysis: {{type: statics}}
 TEST(CableOnTriangles, RefusesStartsWithin) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
-  const auto told = [&](const std::string& from, double height, const std::string& shape) {
+  const auto error_of = [&](const std::string& from, double height, const std::string& shape) {
     try {
       Simulation(read_model_text(format(R"(
 format: 1
@@ -208,12 +208,12 @@ analysis: {{duration: 1 ms, step: 1 ms}}
   const std::string box = format("{{mesh: {}}}", folder / "box.obj"),
                     field =
                         "{height_field: {spacing: 1, heights: [[0, 0, 0], [0, 0, 0], [0, 0, 0]]}}";
-  EXPECT_THAT(told("ground", 0.0, box), HasSubstr("rope in rock by 0.26 m"))
+  EXPECT_THAT(error_of("ground", 0.0, box), HasSubstr("rope in rock by 0.26 m"))
       << "through the middle";
-  EXPECT_THAT(told("ground", 0.255, box), HasSubstr("rope in rock by 0.005 m"));
-  EXPECT_EQ(told("ground", 0.2601, box), "");
-  EXPECT_THAT(told("ground", -1.0, field), HasSubstr("rope in rock by 1.01 m"));
-  EXPECT_EQ(told("ground", 0.0101, field), "");
+  EXPECT_THAT(error_of("ground", 0.255, box), HasSubstr("rope in rock by 0.005 m"));
+  EXPECT_EQ(error_of("ground", 0.2601, box), "");
+  EXPECT_THAT(error_of("ground", -1.0, field), HasSubstr("rope in rock by 1.01 m"));
+  EXPECT_EQ(error_of("ground", 0.0101, field), "");
 }
 
 }  // namespace

@@ -394,24 +394,26 @@ TEST(Channels, SayWhatIsWrong) {
   const auto event = [](const std::string& when) {
     return weight("events: {e: {when: {" + when + ", above: 1}, stop: true}}");
   };
-  tells(event("cable: rope, channel: tensoin"),
-        "events.e.when.channel: 'tensoin' is no channel of the cable 'rope'. Did you mean "
-        "'tension'? Channels: tension, length.");
-  tells(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
-  tells(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
-  tells(event("cable: rope, node: 3, channel: tension"),
-        "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
-  tells(event("cable: rope, joint: guide, channel: tension"), "names more than one object");
-  tells(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
-  tells(weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),
-        "events.e.when.above: expects a force (N)");
-  tells(weight("loads: {lift: {type: linear_motor, joint: guide, force: {controller: c}}}\n"
-               "controllers: {c: {cable: rope, channel: tension, derivative: 1}}"),
-        "controllers.c.derivative: needs the rate of 'tension', which is not available.");
-  tells(pressed("{controller: c}",
-                "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1}}"),
-        "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
-        "continuous controller cannot use. Give a sample time.");
+  expect_fault(event("cable: rope, channel: tensoin"),
+               "events.e.when.channel: 'tensoin' is no channel of the cable 'rope'. Did you mean "
+               "'tension'? Channels: tension, length.");
+  expect_fault(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
+  expect_fault(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
+  expect_fault(event("cable: rope, node: 3, channel: tension"),
+               "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
+  expect_fault(event("cable: rope, joint: guide, channel: tension"), "names more than one object");
+  expect_fault(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
+  expect_fault(
+      weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),
+      "events.e.when.above: expects a force (N)");
+  expect_fault(weight("loads: {lift: {type: linear_motor, joint: guide, force: {controller: c}}}\n"
+                      "controllers: {c: {cable: rope, channel: tension, derivative: 1}}"),
+               "controllers.c.derivative: needs the rate of 'tension', which is not available.");
+  expect_fault(
+      pressed("{controller: c}",
+              "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1}}"),
+      "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
+      "continuous controller cannot use. Give a sample time.");
   // The same models in code.
   Model model = read_model_text(
       pressed("{controller: c}",

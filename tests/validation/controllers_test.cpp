@@ -256,31 +256,34 @@ TEST(Controllers, GoOnBitForBitAfterARestart) {
 }
 
 TEST(Controllers, TellWhatIsWrong) {
-  tells(cart("proportional: 1, sampl: 3"), "controllers.c: unknown key 'sampl'");
-  tells(cart("setpoint: 1"), "controllers.c: has no gains. Give proportional, integral");
-  tells(cart("proportional: 1, numerator: 1"), "Give gains or a transfer function.");
-  tells(cart("numerator: [1, 2], denominator: 3"), "is of higher order than the denominator");
-  tells(cart("proportional: 1, minimum: 2, maximum: 1"), "controllers.c.maximum: is below");
-  tells(cart("proportional: 1, filter: 1 s"), "controllers.c.filter: requires a derivative gain");
+  expect_fault(cart("proportional: 1, sampl: 3"), "controllers.c: unknown key 'sampl'");
+  expect_fault(cart("setpoint: 1"), "controllers.c: has no gains. Give proportional, integral");
+  expect_fault(cart("proportional: 1, numerator: 1"), "Give gains or a transfer function.");
+  expect_fault(cart("numerator: [1, 2], denominator: 3"),
+               "is of higher order than the denominator");
+  expect_fault(cart("proportional: 1, minimum: 2, maximum: 1"), "controllers.c.maximum: is below");
+  expect_fault(cart("proportional: 1, filter: 1 s"),
+               "controllers.c.filter: requires a derivative gain");
   std::string text = cart("proportional: 1");
   text.replace(text.find("channel: z"), 10, "channel: y");
-  tells(text, "controllers.c.channel: 'y' is no channel of the joint 'rail'.");
+  expect_fault(text, "controllers.c.channel: 'y' is no channel of the joint 'rail'.");
   text = cart("derivative: 1");
   text.replace(text.find("channel: z"), 10, "channel: fx");
-  tells(text, "controllers.c.derivative: needs the rate of 'fx', which is not available");
+  expect_fault(text, "controllers.c.derivative: needs the rate of 'fx', which is not available");
   text = cart("proportional: 1");
   text.replace(text.find("controller: c}"), 14, "controller: d}");
-  tells(text, "loads.push.force.controller: unknown controller 'd'. Controllers: c.");
+  expect_fault(text, "loads.push.force.controller: unknown controller 'd'. Controllers: c.");
   text = cart("proportional: 1");
   text.replace(text.find("force:"), 6, "displacement:");
-  tells(text, "loads.push.displacement: is prescribed, but the output of a controller may jump.");
+  expect_fault(text,
+               "loads.push.displacement: is prescribed, but the output of a controller may jump.");
   text = cart("proportional: 1");
   text.replace(text.find("type: dynamics"), 14, "order: 4, type: dynamics");
-  tells(text, "controllers.c: is continuous, which requires order 2, not 4.");
+  expect_fault(text, "controllers.c: is continuous, which requires order 2, not 4.");
   text = cart("proportional: 1");
   text.replace(text.find("type: dynamics, duration: 1 s, step: h, rho_inf: rho"), 52,
                "type: statics");
-  tells(text, "controllers: act in time, which statics and modes do not have.");
+  expect_fault(text, "controllers: act in time, which statics and modes do not have.");
 }
 
 }  // namespace polhode::test::controllers_tests

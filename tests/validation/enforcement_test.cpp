@@ -449,15 +449,16 @@ joints:
 analysis: {type: dynamics, duration: 1 s, step: 1 ms}
 )";
   };
-  tells(hinge("type: penalty, stiffness: 1e6"),
-        "'turning_stiffness' is missing. The joint constrains rotations: give their stiffness.");
-  tells(hinge("type: penalti, stiffness: 1e6, turning_stiffness: 1"), "penalty");
-  tells(hinge("type: penalty, stiffness: -1, turning_stiffness: 1"), "stiffness");
+  expect_fault(
+      hinge("type: penalty, stiffness: 1e6"),
+      "'turning_stiffness' is missing. The joint constrains rotations: give their stiffness.");
+  expect_fault(hinge("type: penalti, stiffness: 1e6, turning_stiffness: 1"), "penalty");
+  expect_fault(hinge("type: penalty, stiffness: -1, turning_stiffness: 1"), "stiffness");
   std::string ball = hinge("type: penalty, stiffness: 1e6, turning_stiffness: 1");
   ball.replace(ball.find("revolute"), 8, "spherical");
-  tells(ball, "the joint constrains no rotations. Leave it out.");
+  expect_fault(ball, "the joint constrains no rotations. Leave it out.");
   std::string apart = hinge("type: augmented, stiffness: 1e9, turning_stiffness: 1");
-  tells(apart, "augmented joints have stiffnesses from 1 to 1e+09");
+  expect_fault(apart, "augmented joints have stiffnesses from 1 to 1e+09");
 }
 
 }  // namespace polhode::test::enforcement_models_tests

@@ -186,20 +186,22 @@ TEST(ContactEvents, SayWhatIsWrong) {
   const auto with = [](const std::string& names) {
     return lid("0.1", "  e: {at: 1 s, off: [" + names + "]}", "1");
   };
-  tells(with("on_lidd"),
-        "events.e.off: unknown joint, load, pair of contacts or body 'on_lidd'. Did you mean "
-        "'on_lid'?");
-  tells(with("bal"),
-        "events.e.off: unknown joint, load, pair of contacts or body 'bal'. Did you "
-        "mean 'ball'?");
+  expect_fault(
+      with("on_lidd"),
+      "events.e.off: unknown joint, load, pair of contacts or body 'on_lidd'. Did you mean "
+      "'on_lid'?");
+  expect_fault(with("bal"),
+               "events.e.off: unknown joint, load, pair of contacts or body 'bal'. Did you "
+               "mean 'ball'?");
   std::string both = with("on_lid");
   both.replace(both.find("contacts:"), 9,
                "joints: {on_lid: {type: spherical, bodies: [ground, ball], at: [0, 0, 0.1]}}\n"
                "contacts:");
-  tells(both, "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
+  expect_fault(both,
+               "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
   std::string bare = with("ghost");
   bare.replace(bare.find("  lid:"), 6, "  ghost: {mass: 1, inertia: [1, 1, 1]}\n  lid:");
-  tells(
+  expect_fault(
       bare,
       "events.e.off: the body 'ghost' has no contact that could be switched. Give it a shape that "
       "touches.");
@@ -232,20 +234,25 @@ events:
 analysis: {type: dynamics, duration: 0.2 s, step: 1 ms}
 )";
   };
-  tells(with("on_pad"),
-        "events.e.off: 'on_pad' is the contact of a solid, which cannot be switched. Name a pair "
-        "of bodies in contacts.pairs.");
-  tells(with("on_rope"),
-        "events.e.off: 'on_rope' is the contact of a cable, which cannot be switched. Name a pair "
-        "of bodies in contacts.pairs.");
-  tells(with("of_steel"),
-        "events.e.off: 'of_steel' is a pair of materials, which cannot be switched. Name a pair of "
-        "bodies in contacts.pairs.");
-  tells(with("ball"),
-        "events.e.off: 'ball' touches 'pad', a contact that cannot be switched. Name pairs of "
-        "bodies instead, or exclude the two in contacts.");
-  tells(with("drum"), "events.e.off: 'drum' touches 'pad', a contact that cannot be switched.");
-  tells(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
+  expect_fault(
+      with("on_pad"),
+      "events.e.off: 'on_pad' is the contact of a solid, which cannot be switched. Name a pair "
+      "of bodies in contacts.pairs.");
+  expect_fault(
+      with("on_rope"),
+      "events.e.off: 'on_rope' is the contact of a cable, which cannot be switched. Name a pair "
+      "of bodies in contacts.pairs.");
+  expect_fault(
+      with("of_steel"),
+      "events.e.off: 'of_steel' is a pair of materials, which cannot be switched. Name a pair of "
+      "bodies in contacts.pairs.");
+  expect_fault(
+      with("ball"),
+      "events.e.off: 'ball' touches 'pad', a contact that cannot be switched. Name pairs of "
+      "bodies instead, or exclude the two in contacts.");
+  expect_fault(with("drum"),
+               "events.e.off: 'drum' touches 'pad', a contact that cannot be switched.");
+  expect_fault(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
   EXPECT_EQ(fault_of(with("far")), "");
 }
 

@@ -369,21 +369,24 @@ TEST(Events, TellWhatIsWrong) {
   const auto with = [](const std::string& events) {
     return Pendulum::text("events:\n  e: " + events);
   };
-  tells(with("{at: 1 s, off: [pivott]}"),
-        "events.e.off: unknown joint or load 'pivott'. Did you mean 'pivot'?");
-  tells(with("{off: [pivot]}"), "events.e: never occurs. Give at (a time) or when (a condition).");
-  tells(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
-  tells(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
-  tells(with("{at: 1 s, off: [pivot], repeat: true}"),
-        "events.e.repeat: cannot be combined with 'at'");
-  tells(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
-        "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
-  tells(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"), "unknown joint 'pivo'");
-  tells(with("{when: {joint: pivot, channel: rz, above: 1 m}, off: [pivot]}"),
-        "events.e.when.above");
-  tells(with("{when: {joint: pivot, channel: rz}, off: [pivot]}"),
-        "events.e.when: has no level. Give above or below.");
-  tells(with("{when: {channel: ry, above: 1}, off: [pivot]}"), "names no object that reports");
+  expect_fault(with("{at: 1 s, off: [pivott]}"),
+               "events.e.off: unknown joint or load 'pivott'. Did you mean 'pivot'?");
+  expect_fault(with("{off: [pivot]}"),
+               "events.e: never occurs. Give at (a time) or when (a condition).");
+  expect_fault(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
+  expect_fault(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
+  expect_fault(with("{at: 1 s, off: [pivot], repeat: true}"),
+               "events.e.repeat: cannot be combined with 'at'");
+  expect_fault(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
+               "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
+  expect_fault(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"),
+               "unknown joint 'pivo'");
+  expect_fault(with("{when: {joint: pivot, channel: rz, above: 1 m}, off: [pivot]}"),
+               "events.e.when.above");
+  expect_fault(with("{when: {joint: pivot, channel: rz}, off: [pivot]}"),
+               "events.e.when: has no level. Give above or below.");
+  expect_fault(with("{when: {channel: ry, above: 1}, off: [pivot]}"),
+               "names no object that reports");
   EXPECT_NE(fault_of(R"(
 format: 1
 bodies: {a: {mass: 1, inertia: [1, 1, 1]}}

@@ -228,7 +228,7 @@ TEST(RunningCable, LiftsAsAMuscle) {
 
 TEST(RunningCable, TellsWhatIsWrong) {
   const auto has = [](const std::string& rope, const std::string& wanted) {
-    tells(weights(rope), wanted);
+    expect_fault(weights(rope), wanted);
   };
   has("slides: true",
       "cables.rope: 'stiffness' is missing. Give EA or, for a sliding cable, a tension.");

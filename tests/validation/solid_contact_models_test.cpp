@@ -374,7 +374,7 @@ analysis: {duration: 1 ms, step: 1 ms}
 )",
                            "stack.yaml");
   };
-  const auto told = [&](double z) -> std::string {
+  const auto error_of = [&](double z) -> std::string {
     try {
       Simulation(stacked(z)).run();
     } catch (const InputError& e) {
@@ -382,9 +382,10 @@ analysis: {duration: 1 ms, step: 1 ms}
     }
     return {};
   };
-  EXPECT_NE(told(0.1).find("lower touches upper"), std::string::npos) << told(0.1);
-  EXPECT_NE(told(0.095).find("lower in upper by 0.005 m"), std::string::npos) << told(0.095);
-  EXPECT_EQ(told(0.1002), "");
+  EXPECT_NE(error_of(0.1).find("lower touches upper"), std::string::npos) << error_of(0.1);
+  EXPECT_NE(error_of(0.095).find("lower in upper by 0.005 m"), std::string::npos)
+      << error_of(0.095);
+  EXPECT_EQ(error_of(0.1002), "");
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ analysis: {type: statics}
 TEST(SurfaceOnTriangles, RefusesStartsWithin) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
-  const auto told = [](const std::string& body, const std::string& law = "") -> std::string {
+  const auto error_of = [](const std::string& body, const std::string& law = "") -> std::string {
     try {
       Simulation(read_model_text(R"(
 format: 1
@@ -261,14 +261,14 @@ analysis: {duration: 1 ms, step: 1 ms}
     return {};
   };
   const std::string box = format("shape: {{mesh: {}}}", folder / "box.obj");
-  EXPECT_THAT(told(box), HasSubstr("pad in rock by 0.2 m")) << "the whole solid is within";
-  EXPECT_THAT(told(box + ", position: [0.28, 0, 0]"), HasSubstr("pad in rock by 0.02 m"));
-  EXPECT_EQ(told(box + ", position: [0.3001, 0, 0]"), "");
+  EXPECT_THAT(error_of(box), HasSubstr("pad in rock by 0.2 m")) << "the whole solid is within";
+  EXPECT_THAT(error_of(box + ", position: [0.28, 0, 0]"), HasSubstr("pad in rock by 0.02 m"));
+  EXPECT_EQ(error_of(box + ", position: [0.3001, 0, 0]"), "");
   const std::string field = "shape: " + flat_field(5, 0.1);
-  EXPECT_THAT(told(field + ", position: [0, 0, 1]"), HasSubstr("pad in rock by 1.05 m"));
-  EXPECT_EQ(told(field + ", position: [0, 0, -0.0501]"), "");
-  EXPECT_EQ(told(field + ", position: [1, 0, 1]"), "") << "beside it";
-  EXPECT_THAT(told(box + ", position: [1, 0, 0]", "default: {gap_tolerance: 0.1}"),
+  EXPECT_THAT(error_of(field + ", position: [0, 0, 1]"), HasSubstr("pad in rock by 1.05 m"));
+  EXPECT_EQ(error_of(field + ", position: [0, 0, -0.0501]"), "");
+  EXPECT_EQ(error_of(field + ", position: [1, 0, 1]"), "") << "beside it";
+  EXPECT_THAT(error_of(box + ", position: [1, 0, 0]", "default: {gap_tolerance: 0.1}"),
               HasSubstr("a gap_tolerance of 0.1 m, above a quarter of the median edge of its "
                         "triangles, 0.0884 m"));
 }
