@@ -179,7 +179,7 @@ def roll_up():
 # Forces in position rows carry rounding by 1/Δt²: it adds up in the work of the platform's legs and of the cat's motors, and shifts the time at which the trebuchet's
 # trough carries nothing any more.
 CASES = [example("tumbling_body", 1e-2, 0.4, "A T-handle that turns over in free fall.", orders=(2, 8)),
-         example("double_pendulum", 1e-2, 0.4, "Two bars released horizontally.", orders=(2, 6)), example("gyroscope", 1e-3, 0.04, "Precession and nodding.", orders=(2, 6)),
+         example("double_pendulum", 1e-2, 0.4, "Two bars released horizontally.", orders=(2, 6)), example("gyroscope", 1e-3, 0.04, "Precession and nutation.", orders=(2, 6)),
          heavy_top(), slider_crank(), example("crank_rocker", 1e-3, 0.2, "A motor starts a crank-rocker."), example("planetary_gearbox", 1e-3, 0.1, "Gears, redundant planets, a motor.",
                  skip=("output.[N]", "teeth_1.[N or N m]", "teeth_1.[W]", "teeth_2.[N or N m]", "teeth_2.[W]"),
                  because="The bearings carry no load, and redundant planets share theirs to 1e-7 only."),
