@@ -17,7 +17,7 @@ OMEGA = np.sqrt(K * (1 / MASS_A + 1 / MASS_B))
 
 
 def pair(step: float, force: "Optional[Callable[[str], Callable[[float], Array]]]" = None) -> polhode.Model:
-    """Two bodies on a line that oscillate relative to each other and drift, with a spring of the engine or two forces."""
+    """Two bodies on a line that oscillate and drift, with a spring of the engine or two forces."""
     m = polhode.Model(analysis={"duration": 1.0, "step": step})
     for name, mass, x in (("a", MASS_A, 0.0), ("b", MASS_B, 0.5)):
         m.add_body(name, mass=mass, inertia=[1, 1, 1], position=[x, 0, 0], velocity=[0.3, 0, 0])

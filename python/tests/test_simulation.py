@@ -91,7 +91,7 @@ def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor() -> Non
     m.add_load("motor", "rotary_motor", joint="hinge", speed=speed)
     r = polhode.run(m, overrides={"analysis.duration": 0.1, "analysis.step": 0.01})
     assert r.joints["hinge"].rates[-1, 0] == pytest.approx(0.3, rel=1e-3)
-    assert min(times) >= -1e-3 and max(times) <= 0.1 + 1e-3  # differences evaluate the function 0.2 ms earlier and later
+    assert min(times) >= -1e-3 and max(times) <= 0.1 + 1e-3  # differences use times 0.2 ms off
     with pytest.raises(polhode.ModelError, match="cannot be written"):
         m.save("never.yaml")
 
