@@ -102,8 +102,8 @@ contacts:
   const Built built(model_of(contacts));
   EXPECT_FALSE(built.meet("a", "b"));
   EXPECT_FALSE(built.meet("c.0", "wall"));
-  EXPECT_TRUE(built.meet("c.0", "floor")) << "another fixed body";
-  EXPECT_FALSE(built.meet("c.0", "c.1")) << "one body";
+  EXPECT_TRUE(built.meet("c.0", "floor")) << "a fixed body that is not excluded";
+  EXPECT_FALSE(built.meet("c.0", "c.1")) << "shapes of the same body";
   EXPECT_TRUE(Built(model_of(contacts + "  joint_neighbours: true\n")).meet("a", "b"));
   EXPECT_TRUE(Built(model_of(contacts + "  pairs: {ab: {between: [a, b]}}\n")).meet("a", "b"))
       << "a pair that is named is included";

@@ -96,7 +96,7 @@ TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
   }
 }
 
-/// An edge meets the round solid with its rims rounded by a hundredth.
+/// Gap of an edge to the round solid, whose rims are rounded by a hundredth.
 TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
   Random random(32);
   const Shape with_edges[] = {box("box", {0.8, 0.7, 0.5}), capsule("capsule", 0.3, 0.8)};

@@ -107,7 +107,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
     EXPECT_LE(s.last.iterations, 10) << speed;
     EXPECT_NEAR(s.motion(2).v.y(), speed, 1e-10 * speed);
     ASSERT_TRUE(s.run(4e-3));
-    EXPECT_LT(s.motion(a).v.x(), 0.0);  // thrown back
+    EXPECT_LT(s.motion(a).v.x(), 0.0);  // rebound
     EXPECT_NEAR(s.motion(a).v.x() + 3.0 * s.motion(1).v.x(), -2.0 * speed, 1e-8 * speed);
   }
 }

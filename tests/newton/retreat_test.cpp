@@ -48,7 +48,7 @@ const MaterialDescription kFoam{.kind = "neo_hookean",
 const MaterialDescription kLinear{.kind = "elastic",
                                   .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
 
-/// One step so long that inertia hardly counts: at ρ∞ = 0 it ends near equilibrium.
+/// One step so long that inertia is negligible: at ρ∞ = 0 it ends near equilibrium.
 StepReport one_long_step(const System& system, State& state, double least) {
   const GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
   StepControl control;

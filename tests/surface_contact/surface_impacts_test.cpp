@@ -9,7 +9,7 @@
 namespace polhode::test::surface_impacts_tests {
 namespace {
 
-/// A straight rope that meets the floor flat at 1 m/s, without weight, with ends so light that they
+/// A straight rope that hits the floor flat at 1 m/s, without weight, with ends so light that they
 /// move with it.
 Model rope(double e, double mu, double along, double step) {
   return read_model_text(format(R"(

@@ -385,7 +385,7 @@ output: {hdf5: false}
       {100, 400, 10000}, 2.0, 0.1);
 }
 
-// A ball of 1 kg meets a wall at 2 m/s with e = 0.5; a body connected to it by springs continues at
+// A ball of 1 kg hits a wall at 2 m/s with e = 0.5; a body connected to it by springs continues at
 // first.
 TEST(Penalty, CarriesNoImpulse) {
   for (const char* h : {"2 ms", "0.5 ms", "0.02 ms"}) {

@@ -50,7 +50,7 @@ TEST(NonsmoothContact, BoxOnAnInclineOfThirtyDegrees) {
   }
 }
 
-/// A rod that meets the floor with its end, e = 1, whose initial slip has the direction for which
+/// A rod that hits the floor with its end, e = 1, whose initial slip has the direction for which
 /// sticking adds energy: an impulse that ends the slip would add a seventh of its energy.
 /// @tests{nonsmooth-energy}
 TEST(NonsmoothContact, FrictionGivesNoEnergyToARod) {

@@ -121,7 +121,8 @@ TEST(Checkpoint, RefusesAnotherModel) {
   }
 }
 
-// A checkpoint with any bit changed, or cut at any byte, is refused with a message.
+// A checkpoint with a changed bit, in every 97th byte, or cut, at every 211th byte, is refused with
+// a message.
 TEST(Checkpoint, RefusesADamagedFile) {
   const Saved s;
   const std::string good = read_file(s.path);

@@ -128,7 +128,7 @@ TEST_P(MeshFile, HasItsGroups) {
     }
 }
 
-// A file cut at any length gives a located error or, near its end, the mesh.
+// A file cut at up to 300 lengths gives a located error or, near its end, the mesh.
 TEST_P(MeshFile, CutShortIsRefused) {
   const std::string bytes = bytes_of(GetParam());
   int whole = 0;
