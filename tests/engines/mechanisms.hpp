@@ -46,8 +46,8 @@ class Mechanism {
     place(b, j.Z_b, j.R_b);
     model.joints.push_back(j);
   }
-  /// Velocities of the whole mechanism as one rigid body; `v` and `omega` of a body, consistent
-  /// with a tree of joints.
+  /// Initial velocity of a body. Velocities of one rigid motion of all bodies satisfy any tree of
+  /// joints.
   void velocity(int body, const Vec3& v, const Vec3& omega) {
     model.bodies[body].velocity = v;
     model.bodies[body].angular_velocity = omega;

@@ -222,7 +222,7 @@ TEST(TreeEngine, CarriesManyLoopsOpenAtOnce) {
   expect_same_motion(m.model(), 1.0);
 }
 
-/// Different numbers of children and loops in one chunk, and more than one chunk.
+/// Different kinds of joints in one chunk, and more than one chunk.
 TEST(TreeEngine, MixesShapesOverSeveralChunks) {
   Mechanism m(57);
   const std::vector<std::string> kinds{"revolute", "spherical", "universal", "cylindrical",

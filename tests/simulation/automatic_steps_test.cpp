@@ -127,7 +127,7 @@ analysis: {duration: 3 s}
     }
 }
 
-/// A tolerance below rounding errors: it is raised, with a message.
+/// A tolerance below rounding errors: the run finishes with a warning that it was not reached.
 TEST(AutomaticSteps, SayWhenTheyCannotReachATolerance) {
   const std::string text = R"(
 format: 1

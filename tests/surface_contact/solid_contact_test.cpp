@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kTolerance = 0.3;
 
-/// Nodes of two moving plates of faces above each other; the second one is the triangulated side.
+/// Nodes of two moving plates of faces: the upper one has the contact points, the lower one the
+/// triangles.
 struct Scene : MovingNodes {
   std::vector<LoadedFaces> lower, upper;
   std::vector<int> carriers;

@@ -125,8 +125,7 @@ TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) 
     }
 }
 
-/// Friction impulse of two equal cables, which both have half of the approach velocity: opposite
-/// and equal on both.
+/// Friction impulse between two equal cables, which changes their momenta by opposite amounts.
 // @tests{cable-impact}
 TEST(SurfaceImpacts, OfCablesAcrossEachOtherRubByTheirImpulse) {
   const double mu = 0.1, along = 1.0;

@@ -63,8 +63,8 @@ TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   }
 }
 
-/// With a spring law points are within the surface: the reported stored energy at the end of each
-/// step is that of the step.
+/// With a spring law points are within the surface: the balance with the reported stored energy is
+/// closed after each step.
 TEST(SurfaceOnTriangles, TellsWhatSpringsStoreWithin) {
   Simulation simulation(
       meeting("{tube: [0.16, 0.08, 0.1]}", "law: linear, restitution: 1", "0.1 s"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discontinuities of functions of time, and bounds of their second derivatives.
+// Breaks (jumps and kinks) of functions of time, and bounds of values and second derivatives.
 #include <cmath>
 #include <numbers>
 #include <string>
