@@ -92,7 +92,7 @@ Vec forces(const EdgeContact& contact, const Scene& s, const std::vector<double>
   return forces_over(s.step(), s.x_n.size(), contact, history);
 }
 
-/// The force does not depend on the crossing point, at a node of either line or between nodes.
+/// Stored energy at any crossing point, at a node of either line or between nodes: it is the same.
 TEST(EdgeContact, HasNoNotchesAlongALine) {
   double first = 0.0;
   for (const double x : {0.1, 0.2, 0.4999, 0.5, 0.5001, 0.503, 0.6, -0.5}) {
