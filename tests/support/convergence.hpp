@@ -12,9 +12,10 @@ namespace polhode::test {
 
 /// Expects the error to decrease with the given order, neither slower nor faster, between each pair
 /// of neighbouring numbers of steps.
+///
 /// @param error   Error of the solution with n steps (any norm, the same for all).
 /// @param steps   Ascending numbers of steps, all in the range where the order shows: fine enough
-/// for the leading term, coarse enough that rounding is far below it.
+///                for the leading term, coarse enough that rounding is far below it.
 /// @param order   Expected order p: error ~ n^-p.
 /// @param within  Half width of the band around the order.
 inline void expect_order(const std::function<double(int)>& error, const std::vector<int>& steps,

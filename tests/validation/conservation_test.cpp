@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long runs at ρ∞ = 1: energy and momenta are conserved to round-off with every kind of connection.
+//
 // The bounds are those the engine promises: 1e-11 over 1e6 steps of a free body, 1e-10 over 1e5
 // steps of mechanisms. Round-off alone, a random walk of 1e-16 a step, would be 1e-13.
 #include <algorithm>
