@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks of the examples share. Python's own library is enough.
+"""Helpers of the examples' checks; only Python's standard library is needed.
 
-The program is `polhode` on the PATH, or the one that the variable POLHODE names, or the one of a build folder here.
+The program is that of the environment variable POLHODE, or `polhode` on the PATH, or the one in a build folder here.
 """
 import csv
 import json
@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ROUND_OFF = 1e-11  # Drift of what is conserved, over 1e3 to 1e5 steps in 53 bits.
+ROUND_OFF = 1e-11  # Drift of conserved quantities, over 1e3 to 1e5 steps in 53 bits.
 
 
 def program():
@@ -23,12 +23,12 @@ def program():
     built = [ROOT / "build" / name / "apps/polhode/polhode" for name in ("release", "quickstart", "dev")]
     found = shutil.which("polhode") or next((str(path) for path in built if path.exists()), None)
     if not found:
-        sys.exit("polhode is not on the PATH. Build it (scripts/quickstart.sh) or name it: POLHODE=... python3 check.py")
+        sys.exit("polhode is not on the PATH. Build it (scripts/quickstart.sh) or give its path: POLHODE=... python3 check.py")
     return found
 
 
 def polhode(*arguments):
-    """What a command prints."""
+    """Standard output of a command; exits with its status in case of an error."""
     done = subprocess.run([program(), *map(str, arguments)], stdout=subprocess.PIPE, text=True)
     if done.returncode:
         sys.exit(f"polhode {' '.join(map(str, arguments))}: exit code {done.returncode}")
@@ -36,7 +36,7 @@ def polhode(*arguments):
 
 
 class Run:
-    """A finished run: its figures and the tables of its probes."""
+    """A finished run: its summary and the tables of its probes."""
 
     def __init__(self, model, *settings, folder=None):
         self._temporary = None if folder else tempfile.TemporaryDirectory()
@@ -70,7 +70,7 @@ class Report:
         self._row(what, value, 0, abs(value), bound)
 
     def _row(self, what, value, reference, error, tolerance):
-        good = error <= tolerance  # False for NaN too.
+        good = error <= tolerance  # False for NaN, too.
         self._failed += not good
         self._rows.append((what, f"{value:.12g}", f"{reference:.12g}", f"{error:.1e}", f"{tolerance:.1e}",
                            "" if good else "FAILED"))
@@ -84,14 +84,14 @@ class Report:
 
 
 def nearest(times, t):
-    """Index of the row of that time."""
+    """Index of the row nearest to a time."""
     return min(range(len(times)), key=lambda i: abs(times[i] - t))
 
 
 def integrate(rate, state, times, largest_step):
     """States of the ordinary differential equation state' = rate(t, state) at the given times, the first of which is
-    that of the start. Extrapolated midpoint rule with seven columns (order 14): an answer that shares nothing with
-    Polhode. Errors are at round-off when the steps are well below the shortest time of the motion."""
+    that of the start. Extrapolated midpoint rule with seven columns (order 14), independent of Polhode. Errors are
+    at round-off if the steps are well below the shortest time scale of the motion."""
     substeps = (2, 4, 6, 8, 10, 12, 14)
 
     def midpoint(t, y, h, n):
@@ -169,5 +169,5 @@ def largest(a, b):
 
 def step_error(coarse, fine, order, floor):
     """Bound on the error of the finer of two runs whose steps are in the ratio two: of a method of order p it is the
-    difference of the two over 2^p - 1. Twice that, for steps are never vanishing; and the floor of rounding."""
+    difference of the two over 2^p - 1. Twice that, since steps are finite, plus the floor of rounding."""
     return 2 * largest(coarse, fine) / (2**order - 1) + floor

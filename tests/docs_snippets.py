@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The models and commands of the quick starts run as they stand, and every whole model of another page is one.
+"""Runs the models and commands of the quick starts unchanged, and checks every complete model of the other pages.
 
 Each page of docs/quick_start says `Save this as `NAME`` before a model; its blocks of sh are commands of polhode, run one
 after the other in one folder. POLHODE names the program. With page names as arguments only those are run.
@@ -19,7 +19,7 @@ BLOCK = re.compile(r"Save this as `(?P<file>[\w.]+)`|^```(?P<language>\w*)\n(?P<
 
 
 def run_page(page):
-    """Faults of a page, and how many commands ran."""
+    """Faults of a page, and the number of commands that ran."""
     count, name, faults = 0, None, []
     with tempfile.TemporaryDirectory() as folder:
         for block in BLOCK.finditer(page.read_text()):
@@ -37,7 +37,7 @@ def run_page(page):
                     if not words:
                         continue
                     if words[0] != "polhode":
-                        faults.append(f"{page.name}: '{line}' is no command of polhode")
+                        faults.append(f"{page.name}: '{line}' is not a command of polhode")
                         continue
                     done = subprocess.run([POLHODE, *words[1:]], cwd=folder, capture_output=True, text=True, check=False, timeout=240)
                     count += 1
@@ -47,7 +47,7 @@ def run_page(page):
 
 
 def check_models(page):
-    """Faults of the models in a page that `polhode check` is given, and how many there are. Parts of models are no models."""
+    """Faults that `polhode check` finds in the complete models of a page, and the number of models. Parts of models are skipped."""
     models, name = [], None
     for block in BLOCK.finditer(page.read_text()):
         if block["file"]:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Versions of the documentation site lie side by side, the newest first, and scripts/docs.sh says what it does not know and
-takes the site of another commit from that commit."""
+"""Checks scripts/docs.sh: versions of the documentation site in folders side by side, newest first; messages for unknown options;
+the site of another commit is built by that commit's own script."""
 
 import os
 import pathlib
@@ -22,7 +22,7 @@ def refused(*words):
 
 
 def of_another_commit(folder):
-    """In a repository of its own, where the site of an older commit is one line that its own script writes."""
+    """Runs in a temporary repository, whose older commit has a script that writes a site of one line."""
     environment = {**os.environ, **{f"GIT_{who}_{what}": "tests" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}}
 
     def git(*words):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/quickstart.sh ends with what it promises: a page of the N-four-bar mechanism, and the files that it names.
+"""Checks the results of scripts/quickstart.sh: a page of the N-four-bar mechanism, and the files that it names.
 
-POLHODE names the program, which stands for the one that the script would build: compiler and packages are left out.
+POLHODE names the program, which replaces the one that the script would build; compiler and packages are not used.
 """
 import json
 import os

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""All sources are read by clang without a warning; the tests build with g++.
+"""Checks all sources with clang, warnings as errors; the tests build with g++.
 
     tools/check_clang.py BUILD                BUILD: a configured build folder, with its compile_commands.json
     tools/check_clang.py BUILD --since REF    only what differs from a commit, and what includes a header that does
     tools/check_clang.py BUILD FILE ...       only these sources
 
-Nothing is compiled to code, but precompiled headers of g++ are left out, so all of it takes long. With --since a changed
-header is read with one source that includes it, --every reads all of them.
+Sources are only parsed, but without the precompiled headers of g++, so all of them take long. With --since a changed
+header is checked with one source that includes it, with --every in all of them.
 """
 import argparse
 import concurrent.futures
@@ -53,7 +53,7 @@ def read(entry):
 
 
 def changed_since(root, ref):
-    """Files that differ from a commit, those that git does not know yet among them."""
+    """Files that differ from a commit, including untracked ones."""
     names = []
     for words in (["diff", "--name-only", "--diff-filter=d", ref], ["ls-files", "--others", "--exclude-standard"]):
         done = subprocess.run(["git", *words], cwd=root, capture_output=True, text=True)
@@ -64,7 +64,7 @@ def changed_since(root, ref):
 
 
 def one_by_one(units):
-    """Sources that are compiled several at once, each by itself."""
+    """Sources of unity builds, one by one."""
     entries = {}
     for unit, entry in units.items():
         if "unity" not in unit.parts:
@@ -80,7 +80,7 @@ INCLUDE = re.compile(r'^\s*#include\s+["<]([^">]+)[">]', re.MULTILINE)
 
 
 class Includes:
-    """Which files of the repository a source includes, directly and through others."""
+    """Files of the repository that a source includes, directly or indirectly."""
 
     def __init__(self, root):
         self.folders = [root / "src", root / "tests", root / "apps" / "polhode", root / "benchmarks"]
@@ -127,10 +127,10 @@ def main():
     parser.add_argument("files", nargs="*", type=pathlib.Path, metavar="FILE")
     parser.add_argument("--since", metavar="REF", help="only what differs from this commit")
     parser.add_argument("--every", action="store_true", help="with --since: all sources that include a changed header")
-    parser.add_argument("-j", type=int, default=os.cpu_count(), metavar="N", help="so many at once")
+    parser.add_argument("-j", type=int, default=os.cpu_count(), metavar="N", help="number of parallel jobs")
     given = parser.parse_args()
     if not shutil.which("clang++"):
-        sys.exit("clang++ is missing. Install clang, or leave this check out.")
+        sys.exit("clang++ is missing. Install clang, or skip this check.")
     commands = given.build / "compile_commands.json"
     if not commands.is_file():
         sys.exit(f"{commands} is missing. Configure the build first: cmake --preset release.")

@@ -3,9 +3,9 @@
 
 * Every kind in a registry has a row in its reference page, and every row has its kind.
 * Every path of the repository that a page names in `backticks` exists.
-* Every link from a page to a file of the repository leads somewhere.
+* The target of every link from a page to a file of the repository exists.
 * The C++ program of the README is that of tests/consumer, which is built and run against the installed library.
-* No file under src/ has more than 500 lines; above 300 it is worth a thought.
+* No file under src/ has more than 500 lines; above 300 there is a notice.
 """
 import pathlib
 import re
@@ -20,11 +20,11 @@ REGISTRIES = {
     "src/polhode/solids/elements/registry.cpp": "docs/reference/elements.md",
     "src/polhode/solids/mesh/generators.cpp": "docs/reference/meshes.md",
 }
-# Kinds that say their name in their own files, kKind = "name" -> page.
+# Kinds whose name is in their own files, kKind = "name" -> page.
 KIND_FILES = {
     "src/polhode/solids/materials": "docs/reference/materials.md",
 }
-# Loads on solids say .name = "name" in their own files, and share the page of the loads on bodies.
+# Loads on solids have .name = "name" in their own files and are on the page of the loads on bodies.
 SOLID_LOADS = "src/polhode/solids/loads"
 SOLID_LOAD = re.compile(r'\{\.name = "(\w+)"')
 KIND = re.compile(r'^ {6}\{"(\w+)",', re.M)
@@ -88,7 +88,7 @@ def check_pages(problems):
                 if re.match(r"[a-z]+:|#", target):
                     continue
                 if not (page.parent / target.split("#")[0]).exists():
-                    problems.append(f"{place}:{number}: the link to {target} leads nowhere.")
+                    problems.append(f"{place}:{number}: the target of the link {target} does not exist.")
 
 
 def check_lengths(problems):
@@ -97,11 +97,11 @@ def check_lengths(problems):
         if lines > LINES_MOST:
             problems.append(f"{path.relative_to(ROOT)}: {lines} lines, at most {LINES_MOST}. Split it.")
         elif lines > LINES_WARN:
-            print(f"{path.relative_to(ROOT)}: {lines} lines, worth a thought above {LINES_WARN}.")
+            print(f"{path.relative_to(ROOT)}: {lines} lines; split it if it grows (notice above {LINES_WARN}).")
 
 
 def check_program(problems):
-    """Line by line, but for blanks and the brace that closes it."""
+    """Lines of a block of code without blanks and its closing brace."""
     def lines(text):
         return [line.rstrip() for line in text.splitlines() if line.strip()]
 

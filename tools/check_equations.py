@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Every equation label of docs/theory is in the code and in a test, or says why not.
+"""Checks that every equation label of docs/theory is in the code and in a test, or in a list of exceptions.
 
-Code says `@eq{label}`, a test says `@tests{label}`. docs/theory/not_in_code.txt lists, with a
-reason, the labels that no function embodies. With --index, writes docs/theory/index.md: label,
-section, function, test. Without, also says if that page is out of date.
+Code has `@eq{label}`, a test `@tests{label}`. docs/theory/not_in_code.txt lists, with a
+reason, the labels that no function implements. With --index, writes docs/theory/index.md: label,
+section, function, test. Without it, also checks that this page is up to date.
 """
 import pathlib
 import re
@@ -34,7 +34,7 @@ def theory_labels():
 
 
 def subject(lines, at):
-    """What the comment at lines[at] stands above: a test, a function or a type; '' if unclear."""
+    """Test, function or type below the comment at lines[at]; '' if unclear."""
     if not COMMENT.match(lines[at]):
         return ""
     while at < len(lines) and COMMENT.match(lines[at]):
@@ -49,7 +49,7 @@ def subject(lines, at):
 
 
 def tagged(folder, tag):
-    """{label: [(path, what the tag stands above)]}."""
+    """{label: [(path, test or function below the tag)]}."""
     found = {}
     for path in sorted((ROOT / folder).rglob("*.[ch]pp")):
         lines = path.read_text().splitlines()
@@ -92,7 +92,7 @@ def main():
         if label in coded and label in excuses:
             problems.append(f"{label}: in the code ({coded[label][0][0]}); take it out of not_in_code.txt.")
         if label not in coded and label not in excuses:
-            problems.append(f"{label}: no @eq in src/. Tag the function that embodies it, "
+            problems.append(f"{label}: no @eq in src/. Tag the function that implements it, "
                             "or list it with a reason in docs/theory/not_in_code.txt.")
         if label in coded and label not in tested:
             problems.append(f"{label}: in the code ({coded[label][0][0]}), but no @tests names it.")

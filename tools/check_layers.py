@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Each folder of src/polhode includes only folders further down, never one on its own line.
+"""Checks that each folder of src/polhode includes only folders of lower layers, never one of its own layer.
 
     tools/check_layers.py                checks
-    tools/check_layers.py --picture FILE draws the layers and what includes what, as SVG
+    tools/check_layers.py --picture FILE draws the layers and their includes, as SVG
 
-Nor is a type asked for at run time, and the interface of interactions stays small (docs/decisions/0008).
+Also checks that there are no dynamic casts and that the interface of interactions stays small (docs/decisions/0008).
 """
-# From the ground up; what stands on one line does not know each other.
+# From the bottom up; folders of one layer do not include each other.
 LAYERS = [
     ["core"],
     ["math", "geometry"],
@@ -37,20 +37,20 @@ INCLUDE = re.compile(r'\s*#\s*include\s*[<"]polhode/([\w/]+)/\w+\.\w+[>"]')
 INTERACTIONS = SOURCE / "system/interaction_group.hpp"
 MOST_VIRTUALS = 14
 VIRTUAL = re.compile(r"\bvirtual [^~\n]*\(")
-# What a group of elements may be besides, and the function by which it says so.
+# Facets of a group of elements, and the functions that return them.
 FACETS = {"BarrierConstraint": "barrier_constraint", "InternalUnknowns": "internal_unknowns",
           "ChangingSparsity": "changing_sparsity", "SurfaceImpacts": "surface_impacts"}
 HEADERS_OF_OTHERS = re.compile(r'\s*#\s*include\s*"')
 
 
 def layer(folder):
-    """The name in LAYERS that holds a folder: itself, or the folder it lies in."""
+    """Name in LAYERS of a folder: itself, or its parent folder."""
     parts = folder.split("/")
     return next((name for n in (2, 1) if (name := "/".join(parts[:n])) in RANK), None)
 
 
 def survey():
-    """Problems, the number of includes, and how many lead from folder to folder."""
+    """Problems, the number of includes, and those between each pair of folders."""
     problems, includes, edges = [], 0, {}
     for path in sorted(SOURCE.rglob("*.[ch]pp")):
         place = path.relative_to(ROOT)
@@ -58,7 +58,7 @@ def survey():
         if path == SOURCE / "polhode.hpp":
             continue
         if path.parent == SOURCE:
-            problems.append(f"{place}: stands in no folder. Put it in one of LAYERS.")
+            problems.append(f"{place}: is in no folder. Put it in one of LAYERS.")
             continue
         if here is None:
             problems.append(f"{place}: its folder is not in LAYERS of tools/check_layers.py.")
@@ -68,9 +68,9 @@ def survey():
                      if re.search(rf"public {facet}\b", text) and f"{asked}() const override" not in text]
         for number, line in enumerate(text.splitlines(), 1):
             if "dynamic_cast<" in line:
-                problems.append(f"{place}:{number}: asks for a type. See docs/decisions/0008-casts-and-virtuals.md.")
+                problems.append(f"{place}:{number}: casts to a type at run time. See docs/decisions/0008-casts-and-virtuals.md.")
             if HEADERS_OF_OTHERS.match(line):
-                problems.append(f"{place}:{number}: include our headers as <polhode/…>.")
+                problems.append(f"{place}:{number}: include headers of Polhode as <polhode/…>.")
             if not (match := INCLUDE.match(line)):
                 continue
             includes += 1
@@ -85,7 +85,7 @@ def survey():
     virtuals = len(VIRTUAL.findall(INTERACTIONS.read_text()))
     if virtuals > MOST_VIRTUALS:
         problems.append(f"{INTERACTIONS.relative_to(ROOT)}: {virtuals} virtual functions, at most {MOST_VIRTUALS}. "
-                        "What does not change during a run belongs to InteractionTraits.")
+                        "Properties that are constant during a run belong to InteractionTraits.")
     return problems, includes, edges
 
 
@@ -122,7 +122,7 @@ def main():
     if sys.argv[1:2] == ["--picture"]:
         pathlib.Path(sys.argv[2]).write_text(picture(edges))
         return 0
-    print("\n".join(problems) if problems else f"{includes} includes, all pointing down.")
+    print("\n".join(problems) if problems else f"{includes} includes, all of lower layers.")
     return bool(problems)
 
 

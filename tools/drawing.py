@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the pictures of the examples are drawn with: runs, outlines, sheets. Needs numpy, matplotlib and h5py."""
+"""Helpers for the pictures of the examples: runs, outlines, sheets. Needs numpy, matplotlib and h5py."""
 import pathlib
 import sys
 
@@ -35,7 +35,7 @@ class Motion:
         self.turn = {n: rotation(turn[:, i]) for i, n in enumerate(names)}
 
     def points(self, body, outline, frame):
-        """Points of a body (from its centre of mass, body axes) in the world, at one frame."""
+        """Points of a body (relative to its centre of mass, body axes) in the ground frame, at one frame of the results."""
         return self.place[body][frame] + np.asarray(outline, float) @ self.turn[body][frame].T
 
     def path(self, body, point):

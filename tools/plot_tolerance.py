@@ -1,6 +1,6 @@
 """Draws docs/images/error_against_tolerance.png from the tables of docs/validation.md.
 
-Needs matplotlib. The tables hold what tests/validation/tolerance_test.cpp measured.
+Needs matplotlib. The tables contain the measurements of tests/validation/tolerance_test.cpp.
 """
 import pathlib
 import re

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs models at their step and at parts of it, and tells whether the answers converge, and to what is known.
+"""Runs models at their step and at fractions of it, and checks that results converge, and that they converge to known numbers.
 
     tools/refine.py                       every case of tests/refinement
-    tools/refine.py ball_on_floor stops   that case, or all whose names begin so
-    tools/refine.py --open                cases that do not hold yet, each with what happens instead
+    tools/refine.py ball_on_floor stops   that case, or all cases whose names begin with it
+    tools/refine.py --open                cases that do not pass yet, each with its actual result
     tools/refine.py --model my.yaml --step "2 ms" --span "0.5 s" --steps 1,1/2,1/5
-                                          a model of yours: its differences and observed orders
+                                          a user's model: its differences and observed orders
 
-Needs nothing but Python; POLHODE=path/to/polhode says which program runs. The exit code is 1 if a case fails.
+Needs only Python; POLHODE=path/to/polhode is the program. The exit code is 1 if a case fails.
 """
 import argparse
 import bisect
@@ -31,18 +31,18 @@ sys.dont_write_bytecode = True
 from case import Case  # noqa: E402
 from support import program  # noqa: E402
 
-SAMPLES = 2000  # The mean over time of a speed that jumps is known to a part of this.
-# A difference may be this times what the order makes of the two coarsest runs. The phase of an impact within its step is a matter
-# of chance, which may make one of these look better than it is.
+SAMPLES = 2000  # Samples of the mean over time of a speed that jumps.
+# A difference may be this times the extrapolation of the two coarsest runs with the order. The phase of an impact within its step is
+# random, so one of these may be accurate by chance.
 ALLOWANCE = 2
-# What a column is tells how it is compared. Accelerations, points and numbers of points jump with an impact: not at all.
+# Kinds of columns, which are compared differently. Accelerations, points and numbers of points jump with an impact and are not compared.
 PLACES = ("x", "y", "z", "rx", "ry", "rz", "ux", "uy", "uz", "length", "angle", "impulse", "lost", "energy")
 SPEEDS = ("vx", "vy", "vz", "rate x", "rate y", "rate z", "rate rx", "rate ry", "rate rz", "rate")
 FORCES = ("fx", "fy", "fz", "mx", "my", "mz", "normal", "ftx", "fty", "ftz", "tension")
 
 
 class Run:
-    """One run: how it ended, its figures, the tables of its probes."""
+    """One run: its end, its summary, the tables of its probes."""
 
     def __init__(self, model, settings, step, span, probes=None, load_steps=None):
         self.step, self.span, self._tables = step, span, {}
@@ -90,7 +90,7 @@ class Run:
 
 
 def sampled(times, values, wanted):
-    """Values at the wanted times, on straight lines between the rows."""
+    """Values at given times, interpolated linearly between the rows."""
     found, i = [], 0
     for t in wanted:
         while i + 2 < len(times) and times[i + 1] < t:
@@ -102,7 +102,7 @@ def sampled(times, values, wanted):
 
 
 def impulse(times, forces):
-    """Sum of force times step: a row tells the force of the step that ends there."""
+    """Sum of force times step: a row has the force of the step that ends there."""
     total, sums = 0.0, [0.0]
     for t0, t1, f in zip(times, times[1:], forces[1:]):
         total += f * (t1 - t0)
@@ -111,7 +111,7 @@ def impulse(times, forces):
 
 
 def smooth_channels(run, skip, until, apart):
-    """The same of a motion without jumps: columns of one unit together, at multiples of a time that all runs have rows at."""
+    """The same for a motion without jumps: columns of one unit together, at multiples of a time at which all runs have rows."""
     found = {}
     for name in run.names():
         table = run.probe(name)
@@ -126,8 +126,8 @@ def smooth_channels(run, skip, until, apart):
 
 
 def channels(run, skip, until):
-    """What of a run is compared: (probe, kind) to columns sampled at common times. Places by their largest difference,
-    speeds by the mean over time, for they jump; forces by their impulse."""
+    """Compared columns of a run: (probe, kind) to columns sampled at common times. Positions by their largest difference,
+    speeds by the mean over time, since they jump; forces by their impulse."""
     found = {}
     for name in run.names():
         table = run.probe(name)
@@ -147,14 +147,14 @@ def channels(run, skip, until):
 
 
 def extent(kind, columns):
-    """What differences are parts of."""
+    """Scale by which differences are divided: the range of columns, or the largest speed."""
     if kind == "speeds" or kind.startswith("["):
         return max(max(map(abs, column)) for column in columns)
     return max(max(column) - min(column) for column in columns)
 
 
 def difference(kind, coarse, fine):
-    """Of two lists of columns, over the range of the finer ones."""
+    """Difference of two lists of columns, over the range of the finer ones."""
     scale = extent(kind, fine)
     gaps = [[abs(a - b) for a, b in zip(c, f)] for c, f in zip(coarse, fine)]
     size = max(sum(g) / len(g) for g in gaps) if kind == "speeds" else max(max(g) for g in gaps)
@@ -162,7 +162,7 @@ def difference(kind, coarse, fine):
 
 
 def compare(case, runs, parts, order, floor, skip, what=""):
-    """A row for each channel: differences to the finest run, observed order, whether the order asked for is kept."""
+    """A row for each channel: differences from the finest run, observed order, and whether the expected order is reached."""
     shortest = min([case.until] + [run.span for run in runs])
     apart = 0.0 if case.statics else case.step
     tables = [smooth_channels(run, skip, shortest, apart) if case.smooth or case.statics else channels(run, skip, shortest) for run in runs]
@@ -175,7 +175,7 @@ def compare(case, runs, parts, order, floor, skip, what=""):
         kind = key[1]
         own = extent(kind, fine)
         if own < floor * sizes[kind] or own == 0:
-            continue  # What stands still has no range to compare with; the others and the known values see it move.
+            continue  # A channel at rest has no range to compare with; other channels and known numbers detect if it moves.
         gaps = [difference(kind, table[key], fine) for table in tables[:-1]]
         ratio = parts[-2] / parts[0]
         observed = math.log(gaps[-1] / gaps[0]) / math.log(ratio) if len(gaps) > 1 and min(gaps[0], gaps[-1]) > 0 else math.nan
@@ -201,7 +201,7 @@ def run_variant(case, variant, steps, workers):
 
 
 def measured(item, runs, sizes):
-    """A known number, what runs make of it, and whether they are near enough for their step or mesh."""
+    """A known number, its values in the runs, and whether they are within the tolerance of their step or mesh."""
     values = []
     for run in runs:
         try:
@@ -214,7 +214,7 @@ def measured(item, runs, sizes):
 
 
 def judge(case, steps, workers=1):
-    """Runs a case; what failed, and everything as plain data."""
+    """Runs a case. Returns the number of failures and all results as plain data."""
     whole = case
     found = {"case": case.name, "steps": [case.step * part for part in steps], "variants": []}
     failures = 0
@@ -227,7 +227,7 @@ def judge(case, steps, workers=1):
         known += [measured(item, meshes, sizes) for item in case.mesh_known]
         drifts = [math.nan if run.trouble else run.figures.get("energy_drift", math.nan) for run in runs]
         if not troubles and not case.statics:
-            known.append({"what": "energy that the ledger misses, of its size", "value": 0.0, "ours": drifts, "good": [drift <= case.drift for drift in drifts],
+            known.append({"what": "error of the energy balance, relative", "value": 0.0, "ours": drifts, "good": [drift <= case.drift for drift in drifts],
                           "allowed": [case.drift] * len(drifts)})
         rows, asked = [], case.order if variant.order is None else variant.order
         if case.compare and len(runs) > 1 and not troubles:
@@ -235,7 +235,7 @@ def judge(case, steps, workers=1):
         if len(meshes) > 1 and not troubles:
             rows += compare(case, meshes, sizes, case.mesh_order, case.mesh_floor, case.skip + case.mesh_skip, "mesh: ")
         if not rows and not variant.known and len(runs) > 1 and not troubles:
-            troubles.append("nothing to compare: give the model probes of what moves (output.probes)")
+            troubles.append("nothing to compare: give the model probes of moving objects (output.probes)")
         failures += len(troubles) + sum(not all(k["good"]) for k in known) + sum(not row[3] for row in rows)
         found["variants"].append({"label": variant.label, "troubles": troubles, "known": known,
                                   "seconds": sum(run.seconds for run in runs + meshes[1:]), "asked": asked, "longer": variant.longer,
@@ -251,7 +251,7 @@ def show(case, found, quiet=False):
     if case.because:
         print("  " + (f"Until {case.until:g} s: " if math.isfinite(case.until) else "") + case.because)
     if case.open:
-        print("  Does not hold yet: " + case.open)
+        print("  Does not pass yet: " + case.open)
     print("  " + "step [s]".ljust(44) + "  ".join(f"{step:10.3g}" for step in found["steps"]))
     for variant in found["variants"]:
         if variant["label"]:
@@ -268,12 +268,12 @@ def show(case, found, quiet=False):
             if quiet and row["good"]:
                 continue
             cells = "  ".join(f"{gap:10.2e}" for gap in row["differences"])
-            print(f"  {row['what'][:42].ljust(44)}{cells}  {'order':>10} {row['order']:.1f}" + ("" if row["good"] else f"  FAILED, asked {variant['asked']:g}"))
+            print(f"  {row['what'][:42].ljust(44)}{cells}  {'order':>10} {row['order']:.1f}" + ("" if row["good"] else f"  FAILED, expected {variant['asked']:g}"))
     sys.stdout.flush()
 
 
 def strict(value):
-    """The same for JSON, which knows no NaN and no infinity: they become null."""
+    """A value for JSON, which has no NaN and no infinity: they become null."""
     if isinstance(value, dict):
         return {key: strict(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -302,21 +302,21 @@ def parts_of(text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="beginnings of names; left out: all")
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="beginnings of names; default: all")
     parser.add_argument("--model", help="a model file instead of the cases")
     parser.add_argument("--step", default="1 ms", help="with --model: its step, such as '2 ms'")
-    parser.add_argument("--span", help="how long it runs, such as '0.5 s'")
-    parser.add_argument("--order", type=float, default=1, help="with --model: order that is asked")
+    parser.add_argument("--span", help="its duration, such as '0.5 s'")
+    parser.add_argument("--order", type=float, default=1, help="with --model: expected order")
     parser.add_argument("--steps", help="parts of the step, such as 1,1/2,1/5,1/20,1/100")
-    parser.add_argument("--list", action="store_true", help="names of the cases, a line each")
-    parser.add_argument("--open", action="store_true", help="cases that do not hold yet")
+    parser.add_argument("--list", action="store_true", help="names of the cases, one per line")
+    parser.add_argument("--open", action="store_true", help="cases that do not pass yet")
     parser.add_argument("--write", metavar="CASE", help="prints the model of a case")
-    parser.add_argument("--json", action="store_true", help="one JSON object a line for each case")
-    parser.add_argument("--failed", action="store_true", help="shows only what failed")
-    parser.add_argument("--jobs", type=int, default=1, help="runs at once")
+    parser.add_argument("--json", action="store_true", help="one line with a JSON object per case")
+    parser.add_argument("--failed", action="store_true", help="shows only failures")
+    parser.add_argument("--jobs", type=int, default=1, help="number of parallel runs")
     options = parser.parse_args()
     if options.model:
-        cases = [Case(pathlib.Path(options.model).stem, "A model of yours.", str(pathlib.Path(options.model).resolve()),
+        cases = [Case(pathlib.Path(options.model).stem, "A user's model.", str(pathlib.Path(options.model).resolve()),
                       seconds_of(options.step), seconds_of(options.span or "1 s"), order=options.order)]
     else:
         from catalogue import ALL, CASES, OPEN  # noqa: E402
@@ -344,7 +344,7 @@ def main():
         else:
             show(case, found, options.failed)
     if len(chosen) > 1 and not options.json:
-        print(f"\n{len(chosen) - len(failed)} of {len(chosen)} cases hold." + (f" Failed: {', '.join(failed)}." if failed else ""))
+        print(f"\n{len(chosen) - len(failed)} of {len(chosen)} cases pass." + (f" Failed: {', '.join(failed)}." if failed else ""))
     return 1 if failed else 0
 
 

@@ -263,7 +263,7 @@ def falling_cat(tools):
     flat = np.array([[1, 0], [0.4, 0.3], [0, 1]])             # seen from beside and a little above
     legs = {"front": (-0.11, 0.11, -0.06, tools.BLUE), "rear": (-0.12, 0.12, 0.06, tools.RED)}
     for n, k in enumerate(tools.frames(m, 0.0, 0.6, 6)):
-        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # beside each other, not one below the other
+        away = np.array([0.6 * (n % 3), 0, 4.905 * m.t[k] ** 2 - 2 - 0.62 * (n // 3)])  # side by side, not one below the other
         for body, (low, high, at, colour) in legs.items():
             lines = [([low, 0, 0], [high, 0, 0], 7)] + [([at, y, 0], [at, y, 0.16], 2.5) for y in (-0.05, 0.05)]
             for a, b, width in lines:

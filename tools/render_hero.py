@@ -11,8 +11,8 @@ from drawing import INK, draw, fit, rotation, support
 
 
 def hero():
-    """Polhodes: paths of the angular velocity on the ellipsoid of constant momentum. Free bodies with principal moments
-    1, 2, 3 kg m^2 and one amount of angular momentum, let go with different energies."""
+    """Polhodes: paths of the angular velocity on the ellipsoid of constant angular momentum. Free bodies with principal moments
+    1, 2, 3 kg m^2, equal magnitude of angular momentum and different energies."""
     J, h = np.array([1.0, 2.0, 3.0]), 1.0
     figure = plt.figure(figsize=(7.6, 4.9))
     scene = figure.add_axes([0, -0.06, 1, 1.1], projection="3d", computed_zorder=False)

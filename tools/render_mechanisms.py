@@ -121,7 +121,7 @@ def n_four_bar():
     return figure
 
 
-PLATES = {  # outlines from the plates' own points; centres of mass are taken off below
+PLATES = {  # outlines from the plates' own points; centres of mass are subtracted below
     "K1": ((0.00092, 0), [(0, 0), (0.007, 0)], RED), "K2": ((-0.0115, 0), [(0, 0), (-0.028, 0)], GOLD),
     "K3": ((0.01043, -0.01874), [(0, 0), (0, -0.035), (0.02, -0.018), (0, 0)], BLUE),
     "K4": ((0, -0.00579), [(0, 0), (0, -0.02)], GREEN),

@@ -143,7 +143,7 @@ def rubber_bushing():
 
 
 def side(scene, x, faces, values, scale, towards):
-    """The faces of a solid that look along a direction, seen from there: x over z."""
+    """The faces of a solid whose normals are along a direction, seen from there: x over z."""
     quads = x[faces]
     normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
     seen = normals @ towards > 0.5 * np.linalg.norm(normals, axis=1)

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs random small scenes of contact and tells which of them gain energy, sink in or do not finish.
+"""Runs small random scenes of contact and reports those that gain energy, penetrate too deeply or do not finish.
 
     tools/soak.py                    scenes 1 to 1000
     tools/soak.py --scenes 17,40-60  these
-    tools/soak.py --limit 60         a minute of wall time each at most
-    tools/soak.py --write 17 DIR     writes scene 17 as DIR/model.json, to run it by hand
+    tools/soak.py --limit 60         at most a minute of wall time for each
+    tools/soak.py --write 17 DIR     writes scene 17 to DIR/model.json, to run it by hand
 
 A scene is made from its number alone: shapes, grounds, joints with stops, cables, solids, law, restitution,
-friction, step. Asked of each, as far as it comes: no step adds to the mechanical energy, by the ledger and, of rigid
-bodies, by their masses and velocities; the ledger balances; nothing is deeper in anything else than its law allows,
-by the program and, in planes, by the shapes' own corners; all is finite. Needs nothing but Python;
-POLHODE=path/to/polhode says which program runs. The exit code is 1 if a scene has a fault.
+friction, step. Checks of each scene up to its end: no step adds mechanical energy, by the energy balance and, for rigid
+bodies, by their masses and velocities; the energy balance is closed; no penetration exceeds that of the law,
+by the program and, in planes, by the shapes' own corners; all numbers are finite. Needs only Python;
+POLHODE=path/to/polhode is the program. The exit code is 1 if a scene has a fault.
 """
 import argparse
 import csv
@@ -29,21 +29,21 @@ sys.path[:0] = [str(ROOT / "examples")]
 sys.dont_write_bytecode = True
 from support import program  # noqa: E402
 
-# Largest rise of mechanical energy, and what the ledger may miss, as parts of the scene's energy. The non-smooth law
-# solves a step to 1e-3 of what gravity adds in it, and says so where it does not.
+# Bounds of the rise of mechanical energy and of the error of the energy balance, relative to the scene's energy. The non-smooth law
+# solves a step to 1e-3 of gravity's velocity change in it, and warns where it does not.
 RISE = {"barrier": 1e-6, "hertz": 1e-6, "linear": 1e-6, "nonsmooth": 5e-3}
 BALANCE = {"barrier": 1e-9, "hertz": 1e-9, "linear": 1e-9, "nonsmooth": 1e-2}
-# Deepest place, of the smallest half size of the largest body: the barrier's band is 1e-3; hertz and linear are stiff
-# enough to stop one body there, not several at once; what the non-smooth law leaves is cut at a tenth.
+# Bound of penetration, relative to the smallest half size of the largest body: the barrier's band is 1e-3; hertz and linear are stiff
+# enough to stop one body within their bound, not several at once; the non-smooth law ends a run at a tenth.
 DEEPEST = {"barrier": 1e-3, "hertz": 0.05, "linear": 0.05, "nonsmooth": 0.1}
-ROUNDED = 2e-3  # Edges are rounded by 1e-3 of a half size, so that sharp corners reach farther.
-WALL_LIMIT = 5.0  # [s], after which a scene is stopped if nothing else is asked for.
+ROUNDED = 2e-3  # Edges are rounded by 1e-3 of a half size, so that sharp corners are deeper.
+WALL_LIMIT = 5.0  # [s], after which a scene is stopped by default.
 NOT_CONVERGED, TOO_SLOW = 4, 75  # Exit codes.
 STEPS = {10e-3: 30, 5e-3: 40, 2e-3: 50, 1e-3: 60, 0.5e-3: 80, 0.1e-3: 120}  # [s], and how many of them.
 
 
 class Dice:
-    """Random numbers that are the same with every version of Python."""
+    """Pseudo-random numbers, the same with every version of Python."""
 
     def __init__(self, seed):
         self._random = random.Random(seed)
@@ -72,14 +72,14 @@ class Dice:
 
 
 def turned(q, v):
-    """A vector of the body in the world's axes."""
+    """A vector in body axes, transformed to ground axes."""
     w, x, y, z = q
     tx, ty, tz = 2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])
     return [v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx]
 
 
 def back(q, v):
-    """A vector of the world in the body's axes."""
+    """A vector in ground axes, transformed to body axes."""
     return turned([q[0], -q[1], -q[2], -q[3]], v)
 
 
@@ -88,7 +88,7 @@ def dot(a, b):
 
 
 class Shape:
-    """A shape with its mass properties and how far it reaches in a direction."""
+    """A shape with its mass properties and its support function."""
 
     def __init__(self, dice, kind, size):
         self.kind, self.points, self.triangles = kind, [], []
@@ -100,7 +100,7 @@ class Shape:
         if kind == "capsule":
             a[2] += a[0]
         self.half = a
-        if kind == "hull":  # Point by point symmetric, so that its centre is known.
+        if kind == "hull":  # Centrally symmetric, so that its centre is known.
             half = [dice.vector(a[0]) for _ in range(6)]
             self.points = half + [[-x for x in p] for p in half]
         elif kind == "mesh":
@@ -148,7 +148,7 @@ class Shape:
 
 
 class Scene:
-    """A model, and what is known of it without the program."""
+    """A model, and its properties that are known without the program."""
 
     def __init__(self, seed):
         dice = self._dice = Dice(seed)
@@ -160,7 +160,7 @@ class Scene:
         self.gravity = 0.0 if dice.happens(0.1) else 9.81
         self.e, self.mu = dice.one_of([0, 0.3, 0.7, 1]), dice.one_of([0, 0.1, 0.5])
         self.resting = dice.happens(0.25)
-        if self.resting:  # Without weight nothing at all would happen.
+        if self.resting:  # Without weight nothing would move.
             self.gravity = 9.81
         self.shapes, self.masses, self.planes, self.files = {}, {}, [], {}
         self.bodies, self.joints, self.cables, self.solids, self.exclude = {}, {}, {}, {}, []
@@ -301,7 +301,7 @@ class Scene:
             self.joints[f"joint_{k}"] = joint
 
     def _cable(self):
-        """From above to the topmost body."""
+        """A cable from above to the topmost body."""
         dice, name = self._dice, list(self.shapes)[-1]
         body = self.bodies[name]
         x, y, z = body["position"]
@@ -314,7 +314,7 @@ class Scene:
         if touches:
             cable["contact"] = {"radius": 0.02 * self.size}
         self.cables["rope"] = cable
-        if touches and self.shapes[name].kind in ("mesh", "tube"):  # It begins in their middle, which is outside.
+        if touches and self.shapes[name].kind in ("mesh", "tube"):  # It begins at their middle, which is outside.
             self.exclude.append(["rope", name])
         return touches
 
@@ -341,12 +341,12 @@ class Scene:
         return folder / "model.json"
 
     def band(self):
-        """What the depths allowed are parts of: the smallest half size of the largest body [m]."""
+        """Reference length of the allowed depths: the smallest half size of the largest body [m]."""
         return max([min(shape.half) for shape in self.shapes.values()] + [self.size * bool(self.solids)])
 
 
 def table(path):
-    """Columns of a table by their heads without units."""
+    """Columns of a table by their headers without units."""
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     columns = zip(*([float(cell) for cell in row] for row in rows[1:]))
@@ -354,7 +354,7 @@ def table(path):
 
 
 def rise(values):
-    """How far values rise above the least of those before."""
+    """Largest rise of values above the smallest previous one."""
     least, most = values[0], 0.0
     for value in values:
         most, least = max(most, value - least), min(least, value)
@@ -362,7 +362,7 @@ def rise(values):
 
 
 def own_numbers(scene, t):
-    """Kinetic energy and weight's of rigid bodies at each row, and the deepest corner in any plane, from the motion."""
+    """Kinetic and potential energy of rigid bodies at each row, and the deepest corner in any plane, from the motion."""
     energies, deepest = [0.0] * len(t["t"]), 0.0
     for name, shape in scene.shapes.items():
         mass = scene.masses[name]
@@ -383,14 +383,14 @@ def own_numbers(scene, t):
 
 
 def faults_of(scene, figures, t):
-    """What is wrong with a run that finished, and its numbers."""
+    """Faults of a run that finished, and its numbers."""
     found = []
     if not all(math.isfinite(x) for column in t.values() for x in column):
         return [("not finite", math.nan)], {}
     put_in = t["energy.put_in"]
     total = [e - p for e, p in zip(t["energy.total"], put_in)]
     scale = max(t["energy.kinetic"]) + max(t["energy.potential"]) - min(t["energy.potential"])
-    scale += 1e-3 * scene.size * scene.gravity * sum(scene.masses.values())  # What rests hardly moves.
+    scale += 1e-3 * scene.size * scene.gravity * sum(scene.masses.values())  # For scenes at rest.
     numbers = {"rise": rise(total) / scale, "balance": figures["energy_drift"],
                "booked": rise([-d for d in t["energy.dissipated"]]) / scale}
     own, corner = own_numbers(scene, t)
@@ -399,9 +399,9 @@ def faults_of(scene, figures, t):
     band = scene.band()
     numbers["depth"] = max(0.0, -(figures["contacts"]["least_gap"] or 0.0)) / band
     numbers["corner"] = corner / band
-    told = figures["contacts"].get("unconverged_steps", 0) > 0  # Then the ledger's numbers are what was warned of.
+    unconverged = figures["contacts"].get("unconverged_steps", 0) > 0  # The warning already covers the energy balance then.
     limits = {"rise": RISE[scene.law], "booked": RISE[scene.law], "balance": BALANCE[scene.law]}
-    limits = {key: math.inf if told else limit for key, limit in limits.items()}
+    limits = {key: math.inf if unconverged else limit for key, limit in limits.items()}
     limits.update({"own rise": RISE[scene.law], "depth": DEEPEST[scene.law] * (1 + 1e-6),
                    "corner": DEEPEST[scene.law] + ROUNDED})
     found += [(what, number) for what, number in numbers.items() if not number <= limits[what]]
@@ -409,7 +409,7 @@ def faults_of(scene, figures, t):
 
 
 def run(seed, limit=WALL_LIMIT):
-    """The scene; its faults; how it ended, if not at its end; its numbers; how long it took."""
+    """The scene, its faults, the reason of an early end, its numbers, and its wall time."""
     scene = Scene(seed)
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -443,7 +443,7 @@ def scenes_of(text):
             first, _, last = part.partition("-")
             found += range(int(first), int(last or first) + 1)
     except ValueError:
-        raise SystemExit(f"'{text}' are no scenes. Write numbers, such as 17,40-60.") from None
+        raise SystemExit(f"'{text}' are not scenes. Write numbers, such as 17,40-60.") from None
     return found
 
 
@@ -479,12 +479,12 @@ def main():
                 print(f"    {end}")
             sys.stdout.flush()
     print(f"\n{len(seeds) - bad} of {len(seeds)} scenes without a fault, {time.perf_counter() - begin:.0f} s; "
-          f"{ended['stopped']} did not converge and said so, {ended['slow']} were stopped after {options.limit:g} s.\n"
-          "Largest numbers and their scenes; energies are parts of the scene's, lengths of a body's least half size:")
-    for what, about in (("rise", "rise of the mechanical energy, by the ledger"),
+          f"{ended['stopped']} did not converge, with a message, {ended['slow']} were stopped after {options.limit:g} s.\n"
+          "Largest numbers and their scenes; energies relative to the scene's energy, lengths to a body's smallest half size:")
+    for what, about in (("rise", "rise of the mechanical energy, by the balance"),
                         ("own rise", "by masses and velocities, above the start"),
-                        ("booked", "dissipation taken back"), ("balance", "what the ledger misses"),
-                        ("depth", "least gap below zero"), ("corner", "corner within a plane")):
+                        ("booked", "decrease of the dissipated energy"), ("balance", "error of the energy balance"),
+                        ("depth", "largest penetration"), ("corner", "corner within a plane")):
         laws = [(law, *worst[law, what]) for law in DEEPEST if (law, what) in worst]
         print(f"  {about.ljust(46)}" + "  ".join(f"{law} {number:.1e} ({seed})" for law, number, seed in laws))
     return 1 if bad else 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds dist/viewer.html: one page with script and style inside, and a security policy that admits only these two by
-// their hashes. With --check it changes nothing and fails if the page in dist/ is another one.
+// their hashes. With --check it changes nothing and fails if the page in dist/ differs.
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync, mkdirSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -30,10 +30,10 @@ const page = readFileSync(join(root, "src/page.html"), "utf8")
 const file = join(root, "dist/viewer.html");
 if (process.argv.includes("--check")) {
   if (readFileSync(file, "utf8") !== page) {
-    console.error("viewer/dist/viewer.html is not what viewer/src makes. Run 'npm run build' in viewer/ and commit it.");
+    console.error("viewer/dist/viewer.html is not the build of viewer/src. Run 'npm run build' in viewer/ and commit it.");
     process.exit(1);
   }
-  console.log("viewer/dist/viewer.html is what viewer/src makes.");
+  console.log("viewer/dist/viewer.html is the build of viewer/src.");
 } else {
   mkdirSync(join(root, "dist"), { recursive: true });
   writeFileSync(file, page);

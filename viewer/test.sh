@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Tests of the viewer; skipped (exit code 77) where node, npm or the packages of package.json cannot be had.
+# Tests of the viewer; skipped (exit code 77) without node, npm or the packages of package.json.
 #
-#   viewer/test.sh built   the types fit, and dist/viewer.html is what src/ makes
-#   viewer/test.sh page    pages in a headless Chromium; POLHODE names the program that makes them
+#   viewer/test.sh built   type check, and comparison of dist/viewer.html with the build of src/
+#   viewer/test.sh page    pages in a headless Chromium; POLHODE is the program that writes them
 set -euo pipefail
 cd "$(dirname "$0")"
 

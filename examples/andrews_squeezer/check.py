@@ -29,7 +29,7 @@ def main():
     for what, unit, fine, rough, references, rounding in zip(
             ("angle", "rate of"), ("rad", "rad/s"), at_end(run), at_end(coarse), (ANGLES, RATES), (3e-9, 3e-6)):
         for name, value, other, reference in zip(NAMES, fine, rough, references):
-            # A step of order six leaves 1/63 of the difference; twice that, as steps are never vanishing.
+            # A step of order six leaves 1/63 of the difference; twice that, since steps are finite.
             report.near(f"{what} {name} [{unit}]", value, reference, 2 * abs(value - other) / 63 + rounding)
     for figure in ("energy_drift", "constraint_residual_max"):
         report.below(figure.replace("_", " "), run.figures[figure], ROUND_OFF)

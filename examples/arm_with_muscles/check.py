@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An arm with two muscles against the equation of its one angle, with the muscles' curves written out here."""
+"""An arm with two muscles against the equation of its one angle, with separate expressions of the muscles' curves."""
 import math
 import pathlib
 import sys
@@ -21,7 +21,7 @@ VMAX = 10.0                                                   # optimal lengths 
 
 
 def active(length):
-    """De Groote et al. (2016), the force-length curve: three bells."""
+    """De Groote et al. (2016), the force-length curve: a sum of three bell-shaped functions."""
     bells = ((0.815, 1.055, 0.162, 0.063), (0.433, 0.717, -0.030, 0.200), (0.100, 1.000, 0.354, 0.0))
     return sum(a * math.exp(-0.5 * ((length - b) / (c + d * length)) ** 2) for a, b, c, d in bells)
 

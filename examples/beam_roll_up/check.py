@@ -9,7 +9,7 @@ sys.path.insert(0, str(HERE.parent))
 from support import Report, Run  # noqa: E402
 
 LENGTH, BENDING = 1.0, 210e9 * 10e-3 * 1e-9 / 12
-# Newton ends where the force of round-off begins: 1e-16 of E A, which bends the beam by some 1e-16 E A L²/(E I).
+# Newton ends at the round-off of forces: 1e-16 of E A, which bends the beam by some 1e-16 E A L²/(E I).
 FLOOR = 16 * 2.2e-16 * 210e9 * 10e-6 * LENGTH**2 / BENDING
 
 

@@ -9,11 +9,11 @@ sys.path.insert(0, str(HERE.parent))
 from support import Report, Run  # noqa: E402
 
 G, R, DT = 9.81, 0.05, 5e-3
-SURFACE = R  # Where forces begin.
+SURFACE = R  # Position at which contact forces begin.
 
 
 def heights(table):
-    """Of each flight, the height over the surface that its energy is good for."""
+    """Height over the surface from the energy of each flight."""
     flights, last = [], None
     for z, v in zip(table["z"], table["vz"]):
         if z <= SURFACE:
@@ -37,15 +37,15 @@ def main():
         ratios = [math.sqrt(b / a) for a, b in zip(h, h[1:]) if 2 * math.sqrt(2 * b / G) > 4 * DT]
         report.below(f"{name} ball: error of the restitution in {len(ratios)} bounces", max(abs(r - e) for r in ratios), 1e-3)
         report.below(f"{name} ball: bounces missing of {least}", max(0, least - len(ratios)), 0)
-        report.below(f"{name} ball: speed at the end, it rests", run.probe(name)["vz"][-1], 1e-9 if name == "dull" else 1)
+        report.below(f"{name} ball: speed at the end, at rest", run.probe(name)["vz"][-1], 1e-9 if name == "dull" else 1)
     touch = run.probe("touch")
-    # What the floor gave in all: weight times time, and the momentum.
+    # Total impulse of the floor: weight times time, and the momentum.
     momentum = run.probe("lively")["vz"][-1]
     report.near("lively ball: impulse of the floor over weight times time", touch["impulse"][-1] / (G * 10), 1 + momentum / (G * 10), 1e-9)
     lost = run.figures["contacts"]
     drift = run.figures["energy_drift"]
-    report.below("energy balance with what impacts took", drift, 1e-7)
-    report.below("energy that went anywhere but into impacts [J]", lost["lost_by_friction"], 0)
+    report.below("energy balance with losses of impacts", drift, 1e-7)
+    report.below("energy lost other than by impacts [J]", lost["lost_by_friction"], 0)
     report.end()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A crane against the equations of its hook, with the rope's length written out, and the balance of work."""
+"""A crane against the equations of its hook, with the rope's length as a function of its points, and the balance of work."""
 import math
 import pathlib
 import sys
@@ -41,7 +41,7 @@ def rate(t, y):
 
 def main():
     report = Report()
-    times = (0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0)              # the law of the lift breaks at 4 s
+    times = (0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0)              # the law of the lift has a kink at 4 s
     exact = integrate(rate, [TIP.real, 1.0, 0.0, 0.0], times, 0.02)
     for ms in (20, 5, 0.2):
         run = Run(HERE / "model.yaml", f"analysis.step={ms} ms")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A driven crank-rocker against its geometry, and the motor's moment against the power that its energy asks for."""
+"""A driven crank-rocker against its geometry, and the motor's moment against the rate of its energy."""
 import math
 import pathlib
 import sys
@@ -47,7 +47,7 @@ def energy(t, h=1e-5):
 
 
 def moment(t, h=1e-4):
-    """Of the motor: power over speed."""
+    """Moment of the motor: power over speed."""
     speed = 24 * t if t < 0.5 else 12
     return (energy(t + h) - energy(t - h)) / (2 * h) / speed
 

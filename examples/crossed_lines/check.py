@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kink of the tight line and the parabolas of the heavy one, which press on each other by the same force."""
+"""The kink of the taut line and the parabolas of the heavy one, with the same contact force on both."""
 import math
 import pathlib
 import sys
@@ -14,13 +14,13 @@ ABOVE, FREE, START = 2.0, 3.995, 0.0101
 
 
 def press_below(depth, free):
-    """Force that a line without weight carries at its kink."""
+    """Force at the kink of a line without weight."""
     length = math.hypot(BELOW, depth)
     return 2 * EA * (2 * length / free - 1) * depth / length
 
 
 def press_above(depth, mass):
-    """Force that the heavy line leaves at its middle, which is that far below its ends: of each half, a parabola."""
+    """Force on the heavy line at its middle, which is by `depth` below its ends: each half is a parabola."""
     weight = mass * FREE / (2 * ABOVE) * G  # per length of its span
     tension = EA * (2 * ABOVE / FREE - 1)
     for _ in range(100):
@@ -30,7 +30,7 @@ def press_above(depth, mass):
 
 
 def depths(mass, free):
-    """Of both middles, and the force, where both are the same. Leaning lines keep apart a little more in height."""
+    """Depths of both middles and the contact force, by equality of the forces. Inclined lines have a slightly larger distance in height."""
     low, high = 0.0, 0.2
     for _ in range(60):
         below = (low + high) / 2
@@ -47,11 +47,11 @@ def main():
         below, above, force = depths(mass, free)
         case = f"{mass} kg/m on {free} m"
         press = run.probe("press")
-        report.near(f"{case}: depth of the tight line", -run.probe("below")["z"][-1], below, 2e-3 * below)
+        report.near(f"{case}: depth of the taut line", -run.probe("below")["z"][-1], below, 2e-3 * below)
         report.near(f"{case}: depth of the heavy line", START - run.probe("above")["z"][-1], above, 2e-3 * below)
         report.near(f"{case}: force between them", -press["fz"][-1], force, 2e-3 * force)
-        report.below(f"{case}: force sideways, of that", math.hypot(press["fx"][-1], press["fy"][-1]) / force, 1e-6)
-        report.below(f"{case}: gap, of the tolerance", abs(press["gap"][-1]) / (1e-3 * RADIUS), 1)
+        report.below(f"{case}: lateral force, relative to it", math.hypot(press["fx"][-1], press["fy"][-1]) / force, 1e-6)
+        report.below(f"{case}: gap over the tolerance", abs(press["gap"][-1]) / (1e-3 * RADIUS), 1)
     report.end()
 
 

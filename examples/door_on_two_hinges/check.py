@@ -28,13 +28,13 @@ def main():
     report.near("redundant rows", found["redundant_rows"], 5, 0)
     assert found["redundant"] == ["joint 'lower'", "joint 'upper'"], found["redundant"]
 
-    # The door at rest. The hinges carry its weight together; the horizontal forces are the couple that keeps it level.
+    # The door at rest. The hinges carry its weight together; the horizontal forces are the couple that balances its moment.
     run = Run(HERE / "model.yaml", "push=0", "analysis.duration=0.1 s")
     low, high = run.probe("lower"), run.probe("upper")
     rounding = 1e-12 * MASS * G
     report.near("at rest: vertical force of both hinges [N]", low["fz"][-1] + high["fz"][-1], MASS * G, 10 * rounding)
     report.near("at rest: horizontal force of both [N]", low["fx"][-1] + high["fx"][-1], 0, 10 * rounding)
-    # Moments about the middle of the door's edge; each hinge may take a part as a moment of its own.
+    # Moments about the middle of the door's edge; each hinge may also carry a moment.
     couple = (high["fx"][-1] * (HIGH - HALF) + low["fx"][-1] * (LOW - HALF) + high["my"][-1] + low["my"][-1])
     report.near("at rest: moment of both about y [N m]", couple, -MASS * G * WIDTH / 2, 10 * rounding)
 
@@ -49,7 +49,7 @@ def main():
                      for i in range(len(times))))
         report.below(f"swinging: force of both hinges along {axis} less mass times acceleration and weight [N]", worst,
                      100 * rounding)
-    report.below("energy drift, what the closer takes included", run.figures["energy_drift"], ROUND_OFF)
+    report.below("energy drift, including the losses of the closer", run.figures["energy_drift"], ROUND_OFF)
     report.end()
 
 

@@ -31,7 +31,7 @@ def main():
     times = runs[10].probe("tip")["t"]
     exact = [(L * (math.cos(a) + math.cos(b)), 0.0, -L * (math.sin(a) + math.sin(b)))
              for a, b, _, _ in integrate(rate, [0, 0, 0, 0], times, 0.02)]
-    floor = 1e-10  # Rounding, which the motion makes grow a thousandfold and more in these seconds.
+    floor = 1e-10  # Rounding errors, which the motion amplifies by a factor of 1000 and more.
     report.below("tip, largest distance from Lagrange's equations, 10 ms [m]", largest(tips[10], exact),
                  step_error(tips[20], tips[10], 6, floor))
     report.below("the same at 5 ms [m]", largest(tips[5], exact), step_error(tips[10], tips[5], 6, floor))

@@ -24,7 +24,7 @@ def stroke(name, t):
 
 
 def turn(name, out):
-    """How far a cylinder that is out by so much turns its link on the link before: the law of cosines."""
+    """Rotation of a link relative to the previous one by its cylinder's stroke: the law of cosines."""
     a, b = (p - PINS[name] for p in CYLINDERS[name])
     angle = lambda l: math.acos((abs(a) ** 2 + abs(b) ** 2 - l * l) / (2 * abs(a) * abs(b)))  # noqa: E731
     side = math.copysign(1, (a.conjugate() * b).imag)
@@ -33,7 +33,7 @@ def turn(name, out):
 
 
 def pose(out):
-    """Where the pins of the links are carried to: functions from points at the start, by link; those of the ground too."""
+    """Positions of pins: functions from points at the start, by link, including the ground."""
     links, before = {"ground": lambda p: p}, "ground"
     for name, pin in PINS.items():
         spin, carry = complex(math.cos(turn(name, out[name])), math.sin(turn(name, out[name]))), links[before]
@@ -71,7 +71,7 @@ def kinetic(t, h=1e-3):
 
 
 def along(run, name, out, k):
-    """Force of a cylinder along itself, positive where it pushes."""
+    """Axial force of a cylinder, positive in compression."""
     links, before = pose(out), {"boom": "ground", "stick": "boom", "bucket": "stick"}[name]
     a, b = CYLINDERS[name]
     u = links[name](b) - links[before](a)

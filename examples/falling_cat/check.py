@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A cat that turns over in its fall without angular momentum: its turn against the equation that zero angular momentum makes of its
-shape, integrated by itself."""
+"""A cat that turns over in its fall without angular momentum: its rotation against the equation of zero angular momentum for its
+shape, integrated independently."""
 import math
 import pathlib
 import sys
@@ -37,11 +37,11 @@ def transposed(A):
 
 
 def spin(t):
-    """Angular velocity of the front, along its own axes, at which the angular momentum of both is zero; and the energy of turning."""
+    """Angular velocity of the front, along its own axes, at which the total angular momentum is zero, and the rotational energy."""
     y, z, dy, dz = bends(t)
     about_y = ((math.cos(y), 0.0, math.sin(y)), (0.0, 1.0, 0.0), (-math.sin(y), 0.0, math.cos(y)))
     about_z = ((math.cos(z), -math.sin(z), 0.0), (math.sin(z), math.cos(z), 0.0), (0.0, 0.0, 1.0))
-    R = product(about_y, about_z)                             # of the rear against the front
+    R = product(about_y, about_z)                             # of the rear relative to the front
     relative = tuple(dy * a + dz * b for a, b in zip(E[1], times(about_y, E[2])))
     arm = times(R, (REAR["at"], 0.0, 0.0))
     d = subtract(arm, (FRONT["at"], 0.0, 0.0))                # from centre to centre

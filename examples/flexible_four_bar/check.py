@@ -11,7 +11,7 @@ HALF = "analysis.duration=0.5 s"  # of the comparison: later the small differenc
 
 
 def bending(run):
-    """How far the middle of the coupler stands from the straight line between the eyes [m]."""
+    """Distance of the middle of the coupler from the straight line between the eyes [m]."""
     out = []
     for b, c, m in zip(run.points("B"), run.points("C"), run.points("middle")):
         (x, y, _), length = [q - p for p, q in zip(b, c)], distance(b, c)

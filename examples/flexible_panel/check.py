@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Angular momentum and the balance of energy at round-off; the spin ends about the axis of the largest inertia, with
-the energy that the angular momentum leaves there; the panel vibrates as a cantilever does."""
+"""Angular momentum and the balance of energy at round-off; the final spin is about the axis of the largest inertia, with
+the minimal energy of the angular momentum; the panel has the frequency of a cantilever."""
 import json
 import math
 import pathlib
@@ -40,9 +40,9 @@ def main():
     spin = [dot(omega, axis) for axis in axes]
     end = 0.5 * sum(i * w**2 for i, w in zip(inertia, spin))
     report.near("axes of the hub: volume they span", dot(axes[0], cross(axes[1], axes[2])), 1, 1e-9)
-    # Of the energy that may go, nine tenths are gone; less than the least there cannot be, but for what bends.
-    report.near("energy left to lose, of that at the start", (end - least) / (start - least), 0.05, 0.05)
-    report.near("spin about the axis of largest inertia, of the final one", abs(spin[1]) / (size / inertia[1]), 1, 0.06)
+    # Nine tenths of the available energy are dissipated; the energy is above the minimum, apart from bending.
+    report.near("remaining available energy, relative to the start", (end - least) / (start - least), 0.05, 0.05)
+    report.near("spin about the axis of largest inertia, relative to the final one", abs(spin[1]) / (size / inertia[1]), 1, 0.06)
 
     # Clamped: between a beam, free to contract across, and a wide plate; and 1 % for the mesh.
     out = polhode("modes", HERE / "model.yaml", "-o", run.folder, "--json", "-n", "1", "--set",

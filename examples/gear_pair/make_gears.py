@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the meshes of the two gears, pinion.stl and wheel.stl, in millimetres. Change the figures and run it again."""
+"""Writes the meshes of the two gears, pinion.stl and wheel.stl, in millimetres. Change the numbers and run it again."""
 import math
 
 MODULE, PRESSURE = 6.0, math.radians(20)
@@ -22,7 +22,7 @@ def profile(teeth):
     for k in range(POINTS):
         r = base + (tip - base) * k / (POINTS - 1)
         flank.append((r, half + involute(pitch, base) - involute(r, base)))
-    foot = 1.03 * flank[0][1]  # A little wider than the base, so that no side points at the axle.
+    foot = 1.03 * flank[0][1]  # Slightly wider than the base, so that no side is radial.
     right = [(root, -foot)] + [(r, -a) for r, a in flank]
     left = [(r, a) for r, a in reversed(flank)] + [(root, foot)]
     return [(r * math.cos(a + 2 * math.pi * n / teeth), r * math.sin(a + 2 * math.pi * n / teeth))
@@ -30,7 +30,7 @@ def profile(teeth):
 
 
 def triangles(outline, width):
-    """The outline drawn out along z, closed by fans from the middle: it can be seen whole from there."""
+    """The outline extruded along z, closed by fans from the middle, from which the whole outline is visible."""
     low, high = -width / 2, width / 2
     for (x0, y0), (x1, y1) in zip(outline, outline[1:] + outline[:1]):
         a, b, c, d = (x0, y0, low), (x1, y1, low), (x1, y1, high), (x0, y0, high)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A governor whose shaft turns at a given speed: where its arms stand at each speed in closed form, and between them their tilt, the
+"""A governor whose shaft turns at a given speed: the steady tilt of its arms in closed form, and between them their tilt, the
 moment and power of the motor and the force of a rod against the equation of the tilt."""
 import math
 import pathlib
@@ -29,7 +29,7 @@ def steady(omega):
 
 
 def tilting(t, y):
-    """Of Lagrange's equation; the sleeve is 2 L cos(tilt) below the pins."""
+    """Rates by Lagrange's equation; the sleeve is 2 L cos(tilt) below the pins."""
     s, c, rate = math.sin(y[0]), math.cos(y[0]), y[1]
     moment = 2 * (ACROSS - ALONG) * speed(t) ** 2 * s * c - 2 * (S + SLEEVE * L) * G * s
     moment -= 4 * SLEEVE * L**2 * s * c * rate**2 + DAMPING * (2 * L * s) ** 2 * rate
@@ -44,7 +44,7 @@ def drive(t, y):
 
 
 def rod(t, y):
-    """Each of the two carries half of what lifts the sleeve."""
+    """Force of a rod: half of the force on the sleeve."""
     s, c, (rate, change) = math.sin(y[0]), math.cos(y[0]), tilting(t, y)
     lift = SLEEVE * (G + 2 * L * (s * change + c * rate**2)) + DAMPING * 2 * L * s * rate
     return lift / (2 * c)
@@ -69,7 +69,7 @@ def main():
             report.near("moment of the motor [N m]", motor["mz"][k], drive(t, y), bound)
             report.near("its power [W]", motor["power"][k], drive(t, y) * speed(t), 20 * bound)
             report.near("force of a rod [N]", math.hypot(*forces[k]), rod(t, y), 10 * bound)
-        stepped = 2e3 / ms * math.tan(FAST * ms / 2e3)       # the speed that steps of a rotation see
+        stepped = 2e3 / ms * math.tan(FAST * ms / 2e3)       # the speed of Cayley rotations of a step
         report.near(f"steady tilt at tan(speed step/2)/(step/2), {ms} ms [rad]", steady(SLOW) + pins[0][-1], steady(stepped), 1e-8)
         errors[ms] = abs(steady(SLOW) + pins[0][75] - exact[2][0])
         report.below("energy drift", run.figures["energy_drift"], ROUND_OFF)

@@ -16,7 +16,7 @@ C, B = rotor * RADIUS**2 / 2, rotor * (3 * RADIUS**2 + WIDTH**2) / 12  # of the 
 OUTER_Z = 3e-4
 ball = m * BALL**2 / 10
 INNER = (1.5e-4 + ball, 1.5e-4 + ball + m * ARM**2, 2.8e-4 + ball + m * ARM**2)  # inner ring with the weight
-H = C * SPIN  # The angular momentum about the axle never changes: its bearing is free.
+H = C * SPIN  # The angular momentum about the axle is constant: its bearing is free.
 
 
 def across(theta):
@@ -46,19 +46,19 @@ def main():
         report.below(f"angle of the {name}, largest difference from the equations [rad]",
                      largest(values, [s[column] for s in states]), tolerance)
 
-    # The nodding about the equilibrium has the frequency H / sqrt(J_vertical J_horizontal); its second harmonic and
-    # what it does to the precession are of the size of its amplitude, beside 1.
+    # Nutation about the equilibrium has the frequency H / sqrt(J_vertical J_horizontal); its second harmonic and
+    # its effect on the precession are of the order of its amplitude relative to 1.
     fast_top = m * G * ARM / H
     nodding = H / math.sqrt(across(0)[0] * (INNER[1] + B))
     amplitude = fast_top * across(0)[0] / H
     periods = math.floor(times[-1] * nodding / (2 * math.pi))
     until = periods * 2 * math.pi / nodding
     i = min(range(len(times)), key=lambda k: abs(times[k] - until))
-    report.near("precession over whole nods [rad/s]", phi[i] / times[i], fast_top,
+    report.near("precession over whole nutation periods [rad/s]", phi[i] / times[i], fast_top,
                 fast_top * (amplitude + 2 * amplitude + 2 / (nodding * until)))
     ups = [k for k in range(1, len(theta) - 1) if theta[k - 1] < theta[k] >= theta[k + 1]]
     period = (times[ups[-1]] - times[ups[0]]) / (len(ups) - 1)
-    report.near("frequency of the nodding [rad/s]", 2 * math.pi / period, nodding,
+    report.near("frequency of nutation [rad/s]", 2 * math.pi / period, nodding,
                 nodding * (amplitude + 2 * (times[1] - times[0]) / (times[ups[-1]] - times[ups[0]])))
     for figure in ("energy_drift", "angular_momentum_drift"):
         report.below(figure.replace("_", " "), run.figures[figure], ROUND_OFF)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forces and moments on the tibia balance; what is symmetric stays so; a ligament pulls as its law says; without the
-anterior cruciate the drawer opens further."""
+"""Balance of forces and moments on the tibia, symmetry, the law of a ligament, and the larger displacement in the
+drawer test without the anterior cruciate."""
 import math
 import pathlib
 import sys
@@ -23,7 +23,7 @@ def total(vectors):
 
 
 def unbalanced(run, weight, drawer, varus):
-    """What is left of the forces on the tibia, and of the moments about its centre of mass, from what is reported."""
+    """Resultants of the reported forces on the tibia, and of the moments about its centre of mass."""
     pulls = [tuple(-f for f in last(run, name)) for name in ("pad", "inner", "outer")]
     pulls += [last(run, "anterior"), last(run, "posterior"), (drawer, varus, weight)]
     centre = last(run, "centre", "x y z")
@@ -42,23 +42,23 @@ def main():
     inward = Run(HERE / "model.yaml", "drawer=0", "varus=-20 N")
     for name, run, loads in (("drawer", drawer, (150, 100, 0)), ("torn", torn, (150, 100, 0)), ("varus", outward, (150, 0, 20))):
         force, moment = unbalanced(run, *loads)
-        report.below(f"{name}: unbalanced force, of 100 N", force / 100, 1e-8)
-        report.below(f"{name}: unbalanced moment, of 1 N m", moment, 1e-8)
+        report.below(f"{name}: unbalanced force over 100 N", force / 100, 1e-8)
+        report.below(f"{name}: unbalanced moment over 1 N m", moment, 1e-8)
 
     # x-z is a plane of symmetry of the drawer test, and turns one varus test into the other.
-    report.below("drawer: sideways move, of 1 mm", last(drawer, "tibia", "x y z")[1] / 1e-3, 1e-8)
+    report.below("drawer: lateral displacement over 1 mm", last(drawer, "tibia", "x y z")[1] / 1e-3, 1e-8)
     a, b = last(outward, "tibia", "x y z"), last(inward, "tibia", "x y z")
-    report.below("varus and valgus mirrored, of 1 mm", distance(a, (b[0], -b[1], b[2])) / 1e-3, 1e-8)
+    report.below("varus and valgus mirrored, difference over 1 mm", distance(a, (b[0], -b[1], b[2])) / 1e-3, 1e-8)
 
-    # The stretched collateral: fibres and, between them, a material that keeps its volume (K/G = 50: 2 %), pulled
-    # along; it bends a little too, for its ends are grown on: another 2 %.
+    # The stretched collateral: fibres in a nearly incompressible material (K/G = 50: 2 %) under tension; with bonded
+    # ends it also bends slightly: another 2 %.
     end = last(outward, "inner_end", "x y z")
     stretch = distance(end, (0, -OUT, FEMUR_END)) / LENGTH
     stress = C3 * (math.exp(C4 * (stretch - 1)) - 1) / stretch + 2 * C1 * (stretch - 1 / stretch**2)
-    report.near("varus: pull of the inner collateral, of its law", math.hypot(*last(outward, "inner")) / (AREA * stress), 1, 0.04)
-    report.below("varus: the outer one pushes, of what the inner one pulls", last(outward, "outer")[2] / abs(last(outward, "inner")[2]), 0.35)
+    report.near("varus: tension of the inner collateral over its law", math.hypot(*last(outward, "inner")) / (AREA * stress), 1, 0.04)
+    report.below("varus: compression of the outer one over tension of the inner one", last(outward, "outer")[2] / abs(last(outward, "inner")[2]), 0.35)
 
-    # The test of a physician: a torn anterior cruciate lets the tibia come forward, by half as much again and more.
+    # The clinical test: with a torn anterior cruciate the displacement of the tibia is at least 1.5 times as large.
     forward = [last(run, "tibia", "x y z")[0] for run in (drawer, torn)]
     report.below("drawer: 1.5 intact over torn", 1.5 * forward[0] / forward[1], 1)
     report.end()

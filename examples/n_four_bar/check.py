@@ -25,8 +25,8 @@ def compare(report, cells, model, *settings):
     run, coarse = (Run(model, f"analysis.step={ms} ms", "output.every=20 ms", "analysis.order=6", *settings)
                    for ms in (10, 20))
     B0 = run.points("B0")
-    # Rounding: at the top the kinetic energy is 1/44 of the largest, so a change of the energy changes the speed there
-    # 22 times as much; over 10 s that is a delay, at a speed of at most 6.7 m/s.
+    # Rounding: at the top the kinetic energy is 1/44 of the largest one, so a change of the energy changes the speed there
+    # 22 times as much; over 10 s this is a delay, at a speed of at most 6.7 m/s.
     rounding = 1e-10 + 22 * 10 * 6.7 * run.figures["energy_drift"]
     tolerance = step_error(coarse.points("B0"), B0, 6, rounding)
     report.below(f"N = {cells}: B0, largest distance from the pendulum in 10 s [m]",
@@ -49,7 +49,7 @@ def main():
             compare(report, cells, model, "output.probes={B0: {body: b0, point: [0, 0.5, 0]}}")
     found = json.loads(polhode("check", HERE / "model.yaml", "--json"))
     report.near("mobility", found["mobility"], 1, 0)
-    # A plane loop closes with hinges that repeat three rows: the two turns and the shift out of the plane.
+    # A planar loop of hinges has three redundant rows: two rotations and the displacement out of the plane.
     report.near("redundant rows", found["redundant_rows"], 3 * 2, 0)
     report.end()
 

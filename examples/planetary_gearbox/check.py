@@ -11,7 +11,7 @@ SUN, PLANET, RING = 20, 20, 60
 RATIO = 1 + RING / SUN                                          # sun to carrier
 SPIN = 1 - RING / PLANET                                        # planet to carrier
 R, BRAKE = 0.2, 2.0
-# Seen from the sun: m r² of three planets and their own turning, the carrier.
+# Reduced to the sun: m r² of three planets, their rotation, the carrier.
 INERTIA = 0.02 + (0.15 + 3 * 1.0 * R**2 + 3 * SPIN**2 * 0.008) / RATIO**2
 
 
@@ -32,7 +32,7 @@ def main():
             report.near(f"speed of the carrier at {t} s, {ms} ms [rad/s]", output["rate rz"][k], speed(t) / RATIO, 1e-9)
             report.near(f"moment of planet 1 on the sun at {t} s, {ms} ms [N m]", one["effort_1"][k],
                         -(moment - 0.02 * (200 if t < 0.5 else 0)) / 3, 2e-5)
-            report.near(f"planets 1 and 2 share, at {t} s, {ms} ms [N m]", two["effort_1"][k], one["effort_1"][k], 4e-5)
+            report.near(f"moment of planet 2, that of planet 1 at {t} s, {ms} ms [N m]", two["effort_1"][k], one["effort_1"][k], 4e-5)
         report.near(f"turns of the carrier, {ms} ms [rad]", output["rz"][-1], 175 / RATIO, 1e-9)
         report.below(f"energy drift at {ms} ms", run.figures["energy_drift"], ROUND_OFF)
     report.end()

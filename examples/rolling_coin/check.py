@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The coin follows the path of a disc that rolls without slipping, whose equations were integrated elsewhere."""
+"""The coin follows the path of a disc that rolls without slipping, by separate integration of its equations."""
 import pathlib
 import sys
 
@@ -20,9 +20,9 @@ def main():
     t, x = run.probe("centre")["t"], run.points("centre")
     error = max(abs(x[nearest(t, row[0])][i] - row[1 + i]) for row in ROLLING for i in range(3))
     # The edge is 10 um thick and the gap at rest some micrometres.
-    report.below("largest distance from the rolling disc, of a radius of 10 mm [m]", error, 2e-5)
+    report.below("largest distance from the rolling disc, radius 10 mm [m]", error, 2e-5)
     status = run.probe("foot")["status"][1:]
-    report.near("part of the time in which it sticks", sum(s == 1 for s in status) / len(status), 1, 0)
+    report.near("fraction of the time in which it sticks", sum(s == 1 for s in status) / len(status), 1, 0)
     report.below("energy balance", run.figures["energy_drift"], 1e-8)
     report.end()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stiffness against torsion and its frequency in closed form; what holds the sleeve is what loads the pin; the pin that
-is loaded at once comes to rest where statics says."""
+"""Stiffness against torsion and its frequency in closed form; the reaction of the sleeve is the load of the pin; under a
+sudden load the pin comes to rest at the static solution."""
 import json
 import math
 import pathlib
@@ -16,7 +16,7 @@ DYNAMICS = ("analysis.type=dynamics", "analysis.duration=40 ms", "analysis.step=
 
 
 def rubber_inertia():
-    """Moment of inertia that turns with the pin when the rubber shears: 2 pi rho L times the integral of r^3 of the
+    """Effective moment of inertia of rubber in torsion, at the pin: 2 pi rho L times the integral of r^3 of the
     square of the turn, (1/r^2 - 1/R^2) / (1/r_i^2 - 1/R^2)."""
     def integrand(r):
         return r**3 * ((1 / r**2 - 1 / OUTER**2) / (1 / INNER**2 - 1 / OUTER**2)) ** 2
@@ -36,7 +36,7 @@ def main():
     report.near("torsion: stiffness of the closed form", 0.1 / math.atan2(y, x) / stiffness, 1, 0.005)
     modes = json.loads(polhode("modes", HERE / "model.yaml", "-o", twisted.folder, "--json", "-n", "5", "--set", "radial=0"))
     torsion = math.sqrt(stiffness / (PIN + rubber_inertia())) / (2 * math.pi)
-    # The pin tilts twice, moves along the axis, and turns; that the rubber moves as at rest is Rayleigh's estimate.
+    # Modes: two tilts of the pin, its axial displacement, torsion; the static shape of the rubber gives Rayleigh's estimate.
     natural = [math.sqrt(mode["omega_squared"]) / (2 * math.pi) for mode in modes["modes"]]  # without the viscosity
     report.near("torsion: natural frequency [Hz]", natural[3], torsion, 0.005 * torsion)
     report.near("torsion: damping ratio, of omega tau / 2", modes["modes"][3]["damping_ratio"] / (math.pi * torsion * 0.2e-3), 1, 0.01)
@@ -47,14 +47,14 @@ def main():
     report.near("radial: stable", still.figures["unstable_directions"], 0, 0)
     # Viscosity stops the pin: exp(-omega^2 tau t / 2) with 294 Hz and 0.2 ms leaves 1e-6 after 40 ms.
     way = still.points("pin")[-1][0]
-    report.near("let go: where the pin comes to rest [m]", moving.points("pin")[-1][0], way, 1e-5 * way)
-    # It swings beyond by exp(-pi zeta / sqrt(1 - zeta^2)), were rubber as stiff far out as at rest: within 5 %.
+    report.near("sudden load: position of the pin at rest [m]", moving.points("pin")[-1][0], way, 1e-5 * way)
+    # Its overshoot is exp(-pi zeta / sqrt(1 - zeta^2)) for constant stiffness of the rubber: within 5 %.
     zeta = math.pi * natural[4] * 0.2e-3
     swing = max(x for x, _, _ in moving.points("pin"))
-    report.near("let go: farthest, of where it comes to rest", swing / way,
+    report.near("sudden load: largest displacement over that at rest", swing / way,
                 1 + math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2)), 0.05)
-    report.below("let go: energy + dissipation - work, drift", moving.figures["energy_drift"], ROUND_OFF)
-    report.below("let go: off the plane of the load, of the way",
+    report.below("sudden load: energy + dissipation - work, drift", moving.figures["energy_drift"], ROUND_OFF)
+    report.below("sudden load: lateral displacement over displacement",
                  max(distance(p, (p[0], 0, 0)) for p in moving.points("pin")) / way, 1e-8)
     report.end()
 

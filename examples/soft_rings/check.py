@@ -18,19 +18,19 @@ def main():
     t = face["t"]
     even = [k for k in range(len(t)) if 0.2 < t[k] < 0.39]
     size = sum(face["normal"][k] for k in even)
-    # Both rings are pressed evenly, so each is in balance but for its vibrations.
+    # At a constant rate each ring is in equilibrium, apart from its vibrations.
     for name, at, sign in (("hand", hand, 1), ("foot", foot, -1)):
         rest = sum(at["fy"][nearest(at["t"], t[k])] + sign * face["fy"][k] for k in even)
-        report.below(f"{name} and face along y, of the normal force", abs(rest) / size, 0.05)
+        report.below(f"{name} and face along y over normal force", abs(rest) / size, 0.05)
     # Equal rings: the face stays half way between the middles of foot and hand.
     end = len(t) - 1
     middle = 0.5 * (60.5e-3 - DEPTH)
     report.near("height of the face at the end [m]", face["py"][end], middle, 1.5e-3)
     friction = [math.hypot(x, y, z) for x, y, z in zip(face["ftx"], face["fty"], face["ftz"])]
-    report.below("friction beyond mu N, of mu N",
+    report.below("friction above mu N, relative to it",
                  max(0.0, max(f / (MU * n) - 1 for f, n in zip(friction, face["normal"]) if n > 0)), 1e-9)
-    report.below("energy lost at the face falls by", max(0.0, max(a - b for a, b in zip(face["lost"], face["lost"][1:]))), 0)
-    report.below("closest is above zero", max(0.0, -min(g for g in face["gap"] if g == g)), 0)
+    report.below("decrease of the energy lost at the face", max(0.0, max(a - b for a, b in zip(face["lost"], face["lost"][1:]))), 0)
+    report.below("smallest gap is above zero", max(0.0, -min(g for g in face["gap"] if g == g)), 0)
     report.below("energy + losses - work, drift", run.figures["energy_drift"], ROUND_OFF)
     report.below("momentum - impulses, drift", run.figures["linear_momentum_drift"], ROUND_OFF)
     report.end()

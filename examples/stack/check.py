@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""After a second the stack stands still for a minute; each contact carries the weight above it."""
+"""After a second the stack is at rest for a minute; each contact carries the weight above it."""
 import pathlib
 import sys
 
@@ -14,7 +14,7 @@ def main():
     settled = nearest(t, 1.0)
     report.below("top box: largest motion from 1 s to 60 s [m]", max(distance(p, x[settled]) for p in x[settled:]), 1e-5)
     report.below("top box: speed at the end [m/s]", distance(run.points("top", "vx vy vz")[-1], (0, 0, 0)), 1e-9)
-    # A millionth: what 1e-12 m of a step's increments, where Newton ends, are worth at the stiffness of lasting contact.
+    # 1e-6: the force of 1e-12 m, Newton's tolerance, at the stiffness of lasting contact.
     report.near("floor under ten boxes [N]", run.probe("foot")["normal"][-1], 98.1, 1e-4)
     report.near("box 4 under five boxes [N]", abs(run.probe("middle")["fz"][-1]), 5 * 9.81, 1e-4)
     report.below("energy balance", run.figures["energy_drift"], 1e-10)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Stewart platform: the pose that its legs make against the wanted one, and the forces of its motors against the equations of
+"""A Stewart platform: the pose by its legs against the desired one, and the forces of its motors against the equations of
 momentum of platform and legs along that motion."""
 import math
 import pathlib
@@ -52,7 +52,7 @@ def length(i, t):
 
 
 def axes(i, t):
-    """Axes of a leg: across, across, along; those of the cross are the one at the floor and the second."""
+    """Axes of a leg: two across, one along; the axes of the cross are that at the floor and the second one."""
     u = unit(leg(i, t))
     second = unit(cross(u, floor_axis(i)))
     return cross(second, u), second, u
@@ -64,7 +64,7 @@ def floor_axis(i):
 
 
 def rate(f, t):
-    """Of a vector of time, errors of the sixth order."""
+    """Derivative of a vector function of time, with errors of the sixth order."""
     sides = [subtract(f(t + k * STEP), f(t - k * STEP)) for k in (1, 2, 3)]
     return tuple((45 * a - 9 * b + c) / (60 * STEP) for a, b, c in zip(*sides))
 
@@ -83,10 +83,10 @@ def momentum(i, t):
 
 
 def motor_forces(t):
-    """Along the legs, on the rods."""
+    """Forces of the motors along the legs, on the rods."""
     acceleration = rate(lambda s: rate(centre, s), t)
     spin_rate = rate(lambda s: rate(lambda q: (yaw(q),), s), t)[0]
-    force = times(MASS, subtract(acceleration, GRAVITY))     # what the legs must give to the platform
+    force = times(MASS, subtract(acceleration, GRAVITY))     # required force and moment of the legs on the platform
     moment = (0.0, 0.0, INERTIA_Z * spin_rate)
     columns, own = [], []
     for i in range(6):
@@ -114,7 +114,7 @@ def main():
             place, mark = run.points("platform")[row], run.points("mark")[row]
             for name, value, wanted in zip("xyz", place, centre(t)):
                 report.near(f"platform {name} at {t} s, {ms} ms [m]", value, wanted, 1e-11)
-            report.near(f"its turn at {t} s, {ms} ms [rad]", math.atan2(mark[1] - place[1], mark[0] - place[0]), yaw(t), 1e-11)
+            report.near(f"its rotation at {t} s, {ms} ms [rad]", math.atan2(mark[1] - place[1], mark[0] - place[0]), yaw(t), 1e-11)
             worst = 0.0
             for i, wanted in enumerate(motor_forces(t)):
                 found = dot(run.points(f"motor_{i + 1}", "fx fy fz")[row], axes(i, t)[2])

@@ -12,14 +12,14 @@ from support import ROUND_OFF, Report, Run  # noqa: E402
 G, STROKE = 9.81, 0.002
 CHASSIS, WHEEL, ARM = 300.0, 40.0, 4.0
 SPRING, DAMPER, TYRE, TYRE_DAMPER = 120e3, 6000.0, 200e3, 100.0
-HALF = 0.5                                                   # the strut stands in the middle of the arm
+HALF = 0.5                                                   # the strut is in the middle of the arm
 
 
 def quarter_car(frequency):
-    """Motion of chassis and wheel over the shaker's: arms turn as bars do, their ends parallel."""
+    """Motion of chassis and wheel over the shaker's: the arms are parallel bars."""
     w = 2 * math.pi * frequency
     k, c = SPRING * HALF**2, DAMPER * HALF**2
-    # An arm between points moving by z_c and z_w: its middle moves by the mean, it turns by (z_w - z_c)/0.4.
+    # An arm between points moving by z_c and z_w: its middle moves by the mean, it rotates by (z_w - z_c)/0.4.
     turn = 2 * 0.05 / 0.4**2
     both, cross = 2 * ARM * 0.25 + turn, 2 * ARM * 0.25 - turn
     strut, tyre = k + 1j * w * c, TYRE + 1j * w * TYRE_DAMPER

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A planar 3-RRR manipulator: the pose that its motors make against the wanted one, and their moments against the equations of
+"""A planar 3-RRR manipulator: the pose by its motors against the desired one, and their moments against the equations of
 momentum of plate and links along that motion."""
 import cmath
 import math
@@ -52,12 +52,12 @@ def spin_rate(f, t):
 
 
 def need(mass, place, about, spin, t):
-    """Moment about a point that a body needs to move so: mass and inertia, place, angular acceleration."""
+    """Moment about a point for a body's motion: mass and inertia, position, angular acceleration."""
     return mass[1] * spin + cross(place(t) - about, mass[0] * (second(place, t) - G))
 
 
 def motor_moments(t):
-    """On the first links."""
+    """Moments of the motors on the first links."""
     rows, right = [], []
     for i in range(3):                                        # moments of a lower link about its elbow
         e, p = elbow(i, t), pin(i, t)
@@ -92,7 +92,7 @@ def main():
             place, mark = run.points("plate", "x y")[row], run.points("mark", "x y")[row]
             report.near(f"plate x at {t} s, {ms} ms [m]", place[0], centre(t).real, 1e-11)
             report.near(f"plate y at {t} s, {ms} ms [m]", place[1], centre(t).imag, 1e-11)
-            report.near(f"its turn at {t} s, {ms} ms [rad]", math.atan2(mark[1] - place[1], mark[0] - place[0]), turn(t), 1e-11)
+            report.near(f"its rotation at {t} s, {ms} ms [rad]", math.atan2(mark[1] - place[1], mark[0] - place[0]), turn(t), 1e-11)
             for i, wanted in enumerate(motor_moments(t)):
                 report.near(f"moment of motor {i + 1} at {t} s, {ms} ms [N m]", run.probe(f"motor_{i + 1}")["mz"][row], wanted, 5e-9)
         work = sum(run.probe(f"motor_{i}")["work"][-1] for i in (1, 2, 3))

@@ -17,7 +17,7 @@ FIRE, LET_GO = 0.2, math.radians(128)
 
 
 def accelerations(y, trough):
-    """Of the turn of the arm a, the swing of the weight b, and the ball x, z; then the multipliers of sling and trough."""
+    """Accelerations of the arm's angle a, the weight's angle b, and the ball x, z; then the multipliers of sling and trough."""
     a, b, x, z, da, db, dx, dz = y
     # Unit vector from the axle to the long end, and its derivative by the turn.
     s = math.pi + SLOPE - a
@@ -29,7 +29,7 @@ def accelerations(y, trough):
     drift = [SHORT * e[k] * da * da - HANG * d[k] * db * db for k in (0, 1)]
     force = [-WEIGHT * drift[0], -WEIGHT * (G + drift[1])]
     right = [-SHORT * (de[0] * force[0] + de[1] * force[1]) - ARM * G * CENTRE * de[1], HANG * (dd[0] * force[0] + dd[1] * force[1]), 0.0, -BALL * G]
-    # Sling: half the square of its length stays.
+    # Sling: half the square of its length is constant.
     r = (x - LONG * e[0], z - HEIGHT - LONG * e[1])
     v = (dx - LONG * de[0] * da, dz - LONG * de[1] * da)
     rows = [[-LONG * (r[0] * de[0] + r[1] * de[1]), 0.0, r[0], r[1]]]
@@ -50,7 +50,7 @@ def accelerations(y, trough):
 
 
 def until(y, trough, margin):
-    """Goes on until the margin is zero; time and state there."""
+    """Integrates until the margin is zero; time and state there."""
     rate = lambda _, s: list(s[4:]) + accelerations(s, trough)[:4]  # noqa: E731
     t, h = 0.0, 0.02
     while True:
@@ -74,7 +74,7 @@ def until(y, trough, margin):
 
 
 def throw():
-    """Times of lift and throw after the latch is open, the ball's state then."""
+    """Times at which the ball lifts off and the sling opens, after the opening of the latch, and the ball's state then."""
     c = math.sqrt(1 - (DROP / LONG) ** 2)
     y = [0.0, 0.0, -LONG * c + math.sqrt(SLING**2 - (HEIGHT - DROP - 0.1) ** 2), 0.1, 0.0, 0.0, 0.0, 0.0]
     t_1, y = until(y, True, lambda s: -accelerations(s, True)[5])
@@ -96,7 +96,7 @@ def main():
         report.near(f"the sling opens, {ms} ms [s]", events["throw"]["time"], FIRE + let_go, bound)
         report.near(f"the ball lands, {ms} ms [s]", events["land"]["time"], FIRE + let_go + flight, 20 * bound)
         ball = {name: column[-1] for name, column in run.probe("ball").items()}
-        rest = events["land"]["time"] - ball["t"]             # the last row stands up to 10 ms before
+        rest = events["land"]["time"] - ball["t"]             # the last row is up to 10 ms earlier
         report.near(f"range, {ms} ms [m]", ball["x"] + rest * ball["vx"], x + dx * flight, 400 * bound)
         report.near(f"height of the ball there, {ms} ms [m]", ball["z"] + rest * ball["vz"] - G * rest**2 / 2, 0.1, 1e-10)
         report.below(f"energy drift at {ms} ms", run.figures["energy_drift"], 1e-10)

@@ -59,8 +59,8 @@ def amplitude(u, m):
 
 
 def closed_form(J, times):
-    """Angular velocities in body axes, the time of one turn-over, and how far a relative change of the energy moves
-    the motion in time with every turn-over. Axis x is that of the middle moment."""
+    """Angular velocities in body axes, the time of one turn-over, and the delay of the motion per turn-over by a
+    relative change of the energy. Axis x is that of the middle moment."""
     Jx, Jy, Jz = J
     assert Jy < Jx < Jz
     T2 = Jx * SPIN**2 + (Jy + Jz) * NUDGE**2
@@ -113,7 +113,7 @@ def main():
         worst = max(range(len(times)), key=lambda k: abs(fine[k][i] - exact[k][i]))
         report.near(f"angular velocity about {axis} at {times[worst]:.2f} s [rad/s]", fine[worst][i], exact[worst][i],
                     tolerance)
-    # The changes of sign are read off a table with straight lines: h^2/8 of its curvature, which is small there.
+    # The changes of sign are interpolated linearly in a table: h^2/8 of its curvature, which is small there.
     report.near("time of a turn-over [s]", turn_over(times, [w[0] for w in fine]), time, 1e-3)
     for figure in ("energy_drift", "angular_momentum_drift"):
         report.below(figure.replace("_", " "), run.figures[figure], ROUND_OFF)

@@ -8,7 +8,7 @@
     r = polhode.run(m)
     r.bodies["arm"].position    # (T, 3), m
 
-SI units; vectors have world axes unless something else is said.
+SI units; vectors are in world axes unless stated otherwise.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ._simulation import Simulation, Step
     from ._sweep import Fit, fit, sweep
 
-# Loaded when they are first wanted: NumPy takes longer to import than all the rest.
+# Loaded at first use: NumPy takes longer to import than everything else.
 _LATER = {
     "_equations": ["StepEquations", "step_equations"],
     "_linear": ["StateSpace", "inverse_dynamics", "linearize"],
@@ -43,7 +43,7 @@ _LATER = {
     "_sweep": ["Fit", "fit", "sweep"],
 }
 for _error in (Fault, ModelError, NotConverged):
-    _error.__module__ = __name__  # as users name them, in tracebacks
+    _error.__module__ = __name__  # public names in tracebacks
 _HOME = {name: module for module, names in _LATER.items() for name in names}
 
 __all__ = [
@@ -54,7 +54,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Shapes are made from the engine's tables, and rarer parts loaded, when they are first wanted."""
+    """Shapes, made from the engine's tables, and rarely used modules, both loaded at first use."""
     if name == "rotations":
         return importlib.import_module(".rotations", __name__)
     if name in _HOME:

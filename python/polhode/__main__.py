@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `polhode`: the program that the package carries."""
+"""The command `polhode`: the program of the package."""
 
 import os
 import sys
 
 
 def main() -> None:
-    """Becomes the program, with the arguments given; sweeps are made in Python."""
+    """Replaces this process by the program, with the same arguments; sweeps run in Python."""
     if sys.argv[1:2] == ["sweep"]:
         from ._sweep_command import main as sweep
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The equations of one step, as Newton's method sees them."""
+"""The equations of one step, for Newton's method."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class StepEquations(NamedTuple):
     each constraint row, (m,). The residual is the balance of forces [N] and moments [N m] about the centres of mass,
     world axes, then the rows [m or -]. The tangent is its derivative by increments (Δr, Δθ) of the bodies and by the
     multipliers, a SciPy sparse array; rows have a term of 1e-12 on the diagonal of the scaled system, so that
-    redundant ones can be solved. `moved` applies increments: x' = e.moved(-spsolve(e.tangent, e.residual)).
+    redundant rows can be solved. `moved` applies increments: x' = e.moved(-spsolve(e.tangent, e.residual)).
     """
 
     residual: Any
@@ -28,7 +28,10 @@ class StepEquations(NamedTuple):
     bodies: "list[str]"
 
     def moved(self, increment: Any) -> Any:
-        """x after increments: displacements and multipliers add, rotations are composed."""
+        """The iterate x after increments: displacements and multipliers are added, rotations composed.
+
+        increment: (6 n + m,) in the order of x: Δr [m] and Δθ [rad] of each body, then increments of the multipliers.
+        """
         dx = np.asarray(increment, dtype=float)
         n = 6 * len(self.bodies)
         x: "np.ndarray[Any, Any]" = self.x + dx
@@ -42,9 +45,9 @@ class StepEquations(NamedTuple):
 def step_equations(simulation: "Union[Simulation, Model]", dt: float, x: Optional[Any] = None) -> StepEquations:
     """Residual and tangent of a step of length dt [s] from the present state of a simulation or the start of a model.
 
-    x: the iterate; None: the step that goes on with the present velocities and multipliers. Nothing changes in the
-    simulation. Of bodies and joints, by the method of the model; an order above 2 takes several such steps. Raises
-    ModelError with solids, with contacts and in statics.
+    x: the iterate (6 n + m,); None: the predictor with the present velocities and multipliers. The simulation is not
+    changed. The equations are those of bodies and joints with the model's method; an order above 2 takes several such
+    steps. Raises ModelError for a faulty model or an x of the wrong size, with solids, with contacts and in statics.
     """
     from scipy import sparse
 

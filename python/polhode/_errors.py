@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Optional
 
 
 class Fault(NamedTuple):
-    """One fault of a model: where it is, what is wrong, what to do about it."""
+    """One fault of a model: its location, the error, and what to do."""
 
     file: Optional[str]
     line: Optional[int]
@@ -30,7 +30,7 @@ class Fault(NamedTuple):
 
 
 class ModelError(ValueError):
-    """A model has faults: all of them at once, in `faults`.
+    """Error for a faulty model, with all of its faults in `faults`.
 
     `file`, `line`, `column`, `path`, `what` and `hint` are those of the first one. A model that was
     built in code has neither file nor line; `path` says where in the model, e.g. "joints.A.axis".
@@ -50,7 +50,7 @@ class ModelError(ValueError):
 
 
 class NotConverged(RuntimeError):
-    """A step did not converge. `result` holds what was computed until then, or is None."""
+    """Error for a step that did not converge. `result` has the results until then, or is None."""
 
     def __init__(self, message: str, result: Any = None) -> None:
         super().__init__(message)
@@ -61,5 +61,5 @@ class NotConverged(RuntimeError):
 
 
 def fault(path: str, what: str, hint: str) -> ModelError:
-    """An error of one fault that has a path only."""
+    """A ModelError of one fault that has a path only."""
     return ModelError([(None, None, None, path, what, hint, "")])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Loads that Python gives: functions of the time, and of the motion."""
+"""Loads given by Python functions of time and of the motion."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
     Vector = NDArray[np.float64]
 
-#: What a function along a coordinate may give: these drives, not those that prescribe the motion.
+#: Drives that a function along a coordinate may return; not those that prescribe the motion.
 EFFORTS = ("force", "moment", "pull")
 DERIVATIVES = ("position", "velocity", "turn", "angular_velocity")
 
 
 class BodyReading:
-    """Motion of a body as a force reads it, SI units and world axes: arrays to read, not to keep.
+    """Motion of a body, the argument of a force, in SI units and world axes.
 
-    position and velocity (3,) [m], [m/s] are those of the point that the force acts at, for a moment of
-    the centre of mass; orientation (4,) is the quaternion (w, x, y, z) body to world,
-    angular_velocity (3,) [rad/s]. The numbers change with the next call: copy what is to be kept.
+    position and velocity (3,) [m], [m/s] are those of the point of application, for a moment of the
+    centre of mass; orientation (4,) is the quaternion (w, x, y, z) body to world,
+    angular_velocity (3,) [rad/s]. The arrays are reused by the next call: copy numbers to be stored.
     """
 
     __slots__ = ("position", "velocity", "orientation", "angular_velocity")
@@ -42,24 +42,24 @@ class BodyReading:
 
 
 class StateFunction:
-    """A force or moment that depends on the motion, with what the engine may know about it.
+    """A force or moment that depends on the motion, with its derivatives and dependence on velocity.
 
-    A plain function f(t, body) or f(t, q, rate) does as well; this adds
-      tangent:  None: derivatives by differences, 6 or 2 more calls an iteration. A function: derivatives, of
+    A plain function f(t, body) or f(t, q, rate) is sufficient; this class adds
+      tangent:  None: derivatives by differences, 6 or 2 more calls per iteration. A function: derivatives, for
                 f(t, body) a map from "position", "velocity", "turn" (a small rotation of the body, world
-                axes) and "angular_velocity" to (3, 3) arrays, what is left out is zero; of f(t, q, rate) two numbers,
-                by q and by the rate. False: zero, for forces that hardly change within a step: if they do,
-                iterations take longer or do not converge.
-      velocity: False if the function reads no velocity: then it may go with orders above 2.
+                axes) and "angular_velocity" to (3, 3) arrays, missing ones are zero; for f(t, q, rate) two numbers,
+                the derivatives by q and by the rate. False: zero, for forces that hardly change within a step;
+                otherwise iterations converge slowly or not at all.
+      velocity: False if the function does not depend on velocities; this allows orders above 2.
 
-    Both get the same arguments. They must depend on nothing else: they are called several times in each step, also
-    for steps that are then refused.
+    Both functions get the same arguments and must depend on nothing else: they are called several times in each step,
+    also in steps that are rejected. Raises TypeError for arguments of other types.
     """
 
     def __init__(self, function: "Callable[..., Any]", *, tangent: "Union[None, bool, Callable[..., Any]]" = None,
                  velocity: bool = True) -> None:
         if not callable(function) or not (tangent is None or tangent is False or callable(tangent)):
-            raise TypeError("function has to be callable, tangent callable, None or False")
+            raise TypeError("function must be callable, tangent callable, None or False")
         self.function = function
         self.tangent = tangent
         self.velocity = velocity
@@ -72,19 +72,19 @@ class StateFunction:
 
 
 def derivative_parts(given: Any) -> "dict[str, Any]":
-    """Derivatives that a tangent gave, checked."""
+    """Checked derivatives of a tangent."""
     if not isinstance(given, Mapping):
-        raise TypeError(f"A tangent has to give a map with some of {', '.join(DERIVATIVES)}.")
+        raise TypeError(f"A tangent must return a map with keys from {', '.join(DERIVATIVES)}.")
     for key, rows in given.items():
         if key not in DERIVATIVES:
-            raise TypeError(f"A tangent gave '{key}'; it may give {', '.join(DERIVATIVES)}.")
+            raise TypeError(f"A tangent returned the key '{key}'. Use {', '.join(DERIVATIVES)}.")
         if len(rows) != 3:
-            raise TypeError(f"A tangent has to give three rows of three numbers for '{key}'.")
+            raise TypeError(f"A tangent must return three rows of three numbers for '{key}'.")
     return {key: rows.tolist() if hasattr(rows, "tolist") else rows for key, rows in given.items()}
 
 
 def arguments_of(function: Any) -> Optional[int]:
-    """How many arguments a callable needs; None if it does not tell."""
+    """Number of arguments that a callable requires; None if it is unknown."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
@@ -96,10 +96,10 @@ def arguments_of(function: Any) -> Optional[int]:
 
 
 class LoadCall:
-    """A callable that stands in a model's tree, and what it is for."""
+    """A callable in the tree of a model, with its load and key."""
 
     def __init__(self, load: str, fields: "dict[str, Any]", path: "tuple[Any, ...]", function: Any) -> None:
-        """load: name in the whole; fields: of the load; path: within the load, the key and perhaps a component."""
+        """load: name in the whole model; fields: its keys; path: within the load, the key and possibly a component."""
         self.load, self.function = load, function
         self.key = str(path[0])
         self.component = int(path[1]) if len(path) == 2 else -1
@@ -111,12 +111,12 @@ class LoadCall:
         where = ".".join(("loads", load, *map(str, path)))
         if self.of_motion and (self.component >= 0 or self.key not in EFFORTS or "solid" in fields):
             raise fault(where, "cannot depend on the motion",
-                        "Whole forces and moments on bodies can, and the force, moment or pull in a joint or along a "
-                        "line; here the function has one argument, the time")
+                        "Use a function of time here. Complete forces and moments on bodies, and the force, moment "
+                        "or pull in a joint or along a line may depend on the motion")
         if needed is not None and needed != wanted:
             here = "f(t, body)" if self.is_vector else "f(t, q, rate)"
             raise fault(where, f"{inner!r} takes {needed} arguments",
-                        f"Give f(t), or {here} for what depends on the motion" if self.key in EFFORTS else "Give f(t)")
+                        f"Give f(t), or {here} for a dependence on the motion" if self.key in EFFORTS else "Give f(t)")
 
     def install(self, compiled: Any) -> None:
         """Sets the function in a compiled model."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Linearisation about a state, and what drives a given motion."""
+"""Linearisation about a state, and inverse dynamics."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _native, rotations
 from ._model import Model, Overrides, load
 from ._simulation import Simulation
 
-#: Change of a coordinate in the differences of the tangent, and of time along the motion, scaled [-].
+#: Step of the differences in coordinates of the tangent and in time along the motion, scaled [-].
 _CHANGE, _ALONG = 2e-3, 5e-3
 #: Points and weights of the first derivative, exact for polynomials of degree 4.
 _FIRST = ((1, 2 / 3), (-1, -2 / 3), (2, -1 / 12), (-2, 1 / 12))
@@ -22,12 +22,12 @@ _SECOND = ((1, 4 / 3), (-1, 4 / 3), (2, -1 / 12), (-2, -1 / 12), (0, -5 / 2))
 
 
 class StateSpace(NamedTuple):
-    """x' = A x + B u, y = C x + D u for small changes from a state.
+    """Linear system x' = A x + B u, y = C x + D u for small deviations from a state.
 
     states: names of x, (2 f,): f joint coordinates [m or rad] or positions [m], then their rates.
     inputs, outputs: names of u and y, one for each component.
 
-    control.ss(s.A, s.B, s.C, s.D) and scipy.signal.StateSpace take the matrices as they are.
+    control.ss(s.A, s.B, s.C, s.D) and scipy.signal.StateSpace accept these matrices.
     """
 
     A: Any
@@ -47,10 +47,10 @@ def _known(name: str, names: "list[str]", what: str) -> int:
 
 
 def _quantity(engine: Any, name: str) -> "tuple[Callable[[Any], Any], list[str]]":
-    """What reads an output off an engine, and the names of its components."""
+    """Function that reads an output from an engine, and the names of its components."""
     parts = name.split(".")
     if len(parts) < 3 or parts[0] not in ("bodies", "joints"):
-        raise KeyError(f"'{name}' is no output; write joints.A.coordinates, joints.A.force or bodies.b.velocity")
+        raise KeyError(f"'{name}' is not an output. Write joints.A.coordinates, joints.A.force or bodies.b.velocity.")
     is_body = parts[0] == "bodies"
     component = parts.pop() if len(parts) > 3 else None
     index = _known(".".join(parts[1:-1]), engine.bodies if is_body else engine.joints, parts[0][:-1].replace("ie", "y"))
@@ -78,7 +78,7 @@ def _quaternion_product(p: Any, q: Any) -> Any:
 
 
 class _Chart:
-    """Motions near that of an engine."""
+    """Small displacements from the state of an engine."""
 
     def __init__(self, engine: Any) -> None:
         self.engine = engine
@@ -86,7 +86,7 @@ class _Chart:
         self.now = [engine.body(i) for i in self.moving]
 
     def put(self, displacements: Any, velocities: Any) -> Any:
-        """An engine of the same model with all bodies displaced and faster: both (6 n,), world axes."""
+        """An engine of the same model with changed positions and velocities of all bodies: both (6 n,), world axes."""
         engine = self.engine.copy()
         d, v = displacements.reshape(-1, 6), velocities.reshape(-1, 6)
         turns = rotations.quaternion_from_rotation_vector(d[:, 3:])
@@ -134,7 +134,7 @@ def _joined(readers: "Sequence[Callable[[Any], Any]]") -> "Callable[[Any], Any]"
 
 
 def _choose(slopes: Any, preferred: int, f: int) -> "list[int]":
-    """Rows of slopes (k, f) that are as independent as can be, the first `preferred` before the rest."""
+    """Indices of the most independent rows of slopes (k, f), those of the first `preferred` rows before the rest."""
     left = slopes.copy()
     chosen: "list[int]" = []
     for rows in (range(preferred), range(preferred, len(slopes))):
@@ -165,17 +165,18 @@ def linearize(
     *,
     overrides: Overrides = None,
 ) -> StateSpace:
-    """A, B, C, D of small motions about the present state of a simulation, or the start of a model.
+    """Linearises the motion about the present state of a simulation, or the start of a model.
 
     inputs:  components of forces and moments, and drives of motors that are forces or moments:
-             "push.x", "loads.motor". What they give at the state is the point of u = 0.
+             "push.x", "loads.motor". Their values at the state are u = 0.
     outputs: "joints.A.coordinates", "joints.A.force.z", "bodies.cart.velocity".
 
-    The state may move: coordinates that nothing depends on may then go on, as the angle of a rotor does.
-    States are coordinates of joints as far as they tell where everything is, then positions of bodies.
-    Loads are taken at the time of the state. Derivatives are differences of fourth order; entries are
-    right to about 1e-7 of the largest. Raises KeyError for unknown names, ValueError if coordinates and
-    positions do not tell where everything is, as with a free body that turns, or for solids.
+    The state may be in motion; cyclic coordinates, such as the angle of a rotor, may then change.
+    States are coordinates of joints as far as they determine the configuration, then positions of bodies.
+    Loads are evaluated at the time of the state. Derivatives are differences of fourth order, with errors of
+    about 1e-7 of the largest entry. Returns a StateSpace. Raises KeyError for unknown names, ValueError if
+    coordinates and positions do not determine the configuration, as for a free body that rotates, or for solids,
+    ModelError for a faulty model or an unknown input.
     """
     if not isinstance(simulation, Simulation):
         simulation = Simulation(simulation, overrides)
@@ -203,7 +204,7 @@ def linearize(
     slopes = np.array([slope(where, T[:, k], still) for k in range(f)]).T.reshape(len(names), f)
     chosen = _choose(slopes, of_joints, f)
     if len(chosen) < f:
-        raise ValueError(f"{f - len(chosen)} of {f} freedoms are seen by no coordinate of a joint and no position")
+        raise ValueError(f"{f - len(chosen)} of {f} freedoms are not determined by coordinates of joints and positions")
     position = _joined([_quantity(engine, names[k])[0] for k in chosen])
     speed = _joined([_quantity(engine, speeds[k])[0] for k in chosen])
     found = [_quantity(engine, name) for name in outputs]
@@ -244,15 +245,16 @@ def inverse_dynamics(
     *,
     overrides: Overrides = None,
 ) -> "dict[str, Any]":
-    """What drives joints along a given motion.
+    """Forces and moments that drive joints along a given motion (inverse dynamics).
 
-    time:   (n,) from 0 on [s]; the model's own duration and outputs do not count.
-    motion: by joint, (n,) angles [rad] of joints that turn about one axis, or displacements [m] of
-            those that slide: joined by cubics, so they are to be smooth and to begin where, and as
-            fast as, the model does.
+    time:   (n,) from 0 on [s]; the model's own duration and output interval are not used.
+    motion: by joint, (n,) angles [rad] of revolute joints, or displacements [m] of prismatic ones,
+            interpolated by cubic splines: they should be smooth and begin with the position and
+            velocity of the model.
 
     Returns by joint the moments [N m] or forces [N] on its second body (n, 3), world axes. Joints
-    that are not named are free. Raises ModelError if a joint cannot be driven so.
+    without a given motion are free. Raises ModelError if a joint cannot be driven, NotConverged if a
+    step does not converge.
     """
     from scipy.interpolate import CubicSpline
 

@@ -23,7 +23,7 @@ Overrides = Optional[Mapping[str, Any]]
 
 
 class _Origin(NamedTuple):
-    """The file that a model was loaded from, so that faults can be shown there."""
+    """The file that a model was loaded from, for locations of faults."""
 
     file: str
     text: str
@@ -31,22 +31,23 @@ class _Origin(NamedTuple):
 
 
 def overrides_list(overrides: Overrides) -> "list[str]":
-    """Changes as the command line takes them: {"variables.L": 2} → ["variables.L=2"]."""
+    """Overrides in the form of the command line: {"variables.L": 2} → ["variables.L=2"]."""
     return [f"{path}={_text.flow(plain(value))}" for path, value in (overrides or {}).items()]
 
 
 class Model(Section):
-    """A model: bodies, joints, loads, what to compute and what to record.
+    """A model: bodies, joints, loads, analysis and output.
 
-    Its keys are those of the model file (docs/reference/model_file.md), and so are its units: bare
-    numbers count in `units`, SI and radians if that is left out; texts such as "5 ms" carry their
-    own. Vectors are in world axes unless the key says otherwise.
+    Its keys are those of the model file (docs/reference/model_file.md), and so are its units: numbers
+    are in `units`, by default SI and radians; texts such as "5 ms" have their own unit. Vectors are
+    in world axes unless the description of the key states otherwise.
 
         m = polhode.Model(gravity=[0, 0, -9.81])
         arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])
         m.add_joint("hinge", "revolute", ["ground", arm], at=[0, 0, 0], axis="y")
 
-    Unknown keys raise ModelError at once; what depends on more than one key is checked by check().
+    Unknown keys, and names that exist already, raise ModelError at once, also in all add_... functions;
+    conditions on several keys are checked by check().
     """
 
     __slots__ = ("_root", "_origin")
@@ -79,7 +80,7 @@ class Model(Section):
         section = _schema.section_of("", key)
         return Section(self, key, section) if section or key in ("variables",) else value
 
-    # Adding things
+    # Adding entries
 
     def add_body(self, name: str, **fields: Any) -> Section:
         """Adds a rigid body and returns it.
@@ -87,14 +88,14 @@ class Model(Section):
         mass [kg], inertia [kg m²] about the centre of mass in body axes; or shape with density [kg/m³].
         position [m] (3,) of the centre of mass, orientation, velocity [m/s] (3,), angular_velocity
         [rad/s] (3,): world axes. fixed, point_mass, contact, hold as in the model file.
-        Raises ModelError for an unknown key or a name that is taken.
+        Raises ModelError for an unknown key or a name that exists already.
         """
         return self._add("bodies", name, fields)
 
     def add_joint(self, name: str, type: str, bodies: "list[Any]", **fields: Any) -> Section:
         """Adds a joint between two bodies ("ground" is one) and returns it.
 
-        at [m] (3,) and axis (a direction: "x", "-z" or three numbers) hold at the start, world axes;
+        at [m] (3,) and axis (a direction: "x", "-z" or three numbers) are those at the start, world axes;
         at_body and axis_body give both in body coordinates. friction and limits as in the model file.
         """
         return self._add("joints", name, {"type": type, "bodies": bodies, **fields})
@@ -102,13 +103,13 @@ class Model(Section):
     def add_load(self, name: str, type: str, **fields: Any) -> Section:
         """Adds a force, moment, spring, motor or load of a solid, and returns it.
 
-        What force, moment, pull and the drive of a motor are, Python may say, in SI units:
+        Force, moment, pull and the drive of a motor may be Python functions, in SI units:
           f(t)           three numbers at a time [s], or one for a component or a motor;
           f(t, body)     a force or moment on a body that depends on its motion: body.position, .velocity (3,) of
-                         the point the force acts at, .orientation (4,), .angular_velocity (3,);
-          f(t, q, rate)  the force, moment or pull along a coordinate: of a motor the joint's, of an
+                         the point of application, .orientation (4,), .angular_velocity (3,);
+          f(t, q, rate)  the force, moment or pull along a coordinate: for a motor that of the joint, for an
                          axial_force the distance of its points.
-        They are called when the method wants them; what they raise stops the run and is raised.
+        They are called at times of the method's choice; an exception in them stops the run and is raised.
         polhode.StateFunction(f, tangent=...) adds derivatives.
         """
         return self._add("loads", name, {"type": type, **fields})
@@ -136,23 +137,23 @@ class Model(Section):
     def add_event(self, name: str, **fields: Any) -> Section:
         """Adds an event, which switches joints, loads and contacts, and returns it.
 
-        It comes at a time, at ("0.2 s"), or when a number begins to be above or below a level:
-        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}, of whatever probes record: body, joint, load,
-        solid, beam, cable or contact, and a column of its probe, {"cable": rope, "channel": "tension", "above": 500}.
-        off and on: lists of joints, loads, pairs of contacts, bodies whose contacts all are meant, or their names;
-        after: the event that must have come before; repeat, stop: True or False.
-        The ledger of a run has `events`: when each came, what it lost [J] and its largest impulse.
+        It occurs at a time, at ("0.2 s"), or when a channel crosses a level, above or below:
+        when={"joint": "pivot", "channel": "rz", "above": "70 deg"}; a channel is a column of a probe of a body, joint,
+        load, solid, beam, cable or contact, {"cable": rope, "channel": "tension", "above": 500}.
+        off and on: lists of joints, loads, pairs of contacts, bodies (with all of their contacts), or their names;
+        after: an event that must have occurred before; repeat, stop: True or False.
+        The ledger of a run has `events`: time [s], energy loss [J] and largest impulse of each.
         """
         return self._add("events", name, fields)
 
     def add_controller(self, name: str, **fields: Any) -> Section:
-        """Adds a controller of a channel, and returns it: loads follow it by {"controller": name}.
+        """Adds a controller of a channel, and returns it: loads use its output by {"controller": name}.
 
         body, joint, load, solid, beam, cable or contact with channel, as in an event; setpoint, a number, an
         expression of t or a table.
         Gains proportional, integral, derivative with filter [s]; or numerator and denominator, polynomials in s, the
-        highest power first. sample [s]: it acts then and keeps its output between; left out: it is continuous.
-        minimum and maximum bound what it sets.
+        highest power first. sample [s]: sampling interval, with constant output between samples; default: continuous.
+        minimum and maximum are bounds of the output.
         """
         return self._add("controllers", name, fields)
 
@@ -169,7 +170,7 @@ class Model(Section):
         return self.contacts.pairs.add(name, **fields)  # type: ignore[no-any-return]
 
     def add_contact_sensor(self, name: str, **fields: Any) -> Section:
-        """Adds a sensor that tells when two bodies begin and cease to overlap, without force."""
+        """Adds a sensor that reports begin and end of an overlap of two bodies, without force."""
         return self.contacts.sensors.add(name, **fields)  # type: ignore[no-any-return]
 
     def attach(
@@ -186,22 +187,22 @@ class Model(Section):
         """Adds a part, a model within this one, and returns its entry in `parts`.
 
         part:        a Model, copied (its file, if it was loaded and not changed since), or the path of a
-                     model file, seen from the folder of this model's file.
-        name:        of the entry; left out: the prefix without its last "_".
-        prefix:      stands before the names of the part here; left out: the name and "_".
-        at:          (3,) where the part's origin stands, in the units of this model.
-        orientation: turn from the part's axes to these, as of a body.
-        mirror:      "x", "y" or "z": this coordinate of the part changes its sign first.
+                     model file, relative to the folder of this model's file.
+        name:        name of the entry; default: the prefix without its last "_".
+        prefix:      prefix of the names of the part in this model; default: the name and "_".
+        at:          (3,) position of the part's origin, in the units of this model.
+        orientation: rotation from the part's axes to these, as of a body.
+        mirror:      "x", "y" or "z": the sign of this coordinate of the part is changed first.
         variables:   values for variables of the part.
 
-        Joints and loads of this model may name what the part has: m.attach(leg, prefix="l_") gives
-        "l_thigh". Raises ModelError if the name is taken.
+        Joints and loads of this model may use the names of the part: m.attach(leg, prefix="l_") gives
+        "l_thigh". Raises ModelError if the name exists already.
         """
         if name is None and not prefix:
             raise fault("parts", "a part needs a name", 'Give prefix="l_" or a name')
         chosen = name if name is not None else str(prefix).rstrip("_-") or str(prefix)
         what: "dict[str, Any]" = {"file": os.fspath(part)} if not isinstance(part, Model) else {"model": part.to_dict()}
-        if isinstance(part, Model) and part._source()[2]:  # unchanged: its meshes count from its own folder
+        if isinstance(part, Model) and part._source()[2]:  # unchanged: mesh paths are relative to its own folder
             what = {"file": os.path.abspath(part._source()[1])}
         return self._add("parts", chosen, {**what, "prefix": prefix, "position": at, "orientation": orientation,
                                            "mirror": mirror, "variables": variables})
@@ -213,7 +214,7 @@ class Model(Section):
     # Reading and writing
 
     def to_dict(self) -> "dict[str, Any]":
-        """The model as dicts, lists, numbers and texts: a copy. Callables stay what they are."""
+        """A copy of the model as dicts, lists, numbers and texts. Callables are unchanged."""
         return dict(plain(self._tree()))
 
     def to_yaml(self) -> str:
@@ -223,8 +224,9 @@ class Model(Section):
     def save(self, path: "Union[str, os.PathLike[str]]") -> None:
         """Writes a model file: JSON if the name ends with .json, else YAML.
 
-        Nothing is lost but comments. Paths of meshes in the model stay as they are: they count from
-        the folder of the file.
+        Only comments are lost. Paths of meshes in the model are unchanged: they are relative to the
+        folder of the file. Raises ModelError for a model with callables, OSError if the file cannot be
+        written.
         """
         name = os.fspath(path)
         for call in self._calls()[1]:
@@ -235,11 +237,11 @@ class Model(Section):
             file.write(text if text.endswith("\n") else text + "\n")
 
     def copy(self) -> "Model":
-        """A model that does not change with this one."""
+        """An independent copy of the model."""
         return _restore(self.to_dict(), self._origin)
 
     def check(self, overrides: Overrides = None) -> None:
-        """Reads the model as a run does. Raises ModelError with all its faults."""
+        """Checks the model as before a run. Raises ModelError with all of its faults."""
         self._compile(overrides)
 
     def run(self, **options: Any) -> "Result":
@@ -249,7 +251,7 @@ class Model(Section):
         return run(self, **options)
 
     def show(self, height: int = 600) -> "Page":
-        """The model before it runs, in the viewer: a cell of a notebook shows it, height pixels high.
+        """The model at its start in the viewer, as output of a notebook cell, with a height in pixels.
 
         Raises ModelError for a model with faults or with callables.
         """
@@ -259,7 +261,7 @@ class Model(Section):
         _, name, in_file = self._source()
         if in_file:
             return page_of(name, height)
-        # Beside the meshes, which count from there.
+        # In the folder of the meshes, since their paths are relative to it.
         handle, file = tempfile.mkstemp(".yaml", ".polhode-", os.path.dirname(name) or ".")
         os.close(handle)
         try:
@@ -281,7 +283,7 @@ class Model(Section):
         calls: "list[LoadCall]" = []
 
         def without(value: Any, path: "tuple[Any, ...]", model: "dict[str, Any]", prefix: str, depth: int) -> Any:
-            """`model` is the part that stands `depth` keys up the path, with `prefix` before its names."""
+            """`model` is the part at the first `depth` keys of the path, `prefix` that of its names."""
             if isinstance(value, dict):
                 if len(path) == depth + 3 and path[depth] == "parts" and path[-1] == "model":
                     part = model["parts"][path[-2]]
@@ -294,11 +296,11 @@ class Model(Section):
                 return value
             inner = path[depth:]
             if len(inner) not in (3, 4) or inner[0] != "loads":
-                raise fault(".".join(map(str, path)), "a callable cannot stand here",
-                            "Callables may give vectors and drives of loads")
+                raise fault(".".join(map(str, path)), "a callable is not possible here",
+                            "Use callables for vectors and drives of loads only")
             call = LoadCall(prefix + inner[1], model["loads"][inner[1]], inner[2:], value)
             calls.append(call)
-            zero = "0*t" if not call.of_motion else 0  # what is no function of time has no breaks to look for
+            zero = "0*t" if not call.of_motion else 0  # a function of the motion has no breaks in time to search for
             return [zero] * 3 if call.is_vector and call.component < 0 else zero
 
         return without(self._tree(), (), self._tree(), "", 0), calls
@@ -313,7 +315,7 @@ class Model(Section):
         except ModelError as error:
             if in_file:
                 raise
-            # Lines of a text that nobody has seen help nobody.
+            # Line numbers of a generated text are of no use.
             raise ModelError([
                 (f.file if not f.line and f.file != name else None, None, None, f.path, f.what, f.hint, "")
                 for f in error.faults
@@ -349,13 +351,13 @@ def _restore(tree: "dict[str, Any]", origin: "Optional[_Origin]") -> Model:
 
 def load(path: "Union[str, os.PathLike[str]]") -> Model:
     """Reads a model file, YAML or JSON. Raises ModelError if it is not well-formed, OSError if it
-    cannot be read. Whether the model makes sense is checked by check() and when it runs."""
+    cannot be read. Values are checked by check() and before a run."""
     name = os.fspath(path)
     return from_text(_native.read_text(name), name)
 
 
 def from_text(text: str, name: str = "model.yaml") -> Model:
-    """A model from the text of a model file. Its meshes count from the folder of `name`."""
+    """A model from the text of a model file. Paths of its meshes are relative to the folder of `name`."""
     tree = _native.parse(text, name)
     if not isinstance(tree, dict):
         raise ModelError([(name, None, None, "", "the model is not a map", "Begin with the line 'format: 1'.", "")])

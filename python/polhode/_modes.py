@@ -21,7 +21,7 @@ class Mode:
     """A free vibration Re(shape · exp(λ t)) about an equilibrium.
 
     frequency |λ|/2π [Hz]; eigenvalue λ, complex [rad/s]; damping_ratio -Re λ/|λ| [-]; kind:
-    oscillation, flutter, divergence, overdamped or free; motion: of a free one, in words;
+    oscillation, flutter, divergence, overdamped or free; motion: description of a free one;
     participation (3,) [√kg] and effective_mass (3,) [-] along x, y, z; residual [-].
     """
 
@@ -67,7 +67,7 @@ def modes(
 ) -> Modes:
     """Natural frequencies and shapes of a model.
 
-    count: how many; None: the model's analysis.count. about: "equilibrium", which statics finds from
+    count: number of modes; None: the model's analysis.count. about: "equilibrium", found by statics from
     the start, or "start". Raises ModelError for a model with faults, NotConverged if there is no
     equilibrium.
     """
@@ -84,12 +84,12 @@ def modes(
 
 
 class Matrices(NamedTuple):
-    """M ẍ + C ẋ + K x - Gᵀ μ = 0, G x = 0 about a state, as SciPy sparse arrays.
+    """Matrices of M ẍ + C ẋ + K x - Gᵀ μ = 0, G x = 0 about a state, as SciPy sparse arrays.
 
     Unknowns: displacement of the centre of mass [m] and small rotation [rad] of each moving body,
-    (6 n,), world axes; then those of the nodes of solids. C and K are what forces gain with
-    velocities and displacements, springs, dampers, gravity on joints and geometric terms included.
-    Rows of G, the Jacobian of the joints, have unit length; springs stand for compliant ones.
+    (6 n,), world axes; then those of the nodes of solids. C and K are the derivatives of
+    forces by velocities and displacements, including springs, dampers, gravity on joints and geometric
+    terms. Rows of G, the Jacobian of the joints, have unit length; compliant joints are springs in K.
     """
 
     M: Any
@@ -100,8 +100,8 @@ class Matrices(NamedTuple):
 
 def matrices(simulation: "Union[Simulation, Model]") -> Matrices:
     """Mass, damping and stiffness matrices and the Jacobian of the joints at the present state of a
-    simulation, or at the start of a model; velocities count as zero. Made densely: for models of up
-    to some hundred bodies."""
+    simulation, or at the start of a model, with zero velocities. Computed as dense matrices: for models
+    of up to some hundred bodies."""
     from scipy import sparse
 
     from ._simulation import Simulation

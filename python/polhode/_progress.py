@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 
 class Bar:
-    """A bar over simulated time; None shows it after a second if there is somebody to see it."""
+    """A bar over simulated time; None shows it after a second if the output is interactive."""
 
     def __init__(self, end: float, wanted: Optional[bool]) -> None:
         self._end, self._wanted = end, wanted
@@ -24,7 +24,7 @@ class Bar:
 
     @property
     def show(self) -> Any:
-        """A function of the time reached, or None if nothing is to be shown."""
+        """Function that shows the time reached, or None without a bar."""
         return None if self._wanted is False else self._show
 
     def _show(self, t: float) -> None:

@@ -75,7 +75,7 @@ class Group(Mapping):  # type: ignore[type-arg]
 
 
 class Table(Mapping):  # type: ignore[type-arg]
-    """Rows of a probe by column: `r.probes["tip"].z` (T,), SI units, with times of its own in `t`."""
+    """Rows of a probe by column: `r.probes["tip"].z` (T,), SI units, with its own times in `t`."""
 
     def __init__(self, name: str, header: "list[str]", rows: Any) -> None:
         self.name = name
@@ -121,7 +121,7 @@ class Table(Mapping):  # type: ignore[type-arg]
 
 
 class Report(dict):  # type: ignore[type-arg]
-    """Figures that a run ends with, as `polhode run --json` names them; items or attributes."""
+    """Summary of a run with the names of `polhode run --json`, as items or attributes."""
 
     def __getattr__(self, name: str) -> Any:
         if name in self:
@@ -137,11 +137,11 @@ class Report(dict):  # type: ignore[type-arg]
 
 
 class Result:
-    """What a run computed, frame by frame. SI units; vectors have world axes.
+    """Results of a run, frame by frame. SI units; vectors are in world axes.
 
     time (T,) [s]; bodies[name].position (T, 3) [m], .orientation (T, 4) quaternion (w, x, y, z) body
-    to world, .velocity [m/s], .angular_velocity [rad/s]; joints[name].force (T, 3) [N] that the first
-    body exerts on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
+    to world, .velocity [m/s], .angular_velocity [rad/s]; joints[name].force (T, 3) [N] of the first
+    body on the second, .moment [N m], .coordinates (T, free) [rad or m], .rates; loads, contacts,
     solids, beams and cables by name; energy, momentum and solver. Arrays of a run are views of the
     engine's memory, not copies. docs/reference/results_file.md lists them all.
     """
@@ -154,7 +154,7 @@ class Result:
         self._written = ""  # folder that a run wrote, too
 
     def show(self, height: int = 600) -> "Page":
-        """The motion in the viewer: a cell of a notebook shows it, height pixels high. It takes a
+        """The motion in the viewer, as output of a notebook cell, with a height in pixels. Requires a
         results file: raises ValueError for a result that was computed without `output`."""
         from ._show import page_of
 
@@ -177,13 +177,13 @@ class Result:
 
     @property
     def frames(self) -> int:
-        """How many frames there are."""
+        """Number of frames."""
         return len(self.time)
 
     @property
     def ledger(self) -> Report:
-        """The figures the run ended with: drifts of energy and momenta [-], constraint residuals,
-        steps, time taken [s]. Of an opened file those that its channels show."""
+        """Summary of the run: drifts of energy and momenta [-], constraint residuals, steps, wall time
+        [s]. For an opened file those numbers that follow from its channels."""
         if self._ledger is not None:
             return Report(self._ledger)
         e = self.energy
@@ -195,7 +195,7 @@ class Result:
 
     @property
     def end(self) -> str:
-        """How the run ended: finished, interrupted or not_converged; "" if a file does not know."""
+        """End of the run: finished, interrupted or not_converged; "" if a file does not contain it."""
         return str((self._ledger or {}).get("end", ""))
 
     def __getattr__(self, name: str) -> Any:
@@ -254,7 +254,7 @@ class Result:
         return self._packed(path) if len(parts) == 4 else None
 
     def _packed(self, path: str) -> Any:
-        """A quantity out of the arrays of all bodies or joints side by side."""
+        """A quantity of one object from the array of all bodies or joints."""
         _, group, name, quantity = path.split("/")
         index = self._packed_names(group).get(name)
         if index is None or quantity not in self._children().get(f"/packed/{group}", ()):
@@ -268,7 +268,7 @@ class Result:
 
     def _array(self, path: str) -> Any:
         array = self._store.read(path)
-        # A run that was killed may leave unfinished frames behind the last whole one.
+        # A run that was killed may leave unfinished frames after the last complete one.
         frames = len(self._store.read("/time"))
         longer = isinstance(array, np.ndarray) and not path.endswith(_FIXED) and len(array) > frames
         return array[:frames] if longer else array
@@ -280,18 +280,18 @@ class Result:
             path += "/" + part
             found = self._find(path)
             if found is None:
-                raise KeyError(f"'{channel}' is no channel: {path[1:].rpartition('/')[0] or 'the results'} "
+                raise KeyError(f"'{channel}' is not a channel: {path[1:].rpartition('/')[0] or 'the results'} "
                                f"has no '{part}'")
         return path, found
 
     def __getitem__(self, channel: str) -> Any:
-        """An array or group by its dotted name: r["joints.A.force"]; of vectors and quaternions a
-        component too: r["joints.A.force.z"]."""
+        """An array or group by its dotted name: r["joints.A.force"]; for vectors and quaternions also a
+        component: r["joints.A.force.z"]. Raises KeyError for an unknown name."""
         above, index = self._component(channel)
         return self._resolve(channel)[1] if index < 0 else self._resolve(above)[1][..., index]
 
     def _component(self, channel: str) -> "tuple[str, int]":
-        """The vector or quaternion of a component, and which it is; the channel and -1 if it is none."""
+        """The vector or quaternion of a component, and the component's index; the channel and -1 otherwise."""
         above, _, last = channel.rpartition(".")
         if above and last in ("w", "x", "y", "z"):
             found = self._resolve(above)[1]
@@ -328,7 +328,7 @@ class Result:
 
     def to_pandas(self, *channels: str) -> Any:
         """A pandas.DataFrame with the time as index and a column for each component, such as
-        "bodies.crank.position.x"; of all channels if none is named."""
+        "bodies.crank.position.x"; by default of all channels."""
         import pandas
 
         columns: "dict[str, Any]" = {}
@@ -342,7 +342,7 @@ class Result:
         return frame.drop(columns="time", errors="ignore")
 
     def to_xarray(self, *channels: str) -> Any:
-        """An xarray.Dataset with the dimension time; units are attributes. No numbers are copied."""
+        """An xarray.Dataset with the dimension time; units are attributes. Arrays are not copied."""
         import xarray
 
         data = {}
@@ -358,7 +358,7 @@ class Result:
 
     def to_parquet(self, path: "Union[str, os.PathLike[str]]", *channels: str) -> None:
         """Writes a Parquet file with pyarrow: the time "t" and a column for each component of the
-        channels, of all if none is named, with their units as metadata of the columns."""
+        channels, by default of all, with their units as metadata of the columns."""
         import pyarrow
         from pyarrow import parquet
 
@@ -438,7 +438,7 @@ def _components(shape: "tuple[int, ...]") -> "list[str]":
 def open(path: "Union[str, os.PathLike[str]]") -> Result:
     """The results in a file results.h5, or in the folder of a run. Raises OSError if there are none.
 
-    Data sets are read when they are first looked at. The run may still go on.
+    Data sets are read at first use. The run may still be in progress.
     """
     name = os.fspath(path)
     return Result(FileStore(os.path.join(name, "results.h5") if os.path.isdir(name) else name))

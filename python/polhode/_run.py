@@ -26,15 +26,15 @@ def run(
     output: "Union[str, os.PathLike[str], None]" = None,
     progress: "Optional[bool]" = None,
 ) -> Result:
-    """Runs a model to the end of its analysis and returns what it computed.
+    """Runs a model to the end of its analysis and returns the results.
 
     model:     a Model, or the path of a model file.
-    overrides: changes for this run alone, by path: {"analysis.step": "1 ms", "variables.L": 2}.
-    output:    a folder; what `polhode run -o` writes is written there too.
-    progress:  show a bar with tqdm; None: if tqdm is there and the run takes more than a second.
+    overrides: changes for this run only, by path: {"analysis.step": "1 ms", "variables.L": 2}.
+    output:    a folder for the files that `polhode run -o` writes; None: results in memory only.
+    progress:  show a bar with tqdm; None: if tqdm is installed and the run takes more than a second.
 
-    Frames are kept at output.every, else after every step. Other Python threads go on meanwhile.
-    Ctrl-C stops the run: the result then holds what was computed, and its `end` is "interrupted".
+    Frames are stored at output.every, by default after every step. Other Python threads continue during the
+    run. Ctrl-C stops it: the result then has the frames so far, and its `end` is "interrupted".
     Raises ModelError for a model with faults, NotConverged (with `result`) if a step does not
     converge, OSError if the folder cannot be written.
     """
@@ -42,7 +42,7 @@ def run(
         model = load(model)
     compiled = model._compile(overrides)
     if compiled.analysis == "modes":
-        raise fault("analysis.type", "modes have no motion to run", "Call polhode.modes(model)")
+        raise fault("analysis.type", "an analysis of modes has no motion", "Call polhode.modes(model)")
     engine = _native.Engine(compiled)
     recording = engine.record()
     end = 1.0 if compiled.analysis == "statics" else compiled.duration
@@ -63,7 +63,7 @@ def run(
 
 
 def _report(ledger: "dict[str, Any]") -> None:
-    """Tells logging what was chosen, and warnings what deserves a look."""
+    """Sends the chosen methods to logging, and warnings of the run to the module warnings."""
     for line in ledger["narration"].splitlines():
         _log.info(line)
     _log.info("reached t = %g in %d steps, %.3g s", ledger["t"], ledger["steps"], ledger["wall_time_s"])

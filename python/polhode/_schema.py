@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The keys of the model file, as the engine's own tables have them."""
+"""The keys of the model file, from the engine's tables."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def section_of(table: str, key: str) -> Optional[str]:
 
 
 def named_of(table: str, key: str) -> Optional[str]:
-    """Table of the things by name under a key, e.g. "body" of the model's bodies."""
+    """Table of the named objects under a key, e.g. "body" of the model's bodies."""
     more = definition(table).get("properties", {}).get(key, {}).get("additionalProperties")
     if not isinstance(more, dict):
         return None
@@ -45,7 +45,7 @@ def named_of(table: str, key: str) -> Optional[str]:
 
 
 def kind_table(table: str, entry: "dict[str, Any]") -> str:
-    """Table of a thing with its kind: "joint_revolute" for a joint of type revolute."""
+    """Table of an object with its kind: "joint_revolute" for a joint of type revolute."""
     for choice in definition(table).get("oneOf", []):
         name = str(choice.get("$ref", "")).rsplit("/", 1)[-1]
         fixed = {k: v["enum"][0] for k, v in definition(name)["properties"].items() if len(v.get("enum", ())) == 1}

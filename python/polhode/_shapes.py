@@ -23,7 +23,7 @@ class Shape:
         self._keys: "dict[str, Any]" = {k: plain(v) for k, v in bound.arguments.items() if v is not None}
 
     def tree(self) -> "dict[str, Any]":
-        """The shape as it stands in the model file."""
+        """The shape as in the model file."""
         own = {key: self._keys[key] for key in self.sizes if key in self._keys}
         listed = self.kind not in ("mesh", "hull", "height_field", "plane")
         value: Any = list(own.values()) if listed else own["normal"] if self.kind == "plane" else own

@@ -11,14 +11,14 @@ from typing import Union
 
 
 class Page:
-    """A page of the viewer: shown in a cell of a notebook, or saved."""
+    """A page of the viewer, shown by a notebook cell or saved to a file."""
 
     def __init__(self, text: str, height: int) -> None:
         self.text = text
         self.height = height
 
     def save(self, path: "Union[str, os.PathLike[str]]") -> None:
-        """Writes the page as one HTML file, which opens without network."""
+        """Writes the page as one HTML file, which needs no network."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.text)
 

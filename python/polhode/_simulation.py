@@ -23,7 +23,7 @@ class Step(NamedTuple):
     time: float  #: Reached [s]; in statics the load factor.
     dt: float  #: Length [s].
     iterations: int  #: Newton iterations of the last trial.
-    rejected: int  #: Trials that were refused on the way.
+    rejected: int  #: Trials that were rejected before.
 
 
 class _Things(Mapping):  # type: ignore[type-arg]
@@ -72,7 +72,8 @@ class BodyNow:
         self.set(**{name: value})
 
     def set(self, **values: Any) -> None:
-        """Sets several at once: body.set(position=..., velocity=...)."""
+        """Sets several quantities at once: body.set(position=..., velocity=...). Raises AttributeError for
+        others, ModelError if the joints cannot be assembled there, with solids, with contacts and in statics."""
         numbers = {name: None if (v := values.get(name)) is None else [float(x) for x in v] for name in self._settable}
         if set(values) - set(self._settable):
             raise TypeError(f"{sorted(set(values) - set(self._settable))} cannot be set")
@@ -87,7 +88,7 @@ class BodyNow:
 
 
 class Simulation:
-    """A model with its state: steps, runs, is looked at, set, copied and restored.
+    """A model with its state, for steps and runs; the state can be read, set, copied and restored.
 
         sim = polhode.Simulation(m)
         for step in sim:
@@ -110,12 +111,12 @@ class Simulation:
 
     @property
     def end(self) -> float:
-        """Time that the model's analysis ends at [s]."""
+        """End time of the model's analysis [s]."""
         return 1.0 if self._compiled.analysis == "statics" else float(self._compiled.duration)
 
     @property
     def bodies(self) -> "_Things":
-        """Bodies by name: read, and set, their motion."""
+        """Bodies by name: their motion, to read and to set."""
         return _Things(self._engine.bodies, lambda i: BodyNow(self, i))
 
     @property
@@ -125,12 +126,12 @@ class Simulation:
 
     @property
     def loads(self) -> "_Things":
-        """Loads by name: the numbers they report, in the order of docs/reference/loads.md."""
+        """Loads by name: their reported numbers, in the order of docs/reference/loads.md."""
         return _Things(self._engine.loads, self._engine.load)
 
     @property
     def probes(self) -> "_Things":
-        """Probes of output.probes by name: what each records, now, by column: sim.probes["tip"].z."""
+        """Probes of output.probes by name: present values by column, sim.probes["tip"].z."""
         from ._result import Table
 
         names = self._engine.probes
@@ -148,15 +149,15 @@ class Simulation:
 
     @property
     def ledger(self) -> Report:
-        """The figures so far, as those of a run."""
+        """Summary so far, as that of a run."""
         figures = json.loads(self._engine.summary())
         for key in ("end", "exit_code", "results", "frames"):
             figures.pop(key)
         return Report(figures)
 
     def step(self, until: Optional[float] = None) -> Step:
-        """Takes one accepted step, not beyond `until` [s]. Raises NotConverged; the state is then
-        that before the step."""
+        """Takes one accepted step, not beyond `until` [s]. Raises NotConverged if there is none; the state
+        is then that before the step."""
         accepted, t, dt, rejected, iterations, message = self._engine.step(self.end if until is None else until)
         if not accepted:
             raise NotConverged(message)
@@ -194,16 +195,16 @@ class Simulation:
 
     @property
     def state(self) -> bytes:
-        """Every bit of the state: to be kept, compared and restored."""
+        """Complete state, bit for bit, as bytes to store, compare and restore."""
         return bytes(self._engine.state)
 
     def restore(self, state: bytes) -> None:
-        """Goes back to a state of this model: what follows is equal bit for bit. Raises ModelError
+        """Restores a state of this model; later steps are equal bit for bit. Raises ModelError
         if the state belongs to another model."""
         self._engine.restore(state)
 
     def copy(self) -> "Simulation":
-        """A simulation at the same state that goes its own way."""
+        """An independent simulation at the same state."""
         other = object.__new__(Simulation)
         other._compiled = self._compiled
         other._engine = self._engine.copy()

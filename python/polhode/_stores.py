@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the numbers of a result are: in memory or in a file."""
+"""Stores of the numbers of a result: memory or a file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from . import _native
 
 
 class MemoryStore:
-    """Channels that the engine has handed over; views of them share the memory."""
+    """Channels in memory of the engine; views share this memory."""
 
     def __init__(self, channels: "dict[str, Any]", views: "dict[str, Any]", fixed: "dict[str, Any]",
                  probes: "Optional[dict[str, Any]]" = None) -> None:
@@ -42,7 +42,7 @@ class MemoryStore:
 
 
 class FileStore:
-    """Data sets of a results file, read when they are first wanted and kept."""
+    """Data sets of a results file, read at first use and kept."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -78,7 +78,7 @@ class FileStore:
             if name.endswith(".csv"):
                 with open(os.path.join(folder, name), encoding="utf-8") as file:
                     header = file.readline().rstrip("\n").split(",")
-                    lines = [line for line in file if line.endswith("\n")]  # a row that is being written is left out
+                    lines = [line for line in file if line.endswith("\n")]  # a row that is being written is skipped
                 rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(header)))
                 tables[name[:-4]] = (header, rows)
         return tables

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies: many runs of a model, and parameters that fit data."""
+"""Studies: many runs of a model, and parameter estimation from data."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def _points(parameters: "Mapping[str, Any]", n: Optional[int], method: str, seed
                 for v in parameters.values()]
         return [dict(zip(names, values)) for values in itertools.product(*axes)]
     if n is None:
-        raise ValueError(f"the method {method} takes n, the number of points")
+        raise ValueError(f"the method {method} requires n, the number of points")
     pairs = np.array([tuple(v) for v in parameters.values()], dtype=float)
     if pairs.shape != (len(names), 2):
-        raise ValueError(f"the method {method} takes two numbers for each parameter: "
+        raise ValueError(f"the method {method} requires two numbers for each parameter: "
                          + ("(mean, standard deviation)" if method == "normal" else "(lowest, highest)"))
     if method == "normal":
         values = np.random.default_rng(seed).normal(pairs[:, 0], pairs[:, 1], (n, len(names)))
@@ -73,7 +73,7 @@ def _one(task: "tuple[Model, dict[str, Any], Any]") -> "dict[str, Any]":
         row["message"] = str(error)
         if error.result is not None:
             row.update({name: error.result.ledger[name] for name in _FIGURES})
-    except Exception as error:  # a row of a study, whatever its callables raise
+    except Exception as error:  # a row of a study also for exceptions of its callables
         row["message"] = f"{type(error).__name__}: {error}"
     return row
 
@@ -97,15 +97,16 @@ def sweep(
                 "sobol", "lhs" (Latin hypercube): n points between (lowest, highest) of each.
                 "normal": n points of (mean, standard deviation).
     outputs:    channels whose last values become columns, or a function of the Result that returns a
-                dict; with several processes it must be one that can be pickled.
-    processes:  how many at once; None: one for each processor. 1 runs in this process.
-    resume:     a file that rows are added to as they come; runs that it holds are not run again.
+                dict; with several processes a function that can be pickled.
+    processes:  number of parallel processes; None: one for each processor. 1 runs in this process.
+    resume:     a file to which rows are appended as they are computed; its runs are not repeated.
     seed:       of sobol, lhs and normal.
-    client:     a dask.distributed.Client: runs go to its workers, which have Polhode installed; those of
-                a worker that dies go to another.
+    client:     a dask.distributed.Client: runs are distributed to its workers, which need Polhode; those of
+                a lost worker are given to another one.
 
-    A run that fails is a row with its "message"; the others have an empty one. Rows are in the order of
-    the points, and their numbers do not depend on the number of processes or workers.
+    A failed run is a row with its "message"; other messages are empty. Rows are in the order of the points,
+    and their numbers do not depend on the number of processes or workers. Raises ValueError for an unknown
+    method or values that do not suit it.
     """
     import pandas
 
@@ -148,7 +149,7 @@ def _rows_of(path: str, identity: str, points: "list[dict[str, Any]]") -> "dict[
 
 
 def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
-    """Index and row of each task, as they come; the runs of a killed process are run again."""
+    """Index and row of each task in the order of completion; runs of a killed process are repeated."""
     if processes == 1 or len(tasks) < 2:
         for i, task in tasks.items():
             yield i, _one(task)
@@ -176,25 +177,25 @@ def _run_all(tasks: "dict[int, Any]", processes: Optional[int]) -> Any:
 
 
 def _on_workers(tasks: "dict[int, Any]", client: Any) -> Any:
-    """Index and row of each task, as they come from the workers of a Dask cluster."""
+    """Index and row of each task in the order of completion by the workers of a Dask cluster."""
     import importlib
 
     as_completed: Any = importlib.import_module("distributed").as_completed
 
-    # Not pure: two points that are equal are two runs. The scheduler gives the runs of a lost worker to others.
+    # Not pure: equal points are separate runs. The scheduler gives the runs of a lost worker to others.
     waiting = {client.submit(_one, task, pure=False, retries=3): i for i, task in tasks.items()}
     for future in as_completed(waiting):
         yield waiting[future], future.result()
 
 
 class Fit(NamedTuple):
-    """Parameters that fit data best, in the least-squares sense."""
+    """Least-squares estimates of parameters."""
 
     parameters: "dict[str, float]"  #: Estimates by path.
-    covariance: Any  #: (p, p), in the order of `parameters`, from the residuals' own scatter.
+    covariance: Any  #: (p, p), in the order of `parameters`, scaled by the variance of the residuals.
     residuals: Any  #: (m,) at the estimates.
-    result: Result  #: The run with them.
-    data: "dict[str, Any]"  #: What was measured, by channel, the time among it.
+    result: Result  #: Run with the estimates.
+    data: "dict[str, Any]"  #: Measured values by channel, including "time".
 
     @property
     def errors(self) -> "dict[str, float]":
@@ -202,7 +203,7 @@ class Fit(NamedTuple):
         return dict(zip(self.parameters, np.sqrt(np.diag(self.covariance)).tolist()))
 
     def plot(self) -> Any:
-        """Draws the run with the estimates and what was measured, a panel for each channel. Returns the figure."""
+        """Draws the run with the estimates and the measured values, a panel for each channel. Returns the figure."""
         names = [name for name in self.data if name != "time"]
         figure = self.result.plot(*names)
         for panel, name in zip(figure.axes, names):
@@ -221,13 +222,13 @@ def fit(
 ) -> Fit:
     """Estimates parameters of a model from measured channels, by scipy.optimize.least_squares.
 
-    data:       by channel, ("time" itself among them): {"time": t (m,) [s], "joints.A.coordinates": y};
-                columns of a pandas.DataFrame do. Results are interpolated at these times by cubics.
-    parameters: first guesses, by path as overrides: {"loads.damper.damping": 0.1}.
+    data:       measured values by channel, including "time": {"time": t (m,) [s], "joints.A.coordinates": y},
+                or a pandas.DataFrame. Results are interpolated at these times by cubic splines.
+    parameters: initial guesses, by path as overrides: {"loads.damper.damping": 0.1}.
     bounds:     (lowest, highest) by path.
 
-    Raises ModelError or NotConverged if the model does not run at the first guesses, ValueError if the
-    data do not match.
+    Raises ModelError or NotConverged if the model does not run at the initial guesses, ValueError if the
+    lengths of the data differ or times decrease.
     """
     from scipy.interpolate import CubicSpline
     from scipy.optimize import least_squares

@@ -17,8 +17,8 @@ A parameter is a variable of the model or a path, and its values:
   --vary bodies.rod.mass=1..3   from 1 to 3: -n equal steps (grid), or a range (sobol, lhs)
   --vary k=40+-2                mean and standard deviation (normal)
 
-The table is CSV, or Parquet if its name ends with .parquet. Rows are kept beside it as they come
-(TABLE.rows); the same command goes on where a sweep was stopped.
+The table is CSV, or Parquet if its name ends with .parquet. Rows are stored in TABLE.rows as they are
+computed; the same command continues a sweep that was stopped.
 """
 
 
@@ -31,7 +31,7 @@ def _number(text: str, of: str) -> Any:
     try:
         value = float(text)
     except ValueError:
-        raise _Usage(f"--vary {of}: '{text}' is no number; write --vary L=0.8,1,1.2 or --vary L=0.8..1.2") from None
+        raise _Usage(f"--vary {of}: '{text}' is not a number. Write --vary L=0.8,1,1.2 or --vary L=0.8..1.2") from None
     return int(value) if value.is_integer() and text.lstrip("+-").isdigit() else value
 
 
@@ -42,7 +42,7 @@ def _parameter(text: str, method: str) -> "tuple[str, Any]":
     kind, between = ("normal", "+-") if "+-" in values else ("range", "..") if ".." in values else ("list", ",")
     if kind == "list":
         if method != "grid":
-            raise _Usage(f"--vary {text}: the method {method} takes "
+            raise _Usage(f"--vary {text}: the method {method} requires "
                          + ("MEAN+-DEVIATION" if method == "normal" else "FROM..TO"))
         return name, [_number(v, text) for v in values.split(",")]
     if (kind == "normal") != (method == "normal"):
@@ -62,9 +62,9 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("-n", type=int, help="number of points; of a grid: steps of each range (5)")
     parser.add_argument("--method", choices=["grid", "sobol", "lhs", "normal"], default="grid")
     parser.add_argument("--output", action="append", default=[], metavar="CHANNEL",
-                        help="its last values become columns, as bodies.rod.position; may be repeated")
+                        help="a channel whose last values become columns, such as bodies.rod.position; may be repeated")
     parser.add_argument("-o", "--table", default="sweep.csv", help="the table (sweep.csv)")
-    parser.add_argument("--jobs", "-j", type=int, help="runs at once; one for each processor if left out")
+    parser.add_argument("--jobs", "-j", type=int, help="number of parallel runs; default: one for each processor")
     parser.add_argument("--dask", metavar="ADDRESS", help="runs on the workers of this Dask scheduler")
     parser.add_argument("--seed", type=int, default=0, help="of sobol, lhs and normal (0)")
     return parser
@@ -96,8 +96,8 @@ def _sweep(given: argparse.Namespace) -> int:
     known = model.variables or {}
     parameters = {f"variables.{k}" if k in known else k: v for k, v in parameters.items()}
     if given.method != "grid" and given.n is None:
-        raise _Usage(f"the method {given.method} takes -n, the number of points")
-    model.check({k: v[0] for k, v in parameters.items()})  # what would make every run fail stops at once
+        raise _Usage(f"the method {given.method} requires -n, the number of points")
+    model.check({k: v[0] for k, v in parameters.items()})  # faults of all runs end the command at once
     client: Any = None
     if given.dask:
         client = importlib.import_module("distributed").Client(given.dask)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trees of a model as text: YAML that reads back to the same tree."""
+"""Trees of a model as YAML text, which is read back to the same tree."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _WIDTH = 100
 
 
 def scalar(value: Any) -> str:
-    """A number, text or truth value as it stands in a model file."""
+    """A number, text or boolean as in a model file."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -43,7 +43,7 @@ def flow(tree: Any) -> str:
 
 
 def block(tree: "dict[str, Any]", indent: str = "") -> str:
-    """A map as lines: whatever is short stands on one line."""
+    """A map as lines; short values are on one line."""
     text = ""
     for name, value in tree.items():
         line = f"{indent}{key(name)}: {flow(value)}"

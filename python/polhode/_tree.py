@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Handles on the tree of a model: what `m.bodies["upper"]` is."""
+"""Handles on the tree of a model, such as `m.bodies["upper"]`."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from ._errors import fault
 
 
 def plain(value: Any) -> Any:
-    """A value as it stands in the tree: numbers, texts, lists and dicts.
+    """A value in the form of the tree: numbers, texts, lists and dicts.
 
-    NumPy arrays become lists, a body, joint or material its name, a shape its map. Callables of the
-    time stay as they are: they may give what a load depends on.
+    NumPy arrays become lists, a body, joint or material its name, a shape its map. Callables are
+    unchanged: they may be functions of a load.
     """
     if value is None or isinstance(value, (bool, str)):
         return value
@@ -32,7 +32,7 @@ def plain(value: Any) -> Any:
         return [plain(v) for v in value]
     if callable(value):
         return value
-    raise TypeError(f"A model holds numbers, texts, lists and maps; {type(value).__name__} is none of them.")
+    raise TypeError(f"A model contains numbers, texts, lists and maps, not {type(value).__name__}. Convert the value.")
 
 
 def counted(count: int, things: str) -> str:
@@ -44,8 +44,8 @@ def counted(count: int, things: str) -> str:
 class Section(MutableMapping):  # type: ignore[type-arg]
     """A map of the model with known keys: read and set them as attributes or items.
 
-    A key that is not set reads as None; setting None removes it. Keys are those of the model file;
-    `help_keys()` tells their meaning.
+    A missing key is None; setting None removes a key. Keys are those of the model file;
+    `help_keys()` returns their meaning. Unknown keys raise ModelError.
     """
 
     __slots__ = ("_parent", "_key", "_table", "name")
@@ -137,7 +137,7 @@ class Section(MutableMapping):  # type: ignore[type-arg]
         return list(self._tree())
 
     def help_keys(self) -> str:
-        """Keys and their meanings, a line each."""
+        """Keys and their meanings, one per line."""
         return "\n".join(f"{key}: {meaning}" for key, meaning in self._known().items())
 
     def __repr__(self) -> str:
@@ -147,7 +147,7 @@ class Section(MutableMapping):  # type: ignore[type-arg]
 
 
 class Named(Section):
-    """Things of a model by name: bodies, joints, loads."""
+    """Objects of a model by name: bodies, joints, loads."""
 
     __slots__ = ()
 
@@ -171,7 +171,8 @@ class Named(Section):
         self._tree(create=True)[key] = plain(value)
 
     def add(self, name: str, **fields: Any) -> Section:
-        """Adds one under a new name and returns it; fields are the keys of the model file."""
+        """Adds an object under a new name and returns it; fields are the keys of the model file. Raises
+        ModelError for an unknown key or a name that exists already."""
         if name in self._tree():
             raise fault(f"{self._path()}.{name}", f"the name '{name}' is taken", "Choose another name")
         entry = Section(self, name, self._table, name)
@@ -186,10 +187,10 @@ class Named(Section):
         return entry
 
     def __getattr__(self, key: str) -> Any:
-        raise AttributeError(f"{key}: take things by name, {self._key}[\"{key}\"]")
+        raise AttributeError(f"{key}: use names as items, {self._key}[\"{key}\"]")
 
     def __setattr__(self, key: str, value: Any) -> None:
-        raise AttributeError(f"{key}: take things by name, {self._key}[\"{key}\"]")
+        raise AttributeError(f"{key}: use names as items, {self._key}[\"{key}\"]")
 
     def __dir__(self) -> "list[str]":
         return ["add", "keys", "values", "items"]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations, vectorised: each function takes one rotation or N of them.
+"""Rotations, vectorised: each function accepts one rotation or N of them.
 
 Rotation vectors (3,) or (N, 3) [rad], Cayley vectors χ = 2 tan(angle/2) n (3,) or (N, 3) [-],
-quaternions (w, x, y, z) (4,) or (N, 4), matrices (3, 3) or (N, 3, 3). All turn body components into
-world components. Quaternions come out with w ≥ 0, rotation vectors with angles in [0, π].
+quaternions (w, x, y, z) (4,) or (N, 4), matrices (3, 3) or (N, 3, 3). All transform body components to
+world components. Returned quaternions have w ≥ 0, returned rotation vectors angles in [0, π].
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def matrix_from_cayley(chi: Any) -> Any:
 
 
 def cayley_from_matrix(R: Any) -> Any:
-    """Inverse of matrix_from_cayley(); NaN for a turn by π, which has no Cayley vector."""
+    """Inverse of matrix_from_cayley(); NaN for a rotation by π, which has no Cayley vector."""
     return _many(_native.cayley_from_matrix, R, (3, 3))
 
 
@@ -54,12 +54,12 @@ def quaternion_from_rotation_vector(v: Any) -> Any:
 
 
 def rotation_vector_from_quaternion(q: Any) -> Any:
-    """Inverse of quaternion_from_rotation_vector(); q may have any length but zero."""
+    """Inverse of quaternion_from_rotation_vector(); q may have any non-zero length."""
     return _many(_native.rotation_vector_from_quaternion, q, (4,))
 
 
 def matrix_from_quaternion(q: Any) -> Any:
-    """Rotation matrices; q may have any length but zero."""
+    """Rotation matrices; q may have any non-zero length."""
     return _many(_native.matrix_from_quaternion, q, (4,))
 
 

@@ -7,7 +7,7 @@
 
 namespace polhode::python {
 
-/// A model that was read, with the Python callables that its loads call.
+/// A model that was read, with the Python callables of its loads.
 ///
 /// The loads borrow the callables; the list owns them, here and in each Engine made from the model, and shows them to
 /// Python's collector of cycles: a force may know the simulation that calls it.

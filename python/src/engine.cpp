@@ -168,8 +168,8 @@ nb::dict body_report(Engine& engine, int body) {
   result["velocity"] = array_of(m.v);
   result["angular_velocity"] = array_of(m.omega());
   result["acceleration"] = array_of(point.acceleration);
-  // Two points off the centre of mass tell the angular acceleration across their arm: of all three
-  // axes, each component twice.
+  // Accelerations of points off the centre of mass give the angular acceleration normal to their arm:
+  // with all three axes each component twice.
   const Vec3 omega = m.omega();
   const Mat3 axes = m.Lambda();
   Vec3 alpha = Vec3::Zero();

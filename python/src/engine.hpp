@@ -12,14 +12,14 @@
 
 namespace polhode::python {
 
-/// A force in Python asked its own simulation for what needs forces.
+/// Error for a force in Python that uses its own simulation for an evaluation of forces.
 struct NestedUse : std::runtime_error {
   NestedUse()
       : std::runtime_error(
-            "A force cannot use its simulation during its evaluation. Store the values after each step, in a loop over the steps or in run(observe=...); only time can be asked for.") {}
+            "A force cannot use its simulation during its evaluation. Store the values after each step, in a loop over the steps or in run(observe=...). A force may read only the time.") {}
 };
 
-/// A simulation with its names, as Python steps, runs, reads and sets it.
+/// A simulation with its names, for Python.
 class Engine {
  public:
   explicit Engine(const CompiledModel& compiled) : calls(compiled.calls) {
@@ -30,10 +30,10 @@ class Engine {
       : calls(std::move(owner)),
         simulation_(std::make_unique<Simulation>(model, std::move(state))) {}
 
-  /// For what needs no forces.
+  /// Access that evaluates no forces.
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
-  /// A simulation in use by one call: steps and reports evaluate forces, and a force in Python that asks for a report
-  /// would be asked for itself.
+  /// A simulation in use by one call: steps and reports evaluate forces, so a force in Python that used a report would
+  /// be evaluated recursively.
   class Use {
    public:
     /// @throws NestedUse if it is in use already.
@@ -54,9 +54,9 @@ class Engine {
   [[nodiscard]] Use use() { return Use(*this); }
   [[nodiscard]] const Model& model() const { return simulation_->model(); }
 
-  /// Runs to the end; looks for Ctrl-C and calls progress(time) every 50 ms of wall time.
-  /// @param folder      Results are written there too, unless it is empty.
-  /// @returns the figures as JSON, see summary_json().
+  /// Runs to the end; checks for Ctrl-C and calls progress(time) every 50 ms of wall time.
+  /// @param folder      Folder for results, unless it is empty.
+  /// @returns the summary as JSON, see summary_json().
   std::string run(Recording* recording, const std::string& folder, const std::string& model_text,
                   const std::vector<std::string>& overrides, const nb::object& progress);
   [[nodiscard]] std::string summary();
@@ -67,8 +67,8 @@ class Engine {
     const Use used(*this);
     return {model(), simulation_->state(), calls};
   }
-  /// Puts moving bodies, by index, in other places or motions at the present time. Then joints are
-  /// assembled and velocities projected again, turns counted anew, and the ledger begins anew.
+  /// Sets positions and velocities of moving bodies, by index, at the present time. Then joints are assembled,
+  /// velocities projected, and turn counts and the energy balance reset.
   /// @throws InputError if the joints cannot be assembled, and for models with solids or contacts.
   void set_motions(const std::map<int, BodyMotion>& motions);
 
@@ -76,7 +76,7 @@ class Engine {
 
  private:
   std::unique_ptr<Simulation> simulation_;
-  bool busy_ = false;  ///< Guarded by Python's lock: set and asked while it is held.
+  bool busy_ = false;  ///< Guarded by Python's lock: set and read while it is held.
 };
 
 }  // namespace polhode::python

@@ -13,8 +13,8 @@ namespace {
 
 /// Residual and tangent of one step from the present state, at an iterate.
 ///
-/// @param x  Displacement and Cayley vector of each moving body over the step, then multipliers; none: the step
-///           that goes on with the present velocities.
+/// @param x  Displacement and Cayley vector of each moving body over the step, then multipliers; none: the
+///           predictor with the present velocities.
 /// @returns residual, column starts, rows and values of the tangent, x, numbers of moving bodies.
 nb::tuple step_equations(Engine& engine, double dt, const std::optional<std::vector<double>>& x) {
   const Engine::Use used = engine.use();

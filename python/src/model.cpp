@@ -58,12 +58,12 @@ nb::object tree(const SourceNode& node) {
   return map;
 }
 
-/// Lets a Python callable give what a load depends on: its vector or one component of it, or the
-/// drive of a motor.
+/// Sets a Python callable as function of a load: its vector or one component of it, or the drive
+/// of a motor.
 /// @param component  Of the vector; −1: all three, or a motor's number.
 ///
-/// Functions of a load that a part brought count in the part's axes. Components that are
-/// given one by one are set one after the other, hence added to what the placeholder, zero, gave.
+/// Functions of a load of a part are in the part's axes. Components given one by one are set one
+/// after the other, hence added to the placeholder, zero.
 void set_function(CompiledModel& compiled, const std::string& load, int component,
                   const nb::object& function) {
   Model& model = compiled.model;
@@ -98,7 +98,7 @@ void set_function(CompiledModel& compiled, const std::string& load, int componen
   }
 }
 
-/// Lets a Python callable of the motion give a force, a moment or the drive of a motor.
+/// Sets a Python callable of the motion as force, moment or drive of a motor.
 void set_motion_function(CompiledModel& compiled, const std::string& load,
                          const nb::object& function, const nb::object& tangent, bool coordinate,
                          bool reads_velocity) {
@@ -108,7 +108,7 @@ void set_motion_function(CompiledModel& compiled, const std::string& load,
   spec.of_motion = motion_function(function, tangent, coordinate, reads_velocity);
 }
 
-/// Adds a constant to what a load depends on: to its drive (component −1) or to a component of its
+/// Adds a constant to the function of a load: to its drive (component −1) or to a component of its
 /// vector.
 void add_offset(CompiledModel& compiled, const std::string& load, int component, double offset) {
   Model& model = compiled.model;

@@ -64,7 +64,7 @@ Array matrix(const Mat& A) {
                   {static_cast<std::size_t>(A.rows()), static_cast<std::size_t>(A.cols())});
 }
 
-/// M, C, K and G of a state, as modes take them.
+/// M, C, K and G of a state, as for modes.
 nb::tuple matrices(Engine& engine) {
   const Engine::Use simulation = engine.use();
   ModalMatrices m(simulation->system(), simulation->state(), {});

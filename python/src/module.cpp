@@ -2,7 +2,7 @@
 #include "parts.hpp"
 
 NB_MODULE(_native, m) {
-  m.doc() = "The engine behind the package polhode: use that one.";
+  m.doc() = "Engine of the package polhode. Use that package.";
   m.attr("version") = POLHODE_VERSION;
   polhode::python::bind_errors(m);
   polhode::python::bind_model(m);

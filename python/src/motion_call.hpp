@@ -14,12 +14,12 @@ inline double number_of(nb::handle result) {
   return x;
 }
 
-/// Result of a Python callable as a vector. @throws nb::type_error if they are not three.
+/// Result of a Python callable as a vector. @throws nb::type_error unless there are three.
 inline Vec3 three_numbers_of(const nb::object& result) {
   const Py_ssize_t n = PySequence_Check(result.ptr()) ? PySequence_Size(result.ptr()) : -1;
   if (n != 3) {
     PyErr_Clear();
-    throw nb::type_error("A force or moment in Python has to give three numbers.");
+    throw nb::type_error("A force or moment in Python must return three numbers.");
   }
   Vec3 v;
   for (Py_ssize_t i = 0; i < 3; ++i) {
@@ -31,7 +31,7 @@ inline Vec3 three_numbers_of(const nb::object& result) {
 }
 
 /// Numbers that a callable reads through one Python object with arrays, which is made once: a call
-/// allocates nothing. One that is called while it runs (a simulation within a force) gets its own.
+/// allocates nothing. A recursive call (a simulation within a force) gets its own object.
 class Reading {
  public:
   Reading() {
@@ -127,7 +127,7 @@ class CoordinateCall {
     if (!PySequence_Check(pair.ptr()) || PySequence_Size(pair.ptr()) != 2) {
       PyErr_Clear();
       throw nb::type_error(
-          "A tangent along a coordinate has to give two numbers: by the coordinate and by its rate.");
+          "A tangent along a coordinate must return two numbers: the derivatives by the coordinate and by its rate.");
     }
     return {number_of(nb::object(pair[0])), number_of(nb::object(pair[1]))};
   }

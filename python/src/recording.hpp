@@ -13,7 +13,7 @@ class Recording {
  public:
   explicit Recording(const Simulation& simulation);
 
-  /// Adds a frame; one that stands already is not added twice.
+  /// Adds a frame, once for each time.
   void frame(const Simulation& simulation);
   /// Adds rows of the probes that are due; after every step, and at the start.
   void step(const Simulation& simulation);

@@ -10,7 +10,7 @@ namespace polhode::python {
 
 namespace {
 
-/// An HDF5 identifier that is closed when it goes.
+/// An HDF5 identifier, closed by its destructor.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}

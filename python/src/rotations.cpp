@@ -24,7 +24,7 @@ void put(double* out, const Quat& q) {
   out[0] = s.w(), out[1] = s.x(), out[2] = s.y(), out[3] = s.z();
 }
 
-/// Applies a function to each of N rows of `in` numbers; results of `shape` stand side by side.
+/// Applies a function to each of N rows of `in` numbers; results of `shape` are contiguous.
 template <class F>
 Array each(const double* data, std::size_t rows, std::size_t in, std::vector<std::size_t> shape,
            F&& f) {

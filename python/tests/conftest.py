@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models that several tests run."""
+"""Models for several tests."""
 
 import pathlib
 
@@ -12,7 +12,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*/model.yaml"))
 
 
 def make_pendulum(**keys: object) -> polhode.Model:
-    """A bar on a hinge, let go from the horizontal."""
+    """A bar on a hinge, released horizontally."""
     analysis = {"duration": 1, "step": "5 ms"}
     m = polhode.Model(gravity=[0, 0, -9.81], analysis=analysis, **keys)
     arm = m.add_body("arm", shape=polhode.Box(1, 0.05, 0.05), density=1000, position=[0.5, 0, 0])

@@ -11,7 +11,7 @@ H = 0.02
 
 
 def mechanism() -> polhode.Model:
-    """A spatial double pendulum with a spring, and a body that flies."""
+    """A spatial double pendulum with a spring, and a free body."""
     m = polhode.Model(gravity=[0, 0, -9.81], analysis={"duration": 1, "step": H, "solver": "block_lu"})
     m.add_body("upper", shape=polhode.Box(1, 0.1, 0.2), density=1000, position=[0.5, 0, 0])
     m.add_body("lower", shape=polhode.Box(1, 0.2, 0.1), density=800, position=[1.5, 0, 0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forces that Python gives as functions of the motion; probes by name."""
+"""Forces by Python functions of the motion; probes by name."""
 
 import gc
 import pathlib
@@ -49,7 +49,7 @@ def test_a_spring_in_python_is_of_second_order(force: "Callable[..., object]") -
     for steps in (30, 300, 3000):  # a hundredth of the first
         r = polhode.run(free_body(1.5 / steps, force))
         errors.append(np.max(np.abs(r.bodies["it"].position[:, 0] - closed_form(r.time))))
-        assert r.ledger.energy_drift < 1e-11  # what the function takes is booked
+        assert r.ledger.energy_drift < 1e-11  # the function's dissipation is in the energy balance
         assert r.ledger.newton_iterations <= 3.1 * steps
     assert np.log10(errors[0] / errors[1]) == pytest.approx(2, abs=0.05)
     assert np.log10(errors[1] / errors[2]) == pytest.approx(2, abs=0.05)
@@ -90,10 +90,10 @@ def test_a_force_reads_the_point_that_it_acts_at() -> None:
     m.add_load("push", "force", body="it", at=[1.5, 0, 0], force=force)
     polhode.run(m)
     for t, position, velocity, angular_velocity in seen[::7]:
-        assert -0.01 <= t <= 0.1  # at the start the step before is looked at, too
+        assert -0.01 <= t <= 0.1  # the start also evaluates an earlier step
         assert position == pytest.approx([1 + 0.5 * np.cos(2 * t), 0.5 * np.sin(2 * t), 0], abs=2e-4)
         assert velocity == pytest.approx([-np.sin(2 * t), np.cos(2 * t), 0], abs=2e-3)
-        assert angular_velocity == pytest.approx([0, 0, 2], abs=1e-4)  # moved a little for differences
+        assert angular_velocity == pytest.approx([0, 0, 2], abs=1e-4)  # displaced for differences
 
 
 def test_a_moment_in_a_joint_is_the_spring_of_the_engine() -> None:
@@ -170,8 +170,8 @@ def test_an_exception_stops_the_run_and_shows_its_line() -> None:
     (lambda t, body: 1.0, "three numbers"),
     (lambda t: [1, 2, 3, 4], "three numbers"),
     (lambda t, body: ["a", 0, 0], "real number"),
-    (polhode.StateFunction(spring, tangent=lambda t, body: {"speed": 0}), "may give position"),
-    (polhode.StateFunction(spring, tangent=lambda t, body: [1]), "has to give a map"),
+    (polhode.StateFunction(spring, tangent=lambda t, body: {"speed": 0}), "Use position"),
+    (polhode.StateFunction(spring, tangent=lambda t, body: [1]), "must return a map"),
 ])
 def test_what_is_no_force_is_told(give: "Callable[..., object]", message: str) -> None:
     with pytest.raises(TypeError, match=message):
@@ -179,7 +179,7 @@ def test_what_is_no_force_is_told(give: "Callable[..., object]", message: str) -
 
 
 def test_a_wrong_number_of_arguments_is_told_before_the_run() -> None:
-    for force, key in ((lambda t, q, rate: [0, 0, 0], "f\\(t, body\\)"), ([spring, 0, 0], "Whole forces")):
+    for force, key in ((lambda t, q, rate: [0, 0, 0], "f\\(t, body\\)"), ([spring, 0, 0], "Complete forces")):
         with pytest.raises(polhode.ModelError, match=key):
             free_body(0.01, force).check()
     m = make_pendulum()
@@ -193,7 +193,7 @@ def test_a_wrong_number_of_arguments_is_told_before_the_run() -> None:
 
 @pytest.mark.parametrize("mirror", [None, "y"])
 def test_functions_of_a_part_count_in_its_axes(mirror: Optional[str]) -> None:
-    """A part that stands turned and mirrored moves as it does alone, seen in its own axes."""
+    """Motion of a rotated and mirrored part: in its own axes it is that of the part alone."""
 
     class Steer:
         calls = 0

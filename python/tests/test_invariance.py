@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Laws that hold for any frame and any units."""
+"""Invariance of results with respect to frame and units."""
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,7 @@ _EYE, _ZERO = np.eye(3), np.zeros(3)
 
 
 def double_pendulum(R: Array = _EYE, shift: Array = _ZERO, **scale: float) -> polhode.Model:
-    """Two bars on spherical joints and a spring, in a frame that is turned and shifted."""
+    """Two bars on spherical joints and a spring, in a rotated and shifted frame."""
     L, M, T = scale.get("length", 1), scale.get("mass", 1), scale.get("time", 1)
     units = {k: u for k, u in (("length", "mm" if L != 1 else "m"), ("mass", "g" if M != 1 else "kg"),
                                ("time", "ms" if T != 1 else "s"))}

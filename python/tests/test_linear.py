@@ -42,11 +42,11 @@ def test_a_cart_pole_has_the_matrices_of_the_textbook() -> None:
 
 def test_a_reaction_goes_through() -> None:
     s = polhode.linearize(cart_pole(), ["push.z"], ["joints.slide.force"])
-    assert abs(s.D[2, 0]) == pytest.approx(1.0, abs=1e-9)  # what lifts the cart unloads its guide
+    assert abs(s.D[2, 0]) == pytest.approx(1.0, abs=1e-9)  # a vertical force on the cart reduces the load of its guide
 
 
 def test_about_a_steady_motion_coordinates_that_nothing_depends_on_have_no_stiffness() -> None:
-    # A pendulum on a shaft that turns at a constant rate, at the angle where it stays:
+    # A pendulum on a shaft of constant rate, at its angle of equilibrium:
     # a'' = W^2 sin a cos a (1) - g/l sin a for a point; its linearisation is -W^2 sin(a)^2 for a fixed rate.
     W, L = 6.0, 1.0
     angle = np.arccos(G / (W**2 * L))
@@ -68,7 +68,7 @@ def test_python_control_takes_the_matrices() -> None:
     inputs, outputs, states = ([n.replace(".", "_") for n in names] for names in (s.inputs, s.outputs, s.states))
     plant = control.ss(s.A, s.B, s.C, s.D, inputs=inputs, outputs=outputs, states=states)
     assert plant.input_labels == ["push_x"] and np.allclose(np.sort(plant.poles()), np.sort(np.linalg.eigvals(s.A)))
-    gain, _, poles = control.lqr(plant, np.eye(len(s.states)), [[1.0]])  # holds up what falls
+    gain, _, poles = control.lqr(plant, np.eye(len(s.states)), [[1.0]])  # supports the weight
     assert np.max(np.real(np.linalg.eigvals(s.A))) > 0 > np.max(np.real(poles))
     assert np.max(np.real(np.linalg.eigvals(s.A - s.B @ gain))) < 0
 
@@ -82,7 +82,7 @@ def test_what_cannot_be_linearised_is_told() -> None:
         polhode.linearize(cart_pole(), ["push"])
     m = polhode.Model()
     m.add_body("stone", mass=1, inertia=[1, 2, 3])
-    with pytest.raises(ValueError, match="3 of 6 freedoms are seen by no coordinate"):
+    with pytest.raises(ValueError, match="3 of 6 freedoms are not determined by coordinates"):
         polhode.linearize(m)
 
 
@@ -93,7 +93,7 @@ def test_inverse_dynamics_of_a_pendulum() -> None:
     moment = polhode.inverse_dynamics(m, t, {"hinge": angle})["hinge"]
     mass, inertia = 2.5, 2.5 * (1 + 0.05**2) / 12 + 2.5 * 0.25
     faster = 0.3 * 2 * np.pi * np.sin(2 * np.pi * t)
-    # A positive angle about y lowers the arm: gravity helps.
+    # A positive angle about y lowers the arm, in the direction of gravity.
     needed = inertia * faster - mass * 9.81 * 0.5 * np.cos(angle)
     # The step of 5 ms: order 2 of (2 pi dt)^2.
     assert moment[:, 1] == pytest.approx(needed, abs=1e-3 * np.abs(needed).max())

@@ -47,7 +47,7 @@ def test_values_are_read_and_set_by_name(pendulum: polhode.Model) -> None:
 
 
 def lists_of_the_schema() -> "list[tuple[tuple[str, ...], str]]":
-    """Where things stand by name in a model, and what they are: (("contacts", "pairs"), "contact_pair")."""
+    """Paths of named objects in a model, and their tables: (("contacts", "pairs"), "contact_pair")."""
     found: "list[tuple[tuple[str, ...], str]]" = []
     for key in _schema.keys(""):
         section = _schema.section_of("", key)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The source package holds what a build needs."""
+"""Contents of the source package: everything that a build needs."""
 
 import pathlib
 import statistics
@@ -28,7 +28,7 @@ def test_the_source_package_holds_every_file_of_the_repository(tmp_path: pathlib
 
 
 def test_the_import_is_light() -> None:
-    """Nothing that takes long is loaded before it is wanted, and a start takes below 150 ms of a processor."""
+    """Slow modules are loaded at first use, and the start takes less than 150 ms of processor time."""
     code = ("import resource, sys; before = resource.getrusage(resource.RUSAGE_SELF); import polhode; "
             "after = resource.getrusage(resource.RUSAGE_SELF); "
             "print(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "

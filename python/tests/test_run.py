@@ -61,7 +61,7 @@ def test_arrays_are_the_memory_of_the_engine(pendulum: polhode.Model) -> None:
     assert "position" in dir(body) and "bodies" in dir(r) and "arm" in r.bodies
     with pytest.raises(AttributeError, match="Did you mean 'position'"):
         _ = body.positon
-    with pytest.raises(KeyError, match="no channel"):
+    with pytest.raises(KeyError, match="not a channel"):
         _ = r["bodies.leg.position"]
 
 
@@ -269,7 +269,7 @@ def test_what_was_chosen_is_logged_and_what_deserves_a_look_is_warned(pendulum: 
     caplog.clear()
     with caplog.at_level("WARNING", logger="polhode"):
         polhode.run(pendulum)
-    assert not caplog.records  # silent unless somebody asks
+    assert not caplog.records  # silent by default
 
 
 def test_results_of_a_later_format_are_refused_with_what_to_do(pendulum: polhode.Model, tmp_path: pathlib.Path) -> None:

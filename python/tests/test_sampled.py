@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forces that read the whole state as it was at the beginning of the step, by names."""
+"""Forces that use the whole state at the beginning of the step, by names."""
 
 from collections.abc import Callable
 from typing import Any, Optional
@@ -17,7 +17,7 @@ OMEGA = np.sqrt(K * (1 / MASS_A + 1 / MASS_B))
 
 
 def pair(step: float, force: "Optional[Callable[[str], Callable[[float], Array]]]" = None) -> polhode.Model:
-    """Two bodies on a line that swing against one another and drift, with a spring by the engine or by two forces."""
+    """Two bodies on a line that oscillate and drift, with a spring of the engine or two forces."""
     m = polhode.Model(analysis={"duration": 1.0, "step": step})
     for name, mass, x in (("a", MASS_A, 0.0), ("b", MASS_B, 0.5)):
         m.add_body(name, mass=mass, inertia=[1, 1, 1], position=[x, 0, 0], velocity=[0.3, 0, 0])
@@ -30,12 +30,12 @@ def pair(step: float, force: "Optional[Callable[[str], Callable[[float], Array]]
 
 
 def spring(at: "dict[str, Array]") -> "Callable[[str], Callable[[float], Array]]":
-    """Forces on each of the bodies by places that somebody keeps."""
+    """Forces on each of the bodies from stored positions."""
     return lambda name: lambda t: K * (at["b" if name == "a" else "a"] - at[name])
 
 
 def watch(at: "dict[str, Array]") -> "Callable[[polhode.Simulation], None]":
-    """Keeps them after every step."""
+    """Stores the positions after every step."""
     return lambda s: at.update({name: s.bodies[name].position for name in at})
 
 
@@ -54,7 +54,7 @@ def test_a_spring_between_two_bodies_from_positions_at_the_beginning_of_the_step
         # x' = x + h v - h^2 w^2 x / 2, v' = v - h w^2 x: the map of a step has the determinant 1 + h^2 w^2 / 2.
         assert energy[-1] / energy[0] == pytest.approx((1 + 0.5 * (h * OMEGA) ** 2) ** steps, rel=2 * h * OMEGA)
         errors.append(np.abs(apart - 0.5 * np.cos(OMEGA * r.time)).max())
-        assert r.ledger.newton_iterations <= 2.1 * r.ledger.steps  # nothing of it is implicit
+        assert r.ledger.newton_iterations <= 2.1 * r.ledger.steps  # the force is explicit
     assert np.log10(errors[1] / errors[2]) == pytest.approx(1, abs=0.05)
     own = polhode.run(pair(1.0 / 2000))  # the same step, of second order
     x = own.bodies["b"].position[:, 0] - own.bodies["a"].position[:, 0]
@@ -84,7 +84,7 @@ def test_joints_loads_and_probes_are_read_after_each_step() -> None:
     exact = solve_ivp(lambda t, y: [y[1], (mass * 9.81 * 0.5 * np.cos(y[0]) - 3 * y[1]) / inertia], (0, 0.5), [0, 0],
                       t_eval=times, rtol=1e-10, atol=1e-12).y[0]
     assert angle == pytest.approx(exact, abs=0.02) and np.abs(angle - exact).max() > 1e-4
-    assert moments == pytest.approx(np.array(command[:-1])[: len(moments)], rel=1e-9)  # what acted over the step
+    assert moments == pytest.approx(np.array(command[:-1])[: len(moments)], rel=1e-9)  # the force over the step
 
 
 @pytest.mark.parametrize("ask", [
@@ -96,7 +96,7 @@ def test_a_force_that_asks_its_own_simulation_is_told_what_to_do(ask: "Callable[
 
     def force(t: float, body: polhode.BodyReading) -> "list[float]":
         if known:
-            assert known[0].time <= t  # may be asked
+            assert known[0].time <= t  # may be read
             ask(known[0])
         return [1, 0, 0]
 
@@ -113,5 +113,5 @@ def test_a_force_that_asks_its_own_simulation_is_told_what_to_do(ask: "Callable[
             act()
         assert sim.state == state
     known.clear()
-    sim.run()  # and it goes on as if nothing had been
+    sim.run()  # and the run continues as before
     assert sim.ledger.result_hash == polhode.run(m).ledger.result_hash

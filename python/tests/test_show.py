@@ -20,7 +20,7 @@ def test_results_and_models_show_in_a_cell(tmp_path: pathlib.Path, monkeypatch: 
     assert html.unescape(cell.split('"')[1]) == page.text
     page.save("page.html")
     assert (tmp_path / "page.html").read_text() == page.text
-    # The same page from the file; a model shows before it runs and leaves nothing behind.
+    # The same page from the file; a model is shown before it runs, without remaining files.
     assert polhode.open("run").show().text == page.text
     model = make_pendulum().show()
     assert model.text != page.text and len(model.text) > 100_000

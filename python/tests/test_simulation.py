@@ -49,7 +49,7 @@ def test_stop_conditions_and_observers(pendulum: polhode.Model) -> None:
 def test_a_body_set_in_motion_keeps_its_joints(pendulum: polhode.Model) -> None:
     sim = polhode.Simulation(pendulum)
     sim.run(0.5)
-    # About the hinge the bar turns with 2 rad/s: the part along the bar is projected away.
+    # About the hinge the bar rotates with 2 rad/s: projection removes the velocity along the bar.
     x, _, z = sim.bodies["arm"].position
     sim.bodies["arm"].set(velocity=[0.3 * x + 2 * z, 0, 0.3 * z - 2 * x], angular_velocity=[0, 2, 0])
     assert sim.time == pytest.approx(0.5)
@@ -91,7 +91,7 @@ def test_python_is_called_at_the_times_of_the_method_and_drives_a_motor() -> Non
     m.add_load("motor", "rotary_motor", joint="hinge", speed=speed)
     r = polhode.run(m, overrides={"analysis.duration": 0.1, "analysis.step": 0.01})
     assert r.joints["hinge"].rates[-1, 0] == pytest.approx(0.3, rel=1e-3)
-    assert min(times) >= -1e-3 and max(times) <= 0.1 + 1e-3  # derivatives look 0.2 ms aside
+    assert min(times) >= -1e-3 and max(times) <= 0.1 + 1e-3  # differences use times 0.2 ms off
     with pytest.raises(polhode.ModelError, match="cannot be written"):
         m.save("never.yaml")
 
@@ -109,7 +109,7 @@ def test_an_exception_in_a_force_stops_the_run_and_is_raised() -> None:
     with pytest.raises(ZeroDivisionError, match="at 0.5"):
         polhode.run(m)
     m.bodies["b"].mass = lambda t: 1
-    with pytest.raises(polhode.ModelError, match="callable cannot stand here"):
+    with pytest.raises(polhode.ModelError, match="callable is not possible here"):
         m.check()
 
 

@@ -69,7 +69,7 @@ def test_processes_give_the_bits_of_one_and_a_sweep_is_resumed(tmp_path: pathlib
 
 
 def die_once(result: polhode.Result) -> "dict[str, float]":
-    """Kills its process the first time, as the system does when memory is short."""
+    """Kills its process the first time, as the system does without free memory."""
     mark = pathlib.Path(os.environ["POLHODE_TEST_MARK"])
     if result.ledger.t > 2.9 and not mark.exists():
         mark.touch()
@@ -129,7 +129,7 @@ def test_workers_of_a_dask_cluster_give_the_bits_of_this_process_and_may_die(tmp
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
                                   host="127.0.0.1") as cluster, distributed.Client(cluster) as client:
         table = polhode.sweep(oscillator(), points, outputs=die_once, client=client)
-        assert (tmp_path / "mark").exists()  # a worker was killed in the midst of a run
+        assert (tmp_path / "mark").exists()  # a worker was killed during a run
         address = cluster.scheduler_address
         file = tmp_path / "model.yaml"
         oscillator().save(file)
@@ -159,7 +159,7 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path: pathlib.Pa
     assert table["bodies.b.position.z"].to_numpy() == pytest.approx(exact, abs=2e-3)
     first = csv.read_text()
     csv.unlink()
-    assert command(*words)[0] == 0 and csv.read_text() == first  # wall times too: no run was made again
+    assert command(*words)[0] == 0 and csv.read_text() == first  # wall times, too: no run was repeated
     status, said = command("--method", "normal", "-n", "4", "--vary", "k=40+-2", "--seed", "3")
     assert status == 0 and "4 runs" in said and pandas.read_csv(csv)["variables.k"].std() > 0.5
     status, said = command("--vary", "k=40,-1")
@@ -169,9 +169,9 @@ def test_the_command_makes_a_table_and_goes_on_where_it_was(tmp_path: pathlib.Pa
 @pytest.mark.parametrize(("words", "message"), [
     ([], "nothing varies; write --vary"),
     (["--vary", "k"], "--vary k: write --vary NAME=VALUES"),
-    (["--vary", "k=a,b"], "'a' is no number"),
-    (["--vary", "k=1..2", "--method", "lhs"], "the method lhs takes -n"),
-    (["--vary", "k=1,2", "--method", "lhs", "-n", "2"], "the method lhs takes FROM..TO"),
+    (["--vary", "k=a,b"], "'a' is not a number"),
+    (["--vary", "k=1..2", "--method", "lhs"], "the method lhs requires -n"),
+    (["--vary", "k=1,2", "--method", "lhs", "-n", "2"], "the method lhs requires FROM..TO"),
     (["--vary", "k=1..2", "--method", "normal", "-n", "2"], "MEAN+-DEVIATION requires --method normal"),
     (["--vary", "kk=1,2"], "there is no variable 'kk'"),
 ])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `certify`, and what a rerun does with an old results folder.
+// The command `certify`, and the results folder of an earlier run when a model is run again.
 #include <filesystem>
 #include <regex>
 
@@ -38,7 +38,7 @@ TEST_F(CommandLine, CertifiesForScripts) {
   EXPECT_EQ(value(result.out, "exit_code"), "0");
   EXPECT_EQ(value(result.out, "converges"), "true");
   EXPECT_NEAR(std::stod(value(result.out, "order")), 2.0, 0.2);
-  // Results of the finest run are kept where they are asked for: 1 s of steps of 2.5 ms.
+  // Results of the finest run, kept in the folder of the option: 1 s in steps of 2.5 ms.
   EXPECT_TRUE(exists("kept/results.h5"));
   EXPECT_TRUE(exists("kept/probes/tip.csv"));
   EXPECT_EQ(result.out, read("kept/certificate.json"));
@@ -80,7 +80,7 @@ TEST_F(CommandLine, RunsAndCertifiesInOne) {
   EXPECT_TRUE(exists("model.results/certificate.svg"));
   EXPECT_EQ(run({"run", "model.yaml", "--certify", "--restart", "x"}).code, 2);
   EXPECT_EQ(run({"run", "model.yaml", "--within", "0.1"}).code, 2);
-  // A run without it does not leave the certificate of an earlier one beside its results.
+  // A run without `certify` removes the certificate of an earlier one.
   EXPECT_EQ(run({"run", "model.yaml", "--quiet"}).code, 0);
   EXPECT_FALSE(exists("model.results/certificate.svg"));
 }
@@ -132,7 +132,7 @@ TEST_F(CommandLine, LeavesNothingOfAnEarlierRunInTheResultsFolder) {
   EXPECT_TRUE(exists("model.results/probes/A.csv"));
   EXPECT_TRUE(exists("model.results/notes.txt"));
   EXPECT_TRUE(exists("model.results/probes/mine.csv"));
-  // What the model no longer asks for goes too.
+  // Outputs that the model no longer has are removed, too.
   ASSERT_EQ(run({"run", "model.yaml", "--quiet", "--set", "output.paraview=false", "--set",
                  "output.hdf5=false"})
                 .code,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equilibria and modes by the command line, and runs that cannot go on.
+// Equilibria and modes by the command line, and runs that end early.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ analysis: {type: statics}
   EXPECT_TRUE(exists("stone.results/results.h5"));
 }
 
-/// A slack cable holds nothing, all of the tangent is zero: relaxation finds how it hangs.
+/// Equilibrium of a slack cable: its tangent stiffness is zero, so relaxation finds the shape.
 TEST_F(CommandLine, FindsTheShapeOfASlackCableAndSaysHow) {
   write("slack.yaml", R"(format: 1
 gravity: [0, 0, -9.81]
@@ -123,7 +123,7 @@ output: {paraview: true}
   EXPECT_THAT(list, testing::Not(HasSubstr("timestep=\"4\"")));
 }
 
-// A motor without a limit: the rotor turns faster than the least step can follow.
+// A motor without a limit: the rotor becomes too fast for the smallest step.
 TEST_F(CommandLine, EndsWith4NamesTheBodyAndKeepsTheLastStateOfAModelThatRunsAway) {
   write("motor.yaml", R"(format: 1
 bodies:
@@ -151,7 +151,7 @@ output:
   EXPECT_EQ(rest.code, 4) << rest.err;
 }
 
-/// A cube of one metre on the ground whose top is pressed, E = 1 Pa, in one step of nearly statics.
+/// A cube of one metre on the ground whose top is pressed, E = 1 Pa, in one nearly static step.
 std::string pressed_cube(
     const std::string& material, double pressure,
     const std::string& analysis = "{duration: 50 s, step: 25 s, min_step: 25 s, rho_inf: 0}") {
@@ -177,7 +177,7 @@ output:
 )";
 }
 
-// A material that gives way: no step carries so much.
+// A load above the maximum that the material can carry.
 TEST_F(CommandLine, EndsWith4NamesTheElementAndKeepsTheLastStateOfASolidThatCollapses) {
   write("cube.yaml", pressed_cube("elastic", 1.5));
   const auto result = run({"run", "cube.yaml", "--json"});
@@ -196,7 +196,7 @@ TEST_F(CommandLine, EndsWith4AtTheLastEquilibriumOfASolidThatCollapses) {
   EXPECT_THAT(result.err, testing::ContainsRegex("element [0-7] of 'solids.cube'"));
   const double reached = std::stod(value(result.out, "load_factor"));
   EXPECT_GT(reached, 0.1);
-  EXPECT_LT(reached, 0.2);  // E/(3 √3) is carried, were the sides guided
+  EXPECT_LT(reached, 0.2);  // the largest load with guided sides is E/(3 √3)
   EXPECT_EQ(value(result.out, "t"), value(result.out, "load_factor"));
   // A frame, a row and a picture for every load step.
   EXPECT_THAT(read("cube.results/probes/top.csv"), HasSubstr("\n" + value(result.out, "t") + ","));

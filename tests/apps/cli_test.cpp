@@ -109,12 +109,13 @@ TEST_F(CommandLine, ContinuesFromACheckpointBitForBit) {
   ASSERT_EQ(rest.code, 0) << rest.err;
   EXPECT_EQ(value(rest.out, "result_hash"), value(straight.out, "result_hash"));
   EXPECT_EQ(value(rest.out, "steps"), "100");
-  // The tables are those of the straight run; the frame at 0.37 s, where the part ended, is more.
+  // The tables equal those of the uninterrupted run, except for a frame at 0.37 s, where the part
+  // ended.
   EXPECT_EQ(read("part/probes/tip.csv"), read("straight/probes/tip.csv"));
   EXPECT_EQ(value(rest.out, "frames"), "52");
 }
 
-/// Libraries that would share their work among threads do not: sums would depend on how many.
+/// Results do not depend on the number of threads: libraries must not divide sums among threads.
 TEST_F(CommandLine, GivesTheSameBitsAtAnyThreadCount) {
   for (const std::string example : {"ironing", "stack", "flexible_four_bar"}) {
     write("example.yaml",
@@ -183,7 +184,7 @@ TEST_F(CommandLine, LeavesReadableFilesWhenItIsKilled) {
   const std::size_t last = list.rfind("file=\"") + 6;
   const std::string picture = list.substr(last, list.find('"', last) - last);
   EXPECT_THAT(read("model.results/paraview/" + picture), HasSubstr("</VTKFile>"));
-  // The results are continued from the last checkpoint, frames after it are dropped.
+  // Results continue from the last checkpoint; frames after it are removed.
   const auto rest = run({"run", "model.yaml", "--restart", "model.results/checkpoint.pst", "--set",
                          "analysis.duration=1e7 s", "--wall-limit", "0.2", "--quiet"});
   EXPECT_EQ(rest.code, 75) << rest.err;
@@ -292,9 +293,9 @@ TEST_F(CommandLine, FindsItselfWell) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && defined(NDEBUG)
-// Processor time, the least of a few runs, so that a busy machine does not count.
+// Processor time, the minimum of a few runs, so that other work on the machine does not count.
 TEST_F(CommandLine, StartsWithin50Milliseconds) {
-  if (test::cli_program().ends_with("_emulated")) GTEST_SKIP() << "an emulator starts later";
+  if (test::cli_program().ends_with("_emulated")) GTEST_SKIP() << "an emulator starts more slowly";
   double least = 1e9;
   for (int i = 0; i < 5; ++i)
     least = std::min(least, run({"run", "model.yaml", "--quiet", "--set", "analysis.duration=10 ms",

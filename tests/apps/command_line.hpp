@@ -30,7 +30,7 @@ output:
     A: {joint: A}
 )";
 
-/// A folder with a model in it, where the program is run.
+/// Folder with a model, in which the program is run.
 class CommandLine : public testing::Test {
  protected:
   CommandLine() { write("model.yaml", kPendulum); }

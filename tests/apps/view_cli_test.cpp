@@ -55,8 +55,8 @@ TEST_F(ViewCommand, SaysWhatIsWrong) {
   EXPECT_EQ(run({"view", "model.results", "--set", "a=1", "--html", "x.html"}).code, 2);
 }
 
-/// Answer of a server on the loopback address.
-std::string ask(int port, const std::string& request) {
+/// Response of a server on the loopback address to a request.
+std::string response_to(int port, const std::string& request) {
   const int s = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -76,7 +76,7 @@ std::string ask(int port, const std::string& request) {
 }
 
 std::string get(int port, const std::string& path, const std::string& host = "127.0.0.1") {
-  return ask(
+  return response_to(
       port, "GET " + path + " HTTP/1.1\r\nHost: " + host + ":" + std::to_string(port) + "\r\n\r\n");
 }
 
@@ -90,7 +90,7 @@ TEST_F(ViewCommand, ServesThePageOnTheLoopbackAddressUntilItIsInterrupted) {
   EXPECT_THAT(get(port, "/chunk/9999"), HasSubstr("404"));
   EXPECT_THAT(get(port, "/../model.yaml"), HasSubstr("404"));
   EXPECT_THAT(get(port, "/scene.json", "evil.example"), HasSubstr("403"));
-  EXPECT_THAT(ask(port, "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), HasSubstr("405"));
+  EXPECT_THAT(response_to(port, "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), HasSubstr("405"));
   write("model.yaml", "format: 1\nbodies: {a: {mas: 1}}\n");
   EXPECT_THAT(get(port, "/scene.json"), HasSubstr("model.yaml:2:14"));
   program.signal(SIGINT);

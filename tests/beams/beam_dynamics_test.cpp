@@ -126,7 +126,7 @@ TEST(BeamInModel, BecomesBodiesElementsAndJoints) {
   EXPECT_EQ(system.name(system.interactions()[static_cast<std::size_t>(map.beam[0][3])]), "beam.3");
 }
 
-// The corner's rotary inertia is the mean of that of both legs, about the axes of either.
+// Rotary inertia of the corner: the mean of the inertias of both legs, each about its own axes.
 TEST(BeamInModel, SharesItsCornersBetweenLegs) {
   const Model m = right_angle_cantilever(4);
   const BodySpec& corner = m.bodies[4];
@@ -151,7 +151,7 @@ TEST(BeamInModel, FollowsAnArc) {
     EXPECT_NEAR((b.position - Vec3(0, 100, 0)).norm(), 100.0, 1e-10);
   EXPECT_LT((m.bodies[0].orientation * Vec3::UnitX() - Vec3::UnitX()).norm(), 1e-12);
   EXPECT_LT((m.bodies[8].orientation * Vec3::UnitY() - Vec3::UnitZ()).norm(), 1e-12);
-  const System system = build_system(m);  // free of stress: nothing moves
+  const System system = build_system(m);  // stress-free: nothing moves
   EXPECT_EQ(system.body_count(), 9);
   const RunSummary r = run(m, 0.1, 1.0);
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
@@ -176,7 +176,8 @@ TEST(BeamInModel, RefusesWhatCannotBeMeshed) {
   refused([](BeamSpec& b) { b.arc = true, b.points[2] = {2, 0, 0}; });
 }
 
-// A mast that hangs from the ground at rest, and a rope beside it: the weight below a section.
+// A mast that hangs from the ground at rest, and a rope beside it: section forces are the weight
+// below the section.
 TEST(BeamSystem, ReportsSectionForcesAndTensions) {
   Model m;
   m.gravity = {0, 0, -10.0};
@@ -197,7 +198,7 @@ TEST(BeamSystem, ReportsSectionForcesAndTensions) {
   EXPECT_DOUBLE_EQ(tension[0], 1e3);  // twice as long as free
   m.cables.clear();
   m.analysis.rho_inf = 0.0;
-  m.analysis.step = 1.0;  // long against vibrations: rest
+  m.analysis.step = 1.0;  // much longer than the periods of vibration: the model comes to rest
   m.analysis.duration = 60.0;
   Simulation hanging(m);
   ASSERT_EQ(hanging.run().end, RunEnd::finished);
@@ -220,7 +221,7 @@ TEST(BeamSystem, HasTheTangentOfItsResidual) {
   }
 }
 
-// Loads for 5 s, then free flight: the ledger sees both.
+// Loads for 5 s, then free flight: the energy balance covers both.
 TEST(BeamSystem, ConservesEnergyAndMomentaInFlight) {
   const RunSummary r = run(flying_beam(10), 0.05, 10.0);
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
@@ -238,7 +239,7 @@ TEST(BeamSystem, LosesExactlyWhatItsViscosityTakes) {
   EXPECT_LT(r.angular_momentum_drift, 1e-12);
 }
 
-// Free flight: a blow would enter the momenta of a generalised-α step with its lag.
+// Free flight: a sudden load would enter the momenta with the lag of a generalised-α step.
 TEST(BeamSystem, LosesEnergyButNoMomentumBelowOne) {
   Model m = flying_beam(8);
   m.loads.clear();
@@ -256,7 +257,7 @@ TEST(BeamSystem, LosesEnergyButNoMomentumBelowOne) {
   EXPECT_GT(after, 0.95 * before);
 }
 
-// A frame of a plate, a mast with a cable to its end, a hinge and a spring at its middle.
+// A plate with a mast, a cable to the mast's end, and a hinge and a spring at its middle.
 TEST(BeamSystem, GoesWithJointsSpringsAndCables) {
   ModelBuilder m;
   const int plate = m.body("plate", {0, 0, 0}, 3.0, {0.2, 0.3, 0.4});
@@ -283,7 +284,7 @@ TEST(BeamSystem, GoesWithJointsSpringsAndCables) {
     stay.mass_per_length = mass;
     stay.elements = 4;
     add_cable(model, stay);
-    // Where a cable becomes taut, Newton converges slowly, and stops early.
+    // Where a cable becomes taut, Newton converges slowly, so its tolerance is larger.
     model.analysis.newton_tolerance = 1e-8;
     const RunSummary r = run(model, 0.005, 5.0);
     ASSERT_EQ(r.end, RunEnd::finished) << r.message;

@@ -7,7 +7,7 @@
 namespace polhode::test::beam_element_tests {
 namespace {
 
-/// Largest stored energy in reach of these tests [J]: round-off is some 1e-15 of it.
+/// Largest stored energy in these tests [J]: round-off is some 1e-15 of it.
 constexpr double kEnergy = 40.0;
 
 BodyStep at_rest(const Vec3& r) {
@@ -44,7 +44,7 @@ TEST(BeamElement, GivesBackExactlyWhatItStored) {
   }
 }
 
-// On both sides of where the correction along the step gives way to Gauss's rule.
+// Steps on both sides of the size at which Gauss's rule replaces the correction along the step.
 TEST(BeamElement, GivesBackExactlyInTheSmallestSteps) {
   for (const double size : {1e-2, 1e-3, 3e-4, 1e-4, 3e-5, 1e-6, 1e-8, 1e-10, 0.0}) {
     Random random(3);
@@ -117,7 +117,7 @@ TEST(BeamElement, KeepsLinearAndAngularMomentumOfItsPair) {
     }
 }
 
-// Everything turned and moved as one: forces turn with it.
+// A rigid motion superposed on everything: the forces turn with it.
 TEST(BeamElement, IsIndifferentToTheFrameOfReference) {
   Random random(5);
   BeamSample sample(random, context_of(1.0));
@@ -184,8 +184,8 @@ TEST(BeamElement, TakesItsLengthFromTheArcBetweenItsEnds) {
   EXPECT_LT((spec.reference_strain - (Vec6() << 1, 0, 0, 0, 0, 0.5).finished()).norm(), 1e-14);
 }
 
-// Small end loads on a clamped straight element: with the residual bending flexibility the tip
-// moves as that of the Timoshenko cantilever, whatever its length.
+// Small end loads on a clamped straight element: with the residual bending flexibility its tip has
+// the displacement of a Timoshenko cantilever of any length.
 // @tests{beam-residual-flexibility}
 TEST(BeamElement, BendsAsTheExactCantileverUnderEndLoads) {
   const double EI_y = 3.0, EI_z = 5.0, GA = 40.0, L = 2.5;

@@ -14,8 +14,8 @@ namespace polhode::test {
   return C;
 }
 
-/// An element between two bodies in a large step, bent and stretched by a good deal, and attached
-/// away from the centres of mass unless told otherwise.
+/// An element between two bodies in a large step, strongly bent and stretched. By default it is
+/// attached away from the centres of mass.
 struct BeamSample {
   PairMotion motion;
   BeamElementSpec spec;
@@ -45,7 +45,7 @@ struct BeamSample {
     spec.reference_strain << 1.0, 0.0, 0.0, random.vector(0.3);
     spec.stiffness = coupled_section(random);
   }
-  /// The element, its history that of the start of the step.
+  /// The element with the history of the start of the step.
   [[nodiscard]] BeamElement element() {
     const BeamElement beam(spec);
     motion.at_start([&](const PairStep& s) { beam.initialize(s, motion.history.data()); });

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A beam clamped at its first node: Newton on the whole, dense matrix.
+/// A beam clamped at its first node; Newton's method with a dense matrix.
 class ClampedBeam {
  public:
   explicit ClampedBeam(const BeamSpec& beam)
@@ -87,7 +87,7 @@ class ClampedBeam {
                                            dq.segment<6>(6 * ref.b), history);
     }
   }
-  /// No node turns by more than 1.9 rad in one iteration.
+  /// Newton increment, scaled so that no node turns by more than 1.9 rad.
   void move(const Vec& dq) {
     double most = 0.0;
     for (int b = 0; b < system_.body_count(); ++b)
@@ -107,7 +107,7 @@ class ClampedBeam {
   std::vector<BodyStep> steps_;
 };
 
-/// Straight along x, section y and z along the world's.
+/// Straight beam along x; axes y and z of its section are those of the ground.
 BeamSpec straight(double length, int elements, const Vec6& stiffness) {
   BeamSpec beam = beam_through({{0, 0, 0}, {length, 0, 0}}, elements, {1, 1, 1, 1, 1.0, {1, 1, 1}});
   beam.section.section.stiffness = stiffness.asDiagonal();
@@ -117,7 +117,7 @@ BeamSpec straight(double length, int elements, const Vec6& stiffness) {
 
 }  // namespace
 
-// To a full circle and in one load step; the residual's floor is round-off of EA.
+// A full circle in one load step; the residual stops at the round-off of EA.
 TEST(BeamStatics, RollsUpToACircleInOneLoadStep) {
   const double L = 10.0, EI = 100.0;
   for (const double EA : {1e4, 1e7})

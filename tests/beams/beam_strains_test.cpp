@@ -11,7 +11,7 @@
 namespace polhode::test::beam_strains_tests {
 namespace {
 
-/// Invariants of frames that need be no rotations, as averages are.
+/// Invariants of general matrices in place of rotations, as averages of rotations are.
 Vec15 some_invariants(Random& random, double size) {
   const Mat3 D = random.frame();
   const Mat3 R = exp_map(size * random.direction());
@@ -41,7 +41,7 @@ TEST(BeamEta, HasItsDerivatives) {
   }
 }
 
-// A helix: what constant strains draw. D' = D hat(K), p' = D Γ. @tests{beam-strains}
+// A helix is the curve of constant strains. D' = D hat(K), p' = D Γ. @tests{beam-strains}
 TEST(BeamStrains, AreThoseOfAnElementWithConstantStrains) {
   Random random(3);
   for (int sample = 0; sample < 8; ++sample) {
@@ -71,7 +71,7 @@ TEST(BeamStrains, SeeNoMotionOfTheWhole) {
   }
 }
 
-// The same element from its other end: x and y of the section turned round, z kept.
+// The same element from its other end: x and y of the section are reversed, z is kept.
 TEST(BeamStrains, AreTheSameFromTheOtherEnd) {
   Random random(5);
   const Mat3 about_z = Vec3(-1, -1, 1).asDiagonal();

@@ -6,8 +6,8 @@
 namespace polhode::test::cable_tests {
 namespace {
 
-/// Two bodies and a bar between points of them, at the middle of whose step it is about as long as
-/// its free length times `slackness`.
+/// Two bodies and a bar between points of them. In the middle of the step its length is about its
+/// free length times `slackness`.
 struct CableSample {
   PairMotion motion;
   CableSpec spec;

@@ -6,11 +6,11 @@
 
 namespace polhode::test::muscle_curves_tests {
 
-// Points that the curves are made for: De Groote et al. (2016), figure 1 and equations of the
-// supplement. @tests{muscle-length} @tests{muscle-passive} @tests{muscle-velocity}
+// Points that define the curves: De Groote et al. (2016), figure 1 and equations of the supplement.
+// @tests{muscle-length} @tests{muscle-passive} @tests{muscle-velocity}
 TEST(MuscleCurves, PassThroughTheirPoints) {
   EXPECT_NEAR(active_force_length(1.0).value, 1.0, 0.005);
-  EXPECT_NEAR(active_force_length(1.0).slope, 0.165029, 1e-6);  // the largest is at 1.014
+  EXPECT_NEAR(active_force_length(1.0).slope, 0.165029, 1e-6);  // the maximum is at 1.014
   EXPECT_LT(active_force_length(0.4).value, 0.2);
   EXPECT_LT(active_force_length(1.7).value, 0.2);
   EXPECT_NEAR(passive_force_length(1.0).value, 0.0, 1e-15);

@@ -36,7 +36,7 @@ struct Sample {
     context.dt = 0.01;
     context.conserving = true;
     rate = context.ga.c / context.dt;
-    if (spec.friction > 0.0) {  // parts whose sum over stiffness is nothing
+    if (spec.friction > 0.0) {  // parts whose sum over stiffness is zero
       history = {0.3 * spec.pieces[1], -0.3 * spec.pieces[0], 0.0};
       for (double& part : history)
         part *= spec.stiffness * spec.free_length / spec.pieces[0] / spec.pieces[1] * 0.1;
@@ -92,8 +92,8 @@ struct Sample {
   }
 };
 
-/// Taut, slack at one end of the step, with a damper, with a given tension, muscles, friction
-/// that holds, slips in parts, slips.
+/// Kinds of cable: taut, slack at one end of the step, with a damper, with a given tension,
+/// muscles; friction that sticks, slips at some points, slips at all.
 std::vector<RunningCableSpec> kinds(double length) {
   RunningCableSpec plain;
   plain.name = "rope";
@@ -145,7 +145,7 @@ TEST(RunningCable, HasTheTangentOfItsForces) {
         const double length = middle_length(Sample(kinds(1.0)[0], rho_inf, move, seed));
         int kind = 0;
         for (const RunningCableSpec& spec : kinds(length)) {
-          if (++kind == 2 && move < 1e-3) continue;  // the corner itself
+          if (++kind == 2 && move < 1e-3) continue;  // the corner of the force law itself
           const Sample s(spec, rho_inf, move, seed);
           Mat K;
           (void)s.force(&K);
@@ -157,8 +157,8 @@ TEST(RunningCable, HasTheTangentOfItsForces) {
       }
 }
 
-// Force times motion is what it stored, and what was dissipated and put in; neither force nor
-// moment is left. @tests{running-cable} @tests{cable-capstan-step}
+// Work of the forces: the stored energy, the dissipated and the supplied one; resultant force and
+// moment vanish. @tests{running-cable} @tests{cable-capstan-step}
 TEST(RunningCable, GivesBackExactlyWhatItStored) {
   for (const double move : {0.3, 0.02, 1e-4, 1e-7})
     for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -188,7 +188,8 @@ TEST(RunningCable, GivesBackExactlyWhatItStored) {
     }
 }
 
-// Each point holds up to e^{μβ}, the others what is left of it; the mean by compliance stays.
+// Ratio of tensions at each point: at most e^{μβ}, less at points that stick; the mean weighted by
+// compliance is unchanged.
 // @tests{cable-capstan}
 TEST(CableFriction, HoldsUpToItsRatio) {
   Random random(7);
@@ -210,7 +211,7 @@ TEST(CableFriction, HoldsUpToItsRatio) {
       EXPECT_GT(a, 0.0);
       EXPECT_GE(b, ratio[j] * a * (1.0 - 1e-11));
       EXPECT_GE(a, ratio[j] * b * (1.0 - 1e-11));
-      // What came over the point: it came from the slacker side, and only at the ratio.
+      // Material that passed over the point: from the slacker side, and only at the limiting ratio.
       material += (held.tension[j] - N[j]) / k[static_cast<std::size_t>(j)];
       if (std::abs(material) < 1e-11) continue;
       ++slipped;
@@ -226,7 +227,7 @@ TEST(RunningCable, PullsAsItsMuscle) {
   spec.nodes = {0, 1};
   const HillMuscle& m = *spec.muscle;
   for (const double fibre : {0.7, 1.0, 1.3}) {
-    // Fibres of that length: their width is that of the optimal ones.
+    // Fibres of that length; their thickness is that of the optimal fibres.
     const double along = std::sqrt(fibre * fibre - std::pow(std::sin(m.pennation), 2));
     const double length = m.tendon_length + m.optimal_length * along;
     const std::vector<double> x{0.0, 0.0, 0.0, length, 0.0, 0.0}, still(6, 0.0);

@@ -41,7 +41,7 @@ TEST(Section, OfATubeIsACircleLessACircle) {
   EXPECT_NEAR(tube_section(1.0, 1.0 - 1e-9, 0.3).shear_y, 2.6 / 4.9, 1e-8);
 }
 
-// IPE 200 without its fillets: area, and second moments, by hand.
+// IPE 200 without its fillets: area and second moments calculated by hand.
 TEST(Section, OfAnI) {
   const SectionShape s = i_section({0.2, 0.1, 0.0056, 0.0085}, 0.3);
   EXPECT_NEAR(s.area, 2 * 0.1 * 0.0085 + 0.183 * 0.0056, 1e-15);
@@ -50,7 +50,7 @@ TEST(Section, OfAnI) {
                   2 * (0.1 * std::pow(0.0085, 3) / 12 + 0.1 * 0.0085 * 0.09575 * 0.09575),
               1e-15);
   EXPECT_NEAR(s.J, (2 * 0.1 * std::pow(0.0085, 3) + 0.183 * std::pow(0.0056, 3)) / 3, 1e-18);
-  // Nearly all shear along y is borne by the web.
+  // The web carries nearly all shear along y.
   EXPECT_NEAR(s.shear_y * s.area, 0.183 * 0.0056, 0.15 * 0.183 * 0.0056);
   EXPECT_LT(s.shear_z * s.area, 2 * 0.1 * 0.0085);
 }

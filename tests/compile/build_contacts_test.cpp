@@ -102,11 +102,11 @@ contacts:
   const Built built(model_of(contacts));
   EXPECT_FALSE(built.meet("a", "b"));
   EXPECT_FALSE(built.meet("c.0", "wall"));
-  EXPECT_TRUE(built.meet("c.0", "floor")) << "another fixed body";
-  EXPECT_FALSE(built.meet("c.0", "c.1")) << "one body";
+  EXPECT_TRUE(built.meet("c.0", "floor")) << "a fixed body that is not excluded";
+  EXPECT_FALSE(built.meet("c.0", "c.1")) << "shapes of the same body";
   EXPECT_TRUE(Built(model_of(contacts + "  joint_neighbours: true\n")).meet("a", "b"));
   EXPECT_TRUE(Built(model_of(contacts + "  pairs: {ab: {between: [a, b]}}\n")).meet("a", "b"))
-      << "a pair that is named is meant";
+      << "a pair that is named is included";
 }
 
 TEST(BuildContacts, GroupsMeetIfBothSaySo) {
@@ -151,11 +151,12 @@ TEST(BuildContacts, BeamsMeetBodiesAndFarPartsOfThemselves) {
                              "  b: {shape: {sphere: 0.2}, mass: 1, position: [0, 0, 3]}\n"));
   EXPECT_TRUE(built.meet("rope.5", "floor"));
   EXPECT_TRUE(built.meet("rope.5", "b"));
-  // Elements of 0.1 m, a radius of 0.05 m: what is nearer than half a turn around the bar is apart.
+  // Elements of 0.1 m, a radius of 0.05 m: elements nearer than half a turn around the bar are
+  // excluded.
   EXPECT_FALSE(built.meet("rope.5", "rope.6"));
   EXPECT_FALSE(built.meet("rope.5", "rope.7"));
   EXPECT_TRUE(built.meet("rope.5", "rope.8"));
-  // Likewise what holds its end.
+  // So is the body that holds its end.
   EXPECT_FALSE(built.meet("rope.0", "a"));
   EXPECT_FALSE(built.meet("rope.1", "a"));
   EXPECT_TRUE(built.meet("rope.4", "a"));

@@ -9,7 +9,7 @@
 namespace polhode::test::build_solids_tests {
 namespace {
 
-/// Sums of some hundred terms of size 1.
+/// Rounding of sums of some hundred terms of size 1.
 constexpr double kRounding = 1e-12;
 
 Selection plane(const Vec3& normal, Selection::Level level) {
@@ -195,8 +195,8 @@ TEST(BuildSolids, WarnsOfElementsThatLock) {
   EXPECT_NE(map.solids[0].plan.warnings[0].find("solids.pad"), std::string::npos);
 }
 
-/// What bodies exert on the solid is taken from their own momentum, m r̈ = m g − f, at every
-/// instant, to round-off.
+/// Forces of the bodies on the solid, equal to the change of their own momentum, m r̈ = m g − f, at
+/// every instant to round-off.
 TEST(InterfaceReactions, ActOnEachBodyWithTheOppositeSign) {
   Model model = two_bodies_and_a_pad();
   model.gravity = {0.5, 0, -9.81};
@@ -215,8 +215,8 @@ TEST(InterfaceReactions, ActOnEachBodyWithTheOppositeSign) {
   }
 }
 
-/// The same forces change the momentum of the solid: Δp = Δt (Σ f + m g), the trapezoidal rule
-/// being wrong by (ω Δt)²/12, which is below 1e-4 for all that moves here.
+/// The same forces as change of the momentum of the solid: Δp = Δt (Σ f + m g). The trapezoidal
+/// rule errs by (ω Δt)²/12, below 1e-4 for all motions here.
 TEST(InterfaceReactions, ChangeTheMomentumOfTheSolid) {
   Model model = two_bodies_and_a_pad();
   model.gravity = {0.5, 0, -9.81};

@@ -57,7 +57,7 @@ TEST(BuildSurfaceContacts, ASolidMeetsEveryBodyButThoseItIsBondedTo) {
             (Names{"floor", "plate", "roller"}));
   EXPECT_EQ(met(model_of("contacts: {pairs: {own: {between: [pad, plate]}}}")),
             (Names{"floor", "plate", "roller"}))
-      << "a pair that is named is meant";
+      << "a pair that is named is included";
   EXPECT_EQ(met(model_of("contacts: {exclude: [[floor, pad]]}")), Names{"roller"});
   EXPECT_EQ(met(model_of("contacts: {}", "contact: {touches: false}")), Names{});
   EXPECT_EQ(met(model_of("contacts: {}", "contact: {meets: [base]}", "{duration: 1 s, step: 10 ms}",
@@ -85,7 +85,7 @@ TEST(BuildSurfaceContacts, TakesTheLawOfThePairThenOfMaterialsThenCombined) {
             0.7);
 }
 
-/// The law as built, and how many points there are.
+/// The law as built, and the number of contact points.
 struct Built {
   Simulation simulation;
   const SurfaceContact* contact = nullptr;
@@ -105,7 +105,7 @@ TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
   const contact::NormalLaw& law = plain.contact->law().normal;
   EXPECT_NEAR(law.tolerance, 1e-4, 1e-12) << "1e-3 of an edge";
   EXPECT_NEAR(law.stiffness, 1.5 * 0.02 * 1e6 / 1e-4, 1.0) << "2 % of Young's modulus";
-  EXPECT_EQ(law.force(0.0), 0.0) << "what touches is not thrown off";
+  EXPECT_EQ(law.force(0.0), 0.0) << "no force where surfaces just touch";
   EXPECT_NEAR(law.force(-0.5e-4), 0.02 * 1e6, 1e-6) << "in the middle of the band";
   EXPECT_EQ(plain.contact->law().end_share, 0.5) << "restitution 0";
 
@@ -119,7 +119,7 @@ TEST(BuildSurfaceContacts, ChoosesBandAndStiffnessFromTheSolid) {
   EXPECT_EQ(stated.contact->law().mu, 0.3);
   // The whole boundary: 5 x 5 x 6 nodes less the 3 x 3 x 4 inside.
   EXPECT_EQ(stated.contact->size(), 150 - 36);
-  // The stiffness does not depend on the step: what converges with it must have a limit.
+  // The stiffness does not depend on the step, so that results converge with the step to a limit.
   Model quick = model_of("contacts: {" + kAlone + ", default: {gap_tolerance: 1 mm}}");
   quick.analysis.step = 1e-4;
   const Simulation fast(std::move(quick));
@@ -203,14 +203,14 @@ TEST(BuildSurfaceContacts, ACableMeetsBodiesThoseItHangsOnToo) {
 // @tests{cable-gap}
 TEST(BuildSurfaceContacts, ACableIsLookedAtAsCloselyAsTheShapeIsRound) {
   const Simulation s(rope_of("contact: {radius: 20 mm}"));
-  EXPECT_EQ(contact_with(s, "floor").size(), 11) << "nodes alone";
+  EXPECT_EQ(contact_with(s, "floor").size(), 11) << "at the nodes only";
   // Pieces of 0.2 m, points no farther apart than (0.02 + 0.1)/2 m.
   EXPECT_EQ(contact_with(s, "post").size(), 41);
   // Half of the radius: 20 points a piece. The rope comes out of the mast at 0.05 m, where it
-  // touches; half a turn of its radius, 0.0628 m, reaches farther: 7 points are left out.
+  // touches; half a turn of its radius, 0.0628 m, is longer: 7 points are left out.
   EXPECT_EQ(contact_with(s, "mast").size(), 201 - 7);
-  // It leaves the ball, of radius 0.05 m, whose middle it is hung up at, at 0.07 m: a piece has six
-  // points, 0.0333 m apart, of which three are inside or near.
+  // It is fixed to the middle of the ball, of radius 0.05 m, and leaves it at 0.07 m: a piece has
+  // six points, 0.0333 m apart, of which three are inside or near.
   EXPECT_EQ(contact_with(s, "ball").size(), 61 - 3);
 }
 
@@ -224,8 +224,7 @@ TEST(BuildSurfaceContacts, ACableIsAsStiffAsAFullRoundBar) {
   Model quick = rope_of("contact: {radius: 20 mm}");
   quick.analysis.step = 1e-6;
   const Simulation fast(quick);
-  EXPECT_EQ(contact_with(fast, "post").law().normal.stiffness, law.stiffness)
-      << "whatever the step";
+  EXPECT_EQ(contact_with(fast, "post").law().normal.stiffness, law.stiffness) << "at any step";
 }
 
 }  // namespace

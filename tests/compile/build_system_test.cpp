@@ -79,7 +79,7 @@ TEST(BuildSystem, NumbersWhatMovesAndMapsTheRest) {
   EXPECT_EQ(name(map.load[1]), "spring");
   EXPECT_EQ(name(map.load[2]), "pull");
   EXPECT_EQ(system.rows(), 5 + 3 + 1);
-  // A distance left out is that of the start.
+  // The default distance is that of the start.
   EXPECT_EQ(start_residual(system, map.joint[2])[0], 0.0);
   EXPECT_EQ(joint_at(system, map.joint[2]).parts().distance->length, 5.0);
   EXPECT_THROW((void)joint_at(system, map.load[0]), std::logic_error);

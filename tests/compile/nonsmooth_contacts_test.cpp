@@ -51,7 +51,7 @@ analysis: {duration: 2 s, step: 5 ms}
   EXPECT_NEAR(rolls.impulse, 40.0, 1e-7);
   EXPECT_EQ(rolls.points, 1);
   EXPECT_EQ(rolls.status, 1);
-  // The ball keeps 5/7 of its speed; the box loses all it fell with, 9 J.
+  // The ball keeps 5/7 of its speed; the box loses all of its kinetic energy, 9 J.
   EXPECT_NEAR(rolls.energy_lost, 0.5 * 2.0 * 2.0 / 7.0, 1e-9);
   const ContactReport stands = run.contact(run.contact_pair(2, 0));
   EXPECT_NEAR(stands.normal_force, 10.0, 1e-4);
@@ -67,7 +67,7 @@ analysis: {duration: 2 s, step: 5 ms}
   EXPECT_LT(summary.angular_momentum_drift, 1e-12);
 }
 
-/// A smallest gap that lies before the restart is told after it.
+/// Smallest gap of a run, reported after a restart although it occurred before.
 TEST(NonsmoothContacts, TellTheLeastGapAcrossARestart) {
   const auto model = [](const char* duration) {
     return model_of(std::string(kBodies) + R"(
@@ -101,8 +101,8 @@ analysis: {duration: 20 ms, step: 5 ms}
   EXPECT_NE(summary.warnings[0].find("Raise contacts.sweeps"), std::string::npos);
 }
 
-/// Forces, a spring with a damper between two bodies and one to the ground: where nothing touches,
-/// the step is that of the other engines.
+/// Forces, a spring with a damper between two bodies and one to the ground: without contact the
+/// step equals that of the other engines.
 TEST(NonsmoothContacts, MoveBodiesUnderLoadsAsOtherLawsDo) {
   const auto run = [](const char* law) {
     Simulation s(model_of(std::string(R"yaml(

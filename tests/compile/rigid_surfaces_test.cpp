@@ -31,7 +31,7 @@ TEST(RigidSurfaces, HaveAFormForEveryKindOfShapeOfSizes) {
 TEST(RigidSurfaces, RefuseAKindWithoutAForm) {
   try {
     static_cast<void>(rigid_surface("rock and pad", shape_of("star", {0.3, 0.2, 0.4}), 1e-4));
-    FAIL() << "a star is not known";
+    FAIL() << "an unknown shape was accepted";
   } catch (const InputError& e) {
     EXPECT_EQ(e.where(), "rock and pad");
     EXPECT_THAT(e.what_is_wrong(), testing::HasSubstr("star"));

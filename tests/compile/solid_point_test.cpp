@@ -8,10 +8,10 @@
 namespace polhode::solid_point_tests {
 namespace {
 
-/// The inverse map stops at 1e-12 of an element's size.
+/// Tolerance for the inverse map, which stops at 1e-12 of an element's size.
 constexpr double kMapped = 1e-11;
 
-/// Where a point of the mesh is by its own nodes.
+/// Position of a point of the mesh, interpolated from its nodes.
 Vec3 position(const Mesh& mesh, const SolidPoint& point) { return point.value(mesh.nodes); }
 
 TEST(SolidPoint, LiesWhereItWasAskedForInEveryKindOfCell) {
@@ -40,7 +40,7 @@ TEST(SolidPoint, OutsideIsRefusedWithTheNearestNode) {
   const Mesh mesh = make_mesh("mesh", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "hex8");
   try {
     static_cast<void>(solid_point("output.probes.tip.point", mesh, Vec3(0.5, 0.5, 0.7)));
-    FAIL() << "was found";
+    FAIL() << "a point outside was found";
   } catch (const InputError& error) {
     EXPECT_EQ(error.where(), "output.probes.tip.point");
     EXPECT_NE(error.hint().find("(0.5, 0.5, 0.5), 0.2 m away"), std::string::npos) << error.hint();

@@ -90,7 +90,7 @@ TEST(SurfaceOverlaps, FindWhatIsWithinABodyOfAnyShape) {
           << shape << one;
 }
 
-/// What is not in the solid though its box, or its mirror image, is.
+/// Bodies outside the solid although within its bounding box or its mirror image.
 TEST(SurfaceOverlaps, LeaveWhatIsBesideASolid) {
   EXPECT_EQ(
       complaint(model_of(body("{hull: {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}}",
@@ -123,7 +123,7 @@ TEST(SurfaceOverlaps, FindSolidsAndCablesWithinSolids) {
   EXPECT_EQ(complaint(model_of(rope("[-3, 0.1, 0.6]", "[3, 0.1, 0.6]"))), "");
 }
 
-/// Two cells of 1 m, one 0.4 m in the other.
+/// Two cells of 1 m that overlap by 0.4 m.
 TEST(SurfaceOverlaps, FindPartsOfASolidInEachOther) {
   const auto folded = [](const char* touches) {
     return "  folded: {mesh: {nodes: [[4, 0, 0], [5, 0, 0], [5, 1, 0], [4, 1, 0], "
@@ -171,7 +171,7 @@ cables:
   EXPECT_THAT(complaint(model_of(held)), HasSubstr("rope in block by"));
 }
 
-/// The middle of the nodes of a solid.
+/// Mean position of the nodes of a solid.
 Vec3 middle(const Simulation& simulation, std::size_t solid) {
   const SolidMap& map = simulation.solids().at(solid);
   Vec3 sum = Vec3::Zero();
@@ -183,20 +183,20 @@ Vec3 middle(const Simulation& simulation, std::size_t solid) {
 const char* kResolve = "contacts: {overlaps: resolve}";
 
 TEST(SurfaceOverlaps, MoveABodyAndASolidApartByTheirMasses) {
-  // Out through the nearest face, the top: 0.15 m and the radius.
+  // Moved out through the nearest face, the top, by 0.15 m and the radius.
   Simulation simulation(
       model_of("bodies:\n  thing: {mass: 500, inertia: [1, 1, 1], shape: {sphere: 0.1}, "
                "position: [0.05, 0.1, 0.35]}\n",
                kResolve));
   const double way = simulation.body(0).r.z() - 0.35, back = middle(simulation, 0).z();
-  EXPECT_NEAR(way - back, 0.2 + 2e-3 * 0.05, 1e-6) << "with the gap at which nothing presses";
+  EXPECT_NEAR(way - back, 0.2 + 2e-3 * 0.05, 1e-6) << "with the gap at which there is no force";
   EXPECT_NEAR(way, -2.0 * back, 1e-6) << "the block weighs twice as much";
   EXPECT_NEAR(simulation.body(0).r.x(), 0.05, 1e-12);
   EXPECT_THAT(simulation.summary().narration, HasSubstr("'thing' was moved by 0.13"));
   EXPECT_THAT(simulation.summary().narration, HasSubstr("'block' was moved by 0.06"));
   const double to_a_node = Vec3(0.05, 0.1, 0.05 + 2e-3 * 0.05).norm() - 0.05;
   EXPECT_NEAR(simulation.summary().contacts->least_gap, to_a_node, 1e-6) << "where they are now";
-  // Nothing presses, so nothing moves.
+  // Without contact forces nothing moves.
   for (int k = 0; k < 10; ++k) ASSERT_TRUE(simulation.step(1.0).accepted);
   EXPECT_LT(simulation.body(0).v.norm(), 1e-9);
   EXPECT_LT((middle(simulation, 0) - Vec3(0, 0, back)).norm(), 1e-9);

@@ -7,7 +7,7 @@
 
 using namespace polhode;
 
-/// A rod of 1 m, hinged at one end, a small angle off the way it hangs.
+/// A rod of 1 m, hinged at one end, at a small angle from hanging.
 Model pendulum(double angle) {
   Model model;
   model.gravity = Vec3(0.0, 0.0, -9.81);
@@ -45,7 +45,8 @@ int main() {
   std::cout << "angle " << angle << " rad, x " << x << " m, carried "
             << simulation.joint("hinge").force.z() << " N, moves with "
             << simulation.balance().kinetic << " J\n";
-  // README ends here; the test goes on: the rod hangs on the other side, at rest, and weighs.
+  // README ends here. The test also checks the force of the hinge where the rod turns back, at
+  // rest.
   const double weight = 9.81 * 2700.0 * 4e-4;
   bool refused = false;
   try {

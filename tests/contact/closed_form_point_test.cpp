@@ -13,7 +13,7 @@ namespace {
 using namespace contact;
 using test::Random;
 
-/// A ball of a over a ball or a plane of b, within reach at both ends of the step.
+/// A ball of a over a ball or a plane of b, within the search radius at both ends of the step.
 struct Case {
   Shape a, b;
   PointData data;
@@ -85,8 +85,8 @@ TEST(ClosedFormPoint, GivesWhatTheGeneralFormulasGive) {
     }
 }
 
-/// Motions far below what positions in the world can tell apart still change the gap by what they
-/// are along the normal. @tests{contact-gap-change}
+/// Gap after motions far below the rounding of positions: it changes by their component along the
+/// normal. @tests{contact-gap-change}
 TEST(ClosedFormPoint, GapsFollowMotionsThatPositionsCannotHold) {
   const Shape ball = sphere("ball", 0.4), other = sphere("other", 0.6), floor = plane();
   const Shape block = box("block", {0.2, 0.3, 0.4}), table = box("table", {2.0, 2.0, 0.4});
@@ -121,8 +121,8 @@ TEST(ClosedFormPoint, GapsFollowMotionsThatPositionsCannotHold) {
   }
 }
 
-/// The spring is the tangent but for μ t dλ and for what turns with the bodies: both are small
-/// where nothing slides and little turns. @tests{contact-spring}
+/// The spring is the tangent without μ t dλ and without terms of rotation: both are small where
+/// nothing slides and rotations are small. @tests{contact-spring}
 TEST(ClosedFormPoint, SpringIsLikeTheTangentOfAStickingContact) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Case c(seed, seed % 2 == 0);

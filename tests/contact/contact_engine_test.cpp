@@ -11,8 +11,8 @@ namespace {
 
 using namespace test;
 
-/// The energy that rounding of the height, 1.4e-17 m, is worth where a fall of a metre is stopped:
-/// the barrier holds 10 J at s = 1e-4 of its band there, with a force of 5e8 N [J].
+/// Energy of a rounding error of the height, 1.4e-17 m, where a fall of a metre is stopped: the
+/// barrier stores 10 J at s = 1e-4 of its band, with a force of 5e8 N [J].
 constexpr double kRounding = 7e-9;
 
 // @tests{contact-stiffness} @tests{contact-filter}
@@ -27,14 +27,14 @@ TEST(ElasticBall, ReturnsToItsHeightAHundredTimes) {
   while (bounces < 100) {
     ASSERT_TRUE(s.step()) << s.last.text();
     const BodyMotion m = s.motion(ball);
-    // Height of the flight's top, if it is in flight.
+    // Largest height of the flight, if the ball flies.
     if (m.r.z() > 0.15) apex = m.r.z() + m.v.z() * m.v.z() / (2.0 * 9.81);
     if (before < 0.0 && m.v.z() > 0.0) ++bounces;
     before = m.v.z();
     if (m.r.z() > 0.15) {
       ASSERT_NEAR(apex, 1.1, 1e-6) << bounces;
     }
-    ASSERT_GT(m.r.z(), 0.1 - 1e-4) << "in the floor by more than the tolerance";
+    ASSERT_GT(m.r.z(), 0.1 - 1e-4) << "penetration above the tolerance";
   }
   EXPECT_LT(s.drift(), 100 * kRounding);
   EXPECT_LT(s.iterations, 4 * s.steps);
@@ -68,7 +68,7 @@ TEST(BouncingBall, LosesSpeedByItsRestitution) {
         }
       }
       EXPECT_GE(bounces, 3);
-      EXPECT_LT(s.drift(), 10 * kRounding);  // with what impacts took
+      EXPECT_LT(s.drift(), 10 * kRounding);  // with the losses of impacts
     }
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using namespace test;
 
-/// A chain of boxes along x, joined at the middle of their ends.
+/// Chain of boxes along x, joined at the middle of their ends.
 std::vector<int> add_chain(Scene& s, int links, const Vec3& first, const std::string& type) {
   std::vector<int> bodies;
   for (int i = 0; i < links; ++i) {
@@ -41,7 +41,8 @@ TEST(ContactJoints, PendulumBouncesOffAWallForEver) {
   EXPECT_LT(s.state.ledger.constraint_max, 1e-10);
 }
 
-/// Four links in free flight meet a ball: what is elastic and without friction keeps everything.
+/// Four links in free flight meet a ball: without friction and losses, energy and momenta are
+/// conserved.
 TEST(ContactJoints, ChainInFreeFlightKeepsEnergyAndMomenta) {
   Scene s(Vec3::Zero());
   const auto links = add_chain(s, 4, Vec3::Zero(), "spherical");
@@ -51,7 +52,7 @@ TEST(ContactJoints, ChainInFreeFlightKeepsEnergyAndMomenta) {
   s.begin(5e-3);
   ASSERT_TRUE(s.run(5.0)) << s.last.text();
   const Ledger& l = s.state.ledger;
-  EXPECT_GT(s.motion(links[1]).v.norm(), 0.1) << "was not hit";
+  EXPECT_GT(s.motion(links[1]).v.norm(), 0.1) << "there was no impact";
   EXPECT_LT(s.drift(), 1e-10 * l.energy_scale);
   EXPECT_LT(l.p_drift, 1e-10 * l.p_scale);
   EXPECT_LT(l.l_drift, 1e-10 * l.l_scale);

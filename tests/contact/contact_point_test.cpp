@@ -13,13 +13,14 @@ namespace {
 using namespace contact;
 using namespace test;
 
-/// A step in which two shapes come within reach of each other, and the feature pairs that do.
+/// A step in which two shapes come within the search radius, and their feature pairs.
 struct Encounter {
   PairMotion motion;
   std::vector<OrderedPair> pairs;
 };
 
-/// Moves b towards a from a random side until something is within reach; then a random step.
+/// Moves b towards a from a random side until a feature pair is within the search radius; then a
+/// random step.
 Encounter meet(const Shape& a, const Shape& b, const StepContext& context, Random& random,
                double reach) {
   Encounter e{PairMotion(random, context), {}};
@@ -136,8 +137,8 @@ TEST_P(EveryPairOfShapes, DoesExactlyTheWorkItStoresAndNothingElse) {
   EXPECT_GE(met, 2);
 }
 
-/// A gap in fine numbers follows a displacement of 1e-13 to a hundred thousandth of it: doubles
-/// know it to a part in ten only.
+/// A gap in double-double numbers follows a displacement of 1e-13 to 1e-5 of it; doubles resolve it
+/// to a tenth only.
 // @tests{contact-gap-change}
 TEST_P(EveryPairOfShapes, HasFineGapsThatFollowTheLastDigitsOfAStep) {
   Random random(14);
@@ -206,7 +207,7 @@ TEST_P(EveryPairOfShapes, HasTheTangentOfItsWrench) {
           const Mat analytic = wrench_tangent(t);
           PairMotion still = e.motion;
           still.context.tangents = false;
-          // The step of the difference is small against the band and against the rounding.
+          // The step of the difference is small relative to the band and to the rounding radius.
           const double h = 2e-8, scale = std::max(analytic.cwiseAbs().maxCoeff(), 1.0);
           const Mat numeric = central_difference(
               [&](const Vec& by) -> Vec {
@@ -230,7 +231,7 @@ std::string pair_name(const testing::TestParamInfo<std::tuple<int, int>>& info) 
   return all[std::get<0>(info.param)].name + "_" + all[std::get<1>(info.param)].name;
 }
 
-// Planes and height fields stand still in all models; every other shape meets every one.
+// Planes and height fields are fixed in all models; every other shape is tested with all shapes.
 const int kShapes = static_cast<int>(every_shape().size());
 INSTANTIATE_TEST_SUITE_P(All, EveryPairOfShapes,
                          testing::Combine(testing::Range(0, 8), testing::Range(0, kShapes)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random scenes of all shapes, joints and materials that fall on a floor or into a bowl. A few run
-// always; with the environment variable POLHODE_SOAK as many as it says, 5 s each.
+// Random scenes of all shapes, joints and materials that fall on a floor or into a bowl. A few of
+// them by default; the environment variable POLHODE_SOAK sets their number, 5 s each.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -114,10 +114,10 @@ Outcome soak(unsigned seed, double duration) {
 }
 
 TEST(ContactSoak, RandomScenesKeepTheirBalances) {
-  const char* asked = std::getenv("POLHODE_SOAK");
-  const int scenes = asked ? std::atoi(asked) : 6;
+  const char* wanted = std::getenv("POLHODE_SOAK");
+  const int scenes = wanted ? std::atoi(wanted) : 6;
   for (int k = 1; k <= scenes; ++k) {
-    const Outcome o = soak(static_cast<unsigned>(k), asked ? 5.0 : 0.6);
+    const Outcome o = soak(static_cast<unsigned>(k), wanted ? 5.0 : 0.6);
     EXPECT_TRUE(o.finished) << "scene " << k << ": " << o.message;
     EXPECT_LT(o.rise, 1e-12) << "scene " << k;
     EXPECT_LT(o.drift, 1e-9) << "scene " << k;
@@ -127,8 +127,8 @@ TEST(ContactSoak, RandomScenesKeepTheirBalances) {
   }
 }
 
-/// What longer runs have found: a cylinder that rolls over the edges of a bowl, and the rim of a
-/// cone on a hull.
+/// Scenes in which longer runs found failures: a cylinder that rolls over the edges of a bowl, and
+/// the rim of a cone on a hull.
 TEST(ContactSoak, ScenesThatOnceFailed) {
   for (const unsigned seed : {10U, 20U}) {
     const Outcome o = soak(seed, 1.1);

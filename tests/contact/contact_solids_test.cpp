@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that touch while they carry deformable solids, on joints too.
+// Contact between bodies that carry deformable solids, with and without joints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace {
 
 using namespace test;
 
-/// A cart with a rigid buffer in front and a bar of solid behind, or a load on its roof, which all
-/// move along x towards a wall at x = 0.
+/// A cart with a rigid buffer in front and a deformable bar behind it or on its roof. All move
+/// along x towards a wall at x = 0.
 struct Cart {
   Scene s{Vec3::Zero()};
   int body = 0;
@@ -39,7 +39,7 @@ struct Cart {
   [[nodiscard]] double mean_speed() const {
     return s.balance().linear_momentum.x() / (2.0 + carried);
   }
-  /// What of the cart an impulse along x meets, from the mass matrix [kg].
+  /// Effective mass of the cart for an impulse along x, from the mass matrix [kg].
   [[nodiscard]] double struck() const {
     const Nodes& nodes = s.system.nodes();
     const int n = nodes.count();
@@ -55,9 +55,9 @@ struct Cart {
   }
 };
 
-/// Within a step of many periods of its vibrations a stiff solid is stopped and thrown back with
-/// its body as if both were rigid. What the law of restitution then takes from the body alone is
-/// shared out, by vibrations that the step does not follow.
+/// Rebound in one step of many periods of vibration: a stiff solid rebounds with its body as if
+/// both were rigid. The change of speed that the law of restitution gives to the body alone is
+/// distributed by vibrations that the step does not resolve.
 // @tests{turn-law}
 TEST(ContactSolids, StiffCartReboundsAsItsMassesSay) {
   for (const double e : {0.3, 0.5, 0.8, 1.0}) {
@@ -69,8 +69,8 @@ TEST(ContactSolids, StiffCartReboundsAsItsMassesSay) {
   }
 }
 
-/// In steps that are short beside the vibrations the solid has not heard of the impact at its end:
-/// a body of the mass that is struck comes back with e times its speed, the rest goes on.
+/// Rebound in steps that are short relative to the vibrations: at the end of the impact only the
+/// effective mass rebounds, with e times its speed; the rest of the solid continues.
 TEST(ContactSolids, BodyOfASoftCartReboundsWithItsRestitution) {
   for (const double e : {0.3, 0.8, 1.0}) {
     Cart c(e, 2e3, 1e-3);
@@ -123,12 +123,13 @@ TEST(ContactSolids, ImpactsInFreeFlightKeepMomentaAndNeverGiveEnergy) {
         ASSERT_LT((now.linear_momentum - start.linear_momentum).norm(), 1e-10 * p) << k;
         ASSERT_LT((now.angular_momentum - start.angular_momentum).norm(), 1e-10 * p) << k;
       }
-      EXPECT_LT(energy, (1.0 - 1e-2) * scale) << "nothing was hit";
+      EXPECT_LT(energy, (1.0 - 1e-2) * scale) << "there was no impact";
       EXPECT_LT(f.s.drift(), 1e-10 * scale);
     }
 }
 
-/// A body with a bar along its roof rests on its rigid box: four corners carry the weight of both.
+/// A body with a bar along its roof rests on the floor: four corners of its rigid box carry the
+/// weight of both.
 TEST(ContactSolids, StandsOnTheFloorWithTheWeightOfBoth) {
   Scene s;
   const double half = 0.05;
@@ -147,14 +148,15 @@ TEST(ContactSolids, StandsOnTheFloorWithTheWeightOfBoth) {
   double force = 0.0;
   for (const auto& r : s.contacts->reports()) force += r.normal_force;
   const double weight = (1.0 + carried) * 9.81;
-  EXPECT_NEAR(force, weight, 1e-5 * weight);  // 1e-12 m of a step at the contact's stiffness
+  EXPECT_NEAR(force, weight,
+              1e-5 * weight);  // an increment of 1e-12 m times the contact's stiffness
   EXPECT_LT(s.motion(box).v.norm(), 1e-6);
   const double k = 373.0 * weight / 1e-4;  // which carries it at a twentieth of the band
   EXPECT_NEAR(s.motion(box).r.z(), half + resting_gap(k, 1e-4, 0.25 * weight), 1e-8);
   EXPECT_LT(s.drift(), 1e-9);
 }
 
-/// Two links with a bar between them, on joints, fall on a slope.
+/// Two jointed links with a bar between them fall on a slope.
 TEST(ContactSolids, ChainWithASolidFallsAndItsJointsHold) {
   for (const double e : {0.0, 0.6}) {
     Scene s;
@@ -195,7 +197,7 @@ TEST(ContactSolids, GoOnBitForBitFromAnArchive) {
   EXPECT_EQ(state_hash(f.s.system, f.s.state), end);
 }
 
-/// A step that is not solved says where it is tight.
+/// Report of a step that does not converge: the contact with the largest residual.
 TEST(ContactSolids, NamesTheContactThatCannotBeSolved) {
   Cart c(0.5, 1e5, 2e-2);
   c.s.max_iterations = 1;

@@ -42,7 +42,7 @@ TEST(FullyEnclosed, FindsWhatLiesWithinAClosedSurface) {
   const Shape solid = mesh("cube", cube(1.0)), hollow = mesh("shell", shell());
   const std::optional<FullyEnclosed> found = ball_in(solid, {0.1, 0.3, 0.0});
   ASSERT_TRUE(found);
-  EXPECT_GT(found->depth, 0.2 + 0.025);  // to the face, and all of the ball
+  EXPECT_GT(found->depth, 0.2 + 0.025);  // to the face, and the diameter of the ball
   const Mat3 turn = quaternion_from_rotation_vector({0.3, -0.2, 0.5}).toRotationMatrix();
   EXPECT_LT((found->normal - turn.col(1)).norm(), 1e-12);
   EXPECT_FALSE(ball_in(solid, {0.1, 0.6, 0.0}));

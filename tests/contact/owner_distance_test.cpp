@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances of shapes however far apart, against closed forms.
+// Distances of shapes, near and far, against closed forms.
 #include <cmath>
 #include <vector>
 
@@ -14,7 +14,7 @@
 namespace polhode::contact::owner_distance_tests {
 namespace {
 
-/// Distance of a shape at the origin, body 0, and another one that stands elsewhere, body 1.
+/// Distance of a shape at the origin, body 0, and another one at a given position, body 1.
 double distance(const Shape& a, const Shape& b, const Vec3& r,
                 const Quat& turn = Quat::Identity()) {
   ContactSet set;
@@ -44,7 +44,7 @@ TEST(OwnerDistance, IsThatOfClosedFormsFromFarAndNear) {
     EXPECT_NEAR(distance(plane(), ball, {3.0, 5.0, 0.1 + far}), far, digits);
     EXPECT_NEAR(distance(plane(), cube, {3.0, 5.0, 0.5 + far}), far, digits);
     EXPECT_NEAR(distance(cube, ball, {0.5 + 0.1 + far, 0.3, 0.2}), far, digits);
-    // Edge to face: half a diagonal, less 0.2 mm that the rounding of the edge takes.
+    // Edge to face: half a diagonal, less 0.2 mm by the rounding of the edge.
     const double half = std::sqrt(0.5);
     EXPECT_NEAR(distance(cube, cube, {0.5 + half + far, 0.0, 0.0}, eighth), far, 3e-4) << far;
     const Shape bar = capsule("bar", 0.1, 1.0);  // along z

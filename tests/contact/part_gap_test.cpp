@@ -29,8 +29,8 @@ std::vector<NamedShape> round_shapes() {
 /// Number of parts that can come near faces.
 int parts_of(const Shape& round) { return std::max(1, static_cast<int>(round.flat_ends.size())); }
 
-/// Least distance of points spread over an ellipsoid from a solid: at most the true one more by
-/// what lies between the points.
+/// Smallest distance of sample points on an ellipsoid from a solid. It exceeds the exact distance
+/// by no more than the spacing of the points allows.
 double sampled(const Shape& part, const Shape& b, const Placement<double>& at_a,
                const Placement<double>& at_b) {
   double least = 1e9;
@@ -72,7 +72,7 @@ TEST(PartGap, IsTheLeastOfManyPoints) {
     }
 }
 
-/// A part that reaches through a face, however far from its edges, overlaps by what it reaches in.
+/// Overlap of a part that penetrates a face far from the edges: its depth below the face.
 TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
   const Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}), crate = box("crate", {2.0, 2.0, 2.0});
   const Shape field = height_field("field", 5, 1.0, std::vector<double>(25, 0.0));
@@ -96,7 +96,7 @@ TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
   }
 }
 
-/// An edge meets the round solid with its rims rounded by a hundredth.
+/// Gap of an edge to the round solid, whose rims are rounded by a hundredth.
 TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
   Random random(32);
   const Shape with_edges[] = {box("box", {0.8, 0.7, 0.5}), capsule("capsule", 0.3, 0.8)};

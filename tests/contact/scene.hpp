@@ -22,7 +22,7 @@
 
 namespace polhode::test {
 
-/// A bar of solid that is bonded to a body by one end, or by both ends to two, see
+/// A deformable bar bonded to a body at one end, or to two bodies at both ends, see
 /// Scene::add_bar().
 struct Bar {
   Vec3 from = Vec3::Zero();  ///< Middle of its end on the body, in its axes; it goes along x.
@@ -46,7 +46,7 @@ class Scene {
 
   explicit Scene(const Vec3& gravity = {0.0, 0.0, -9.81}) { system.set_gravity(gravity); }
 
-  /// A body with one shape in its middle. @returns its number.
+  /// A body with one shape at its centre of mass. @returns its index.
   int add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& inertia,
           const BodyMotion& start) {
     BodyData data;
@@ -67,8 +67,8 @@ class Scene {
     return add(name, contact::box(name, size), mass,
                mass / 12.0 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()), start);
   }
-  /// A joint of two bodies, or of one and the ground, at a place in the world; bodies stand
-  /// upright.
+  /// A joint between two bodies, or a body and the ground, at a position in the ground frame; the
+  /// bodies are not rotated.
   void add_joint(const std::string& type, int a, int b, const Vec3& place) {
     const auto seen_from = [&](int body) {
       return body == kGround ? place : Vec3(place - starts_.at(body).r);
@@ -78,7 +78,7 @@ class Scene {
         joint_kind(type).recipe({.Z_a = seen_from(a), .Z_b = seen_from(b)}, {}));
     if (a != kGround) contacts->exclude(a, b);
   }
-  /// Largest |G v| of joints: how fast their two sides part [m/s].
+  /// Largest |G v| of joints, the velocity of separation of their sides [m/s].
   [[nodiscard]] double parting() const;
   /// The half space below a plane through the origin, on the ground.
   void add_floor(const Vec3& normal = Vec3::UnitZ()) {
@@ -159,7 +159,7 @@ class Scene {
     restart();
     single_->ledger().begin(state);
   }
-  /// A fresh engine, as after reading the state from a file.
+  /// A new engine, as after reading the state from a file.
   void restart() {
     std::unique_ptr<NewtonEngine> engine;
     if (contacts->impulses())
@@ -202,14 +202,14 @@ class Scene {
     single_->ledger().close_step(state);
     return true;
   }
-  /// Steps for so long [s]. @returns false if one failed.
+  /// Steps until a duration has passed [s]. @returns false if one failed.
   bool run(double duration) {
     const auto count = static_cast<int>(std::lround(duration / dt_));
     for (int k = 0; k < count; ++k)
       if (!step()) return false;
     return true;
   }
-  /// How the impulses of the last step were sought.
+  /// Search for impulses in the last step.
   [[nodiscard]] ImpulseSearch search() const { return contacts->last_search(); }
   /// Smallest distance of two shapes after the last step [m].
   [[nodiscard]] double least_gap() const {
@@ -222,12 +222,13 @@ class Scene {
     const Balance b = single_->ledger().balance(state);
     return b.kinetic + b.potential;
   }
-  /// Of the energy balance, largest so far [J].
+  /// Largest error of the energy balance so far [J].
   [[nodiscard]] double drift() const { return state.ledger.energy_drift; }
   [[nodiscard]] BodyMotion motion(int body) const { return system.motion(state, body); }
   [[nodiscard]] Balance balance() const { return single_->ledger().balance(state); }
   NewtonReport last;
-  std::function<void(double)> watch;  ///< After every attempt at a step of this length.
+  std::function<void(double)>
+      watch;  ///< Called after every attempt at a step, with its length [s].
 
  private:
   double dt_ = 1e-2;

@@ -54,7 +54,7 @@ inline std::vector<Vec3> stone(unsigned seed) {
   return points;
 }
 
-/// Diameters and length of a tube, with the flat sides that it has for edges and faces.
+/// Diameters and length of a tube, with the flat sides that represent it for edges and faces.
 inline contact::Shape round_tube(double outer, double inner, double length,
                                  const contact::ShapePlace& place = {}) {
   const std::vector<double> sizes{outer, inner, length};
@@ -62,8 +62,8 @@ inline contact::Shape round_tube(double outer, double inner, double length,
                        shape_surface(*find_shape_kind("tube"), sizes, 48), place);
 }
 
-/// One of every kind, about a metre in size, not centred in its body. Kinds that are not named here
-/// follow after those that are.
+/// One shape of every kind, about a metre in size, off the body's centre. Kinds without an entry
+/// here follow those that have one.
 inline std::vector<NamedShape> every_shape() {
   using namespace contact;
   const ShapePlace place{{0.05, -0.03, 0.02}, Random(3).frame()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tube has round faces: distances to them in closed form.
+// Distances to the round faces of a tube, in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace test;
 
 constexpr double kOuter = 0.6, kInner = 0.5, kHalf = 0.4;
 
-/// Of a point from the tube about z: the section is a rectangle.
+/// Distance of a point from the tube about z, whose section is a rectangle.
 double distance_from(const Vec3& x) {
   const double q = std::hypot(x.x(), x.y());
   const double across = std::max(q - kOuter, kInner - q), along = std::abs(x.z()) - kHalf;
@@ -47,7 +47,8 @@ TEST(Tube, IsRoundToBalls) {
   }
 }
 
-/// The disc at the end of a rod touches the inner side where it reaches farthest from the axis.
+/// Disc at the end of a rod within the tube: it touches the inner side at its point farthest from
+/// the axis.
 TEST(Tube, IsRoundToTheEndsOfRodsWithinIt) {
   const Shape tube = round_tube(2.0 * kOuter, 2.0 * kInner, 2.0 * kHalf);
   const Shape rod = cylinder("rod", 0.2, 0.3);

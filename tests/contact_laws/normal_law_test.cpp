@@ -8,8 +8,8 @@
 namespace polhode::contact::normal_law_tests {
 namespace {
 
-/// A band that is given another stiffness and the reach for it stores what it is to store, to the
-/// last digits; without energy it begins at the gap.
+/// Stored energy of a band with another stiffness and the range for it: the given energy, to the
+/// last digits. Without energy the band begins at the gap.
 /// @tests{contact-same-energy}
 TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
   for (const NormalPotential potential :
@@ -29,8 +29,8 @@ TEST(NormalLaw, StoresWhatItIsToStoreWithAnotherStiffness) {
       }
 }
 
-/// A barrier that begins to press later: force and quotient are those of the whole one less the
-/// force where it begins, its energy is their sum over the way; the quotient is that of the energy.
+/// A barrier that begins at a smaller gap: its force is that of the whole barrier less the force at
+/// its beginning, its energy the integral of the force, its difference quotient that of the energy.
 /// @tests{contact-later}
 TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
   NormalLaw law;
@@ -55,7 +55,7 @@ TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
         const double h = 1e-6 * (gap - law.floor());
         EXPECT_NEAR(q.value * (from - gap), later.energy(gap) - later.energy(from),
                     1e-11 * law.energy(gap));
-        if (part < 0.1) continue;  // differences would go beyond its begin
+        if (part < 0.1) continue;  // differences would cross its beginning
         EXPECT_NEAR(q.slope,
                     (later.quotient(from, gap + h) - later.quotient(from, gap - h)) / (2.0 * h),
                     1e-5 * std::abs(q.slope) + 1e-9 * law.stiffness);
@@ -64,7 +64,7 @@ TEST(NormalLaw, BeginsToPressLaterWithinItsBand) {
   }
 }
 
-/// Stiffness, depth and duration of every law of model files, against integration of its own force.
+/// Stiffness, depth and duration of every law of model files, against the integral of its force.
 /// Those of the barrier hold for small depths.
 TEST(NormalLaw, StatesStiffnessDepthAndDurationOfItsOwnForce) {
   for (const PotentialWord& known : kPotentialWords) {

@@ -52,7 +52,7 @@ TEST_P(Alpha, DampsAnInfinitelyStiffOscillatorByItsSpectralRadius) {
 }
 
 TEST(GeneralizedAlpha, TakesNothingFromStoredAccelerationsWithoutDamping) {
-  // Exactly: they are undamped noise there, and any weight would let it in.
+  // The weights are exactly zero, since accelerations are undamped noise there.
   const GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(1.0);
   EXPECT_EQ(ga.c_A, 0.0);
   EXPECT_EQ(ga.kappa, 1.0);

@@ -26,7 +26,7 @@ struct KnownMotion {
             .Lambda = exp_map(a(t) * n) * exp_map(b(t) * N)};
   }
   [[nodiscard]] Velocities velocities(double t) const {
-    // Λ = exp(a n̂) exp(b N̂): the second axis is carried round by the first turn.
+    // Λ = exp(a n̂) exp(b N̂): the second axis turns with the first rotation.
     const Vec3 carried = exp_map(a(t) * n) * N;
     return {.r_dot = {-std::sin(t), 0.6 * t, 3.0 * std::cos(3.0 * t)},
             .omega = a_dot(t) * n + b_dot(t) * carried};

@@ -97,7 +97,7 @@ TEST(MomentumRateWord, IsReadOrRefused) {
   EXPECT_EQ(momentum_rate("kinematic_corrected"), MomentumRate::kinematic_corrected);
   try {
     (void)momentum_rate("direct");
-    FAIL() << "an unknown word was taken";
+    FAIL() << "an unknown word was accepted";
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "analysis.momentum_rate: 'direct' is not known. Use one of: momentum, kinematic, "

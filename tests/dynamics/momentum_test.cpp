@@ -73,8 +73,8 @@ TEST_P(Momentum, GivesAKineticEnergyThatIsTheSameInBodyAxes) {
 
 // @tests{eq:rbm-virtual-work}
 TEST_P(Momentum, RatesDoTheWorkThatTheKineticEnergyTakesUp) {
-  // With δr = ṙ dt and δθ = ω dt, δW = 0 says that force and moment equal to the momentum rates
-  // put in just what the kinetic energy gains.
+  // With δr = ṙ dt and δθ = ω dt, δW = 0 states that the work of force and moment equal to the
+  // momentum rates is the increase of kinetic energy.
   const auto [r_dot, omega] = motion_.velocities(t_);
   const auto [r_ddot, alpha] = motion_.accelerations(t_);
   const double differenced = (energy(t_ + kStep) - energy(t_ - kStep)) / (2.0 * kStep);

@@ -6,7 +6,7 @@
 
 namespace polhode::test {
 
-/// A body somewhere in a step that means nothing in particular, for laws and tangents.
+/// A body in an arbitrary step, for tests of laws and tangents.
 struct SampleStep {
   explicit SampleStep(double rho_inf, double dt = 0.1) {
     context.ga = GeneralizedAlpha::from_spectral_radius(rho_inf);

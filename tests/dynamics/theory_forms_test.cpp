@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(SpectralRadius, TheoryForms, testing::Values(0.0, 0.5, 
 
 // @tests{ga-moment-arm} @tests{ga-wrench-r-tangent} @tests{ga-moment-tangent}
 TEST_P(TheoryForms, OfTheWrenchTangentOfAForceAtAPoint) {
-  // Any force that depends on where its point is will do: f = f_0 + B·x_{n+αf}.
+  // An arbitrary force that depends on the position of its point: f = f_0 + B·x_{n+αf}.
   const Vec3 f_0(1.0, -2.0, 0.5);
   Mat3 B;
   B << -3.0, 0.4, 0.1, 0.2, -2.0, 0.6, -0.5, 0.3, -1.0;

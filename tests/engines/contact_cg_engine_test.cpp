@@ -10,12 +10,12 @@
 
 #include "contact/scene.hpp"
 
-namespace polhode::crowd_engine_tests {
+namespace polhode::contact_cg_engine_tests {
 namespace {
 
 using namespace test;
 
-/// Where the i-th body of a heap starts.
+/// Initial position of the i-th body of a heap.
 Vec3 place(int i) {
   return {0.25 * (i % 3) + 0.13 + 0.004 * std::sin(13.0 * i),
           0.25 * ((i / 3) % 2) + 0.13 + 0.004 * std::sin(78.0 * i), 0.14 + 0.26 * (i / 6)};
@@ -55,15 +55,16 @@ double iterations_to(Scene& s, double end) {
 }
 
 TEST(ContactCgEngine, MovesAHeapAsTheDirectEngineDoes) {
-  Heap crowd(1e-9), direct(0.0);
-  // A heap of impacts is chaotic: later the engines part.
-  ASSERT_TRUE(crowd.run(0.14)) << crowd.last.text();
+  Heap iterative(1e-9), direct(0.0);
+  // A heap of impacts is chaotic: later the motions of the engines diverge.
+  ASSERT_TRUE(iterative.run(0.14)) << iterative.last.text();
   ASSERT_TRUE(direct.run(0.14)) << direct.last.text();
   for (int b = 0; b < 24; ++b)
-    EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
+    EXPECT_LT((iterative.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b;
 }
 
-// What residual is left pushes for the time of the run, at steps below 1 ms less in proportion.
+// The remaining residual acts as a force for the time of the run; at steps below 1 ms it is
+// proportionally smaller.
 TEST(ContactCgEngine, BalancesMomentaToItsToleranceAtAnyStep) {
   for (const double dt : {2e-3, 2e-4, 1e-5}) {
     Heap s(1e-6, {}, dt);
@@ -90,8 +91,8 @@ TEST(ContactCgEngine, NeverGainsEnergyAndBalancesMomentum) {
   for (const auto& r : s.contacts->reports()) EXPECT_GT(r.gap, -2e-4);
 }
 
-/// Two balls far apart from the others meet so fast that in one step they would change places: they
-/// start where their impact will stop them. @tests{contact-predictor}
+/// Two balls far from the others that would pass through each other in one step: the predictor
+/// starts where their impact stops them. @tests{contact-predictor}
 TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
   for (const double speed : {0.1, 1.0, 10.0, 200.0}) {
     Scene s(Vec3::Zero());
@@ -106,7 +107,7 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactInFewIterations) {
     EXPECT_LE(s.last.iterations, 10) << speed;
     EXPECT_NEAR(s.motion(2).v.y(), speed, 1e-10 * speed);
     ASSERT_TRUE(s.run(4e-3));
-    EXPECT_LT(s.motion(a).v.x(), 0.0);  // thrown back
+    EXPECT_LT(s.motion(a).v.x(), 0.0);  // rebound
     EXPECT_NEAR(s.motion(a).v.x() + 3.0 * s.motion(1).v.x(), -2.0 * speed, 1e-8 * speed);
   }
 }
@@ -132,8 +133,8 @@ TEST(ContactCgEngine, StartsCloseToTheSolution) {
   }
 }
 
-/// Layers of boxes that fall on each other without rebound, some joined: gaps and rows of the
-/// predictor are linear, and those of boxes are corrected. @tests{contact-predictor}
+/// Layers of boxes that fall on each other without rebound, some joined: gaps and rows are linear
+/// in the predictor and, for boxes, corrected. @tests{contact-predictor}
 TEST(ContactCgEngine, StartsCloseToTheSolutionWithBoxesAndJoints) {
   for (const double dt : {5e-3, 1e-3, 1e-4}) {
     Scene s;
@@ -173,12 +174,13 @@ TEST(ContactCgEngine, FindsTheEndOfAnImpactOnAHingedBody) {
       const double iterations = iterations_to(s, 0.03);
       EXPECT_LE(s.cuts, 1) << dt << ", " << beside;
       EXPECT_LT(iterations, 12) << dt << ", " << beside;
-      EXPECT_GT(s.motion(ball).v.z(), beside == 0.0 ? -0.1 : -2.0);  // it has met the paddle
+      EXPECT_GT(s.motion(ball).v.z(),
+                beside == 0.0 ? -0.1 : -2.0);  // after contact with the paddle
     }
 }
 
-/// A ball that rolls and slides along the face of a heavy turning paddle: the gap stays a small
-/// part of the band while both move, seen from the paddle on a curve. @tests{contact-filter}
+/// A ball that rolls and slides along the face of a heavy turning paddle: the gap is a small part
+/// of the band while the ball moves on a curve relative to the paddle. @tests{contact-filter}
 TEST(ContactCgEngine, FollowsABallAlongATurningFace) {
   for (const double dt : {10e-3, 5e-3, 1e-3, 1e-4}) {
     Scene s;
@@ -237,7 +239,7 @@ TEST(ContactCgEngine, GoesOnBitForBitFromAnArchive) {
   EXPECT_EQ(state_hash(s.system, s.state), end);
 }
 
-/// Where few bodies moved, the forces of the others are those of before.
+/// Contact forces where few bodies moved: those between other bodies are not evaluated again.
 TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
   Heap s(1e-6);
   ASSERT_TRUE(s.run(0.4));
@@ -271,7 +273,7 @@ TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
     EXPECT_EQ(part[k].force, all[k].force);
     EXPECT_EQ(part[k].moment_a, all[k].moment_a);
     EXPECT_EQ(part[k].moment_b, all[k].moment_b);
-    // The share of a slide goes by the evaluations before.
+    // The part of the friction slope of a sliding point depends on earlier evaluations.
     const bool slides = !all[k].spring.friction_slope.isZero(0.0);
     EXPECT_TRUE(slides || part[k].spring.C == all[k].spring.C);
     const auto was = std::find_if(before.begin(), before.end(),
@@ -283,8 +285,8 @@ TEST(ContactCgEngine, AsksOnlyForForcesOfWhatMoved) {
   EXPECT_GT(same, 4);
 }
 
-/// Balls that fly are solved before the heap is, and stay out of its iterations: they are on their
-/// parabolas, and the heap does not feel them.
+/// Balls in flight converge before the heap does and take no part in its further iterations: they
+/// move on parabolas and do not affect the heap.
 TEST(ContactCgEngine, LeavesAloneWhatIsSolved) {
   Heap s(1e-6);
   Heap both(1e-6, [](Scene& scene) {
@@ -292,7 +294,8 @@ TEST(ContactCgEngine, LeavesAloneWhatIsSolved) {
       scene.add_ball("flies " + std::to_string(k), 0.1, 1.0,
                      at({5.0 + k, 5.0, 6.0}, {0.3, 0.1, 2.0}));
   });
-  const double T = 0.1;  // a heap of impacts is chaotic: later residuals of 1e-6 part the two
+  const double T =
+      0.1;  // a heap of impacts is chaotic: residuals of 1e-6 separate the motions later
   ASSERT_TRUE(s.run(T));
   ASSERT_TRUE(both.run(T));
   for (int k = 24; k < 64; ++k) {  // up to 1e-6 of gravity
@@ -302,7 +305,8 @@ TEST(ContactCgEngine, LeavesAloneWhatIsSolved) {
   for (int b = 0; b < 24; ++b) EXPECT_LT((both.motion(b).r - s.motion(b).r).norm(), 1e-6) << b;
 }
 
-/// Neighbours held together, one hung up, two pulled by a spring, and a hinged flap that balls hit.
+/// Joints of the heap: neighbours fixed to each other, one body on the ground, two with a spring,
+/// and a hinged flap that balls hit.
 void add_joints(Scene& s) {
   s.add_joint("spherical", 0, 3, {0.13, 0.255, 0.14});
   s.add_joint("revolute", 7, 10, place(7));
@@ -315,11 +319,11 @@ void add_joints(Scene& s) {
 
 TEST(ContactCgEngine, MovesAHeapWithJointsAsTheDirectEngineDoes) {
   for (const double dt : {2e-3, 2e-4}) {
-    Heap crowd(1e-9, add_joints, dt), direct(0.0, add_joints, dt);
-    ASSERT_TRUE(crowd.run(0.1)) << crowd.last.text();
+    Heap iterative(1e-9, add_joints, dt), direct(0.0, add_joints, dt);
+    ASSERT_TRUE(iterative.run(0.1)) << iterative.last.text();
     ASSERT_TRUE(direct.run(0.1)) << direct.last.text();
     for (int b = 0; b < 25; ++b)
-      EXPECT_LT((crowd.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b << " at " << dt;
+      EXPECT_LT((iterative.motion(b).r - direct.motion(b).r).norm(), 1e-6) << b << " at " << dt;
   }
 }
 
@@ -339,8 +343,8 @@ TEST(ContactCgEngine, HoldsJointsToRoundOffAndNeverGainsEnergy) {
   EXPECT_LT(l.l_drift, 1e-6 * l.l_scale);
 }
 
-/// Without contact a joint is as exact as the residual: a pendulum beside a flying ball keeps its
-/// energy, and turns as the integral of its energy says.
+/// Pendulum beside a flying ball: without contact a joint is as exact as the residual, so its
+/// energy and angular velocity satisfy the energy integral.
 TEST(ContactCgEngine, PendulumBesideBallsKeepsItsEnergy) {
   for (const double dt : {1e-2, 1e-3, 1e-4}) {
     Scene s;
@@ -367,4 +371,4 @@ TEST(ContactCgEngine, RefusesWhatIsTooStiffForIt) {
 }
 
 }  // namespace
-}  // namespace polhode::crowd_engine_tests
+}  // namespace polhode::contact_cg_engine_tests

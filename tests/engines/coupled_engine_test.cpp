@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes, bodies and joints in one Newton system: the laws that hold whatever the elements are.
+// Nodes, bodies and joints in one Newton system: laws that hold for all elements.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -160,8 +160,7 @@ TEST(CoupledEngine, TangentIsTheDerivativeOfTheResidual) {
   for (const double rho_inf : {1.0, 0.6}) {
     Scene s({.two_bodies = true, .hinge = true, .viscosity = 0.7, .length = 2, .rho_inf = rho_inf});
     s.run(5);
-    // One Newton iteration from a point near the solution must land an order of magnitude closer
-    // in square: the increments fall quadratically.
+    // One Newton iteration from a point near the solution reduces the increment quadratically.
     Trial trial;
     trial.context.ga = s.ga;
     trial.context.dt = 0.02;
@@ -185,8 +184,7 @@ TEST(CoupledEngine, AccelerationsOfAnInstantAreRatesOfTheVelocities) {
   bond_nodes(s.system, s.state);
   const InstantSolution now = instant_solution(s.system, s.state);
   ASSERT_EQ(now.node_a.size(), s.state.node_x.size());
-  // Two short steps: the mean of the velocities' changes, free of the alternating error of a
-  // first step.
+  // Two short steps: the mean of the velocity changes has no alternating error of the first step.
   const double h = 1e-5;
   const State before = s.state;
   s.run(2, h);

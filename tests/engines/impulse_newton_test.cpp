@@ -6,9 +6,9 @@
 namespace polhode::impulse_newton_tests {
 namespace {
 
-constexpr double kFall = 9.81e-3;  ///< What gravity adds in a step [m/s].
+constexpr double kFall = 9.81e-3;  ///< Velocity added by gravity in a step [m/s].
 
-/// Balls one on the other, on the ground, that have fallen for a step and slide along x.
+/// A column of balls on the ground, after one step of free fall, that slides along x.
 ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
   ProjectedGaussSeidel s;
   const double R = 0.05;
@@ -34,7 +34,8 @@ ProjectedGaussSeidel column(const std::vector<double>& masses, double along) {
   return s;
 }
 
-/// A ton on a gram: sweeps contract by 1e-6, Newton's method ends at the weights.
+/// A ton on a gram: the error of sweeps decreases by 1e-6 only, Newton's method converges to the
+/// weights.
 TEST(ImpulseNewton, CarriesATonOnAGram) {
   ProjectedGaussSeidel s = column({1e-3, 1e3}, 0.0);
   for (int k = 0; k < 100; ++k) s.sweep(k % 2 == 1);
@@ -45,7 +46,7 @@ TEST(ImpulseNewton, CarriesATonOnAGram) {
   for (int b = 0; b < 2; ++b) EXPECT_NEAR(s.bodies[b].v.z(), 0.0, 3e-4 * kFall);
 }
 
-/// Slipping and sticking points: what very many sweeps end with.
+/// Slipping and sticking points, against the limit of very many sweeps.
 /// @tests{nonsmooth-projection}
 TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
   for (const double along : {0.0, 1e-3, 0.05}) {

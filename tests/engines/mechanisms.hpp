@@ -46,7 +46,8 @@ class Mechanism {
     place(b, j.Z_b, j.R_b);
     model.joints.push_back(j);
   }
-  /// The whole as one body turning about a point: velocities that a tree of joints may have.
+  /// Initial velocity of a body. Velocities of one rigid motion of all bodies satisfy any tree of
+  /// joints.
   void velocity(int body, const Vec3& v, const Vec3& omega) {
     model.bodies[body].velocity = v;
     model.bodies[body].angular_velocity = omega;
@@ -70,8 +71,8 @@ inline Mechanism double_pendulum(const std::string& second = "universal") {
   return m;
 }
 
-/// Four bars in a row of N squares in the x-y plane, every hinge a spatial revolute: 3N rows too
-/// many. Cranks have length one, the couplers too.
+/// Four bars in a row of N squares in the x-y plane, every hinge a spatial revolute: 3N redundant
+/// rows. Cranks have length one, the couplers too.
 inline Mechanism four_bars(int n, double crank_angle = 1.5707963267948966) {
   Mechanism m;
   m.model.gravity = {0.0, -9.81, 0.0};
@@ -117,7 +118,7 @@ inline Mechanism bricard_system() {
   return m;
 }
 
-/// A door on two hinges of one axis: five rows too many.
+/// A door on two hinges of one axis: five redundant rows.
 inline Mechanism door_system() {
   Mechanism m;
   m.model.gravity = kGravity;
@@ -137,8 +138,8 @@ inline Mechanism spherical_chain(int n) {
   return m;
 }
 
-/// One step of fixed length with any engine: no prediction but velocity, no step control.
-/// @returns largest increment of each iteration.
+/// One step of fixed length with any engine: predicted with constant velocity, without step
+/// control. @returns largest increment of each iteration.
 inline std::vector<double> take_step(const System& system, State& state, NewtonEngine& engine,
                                      double dt, double rho_inf) {
   Trial trial;

@@ -17,7 +17,7 @@ using namespace test;
 
 constexpr ImpulseOptions kExact{20000, 1e-6};
 
-/// Balls and boxes of unlike masses that fall into a corner of two walls and a floor.
+/// Balls and boxes of different masses that fall into a corner of two walls and a floor.
 struct Heap : Scene {
   explicit Heap(const ImpulseOptions& options, double mu = 0.4, double restitution = 0.0) {
     for (int i = 0; i < 24; ++i) {
@@ -43,10 +43,10 @@ TEST(LeastExitSpeed, NeverGivesEnergyAndLandsInTwoSteps) {
     for (const double w : {-3.0, -1e-3, 0.0, 1e-3, 2.0})
       for (const double gap : {-1e-3, -1e-9, 0.0, 1e-6, 1e-3, 0.1}) {
         const double dt = 1e-3, least = least_exit_speed(gap, w, e, dt, 0.02);
-        // p (w_n + w_{n+1})/2 is what a contact gives.
+        // p (w_n + w_{n+1})/2 is the work of the contact.
         EXPECT_LE(w + least, 0.0) << e << ' ' << w << ' ' << gap;
       }
-  // Whatever the gap when it must act first, one step more ends at the surface, at rest.
+  // For any gap at its first impulse, the body is at rest at the surface one step later.
   for (const double part : {0.51, 0.8, 1.0, 1.3, 1.49}) {
     const double w = -2.0, dt = 1e-2;
     double gap = -part * w * dt;
@@ -83,8 +83,8 @@ TEST(NonsmoothEngine, KeepsTheEnergyOfElasticBounces) {
   }
 }
 
-/// Balls without gravity come back with e of their speed, by the pair of materials; with e = 0 they
-/// stop at the surface. @tests{nonsmooth-exit}
+/// Balls without gravity rebound with e times their speed, e of the pair of materials; with e = 0
+/// they stop at the surface. @tests{nonsmooth-exit}
 TEST(NonsmoothEngine, ReboundsByThePair) {
   Scene s(Vec3::Zero());
   const double restitution[] = {0.0, 0.5, 0.9};
@@ -111,7 +111,7 @@ TEST(NonsmoothEngine, ReboundsByThePair) {
   EXPECT_GT(least, -1e-15);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.motion(k).v.z(), 2.0 * restitution[k], 1e-12);
   EXPECT_NEAR(s.motion(0).r.z(), 0.1, 1e-12);
-  // ½ m v² (1 − e²), all of it booked.
+  // ½ m v² (1 − e²), all of it in the energy balance.
   const Ledger& l = s.state.ledger;
   EXPECT_NEAR(l.dissipated.value(), 2.0 * 1.0 + 4.0 * 0.75 + 6.0 * 0.19, 1e-11);
   EXPECT_LT(s.drift(), 1e-12);
@@ -141,7 +141,8 @@ TEST(NonsmoothEngine, KeepsMomentaWhateverTheSearchLeaves) {
     const Ledger& l = s.state.ledger;
     EXPECT_LT(l.p_drift, 1e-13 * l.p_scale) << sweeps;
     EXPECT_LT(l.l_drift, 1e-13 * l.l_scale) << sweeps;
-    // What contact took is booked to the last bit, too; what few sweeps may give is not.
+    // Energy lost by contact is exact in the balance, too, except with few sweeps, which may add
+    // energy.
     if (sweeps > 3) {
       EXPECT_LT(s.drift(), 1e-12 * l.energy_scale);
     }
@@ -154,7 +155,7 @@ TEST(NonsmoothEngine, NeverGainsEnergyOnceConverged) {
   for (const double e : {0.0, 0.6}) {
     Heap s(kExact, 0.0, e);
     double energy = s.energy(), rise = 0.0;
-    int solved = 0;  // balls that are wedged in need more sweeps than anyone has time for
+    int solved = 0;  // steps that converge; wedged balls need too many sweeps for this test
     for (int k = 0; k < 300; ++k) {
       ASSERT_TRUE(s.step()) << s.last.text();
       if (s.search().converged) {
@@ -196,7 +197,7 @@ TEST(NonsmoothEngine, GoesOnBitForBitFromAnArchive) {
   EXPECT_EQ(state_hash(s.system, s.state), end);
 }
 
-/// One step takes the ball by 0.4 m, through a plate of 1 cm.
+/// A ball that moves 0.4 m in a step, towards a plate of 1 cm.
 TEST(NonsmoothEngine, LetsNothingPassThroughAThinPlate) {
   Scene s(Vec3::Zero());
   const int ball = s.add_ball("ball", 0.05, 1.0, at({-1.03, 0.01, 0.0}, {200.0, 0.0, 0.0}));
@@ -209,7 +210,7 @@ TEST(NonsmoothEngine, LetsNothingPassThroughAThinPlate) {
   EXPECT_LT(s.state.ledger.p_drift, 1e-13 * s.state.ledger.p_scale);
 }
 
-/// A ball glides over the triangles of level ground: edges between them are no obstacle.
+/// A ball that slides over the triangles of level ground, past the edges between them.
 TEST(NonsmoothEngine, GlidesOverTheEdgesOfLevelTriangles) {
   Scene s;
   const int ball = s.add_ball("ball", 0.1, 1.0, at({-0.93, -0.21, 0.1}, {2.0, 0.7, 0.0}));
@@ -223,7 +224,7 @@ TEST(NonsmoothEngine, GlidesOverTheEdgesOfLevelTriangles) {
   EXPECT_NEAR(s.motion(ball).r.z(), 0.1, 1e-9);
 }
 
-/// Shapes of all kinds come to rest on a plate that stands.
+/// Shapes of all kinds that come to rest on a fixed plate.
 TEST(NonsmoothEngine, CarriesEveryShape) {
   Scene s;
   std::vector<int> bodies;

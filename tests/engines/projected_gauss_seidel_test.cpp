@@ -60,7 +60,7 @@ TEST(ProjectedGaussSeidel, EndWhereImpulsesAndSpeedsAgree) {
         ++stick;
         continue;
       }
-      ++slip;  // against the slip, with all that the cone allows
+      ++slip;  // opposite to the slip, on the boundary of the friction cone
       EXPECT_LT((p.friction_impulse + 0.3 * p.normal_impulse * slips.normalized()).norm(), 1e-9);
     }
     EXPECT_GT(stick, 0);

@@ -74,7 +74,7 @@ TEST_P(SparseEngines, ConserveEnergyOfLoopsWithRedundantRows) {
       for (int b = 0; b < system.body_count(); ++b)
         scale = std::max(scale, system.bodies()[b].mass * system.motion(state, b).v.squaredNorm());
     }
-    EXPECT_GT(scale, 0.1);  // it moved
+    EXPECT_GT(scale, 0.1);  // the model moved
     // 100 steps with a constraint error of round-off each, times multipliers of 100 N.
     EXPECT_NEAR(energy(system, state), before, 1e-11);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elimination along the tree against the block LU: the same equations, so the same iterates.
+// Tree elimination against the block LU: the same equations, so the same iterates.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace polhode::tree_engine_tests {
 namespace {
 
-/// Mechanisms made up at random, reproducibly; frames of a joint coincide at the start.
+/// Random mechanisms with a fixed seed; frames of a joint coincide at the start.
 class Mechanism {
  public:
   explicit Mechanism(unsigned seed) : random_(seed) { model_.gravity = {0.3, -1.0, -9.0}; }
@@ -108,7 +108,8 @@ void expect_same_motion(const Model& model, double rho_inf, const std::string& i
     const NewtonReport l = lu.take(by_lu, dt, {}, {1, false});
     ASSERT_TRUE(t.converged) << t.text();
     ASSERT_TRUE(l.converged) << l.text();
-    EXPECT_NEAR(t.iterations, l.iterations, 1);  // the last one by a hair, or not
+    EXPECT_NEAR(t.iterations, l.iterations,
+                1);  // the last iteration may be just above or below the tolerance
     // Increments of a Newton iteration agree to the round-off of a linear solve.
     EXPECT_NEAR(t.increments.front(), l.increments.front(), 1e-8 * (1.0 + l.increments.front()));
     EXPECT_LT(t.constraints.residual, 1e-13);
@@ -146,7 +147,7 @@ TEST_P(TreeOfEveryJoint, FloatsAsTheBlockLu) {
   const int a = m.body(), b = m.body(), c = m.body();
   m.joint(kind, a, b, free);
   m.joint(kind, b, c, free);
-  m.body();  // and one that nothing holds
+  m.body();  // and one without joints
   expect_same_motion(m.model(), rho_inf);
 }
 
@@ -221,7 +222,7 @@ TEST(TreeEngine, CarriesManyLoopsOpenAtOnce) {
   expect_same_motion(m.model(), 1.0);
 }
 
-/// Bodies of many shapes in one chunk, and more than one chunk.
+/// Different kinds of joints in one chunk, and more than one chunk.
 TEST(TreeEngine, MixesShapesOverSeveralChunks) {
   Mechanism m(57);
   const std::vector<std::string> kinds{"revolute", "spherical", "universal", "cylindrical",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every folder of examples/ is complete, and `polhode examples` gives the models that stand there."""
+"""Checks that every folder of examples/ is complete and that `polhode examples` writes the models of these folders."""
 import os
 import pathlib
 import subprocess
@@ -28,7 +28,7 @@ def main():
             problems.append(f"{folder.name}: not listed by 'polhode examples'")
         elif f"  {folder.name} " not in generated:
             if polhode("examples", folder.name) != (folder / "model.yaml").read_bytes():
-                problems.append(f"{folder.name}: 'polhode examples {folder.name}' writes another text")
+                problems.append(f"{folder.name}: 'polhode examples {folder.name}' writes a different text")
         if f"[{folder.name}]({folder.name})" not in (EXAMPLES / "README.md").read_text():
             problems.append(f"{folder.name}: no row in examples/README.md")
     if not folders:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds arbitrary bytes to one reader of meshes. A mesh that hangs together or an InputError may
-// come out, and nothing else: no crash, no other exception, no error without a place.
+// Feeds arbitrary bytes to one reader of meshes. The only accepted outcomes are a consistent mesh
+// and an InputError with its location: no crash, no other exception.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds arbitrary bytes to the reader of model files. A model or located faults may come out, and
-// nothing else: no crash, no other exception, no fault without a message.
+// Feeds arbitrary bytes to the reader of model files. The only accepted outcomes are a model and
+// located errors with messages: no crash, no other exception.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string text(reinterpret_cast<const char*>(data), size);
-  // What follows a line "#set" is an override, so that those are reached too.
+  // Text after a line "#set" is an override, so that overrides are covered, too.
   polhode::Overrides overrides;
   if (const std::size_t mark = text.rfind("\n#set "); mark != std::string::npos) {
     overrides.push_back(text.substr(mark + 6));

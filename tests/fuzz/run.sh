@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes one reader: tests/fuzz/run.sh [seconds, default 600] [build folder] [reader: model (default),
-# gmsh, vtu, abaqus, stl, obj]. Inputs that break it are left in <build folder>/crashes and make the script
-# fail.
+# gmsh, vtu, abaqus, stl, obj]. Inputs that cause failures are stored in <build folder>/crashes, and the
+# script fails.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 seconds=${1:-600}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds arbitrary bytes to one reader of triangle surfaces, and what it reads to the shapes of
-// contact. Sound shapes or an InputError may come out, and nothing else.
+// Feeds arbitrary bytes to one reader of triangle surfaces, and its surfaces to the shapes of
+// contact. The only accepted outcomes are valid shapes and an InputError.
 #pragma once
 
 #include <cstddef>

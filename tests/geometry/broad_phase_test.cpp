@@ -64,7 +64,7 @@ TEST(BroadPhase, GivesTheSameOrderAgain) {
   const auto boxes = boxes_in_a_cube(400, 3.0, 0.5, 4.0);
   contact::BroadPhase one, other;
   Pairs first, second;
-  one.find(boxes_in_a_cube(100, 1.0, 0.5, 1.0), first);  // buffers with something else in them
+  one.find(boxes_in_a_cube(100, 1.0, 0.5, 1.0), first);  // buffers that contain other data
   one.find(boxes, first);
   other.find(boxes, second);
   EXPECT_EQ(first, second);

@@ -11,13 +11,13 @@ namespace {
 
 using polhode::test::Random;
 
-/// Expects the root to give a point of the ellipsoid whose normal leads to y.
+/// Checks that the root gives a point of the ellipsoid whose normal passes through y.
 void expect_nearest(const Vec3& half, const Vec3& y) {
   const double t = nearest_on_ellipsoid(half, y);
   const Vec3 square = half.cwiseAbs2(), share = y.cwiseQuotient((square.array() + t).matrix());
   const Vec3 nearest = square.cwiseProduct(share);
   const double on = nearest.cwiseQuotient(half).squaredNorm();
-  // What the last digits of the root change.
+  // Change by the last digits of the root.
   const double per_root =
       2.0 *
       nearest.cwiseQuotient(half).cwiseAbs2().cwiseQuotient((square.array() + t).matrix()).sum();
@@ -47,7 +47,7 @@ TEST(NearestOnEllipsoid, OfAThinDiscIsOnIt) {
     expect_nearest(half, {0.14 * (1.0 + far) * std::cos(angle),
                           0.14 * (1.0 + far) * std::sin(angle), random.number(4e-4)});
   }
-  // Rounding crept up to the root here, and the search ended elsewhere.
+  // A case in which rounding once made the search end away from the root.
   const Vec3 x(0.060236423364245714, 0.11811966652213449, -0.026462139274297684),
       v(0.030904699064131139, -0.00024138331097249381, 0.055750083040403735);
   expect_nearest({0.13959279111980452, 0.13959279111980452, 0.00027918558223960906},

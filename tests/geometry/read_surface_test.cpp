@@ -47,7 +47,7 @@ std::string binary_stl(const TriangleSurface& surface) {
   bytes.resize(80, ' ');
   append(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
   for (const auto& triangle : surface.triangles) {
-    bytes.append(12, '\0');  // the normal, which readers should not trust
+    bytes.append(12, '\0');  // the normal, which readers should ignore
     for (const int i : triangle)
       for (const double coordinate : corner(surface, i))
         append(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(coordinate)));
@@ -217,7 +217,7 @@ TEST(ReadSurface, RefusesADirectory) {
 }
 
 TEST(ReadSurface, NeverFailsOtherThanByAMessage) {
-  // Every shortened form of three files: either it is read or it is refused.
+  // Every truncation of three files: it is read or refused.
   for (const auto& [name, bytes] : {std::pair{"a.stl", text_stl(box())},
                                     {"a.stl", binary_stl(box())},
                                     {"a.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")}})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes from files that are not as they should be.
+// Shapes from faulty files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -72,7 +72,7 @@ TEST(HullShape, RefusesPointsAlmostInAPlane) {
             "do not lie in one plane.");
 }
 
-/// Found by fuzzers.
+/// Files found by fuzzers.
 TEST(SurfaceFiles, ThatBrokeShapesAreReadOrRefused) {
   int count = 0;
   for (const auto& entry :

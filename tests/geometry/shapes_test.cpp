@@ -17,7 +17,7 @@ namespace {
 class EveryShape : public testing::TestWithParam<const char*> {
  protected:
   const ShapeKind& kind_ = *find_shape_kind(GetParam());
-  /// All different, so that no two can be mistaken for each other.
+  /// Different sizes, so that an exchange of two is detected.
   const std::vector<double> sizes_ = test::fitting_sizes(kind_, {0.5, 1.2, 0.9});
   const MassProperties exact_ = shape_mass_properties("shape", kind_, sizes_, 1.0);
 

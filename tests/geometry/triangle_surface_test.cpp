@@ -45,7 +45,7 @@ TEST(SurfaceMassProperties, OfTheCornerTetrahedronAreItsClosedForms) {
 
 TEST(SurfaceMassProperties, GoWithTheMotionOfTheSurface) {
   const Mat3 R = exp_map(Vec3(0.7, -0.4, 1.3));
-  const Vec3 p(1e3, -2e3, 5e2);  // far away: digits must not be lost to the parallel axes
+  const Vec3 p(1e3, -2e3, 5e2);  // far away, to test cancellation in the parallel-axes terms
   TriangleSurface moved = tetrahedron();
   for (Vec3& x : moved.points) x = p + R * x;
   const MassProperties expected = placed(mass_properties(tetrahedron(), 6.0), p, R);

@@ -30,7 +30,7 @@ TEST(TriangleTree, FindsWhatALookAtAllTrianglesFinds) {
     }
     EXPECT_EQ(tree.nearest(x, 10.0).distance, least);
     EXPECT_EQ(tree.nearest(x, 1.001 * least).distance, least);
-    EXPECT_EQ(tree.nearest(x, 0.999 * least).triangle, -1) << "none is as near as that";
+    EXPECT_EQ(tree.nearest(x, 0.999 * least).triangle, -1) << "there is no nearer triangle";
     std::vector<int> found = tree.near(x, 0.1);
     std::sort(found.begin(), found.end());
     EXPECT_TRUE(std::includes(found.begin(), found.end(), near.begin(), near.end()));
@@ -43,7 +43,7 @@ TEST(TriangleTree, KnowsHowOftenASurfaceWindsAroundAPoint) {
   const double R = 0.35, r = 0.15;
   const TriangleSurface ring = torus(R, r, 48);
   const TriangleTree tree(ring.points, ring.triangles);
-  // And a second ring through the first.
+  // A second ring through the first.
   const int count = static_cast<int>(ring.points.size());
   TriangleSurface more = ring;
   const double shift = 0.2;
@@ -55,7 +55,7 @@ TEST(TriangleTree, KnowsHowOftenASurfaceWindsAroundAPoint) {
   const auto depth = [&](const Vec3& x) {  // below zero outside the round ring
     return r - std::hypot(std::hypot(x[0], x[1]) - R, x[2]);
   };
-  const double chord = 0.02;  // triangles are within that of the round one
+  const double chord = 0.02;  // distance of the triangles from the exact torus
   int within = 0;
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x = random.vector(0.6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every kind of joint must satisfy, whatever it holds. Runs over the registry.
+// Laws that every kind of joint must satisfy. Runs over the registry.
 #include <Eigen/SVD>
 
 #include <joints/joint_cases.hpp>
@@ -91,7 +91,7 @@ TEST_P(EveryJoint, ActsByItsMultipliersTimesTheColumns) {
   });
 }
 
-// The columns are the rows at averaged arguments: at a step that stays where it is they agree.
+// The columns are the rows at averaged arguments, so they agree in a step without motion.
 TEST_P(EveryJoint, HasTheSameRowsAndColumnsAtAnInstant) {
   for_samples([](const Joint& joint, const PairMotion& m) {
     const PairTerms t = m.at_start([&](const PairStep& step) {
@@ -125,7 +125,7 @@ TEST_P(EveryJoint, KeepsLinearAndAngularMomentumOfItsPair) {
     const Joint joint = make_joint(c, f);
     PairMotion m(random, context);
     if (joint.parts().coincident) {
-      // Points that are apart leave the couple u × λ: let them coincide at both ends.
+      // Points that are apart leave the couple u × λ, so they coincide here at both ends.
       m.b_n.r = m.a_n.r + m.a_n.q * f.Z_a - m.b_n.q * f.Z_b;
       m.u_b = m.a().point(f.Z_a).at_n1 - m.b_n.r - m.b().vector(f.Z_b).at_n1;
     }
@@ -277,8 +277,8 @@ TEST_P(EveryJoint, HasTheRowsOfItsMotionBasis) {
       const auto mean = [&](const auto& x_n, const auto& x_n1) {
         return ((1.0 - a.alpha_f) * x_n + a.alpha_f * x_n1).eval();
       };
-      // Averages of quadratic g are not g of averages; gradients are linear in the rotations of
-      // one side, so those of averaged positions and matrices are meant.
+      // Averages of quadratic g are not g of averages; gradients are linear in the rotations of one
+      // side, so gradients are those at averaged positions and matrices.
       BasisRows alpha = basis_rows(*basis, mean(a.r_n, a.r_n1), mean(a.Lambda_n, a.Lambda_n1),
                                    mean(b.r_n, b.r_n1), mean(b.Lambda_n, b.Lambda_n1));
       for (BasisRows* rows : {&at_n1, &alpha}) {
@@ -307,7 +307,7 @@ TEST_P(EveryJoint, IsEquivalentWithItsSidesExchanged) {
     t_reversed.set_zero();
     joint.evaluate({a, b, m.context, m.lambda.data(), m.history.data()}, t);
     reversed.evaluate({b, a, m.context, m.lambda.data(), m.history.data()}, t_reversed);
-    // Assembled for one is assembled for the other, and both prevent the same motions.
+    // A pose that satisfies one satisfies the other, and both prevent the same motions.
     EXPECT_LT(t_reversed.g.norm(), 5e-15);
     Mat both(2 * joint.rows(), 12);
     both << gradient(joint, t), t_reversed.G_b.topRows(joint.rows()),
@@ -321,7 +321,8 @@ TEST_P(EveryJoint, IsEquivalentWithItsSidesExchanged) {
   });
 }
 
-// Coordinates do not depend on how the solver sees the joint, and their rates are their slopes.
+// Coordinates do not depend on the order of sides in the solver, and their rates are their
+// derivatives.
 TEST_P(EveryJoint, ReportsTheSameCoordinatesWithItsSidesExchanged) {
   for_cases([](const JointCase& c, const StepContext& context, Random& random) {
     const Joint joint = make_joint(c, random_frames(random));
@@ -397,8 +398,8 @@ TEST_P(EveryJoint, ReportsWhatAExertsOnB) {
     const Mat3 R = a.Lambda_n1 * f.R_a;
     EXPECT_LT((R * in_axes.force - r.force).norm() + (R * in_axes.moment - r.moment).norm(), 1e-14);
     if (!joint.reversible()) return;
-    // With exchanged sides and its own multipliers the wrench on the user's b is another one, but
-    // the report is of it.
+    // With exchanged sides and its own multipliers the wrench on the user's b differs, and the
+    // report is of that wrench.
     joint.reverse();
     t.set_zero();
     joint.evaluate({b, a, m.context, l, nullptr}, t);
@@ -410,7 +411,7 @@ TEST_P(EveryJoint, ReportsWhatAExertsOnB) {
 
 std::vector<std::string> kinds() {
   std::vector<std::string> names;
-  // A link with slack has no rows: resistance_test.cpp looks at its stops.
+  // A link with slack has no rows; resistance_test.cpp tests its stops.
   for (const JointKind& kind : joint_kinds())
     if (kind.name != "slack_link") names.push_back(kind.name);
   return names;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every kind of joint must satisfy when a stiffness holds its rows. Runs over the registry.
+// Laws that every kind of joint must satisfy when its rows are enforced by a stiffness. Runs over
+// the registry.
 #include <polhode/core/error.hpp>
 
 #include <joints/joint_cases.hpp>
@@ -54,7 +55,8 @@ TEST_P(EveryPenalisedJoint, HasTheGradientOfItsRows) {
   });
 }
 
-// With λ = −k g the wrenches do the work that the springs lose, for turns of a radian.
+// With λ = −k g the work of the wrenches is the decrease of the springs' energy, for turns of a
+// radian.
 // @tests{compliance-row}
 TEST_P(EveryPenalisedJoint, TakesWhatItStores) {
   for_samples([](const Joint& joint, const PairMotion& given) {

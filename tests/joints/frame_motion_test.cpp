@@ -128,8 +128,8 @@ TEST(FrameMotion, KeepsTheTangentsOfItsJoint) {
   });
 }
 
-// The bodies and the drive together account for all change of g; the wrenches are opposite
-// where the points meet. @tests{moving-frame}
+// The bodies and the drive together give the whole change of g; the wrenches are opposite where the
+// points meet. @tests{moving-frame}
 TEST(FrameMotion, PutsInWhatTheBodiesGet) {
   for_moving_joints([](const Joint& joint, const PairMotion& m) {
     if (m.context.ga.rho_inf != 1.0) return;

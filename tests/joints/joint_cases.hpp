@@ -48,9 +48,9 @@ struct JointCase {
       .Z_a = random.vector(), .Z_b = random.vector(), .R_a = random.frame(), .R_b = random.frame()};
 }
 
-/// The motions of b that a joint with aligned frames at the origin allows:
-/// "Tx Ty Tz Rx Ry Rz" less those it prevents. Frames are the same for all: a joint whose points
-/// are apart (distance) has them apart along x.
+/// The motions of b that a joint with aligned frames at the origin allows: "Tx Ty Tz Rx Ry Rz" less
+/// those it prevents. Frames are the same for all: in a joint whose points are apart (distance)
+/// they are apart along x.
 [[nodiscard]] inline std::string free_motions(const std::string& type,
                                               const JointParameters& parameters = {},
                                               const Vec3& offset = Vec3::Zero()) {

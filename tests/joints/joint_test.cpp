@@ -95,7 +95,7 @@ TEST(Joint, ReportsTheForceOfTheGroundOnAHangingBodyWhicheverIsNamedFirst) {
   const Reaction first = joint.reaction({ground, body, context, on_b, nullptr}, false);
   EXPECT_EQ(first.force, Vec3(0.0, weight, 0.0));
   EXPECT_EQ(first.moment, Vec3::Zero());
-  // Named the other way round the body exerts its weight on the ground.
+  // With sides exchanged it is the weight, which the body exerts on the ground.
   const double on_ground[6] = {0.0, -weight, 0.0, 0.0, 0.0, 0.0};
   const Joint other("h", "fixed", {0, kGround}, joint_kind("fixed").recipe(f, {}));
   EXPECT_EQ(other.reaction({body, ground, context, on_ground, nullptr}, false).force,
@@ -122,7 +122,7 @@ TEST(Joint, RefusesItsMirrorImage) {
     EXPECT_TRUE(accepted(type, about(0, kPi))) << type << ": has no mirror image";
 }
 
-// Frames may be given antiparallel; then that is the orientation to be kept.
+// Frames may be given antiparallel; then this orientation is kept.
 TEST(Joint, KeepsTheOrientationOfTheStart) {
   const StepContext context;
   const BodyStep a = turning(Mat3::Identity(), Mat3::Identity());

@@ -19,7 +19,7 @@ enum class State { sticks, slips };
 
 JointResistance friction_of(const std::string& type, State state) {
   JointResistance r;
-  // Deflections are of size one: the cone is wide, or narrow.
+  // Deflections are of size one; the friction cone is wide or narrow.
   r.friction = JointFriction{.mu = 0.3,
                              .radius = 0.4,
                              .face_radius = type == "revolute" || type == "universal" ? 0.2 : 0.0,
@@ -166,7 +166,8 @@ TEST_P(EveryResistance, HasTheTangentsOfItsStops) {
 
 TEST(SlackLink, HasTheTangentsOfItsStops) { expect_tangents_of_stops("slack_link"); }
 
-// The wrench's work is what the bristle stores and takes; it never gives more than it had.
+// Work of the wrench: the energy that the bristle stores and dissipates; it never returns more than
+// it stored.
 // @tests{contact-bristle}
 TEST_P(EveryResistance, NeverGivesEnergyByFriction) {
   for (const State state : {State::sticks, State::slips})

@@ -15,7 +15,7 @@ namespace {
 
 using test::Numbers;
 
-/// Bodies that push each other and the ground at points.
+/// Bodies with contact points between them and the ground.
 struct ManyBodies {
   std::vector<Mat6> blocks;
   std::vector<ContactSpring> springs;
@@ -56,7 +56,7 @@ void set(BlockCg& cg, const ManyBodies& c) {
   cg.set_springs(acting(c), all);
 }
 
-/// The matrix that BlockCg never writes down.
+/// The matrix that BlockCg never assembles.
 Eigen::MatrixXd assembled(const ManyBodies& c) {
   const auto n = 6 * static_cast<Eigen::Index>(c.blocks.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
@@ -83,7 +83,7 @@ Vec flat(const std::vector<Vec6>& x) {
   return Eigen::Map<const Vec>(x.data()->data(), 6 * static_cast<Eigen::Index>(x.size()));
 }
 
-/// Single precision: some seven digits, less what the condition of the matrix takes.
+/// Single precision: some seven digits, less the loss by the condition of the matrix.
 TEST(BlockCg, AgreesWithADirectSolver) {
   for (const double stiffness : {0.0, 1.0, 100.0}) {
     const ManyBodies c = many_bodies(40, stiffness, 3);
@@ -121,8 +121,8 @@ TEST(BlockCg, NeedsOneIterationWhereNoContactsFormALoop) {
   EXPECT_LE(solve(chain, 1e-8, 100).first, 2);
 }
 
-/// Sliding points whose friction follows their normal forces: with every direction of GMRES more of
-/// the unsymmetric system is solved, and without any of them it is not.
+/// Sliding points whose friction follows their normal forces: every direction of GMRES reduces the
+/// residual of the unsymmetric system; without them it is not solved.
 TEST(BlockCg, FollowsNormalForcesWithFriction) {
   ManyBodies c = many_bodies(40, 100.0, 3);
   Numbers number(8);
@@ -235,7 +235,8 @@ TEST(BlockCg, HoldsTheRowsOfABodyInAStiffContact) {
   }
 }
 
-/// What Newton iterations do: the rest of one solution is what the next one is asked for.
+/// Repeated solution as in Newton iterations: the residual of one is the right-hand side of the
+/// next.
 TEST(BlockCg, RepeatsComeAsCloseAsDoublePrecisionCan) {
   for (const double unit : {1e-12, 1.0, 1e12}) {  // of forces and of stiffness
     ManyBodies c = many_bodies(40, 100.0, 3);
@@ -279,7 +280,7 @@ TEST(BlockCg, TakesMoreIterationsForMorePrecision) {
   }
 }
 
-/// Springs that leave nothing of the bodies in single precision.
+/// Springs so stiff that masses vanish in single precision.
 TEST(BlockCg, StandsSpringsOfAnyStiffness) {
   const ManyBodies c = many_bodies(12, 1e12, 7);
   BlockCg cg;
@@ -289,7 +290,7 @@ TEST(BlockCg, StandsSpringsOfAnyStiffness) {
   EXPECT_TRUE(flat(x).allFinite());
 }
 
-/// Of A x = f the rows and columns of what moves.
+/// A x = f with only the rows and columns of the bodies that move.
 TEST(BlockCg, LeavesBodiesWhereTheyAre) {
   const ManyBodies c = many_bodies(40, 20.0, 3);
   const std::vector<int> moving{1, 2, 3, 7, 8, 20, 39};

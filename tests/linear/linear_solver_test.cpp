@@ -69,7 +69,7 @@ std::vector<Case> cases() {
   for (int k = 0; k < 20; ++k) {
     const int n = 2 + number.below(12);
     t = bodies(n);
-    // A joint for most bodies, then loops and springs; never more rows than 6 per body.
+    // A joint for most bodies, then loops and springs; at most 6 rows per body.
     for (int i = 0; i < n; ++i)
       if (number.below(5) > 0)
         add_pair(t, i == 0 ? kGround : number.below(i), i, 1 + number.below(4));
@@ -118,7 +118,7 @@ TEST_P(LinearSolvers, AgreeWithADenseSolution) {
 }
 
 TEST_P(LinearSolvers, SolveAMechanismWithRedundantExactRows) {
-  // The same five rows twice: without ε the matrix is singular, with it the multipliers share.
+  // The same five rows twice: without ε the matrix is singular, with it the multipliers are equal.
   KktTopology t = bodies(2);
   add_pair(t, kGround, 0, 5);
   add_pair(t, 0, 1, 5);

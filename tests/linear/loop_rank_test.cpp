@@ -84,8 +84,8 @@ TEST(LoopRank, ReducesManyRowsOnOneBody) {
   EXPECT_EQ(loop_rank({}, 3, 1e-9).rank, 0);
 }
 
-// One square cell has three rows too many, and a row of them three each: 10,001 bodies, for which
-// a dense factorisation would take days.
+// One square cell has three redundant rows, a row of cells three each: 10,001 bodies, for which a
+// dense factorisation would take days.
 TEST(LoopRank, IsLinearAlongARowOfLoops) {
   const int N = 5000;
   const Simulation s(test::n_four_bar(N));

@@ -7,7 +7,7 @@
 
 namespace polhode::test {
 
-/// Numbers between -1 and 1 that are the same on every machine.
+/// Pseudo-random numbers between -1 and 1, the same on every machine.
 class Numbers {
  public:
   explicit Numbers(unsigned seed) : engine_(seed) {}

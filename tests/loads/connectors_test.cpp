@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Properties of every connector over one large step: its tangent is the derivative of its wrenches,
-// and its wrenches do the work that it books.
+// and their work is the one in its energy balance.
 #include <cmath>
 #include <vector>
 
@@ -23,8 +23,8 @@ TimeFunctionPtr law(std::function<double(double)> f) {
 double cube(double x) { return 3.0 * x + 2.0 * x * x * x; }
 double drag_law(double v) { return 1.5 * v + 0.7 * v * std::abs(v); }
 
-/// A random pair with a description of frames, points and both coordinates of a hinge that slides
-/// along its axis; the axes are aligned at both ends of the step.
+/// A random pair with frames, points and both coordinates of a cylindrical joint; the axes are
+/// aligned at both ends of the step.
 struct Sample {
   LoadDescription d;
   PairMotion motion;
@@ -131,7 +131,7 @@ TEST(Connectors, SpringsBetweenPointsGiveBackWhatTheyStore) {
   });
 }
 
-// A potential that is given itself. @tests{law-mean}
+// A potential that is given as a function. @tests{law-mean}
 TEST(Connectors, PotentialsGiveBackWhatTheyStore) {
   class Potential final : public TimeFunction {
    public:
@@ -211,7 +211,7 @@ TEST(Connectors, DragAndDampersTakeTheWorkOfTheirForces) {
 
 namespace {
 
-/// Two wheels on a carrier that is not there: turned about their axes from one placing of it, or of
+/// Two wheels on an imaginary carrier: turned about their axes from one pose of the carrier, or of
 /// a hinge between them, at both ends of the step.
 struct GearSample {
   LoadDescription d;

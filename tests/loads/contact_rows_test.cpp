@@ -169,13 +169,13 @@ void groove(LoadDescription& d) {
   d.words["side"] = "left";
 }
 
-/// An ellipse of this size about a point of its plane; "other_" before the words of b's.
+/// An ellipse of this size about a point of its plane; the prefix "other_" is for the curve of b.
 void add_ellipse(LoadDescription& d, const std::string& prefix, double x, double y, double a,
                  double b) {
   d.laws[prefix + "curve_x"] = std::make_shared<Wave>(a, 0.0, x);
   d.laws[prefix + "curve_y"] = std::make_shared<Wave>(b, 0.5 * 3.14159265358979323846, y);
 }
-/// Beside each other, and the small one within the large one.
+/// Curves side by side, and the small one within the large one.
 void outside(LoadDescription& d) {
   add_ellipse(d, "", 6.0, 1.0, 2.0, 1.5);
   add_ellipse(d, "other_", 0.2, -0.1, 0.8, 0.5);
@@ -212,7 +212,7 @@ TEST(PointOnCurve, KnowsItsAccelerations) {
   expect_accelerations<PointOnCurve>(groove);
 }
 
-// Of a circle of 2 m, run through counter-clockwise: |P| − 2 to the right, 2 − |P| to the left.
+// A circle of 2 m, counter-clockwise: |P| − 2 to the right, 2 − |P| to the left.
 TEST(PointOnCurve, DistancesOfACircleAreThoseOfItsCentre) {
   const auto x = std::make_shared<Wave>(2.0, 0.0);
   const auto y = std::make_shared<Wave>(2.0, 0.5 * 3.14159265358979323846);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces that code gives as functions of the motion: tangents, work, parts that stand elsewhere.
+// Forces given by code as functions of the motion: tangents, work, parts at other poses.
 #include <cmath>
 
 #include <loads/load_samples.hpp>
@@ -11,7 +11,7 @@
 namespace polhode::test::load_function_tests {
 namespace {
 
-/// Depends on all that it may read, none of it linearly.
+/// A function that depends nonlinearly on all of its arguments.
 PointFunction anything(bool with_derivative) {
   PointFunction f;
   f.value = [](const PointReading& x) -> Vec3 {
@@ -175,8 +175,8 @@ TEST(LoadFunction, OfAPartCountsInThePartsAxes) {
         part.body_axes = S;
         const PointFunction f = anything(true);
         const auto g = std::get<PointFunction>(placed(f, part, body_fixed, axial));
-        // A motion in the part, and the same seen in the whole: mirror images of a body's axes are
-        // mirrored along the same axis of its own.
+        // A motion in the part's axes and the same in the whole model's: mirror images of a body's
+        // axes are mirrored along the same axis of the body.
         PointReading x{0.3, random.vector(), random.vector(), random.orientation(),
                        random.vector()};
         const double sign = mirrored ? -1.0 : 1.0;
@@ -208,7 +208,7 @@ TEST(LoadFunction, OfAPartCountsInThePartsAxes) {
   EXPECT_EQ(g.derivative(y).value, along(true).derivative(x).value);
 }
 
-// Placed twice is placed where the second placing takes the first.
+// The pose of a part in a part is the composition of both poses.
 TEST(LoadFunction, OfAPartInAPartCountsInItsAxes) {
   Random random(6);
   PartAxes inner, outer;

@@ -37,7 +37,7 @@ TEST(Moment, PutsInItsWork) {
   }
 }
 
-// The axis of the turn is carried into itself, so the average of the turned moment is the moment.
+// The axis of rotation is mapped to itself, so the average of the rotated moment is the moment.
 TEST(Moment, IsTheSameInBothAxesWhenTheBodyTurnsAboutIt) {
   Random random(3);
   PairMotion m(random, context_of(1.0));

@@ -7,7 +7,7 @@
 
 namespace polhode::test::registry_tests {
 
-// The ledger and the reports find a load's items by its kind.
+// The energy balance and the reports find a load's items by its kind.
 TEST(LoadRegistry, AddsItemsOfTheKindItNames) {
   for (const LoadKind& kind : load_kinds()) {
     System system;

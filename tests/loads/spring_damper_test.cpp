@@ -126,7 +126,7 @@ TEST(SpringDamper, PullsWithStiffnessTimesElongation) {
   LoadDescription d;
   d.name = "spring";
   d.values = {{"stiffness", 100.0}};
-  d.start_length = 2.0;  // Free length left out.
+  d.start_length = 2.0;  // Default free length.
   const SpringDamper spring(d);
   const BodyStep a = BodyStep::ground(1.0);
   const BodyStep b =

@@ -8,7 +8,7 @@ namespace polhode::test::helical_axis_tests {
 const Vec3 kDirection = Vec3(1, 2, -0.5).normalized();
 const Vec3 kThrough(0.3, -0.2, 0.7);
 
-// A screw about a known axis. @tests{helical-rate}
+// A screw motion about a known axis. @tests{helical-rate}
 TEST(HelicalAxis, IsThatOfAScrewsVelocity) {
   const Vec3 omega = 3.0 * kDirection, r(1.0, 0.4, 2.0);
   const Vec3 v = 0.6 * kDirection + omega.cross(r - kThrough);

@@ -10,7 +10,7 @@ namespace {
 
 using test::distance;
 
-/// The rotation from t to t', once written by a spatial increment θ and once by a material one Θ.
+/// The rotation from t to t', by a spatial increment θ and by a material one Θ.
 class Increments : public testing::TestWithParam<Vec3> {
  protected:
   Vec3 Z_ = Vec3(0.3, -1.1, 0.7);
@@ -36,7 +36,7 @@ TEST_P(Increments, AreOneVectorSeenFromTwoFrames) {
   EXPECT_LT(distance(exp_map(theta_), Lambda_ * exp_map(Theta_) * Lambda_.transpose()), 2e-15);
   EXPECT_LT(distance(hat(theta_), Lambda_ * hat(Theta_) * Lambda_.transpose()), 2e-15);
   EXPECT_NEAR(theta_.norm(), Theta_.norm(), 1e-15);
-  // The increment is an axis of its own turn, so the frame at t' gives the same θ.
+  // The increment is along the axis of its own rotation, so the frame at t' gives the same θ.
   EXPECT_LT(distance(Lambda_ * exp_map(Theta_) * Theta_, theta_), 2e-15);
 }
 

@@ -7,7 +7,7 @@
 
 namespace polhode::test {
 
-/// Rotation or Cayley vectors at which laws are tried: none, tiny, small, general, large.
+/// Rotation or Cayley vectors for tests of laws: zero, tiny, small, general, large.
 inline std::vector<Vec3> sample_vectors() {
   return {Vec3::Zero(),         Vec3(1e-9, -2e-9, 5e-10), Vec3(3e-5, 6e-5, -5e-5),
           Vec3(0.0, 0.0, 0.8),  Vec3(0.3, -0.7, 0.5),     Vec3(-1.1, 0.4, 1.6),

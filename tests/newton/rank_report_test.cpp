@@ -19,7 +19,7 @@ TEST(RankReport, FindsTheOneRedundantRowOfBricardsLinkage) {
   EXPECT_EQ(report.rows, 30);
   EXPECT_EQ(report.rank, 29);
   EXPECT_EQ(report.mobility, 1);
-  EXPECT_EQ(report.names.size(), 6u);  // every hinge has a part in it
+  EXPECT_EQ(report.names.size(), 6u);  // every hinge is involved
 }
 
 TEST(RankReport, NamesTheHingesOfADoor) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An iterate that turns elements inside out is gone back from before the step is given up.
+// Step length of Newton's method where an iterate inverts elements: it is reduced before the step
+// is rejected.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +48,7 @@ const MaterialDescription kFoam{.kind = "neo_hookean",
 const MaterialDescription kLinear{.kind = "elastic",
                                   .values = {{"youngs_modulus", 1.0}, {"poisson_ratio", 0.0}}};
 
-/// One step so long that inertia hardly counts: at ρ∞ = 0 it ends near equilibrium.
+/// One step so long that inertia is negligible: at ρ∞ = 0 it ends near equilibrium.
 StepReport one_long_step(const System& system, State& state, double least) {
   const GeneralizedAlpha ga = GeneralizedAlpha::from_spectral_radius(0.0);
   StepControl control;
@@ -90,7 +91,7 @@ TEST(Retreat, SavesALoadStepToo) {
   }
 }
 
-// A material that gives way under so much pressure: there is nothing to find.
+// A pressure above the maximum that the material can carry: there is no solution.
 TEST(Retreat, EndsWithTheWorstElementNamedWhereThereIsNoWay) {
   System system;
   press(system, "hex8_standard", kLinear, 1.5);

@@ -86,7 +86,7 @@ TEST(CheckTangents, NamesAWrongInteraction) {
   EXPECT_TRUE(report.worst.row.starts_with("force ")) << report.text();
   EXPECT_TRUE(report.worst.column.starts_with("displacement ")) << report.text();
   EXPECT_TRUE(report.worst.row.ends_with(" of body 'ball'")) << report.text();
-  // The assembled tangent has the same fault, less beside inertia.
+  // The assembled tangent has the same error, relatively smaller because of the inertia.
   EXPECT_GT(part_of(report, "assembled")->worst.error, 0.1);
 }
 
@@ -104,7 +104,7 @@ TEST(CheckTangents, NamesAWrongRowOfAConstraint) {
   EXPECT_EQ(report.worst.column, "displacement x of body 'ball'");
 }
 
-// Elements with internal unknowns, one end on a body that a joint holds, the other on another.
+// Elements with internal unknowns, one end on a body with a joint, the other end on another body.
 TEST(CheckTangents, AgreesForSolidsOnBodies) {
   for (const double rho_inf : {1.0, 0.6})
     for (const char* element : {"hex8_eas9", "hex8_standard"}) {
@@ -117,14 +117,14 @@ TEST(CheckTangents, AgreesForSolidsOnBodies) {
       s.run(5);
       const TangentReport report = check_tangents(s.system, s.state, 0.02, rho_inf);
       EXPECT_LT(report.error(), kTangentTolerance) << report.text();
-      EXPECT_EQ(report.nodes_moved, 4);  // all that no body carries
+      EXPECT_EQ(report.nodes_moved, 4);  // all nodes that are not bonded to a body
       EXPECT_EQ(report.bodies_moved, 3);
       ASSERT_TRUE(part_of(report, "hex8"));
       EXPECT_EQ(part_of(report, "hex8")->compared, 12);
     }
 }
 
-/// A spring between two nodes, whose tangent lacks a tenth.
+/// A spring between two nodes, whose tangent is too small by a tenth.
 class WrongTruss final : public ElementGroup {
  public:
   std::string kind() const override { return "truss"; }
@@ -169,7 +169,7 @@ TEST(CheckTangents, NamesWrongElements) {
   EXPECT_TRUE(report.worst.row.ends_with(", element 0 of 'rig' (truss)")) << report.text();
 }
 
-/// Balls and boxes at rest on each other and on the floor, and one more that flies.
+/// Balls and boxes at rest on each other and on the floor, and one in flight.
 struct SmallHeap : Scene {
   explicit SmallHeap(bool with_solid = false) {
     BodyMotion start;
@@ -228,7 +228,7 @@ TEST(CheckTangents, SaysThatImpulsesHaveNoTangent) {
 }
 
 /// One pair of bodies that repel each other, by the distance of their centres along x. Its tangent
-/// knows nothing of one of them.
+/// has no terms of one of them.
 class WrongContacts final : public BodyContacts {
  public:
   void prepare(const System&) override {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a case of the refinement suite states: a model, the steps it is run at, and what must come out.
+"""Cases of the refinement suite: a model, its steps, and the expected results.
 
 A model is the path of a model file or a dictionary of the same form; `tools/refine.py --write NAME` prints the latter.
 """
@@ -8,7 +8,7 @@ import math
 import pathlib
 import typing
 
-FRACTIONS = (1, 0.5, 0.2, 0.05, 0.01)  # Of the base step: what every case is run at unless it says why not.
+FRACTIONS = (1, 0.5, 0.2, 0.05, 0.01)  # Of the base step; a case with others gives the reason.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Known:
     read: typing.Callable  # From the run to the number.
     value: float
     tolerance: typing.Callable | float  # A number, or a function of the step.
-    below: bool = False  # The number must not exceed the value by more than the tolerance; it may lie under it.
+    below: bool = False  # The number may be less than the value, but must not exceed it by more than the tolerance.
 
     def allowed(self, step):
         return self.tolerance(step) if callable(self.tolerance) else self.tolerance
@@ -27,13 +27,13 @@ class Known:
 
 @dataclasses.dataclass(frozen=True)
 class Variant:
-    """One setting of a case's variables, with what is known of it."""
+    """One setting of a case's variables, with its known numbers."""
 
     label: str
     settings: dict
     known: tuple = ()
-    order: float | None = None  # With which differences fall, if not that of the case.
-    longer: float = 1  # Its steps are longer than those of the case by this: high orders are seen where errors are above rounding.
+    order: float | None = None  # Order of convergence, if not that of the case.
+    longer: float = 1  # Factor on the steps of the case: high orders are visible where errors are above rounding.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,32 +41,32 @@ class Case:
     """A model at several steps."""
 
     name: str
-    about: str  # What it asks, and the formula and source of what is known.
+    about: str  # Subject of the case, and formula and source of its known numbers.
     model: typing.Any
     step: float  # [s], the base step.
     span: float  # [s]
-    variants: tuple | typing.Callable = (Variant("", {}),)  # Or a function that makes them, where that takes a while.
+    variants: tuple | typing.Callable = (Variant("", {}),)  # Or a function that returns them, if that takes time.
     fractions: tuple = FRACTIONS
-    spans: dict = dataclasses.field(default_factory=dict)  # Fraction to span, where it is not that above.
-    order: float = 1  # With which differences fall: 1 with impacts, whose time a step cannot resolve.
+    spans: dict = dataclasses.field(default_factory=dict)  # Fraction to span, where it differs from the one above.
+    order: float = 1  # Order of convergence: 1 with impacts, whose time a step does not resolve.
     floor: float = 1e-4  # Differences below this part of a probe's range count as equal: 1e-3 of a shape is the gap's tolerance.
-    compare: bool = True  # False where closed forms ask everything, and phases of impacts would be compared in vain.
+    compare: bool = True  # False where closed forms give all results and comparing phases of impacts is meaningless.
     skip: tuple = ()  # Probes, or "probe.kind", that are not compared; if smooth "probe.column", "probe.[unit]" or "[unit]".
-    drift: float = 1e-9  # Bound of the energy that the ledger misses, at every step: dissipation is booked, and nothing is gained.
-    until: float = math.inf  # [s], up to which it is compared.
-    because: str = ""  # Why not longer, why other fractions or no comparison.
-    smooth: bool = False  # Nothing jumps: every column is compared, forces and accelerations too, at instants that all runs have.
+    drift: float = 1e-9  # Bound of the error of the energy balance at every step, in which dissipation is included.
+    until: float = math.inf  # [s], end of the comparison.
+    because: str = ""  # Reason for a short span, other fractions or no comparison.
+    smooth: bool = False  # No jumps: every column is compared, including forces and accelerations, at instants common to all runs.
     statics: bool = False  # Parts of a step are parts of the load. No order: the equilibrium does not depend on them.
     meshes: tuple = ()  # Settings of finer meshes, each with half the element size of the one before; the first one halves that of the model.
-    mesh_order: float = 2  # With which differences between meshes fall.
+    mesh_order: float = 2  # Order of convergence of differences between meshes.
     mesh_floor: float = 1e-3
-    mesh_skip: tuple = ()  # Probes, or "probe.kind", that are not compared between meshes: numbers of elements mean other places there.
-    mesh_known: tuple = ()  # Known numbers that meshes approach: the tolerance is a function of the element size, 1 for that of the model.
-    open: str = ""  # Why it is not among the tests yet: what the engine does instead. `tools/refine.py NAME` runs it all the same.
+    mesh_skip: tuple = ()  # Probes, or "probe.kind", that are not compared between meshes, where element numbers are other positions.
+    mesh_known: tuple = ()  # Known limits of refined meshes; the tolerance is a function of the element size, 1 for that of the model.
+    open: str = ""  # Reason why it is not a test yet: the actual result. `tools/refine.py NAME` runs it nevertheless.
 
 
 def falling(size, step, order, floor=0.0):
-    """A tolerance that is `size` at a step and falls with an order."""
+    """A tolerance that is `size` at a step and decreases with an order of the step."""
     return lambda h: floor + size * (h / step) ** order
 
 
@@ -86,12 +86,12 @@ def last(probe, column):
 
 
 def at(probe, column, time):
-    """A column's value at a time, between its rows on a straight line."""
+    """A column's value at a time, interpolated linearly between rows."""
     return lambda run: run.value(probe, column, time)
 
 
 def rise(probe, column):
-    """How far a column rose above its start."""
+    """Largest rise of a column above its initial value."""
 
     def read(run):
         values = run.probe(probe)[column]
@@ -101,7 +101,7 @@ def rise(probe, column):
 
 
 def fall(probe, column):
-    """How far a column fell below its start."""
+    """Largest fall of a column below its initial value."""
 
     def read(run):
         values = run.probe(probe)[column]
@@ -121,7 +121,7 @@ def largest(probe, column, after=0.0):
 
 
 def spin_y(centre, tip):
-    """Angular velocity about y at the end, of a body that turns about y only: from probes at its centre and at x = 1."""
+    """Angular velocity about y at the end of a body that rotates about y only, from probes at its centre and at x = 1."""
 
     def read(run):
         a, b = run.probe(centre), run.probe(tip)
@@ -133,7 +133,7 @@ def spin_y(centre, tip):
 
 
 def turn_y(centre, tip):
-    """Angles about y at all rows from the start on, whole turns counted: of rows that turn by less than half a turn."""
+    """Angles about y at all rows relative to the start, whole turns counted; between rows less than half a turn."""
 
     def read(run):
         a, b = run.probe(centre), run.probe(tip)

@@ -22,4 +22,4 @@ MODULES = (central_impacts, deformables, eccentric_impacts, examples_in_motion, 
 ALL = [case for module in MODULES for case in module.CASES]
 CASES = [case for case in ALL if not case.open]
 OPEN = [case for case in ALL if case.open]
-assert len({case.name for case in ALL}) == len(ALL), "two cases have one name"
+assert len({case.name for case in ALL}) == len(ALL), "two cases have the same name"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks tools/refine.py itself: what it says of runs whose convergence is known, its options, its messages."""
+"""Checks tools/refine.py itself: its verdicts on runs of known convergence, its options, its messages."""
 import json
 import math
 import pathlib
@@ -14,7 +14,7 @@ from case import Case  # noqa: E402
 
 
 class Made:
-    """A run that never ran: x = sin t with an error of a given size, v its derivative."""
+    """A fictitious run: x = sin t with an error of a given size, v its derivative."""
 
     def __init__(self, step, error):
         self.step, self.span = step, 1.0
@@ -46,18 +46,18 @@ def strict(text):
     return json.loads(text, parse_constant=refuse)
 
 
-# Convergence of the order that is asked is accepted, a slower one, none and divergence are not.
+# Convergence with the expected order is accepted; slower or no convergence and divergence are not.
 assert verdicts(lambda h: 0.05 * h) == [True, True]
 assert verdicts(lambda h: 0.05 * h * h, order=2) == [True, True]
 assert verdicts(lambda h: 0.05 * h, order=2) == [False, False]
 assert verdicts(lambda h: 0.05 * math.sqrt(h)) == [False, False]
-assert verdicts(lambda h: 0.05 * h * (0.2 if h == 1 else 1)) == [True, True]  # The coarsest run was lucky.
+assert verdicts(lambda h: 0.05 * h * (0.2 if h == 1 else 1)) == [True, True]  # A coarsest run with a small error by chance.
 assert verdicts(lambda h: 0.05 * (h > 0.02)) == [False, False]
 assert verdicts(lambda h: 0.01 / h) == [False, False]
-assert verdicts(lambda h: 1e-4 / h if h > 0.01 else 0) == [False, False]  # It diverges until the last step, which it is compared with.
+assert verdicts(lambda h: 1e-4 / h if h > 0.01 else 0) == [False, False]  # Divergence up to the finest run, which is the reference.
 assert verdicts(lambda h: 0) == [True, True]
 
-# A model of the user's: figures as strict JSON, and the exit code.
+# A user's model: results as strict JSON, and the exit code.
 model = str(ROOT / "examples/incline/model.yaml")
 code, out, err = called("--model", model, "--step", "10 ms", "--span", "0.1 s", "--steps", "1,1/2,1/5,1/20", "--json", "--order", "0")
 found = strict(out)
@@ -70,11 +70,11 @@ assert len(rows["slides places"]["differences"]) == 3 and rows["slides places"][
 code, out, err = called("--model", model, "--step", "10 ms", "--span", "0.02 s", "--steps", "1", "--json")
 assert code == 0 and strict(out)["variants"][0]["probes"] == [], (code, out, err)
 
-# Without probes there is nothing that could converge.
+# A model without probes is refused.
 code, out, err = called("--model", str(ROOT / "tests/validation/data/trolley.yaml"), "--step", "1 ms", "--span", "2 ms", "--steps", "1,1/2")
 assert code == 1 and "output.probes" in out, (code, out, err)
 
-# What cannot run fails, and says what the program said.
+# Runs that cannot start fail with the program's message.
 code, out, err = called("--model", "no such model.yaml", "--steps", "1,1/2")
 assert code == 1 and "cannot be opened" in out, (code, out, err)
 for words in (["--step", "5 m"], ["--span", "long"], ["--steps", "1/2,1"], ["--steps", "1,0"]):
@@ -83,8 +83,8 @@ for words in (["--step", "5 m"], ["--span", "long"], ["--steps", "1/2,1"], ["--s
 code, out, err = called("no_case_has_this_name")
 assert code == 2 and "--list names them" in err, (code, err)
 
-# A name that is also the beginning of others means its case alone.
+# --list writes each name once.
 code, out, err = called("--list")
 names = out.split()
 assert code == 0 and "ball_on_floor" in names and len(set(names)) == len(names)
-print("tools/refine.py keeps its word.")
+print("tools/refine.py passes.")

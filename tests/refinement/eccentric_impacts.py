@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rods, boxes and capsules meet something at one point beside their centre, at 2 m/s, without gravity.
+"""Eccentric impacts of rods, boxes and capsules at one point, at 2 m/s, without gravity.
 
 Without friction the impulse is p = (1 + e) w/(n·K n), K the sum of both bodies' mobilities at the point
 (tools/references/eccentric_impact.py); with friction the script integrates Routh's equations. Within the step of the impact a
-body turns by up to ω h, and so does the arm of its point: what comes out differs by order h, and is exact where a step resolves
+body turns by up to ω h, and so does the arm of its point: results differ by order h, and are exact where a step resolves
 the impact.
 """
 import math
@@ -19,13 +19,13 @@ W = 2.0  # m/s of approach
 GAP = W * 0.0137  # An impact after 13.7 ms: within a step of 10, 5 and 1 ms.
 EXACT = 1e-4 * W
 ABSOLUTE = (1, 0.5, 0.1, 0.01, 0.001)  # 10, 5, 1, 0.1, 0.01 ms
-SHORT = {1: 0.03, 0.5: 0.02, 0.1: 0.016, 0.01: 0.0139, 0.001: 0.0138}  # An impact takes two steps: what turns together touches again later.
+SHORT = {1: 0.03, 0.5: 0.02, 0.1: 0.016, 0.01: 0.0139, 0.001: 0.0138}  # An impact takes two steps; with e = 0 bodies that turn together touch again later.
 RESTITUTIONS = (0, 0.3, 0.7, 1)
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 
 
 class Solid:
-    """A box or capsule of 1 kg, turned by an angle about an axis: its lowest point and what an impulse there does."""
+    """A box or capsule of 1 kg, rotated by an angle about an axis: its lowest point, and the effect of an impulse there."""
 
     mass = 1.0
 
@@ -64,19 +64,19 @@ class Solid:
         return times(inverse(self.J), cross(self.arm, impulse))
 
     def turning(self, impulse):
-        """Parts by which n·K n may change within a second of the spin that an impulse gives."""
+        """Relative change of n·K n per second by the spin that an impulse causes."""
         return math.sqrt(dot(self.spin(impulse), self.spin(impulse)))
 
 
 SOLIDS = {"rod_on_edge": Solid(("box", (1, 0.1, 0.1)), (0, 1, 0), 20), "steep_rod": Solid(("box", (1, 0.1, 0.1)), (0, 1, 0), 70),
           "rod_on_corner": Solid(("box", (1, 0.1, 0.1)), (1, 3, 0), 40), "box_on_edge": Solid(("box", (0.4, 0.3, 0.2)), (0, 1, 0), 30),
           "box_on_corner": Solid(("box", (0.4, 0.3, 0.2)), (1, 2, 0), 30), "capsule": Solid(("capsule", (0.1, 0.6)), (0, 1, 0), 50)}
-FLAT = ("rod_on_edge", "steep_rod", "box_on_edge", "capsule")  # These turn about y only.
+FLAT = ("rod_on_edge", "steep_rod", "box_on_edge", "capsule")  # Shapes that rotate about y only.
 
 
 def smooth(name, e, more=0.0, turns=0.0):
-    """What is known of a solid that meets something without friction: `more` is what that adds to n·K n, `turns` the
-    angular velocity that a unit impulse gives it."""
+    """Known numbers of a body in an impact without friction: `more` is the other body's part of n·K n, `turns` the
+    other body's angular velocity by a unit impulse."""
     solid = SOLIDS[name]
     p = (1 + e) * W / (solid.K[2][2] + more)
     P = [0, 0, p]
@@ -89,7 +89,7 @@ def smooth(name, e, more=0.0, turns=0.0):
 
 
 def case(title, about, bodies, known, names, **sections):
-    """Without friction, at all restitutions; known(e) is what comes out."""
+    """Variants without friction for all restitutions; known(e) returns their known numbers."""
     contacts = {"default": {"restitution": "e"}, **sections.pop("contacts", {})}
     probes = {key: probe for name in names for key, probe in body(name).items()}
     return Case(title.lower().replace(" ", "_"), about,
@@ -107,7 +107,7 @@ def on_floor():
 
 
 def on_free_plates():
-    """Each on the face of a plate of its own, 0.15 m beside its centre."""
+    """Impacts on the faces of free plates, 0.15 m beside their centres."""
     a, thick, mass, beside = 0.6, 0.1, 2.0, 0.15
     moments = [mass * (a * a + thick * thick) / 12] * 2 + [mass * a * a / 6]
     K = mobility(mass, turned(rotation((0, 0, 1), 0), moments), [beside, 0, thick / 2])
@@ -152,7 +152,7 @@ def on_chain():
         for i, link in enumerate(links):
             bodies[link] = {"shape": {"box": [length, 0.2, thick]}, "mass": mass, "position": [(i + 0.5) * length, 3 * k, 0]}
             joints[f"{name}_hinge_{i}"] = {"type": "revolute", "bodies": [links[i - 1] if i else "ground", link], "at": [i * length, 3 * k, 0], "axis": "y"}
-    # The last link takes most of it: with a free end a unit impulse turns it by 6/(m l) or less.
+    # The last link has the largest rotation: with a free end a unit impulse gives it 6/(m l) or less.
     return case("Corners on chains", "The same near the end of three hinged links in a line; their compliance by elimination.",
                 bodies, lambda e: [k for name in names for k in smooth(name, e, more, 6 / (mass * length))], names, joints=joints, contacts={"exclude": exclude})
 
@@ -166,12 +166,12 @@ def upright_capsule():
             p = (1 + e) * W * solid.mass
             P = min(mu * p, slip / solid.K[0][0])
             spin = solid.spin([-P, 0, 0])[1]
-            # The end is round: while it turns by ω h its lowest point moves by so much of its radius.
+            # The end is round: while it turns by ω h its lowest point moves by that part of its radius.
             slack = abs(spin) * (p + P)
             known = (Known("vz after", last("capsule", "vz"), e * W, lambda h, s=slack: EXACT + s * h), Known("vx after", last("capsule", "vx"), slip - P, lambda h, s=slack: EXACT + s * h),
                      Known("spin after", spin_y("capsule", "capsule_x"), spin, lambda h, s=slack: (EXACT + s * h) * 0.3 / solid.moments[0]))
             variants.append(Variant(f"e {e}, mu {mu}", {"e": e, "mu": mu}, known))
-    return Case("upright_capsule", "Leaves with e w; friction μp, or what ends the slip of 3 m/s: 1/(1/m + a²/J) of it.",
+    return Case("upright_capsule", "Rebound with e w; friction μp, or the impulse that ends the slip of 3 m/s: 1/(1/m + a²/J) of it.",
                 model("Upright capsule", {**FLOOR, "capsule": solid.lowered((0, 0, 0), (slip, 0, -W))}, gravity=(0, 0, 0), variables={"e": 0, "mu": 0},
                       contacts={"default": {"restitution": "e", "friction": "mu"}}, probes=body("capsule")),
                 1e-2, 0.024, tuple(variants), ABSOLUTE, spans=SHORT, compare=False, because=CLOSED)
@@ -186,14 +186,14 @@ def rough(title, about, names, on_plates, turning=1):
 
     Within the step of the impact the body turns by the spin it leaves with, once for the impulse's place and once for its
     direction: `turning` times as much as a frictionless one. That of the steep rod passes near its
-    centre, so that its spin at the end bounds nothing: it needs up to nine times as much.
+    centre, so that its final spin is no bound: it needs up to nine times as much.
     """
     a, thick, mass, beside = 0.6, 0.1, 2.0, 0.15
     moments = [mass * (a * a + thick * thick) / 12] * 2 + [mass * a * a / 6]
     plate = mobility(mass, turned(rotation((0, 0, 1), 0), moments), [beside, 0, thick / 2])
     bodies = {} if on_plates else dict(FLOOR)
     for i, name in enumerate(names):
-        slid = SLIPS[name][0] * GAP / W  # On its way there.
+        slid = SLIPS[name][0] * GAP / W  # Displacement during the approach.
         place = (beside - slid, 3 * i, thick / 2) if on_plates else (0, 3 * i, 0)
         bodies[name] = SOLIDS[name].lowered(place, (*SLIPS[name], -W))
         if on_plates:

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The examples that touch nothing: at their step and at parts of it, by the order of their model and by order two; those with a mesh at
-finer ones. Solutions that are known stand in tests/validation/data (docs/validation.md says where from) or in closed form.
+"""The examples without contact, at their step and at fractions of it, with the order of their model and with order two; those with a mesh
+also on finer ones. Known solutions are in tests/validation/data (sources in docs/validation.md) or in closed form.
 
-Of an error C Δt² of order two the constants are those of tests/validation/published_cases_test.cpp: twice the phase by which steps lag.
-At higher orders the first step has the error named, and it falls with the order until rounding.
+The constants C of errors C Δt² of order two are those of tests/validation/published_cases_test.cpp: twice the phase by which steps lag.
+At higher orders the given error is that of the first step, and it decreases with the order down to rounding.
 """
 import dataclasses
 import math
 
 from case import Case, Known, Variant, at, falling, last, table
 
-WAVES = ("[m/s^2]", "[N]", "[N m]")  # What shows waves in elastic bodies that a step does not resolve.
-SOUND = WAVES + ("[m/s]", "[rad/s]", "[-]", "[1/m]")  # Those that are so fast as to show in speeds as well.
-WHY_WAVES = "Let go undeformed, elastic bodies ring with waves that the step does not resolve: places are compared, and a case of its own has steps that do."
-ROUNDING = 1e-9  # Differences below this part of a column's range: of accelerations and reactions too, which rounding of places reaches by 1/Δt.
+WAVES = ("[m/s^2]", "[N]", "[N m]")  # Columns that show waves in elastic bodies that a step does not resolve.
+SOUND = WAVES + ("[m/s]", "[rad/s]", "[-]", "[1/m]")  # Columns for waves that are fast enough to show in speeds, too.
+WHY_WAVES = "Elastic bodies that are released undeformed have waves that the step does not resolve: positions are compared; a separate case has steps that resolve them."
+ROUNDING = 1e-9  # Floor of differences relative to a column's range, also for accelerations and reactions, in which rounding of positions grows by 1/Δt.
 
 
 def example(name, step, span, about, known=lambda order: (), orders=(2,), model="model", longer=1, asked=None, **more):
-    """Variants by order; `known` makes what is known of one."""
+    """Variants by order; `known` returns the known numbers of one."""
     variants = tuple(Variant(f"order {order}", {"analysis.order": str(order)}, tuple(known(order)), asked or order, longer if order > 2 else 1) for order in orders)
     more = {"smooth": True, "floor": ROUNDING, **more}
     return Case(f"example_{name}{model[5:]}", about, f"examples/{name}/{model}.yaml", step, span, variants, **more)
@@ -67,9 +67,9 @@ def driven_governor():
 
 def four_bar():
     known = against("n_four_bar_2", (("B0", "x", 0), ("B0", "y", 1)), 1e-2, 0.4, 121, 1e-7)
-    return example("n_four_bar", 1e-2, 0.4, "Two four-bars that pass the line where all bars coincide.", known, (2, 6),
+    return example("n_four_bar", 1e-2, 0.4, "Two four-bars that pass the position where all bars are on one line.", known, (2, 6),
                    skip=("foot_0.fx", "foot_0.fy", "foot_0.fz", "foot_0.mx", "foot_0.my", "foot_0.mz"),
-                   because="Hinges share what they carry, as rows are redundant: the reaction of one alone is a matter of the solver.")
+                   because="Rows are redundant: the distribution of reactions among hinges depends on the solver.")
 
 
 def squeezer():
@@ -78,39 +78,39 @@ def squeezer():
     known = against("andrews_squeezer", tuple((name, "rz", k) for k, name in enumerate(names)), 5e-5, 0.002, 1.4e6, 1e-6, start)
     return example("andrews_squeezer", 5e-5, 0.002, "Seven plates, the first 2 ms.", known, (2, 6),
                    skip=tuple(f"{name}.{c}" for name in names for c in ("fz", "mx", "my")),
-                   because="Across the plane hinges share nothing but rounding.")
+                   because="Reactions out of the plane are rounding errors.")
 
 
 def bricard():
     known = against("bricard", (("P3", "x", 0), ("P3", "y", 1), ("P3", "z", 2)), 2e-2, 0.5, 6.4, 1e-8)
-    return example("bricard", 2e-2, 0.5, "Five rods that by count could not move.", known, (2, 6),
-                   skip=tuple(f"P1.{c}" for c in ("fx", "fy", "fz", "mx", "my", "mz")), because="One row is redundant: reactions are shared by the solver.")
+    return example("bricard", 2e-2, 0.5, "Five rods that are immobile by the count of freedoms.", known, (2, 6),
+                   skip=tuple(f"P1.{c}" for c in ("fx", "fy", "fz", "mx", "my", "mz")), because="One row is redundant: the distribution of reactions depends on the solver.")
 
 
 def governor():
     known = against("flyball_governor", (("slider", "z", 0),), 2.5e-3, 0.1, 36, 0)
-    return example("flyball_governor", 2.5e-3, 0.1, "Springs so stiff that a step does not resolve them, with dampers that do.", known, skip=("shaft.mx", "shaft.my", "shaft.mz"),
+    return example("flyball_governor", 2.5e-3, 0.1, "Springs so stiff that a step does not resolve their vibrations, with dampers.", known, skip=("shaft.mx", "shaft.my", "shaft.mz"),
                    because="Moments in the bearing are zero by symmetry.")
 
 
 def door():
-    # J φ'' + c φ' + k φ = 0 from rest at φ = 0, pushed at 2 rad/s: a linear oscillator with little or much damping.
+    # J φ'' + c φ' + k φ = 0 from φ = 0 with 2 rad/s: a linear oscillator with small or large damping.
     J, c, k, push = 30 * ((0.9**2 + 0.04**2) / 12 + 0.45**2), 8.0, 12.0, 2.0
     d, w = c / (2 * J), math.sqrt(k / J - (c / (2 * J)) ** 2)
     time = 0.2
     angle = push / w * math.exp(-d * time) * math.sin(w * time)
     rate = push * math.exp(-d * time) * (math.cos(w * time) - d / w * math.sin(w * time))
-    # Steps of order two change phase and decay by (ω Δt)²/12 of them; ω t is 0.2, and the closer's force is taken once a step.
+    # Steps of order two change phase and decay by (ω Δt)²/12 of them; ω t is 0.2, and the closer's force is evaluated once per step.
     known = lambda order: (Known("angle", at("lower", "rz", time), angle, lambda h: h * h + 1e-11), Known("rate", at("lower", "rate rz", time), rate, lambda h: h * h + 1e-11))  # noqa: E731
     return example("door_on_two_hinges", 5e-3, time, "A door with a closer: a damped oscillator in closed form.", known,
                    skip=tuple(f"{n}.{c}" for n in ("lower", "upper") for c in ("fx", "fy", "fz", "mx", "my", "mz")),
-                   because="Each hinge alone would hold the door: the solver shares the reactions.")
+                   because="Each hinge alone would hold the door: the distribution of reactions depends on the solver.")
 
 
 def beam_four_bar():
     meshes = tuple({"beams.coupler.elements": str(n)} for n in (32, 64))
     return example("flexible_four_bar", 1e-3, 0.03, "A soft coupler, as a beam.", asked=1.4, skip=SOUND, meshes=meshes, mesh_skip=("middle", "root"), mesh_floor=3e-3,
-                   because=WHY_WAVES + " Probes of an element name another place when there are more.")
+                   because=WHY_WAVES + " Probes of an element are at other positions on finer meshes.")
 
 
 def beam_four_bar_resolved():
@@ -141,13 +141,13 @@ def panel():
 
 
 def panel_reaction():
-    return Case("example_flexible_panel_reaction", "What holds a damped panel, whose viscosity lets no mode of a step oscillate.", "examples/flexible_panel/model.yaml", 0.1, 2.0, order=1.5, smooth=True,
+    return Case("example_flexible_panel_reaction", "Reactions of a damped panel all of whose modes are overdamped by its viscosity.", "examples/flexible_panel/model.yaml", 0.1, 2.0, order=1.5, smooth=True,
                 skip=("tip", "x_tip", "y_tip", "z_tip", "centre.[m]", "centre.[m/s]"), floor=1e-3)
 
 
 def bushing():
     dynamic = {"analysis.type": "dynamics"}
-    return Case("example_rubber_bushing", "Rubber with viscosity, let go under 1.5 kN.", "examples/rubber_bushing/model.yaml", 5e-4, 2.5e-3,
+    return Case("example_rubber_bushing", "Rubber with viscosity, released under 1.5 kN.", "examples/rubber_bushing/model.yaml", 5e-4, 2.5e-3,
                 (Variant("", dynamic),), order=2, smooth=True, floor=1e-6, fractions=(1, 0.5, 0.2, 0.05), skip=("inner.[N m]", "outer.[N m]"),
                 because="Moments are zero by symmetry. Finer steps take minutes.")
 
@@ -168,21 +168,21 @@ def knee():
 
 
 def roll_up():
-    # A moment 2π EI/L bends the strip to a full circle: its end returns to its start, x = 0, whatever the mesh.
+    # A moment 2π EI/L bends the strip to a full circle: its end returns to its start, x = 0, for any mesh.
     known = tuple(Known(f"tip {c} [m]", last("tip", c), 0.0, 1e-9) for c in "xyz")
     return Case("example_beam_roll_up", "A strip bent to a full circle.", "examples/beam_roll_up/model.yaml", 1, 1, (Variant("", {}, known),), statics=True, floor=1e-8,
                 skip=("tip", "middle.fx", "middle.fy", "middle.fz", "middle.strain x", "middle.strain y", "middle.strain z", "clamp.fx", "clamp.fy", "clamp.fz"),
                 meshes=({"beams.strip.elements": "20"}, {"beams.strip.elements": "40"}), mesh_skip=("middle",), mesh_floor=1e-9, mesh_known=known,
-                because="What is skipped is zero: there are no forces, and the tip comes back to the origin.")
+                because="Skipped columns are zero: there are no forces, and the tip returns to the origin.")
 
 
 # Forces in position rows carry rounding by 1/Δt²: it adds up in the work of the platform's legs and of the cat's motors, and shifts the time at which the trebuchet's
 # trough carries nothing any more.
-CASES = [example("tumbling_body", 1e-2, 0.4, "A T-handle turns over in free fall.", orders=(2, 8)),
-         example("double_pendulum", 1e-2, 0.4, "Two bars let go sideways.", orders=(2, 6)), example("gyroscope", 1e-3, 0.04, "Precession and nodding.", orders=(2, 6)),
+CASES = [example("tumbling_body", 1e-2, 0.4, "A T-handle that turns over in free fall.", orders=(2, 8)),
+         example("double_pendulum", 1e-2, 0.4, "Two bars released horizontally.", orders=(2, 6)), example("gyroscope", 1e-3, 0.04, "Precession and nutation.", orders=(2, 6)),
          heavy_top(), slider_crank(), example("crank_rocker", 1e-3, 0.2, "A motor starts a crank-rocker."), example("planetary_gearbox", 1e-3, 0.1, "Gears, redundant planets, a motor.",
                  skip=("output.[N]", "teeth_1.[N or N m]", "teeth_1.[W]", "teeth_2.[N or N m]", "teeth_2.[W]"),
-                 because="The bearings carry nothing, and redundant planets share their load to 1e-7 only."),
+                 because="The bearings carry no load, and redundant planets share theirs to 1e-7 only."),
          example("suspension_corner", 1e-3, 0.1, "Bushings, strut and tyre on a shaker."),
          example("excavator", 5e-3, 0.5, "Three cylinders move an arm."), example("stewart_platform", 2e-3, 0.1, "Six legs move a platform.", floor=1e-7),
          example("three_rrr", 2e-3, 0.1, "Three motors carry a plate.", floor=1e-7),

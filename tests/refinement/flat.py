@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flat triangles are flat, tubes are round: bodies slide over a field of heights as over a plane, and roll in and on a tube on their radii."""
+"""Flat triangles and round tubes: bodies slide over a height field as over a plane, and roll in and on a tube on their radii."""
 import math
 
 from case import FLOOR, Case, Known, Variant, body, largest, last, model, turn_y
 
 G = 9.81
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 
 
 def slides_over_triangles():
-    """Without friction nothing changes a speed of 5 m/s, whatever edges are crossed."""
+    """Sliding without friction at 5 m/s: the speed is constant across all edges."""
     cell, columns, rows, v = 0.02, 100, 80, 5.0
     bodies = {"field": {"fixed": True, "shape": {"height_field": {"spacing": cell, "heights": [[0.0] * columns] * rows}}}}
     shapes = {"ball": {"sphere": 0.2}, "crate": {"box": [0.3, 0.2, 0.2]}, "rod": {"capsule": [0.2, 0.4]}}
@@ -31,7 +31,7 @@ def slides_over_triangles():
 
 
 def rolls_in_a_tube():
-    """A ball swings about the bottom with ω² = g/((1 + 2/5)(R - ρ)), on its own radius."""
+    """A ball that oscillates about the bottom with ω² = g/((1 + 2/5)(R - ρ)), on its own radius."""
     inner, r, start = 0.5, 0.1, 0.1
     lies = {"axis": "x", "angle": "90 deg"}
     bodies = {"tube": {"fixed": True, "shape": {"tube": [1.2, 2 * inner, 1]}, "orientation": lies},
@@ -52,7 +52,7 @@ def rolls_in_a_tube():
 
 
 def tube_rolls():
-    """A tube on a plane rolls on its own radius."""
+    """A tube that rolls on a plane on its own radius."""
     r, v = 0.3, 2.0
     bodies = {**FLOOR, "wheel": {"shape": {"tube": [2 * r, 0.4, 0.1]}, "density": 800, "position": [0, 0, r], "orientation": {"axis": "x", "angle": "90 deg"},
                                  "velocity": [v, 0, 0], "angular_velocity": [0, v / r, 0]}}

@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies laid on an incline, all settings left out but friction: they stick, slide or roll by elementary mechanics."""
+"""Bodies placed on an incline, with default settings except for friction: they stick, slide or roll as in elementary mechanics."""
 import math
 
 from case import Case, Known, Variant, model
 
 G = 9.81
-R = 0.1  # Half height of what stands, radius of what lies [m].
+R = 0.1  # Half height or radius [m].
 MASS = 2
 TILT = math.radians(30)
 STEPS = (1, 0.5, 0.1, 0.01)  # 10, 5, 1, 0.1 ms
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 BAND = 1e-3 * R
 NORMAL, ALONG = (math.sin(TILT), 0, math.cos(TILT)), (math.cos(TILT), 0, -math.sin(TILT))
 STANDS = ("box", "puck")
-# What rolls has its moment of inertia over m r².
+# Moment of inertia over m r² of shapes that roll.
 ROLLS = {"ball": 2 / 5, "cylinder": 1 / 2, "capsule": 0.45}
 SHAPES = {"box": {"box": [0.4, 0.4, 2 * R]}, "puck": {"cylinder": [0.4, 2 * R]}, "ball": {"sphere": 2 * R},
           "cylinder": {"cylinder": [2 * R, 0.3]}, "capsule": {"capsule": [2 * R, 0.4]}}
 
 
 def way(name):
-    """Way down the incline at the end."""
+    """Displacement down the incline at the end."""
 
     def read(run):
         table = run.probe(name)
@@ -40,7 +40,7 @@ def spin(name):
 
 
 def off(name):
-    """How far its lowest point is from the incline, either way, over the band."""
+    """Distance of the lowest point from the incline, above or below, over the band."""
 
     def read(run):
         table = run.probe(name)
@@ -50,7 +50,7 @@ def off(name):
 
 
 def creeps(name, after, unit=1.0):
-    """Largest way from where it was at a time on."""
+    """Largest displacement from the position at a time on."""
 
     def read(run):
         t = run.probe(name)
@@ -66,7 +66,7 @@ def laid(friction, **law):
     for i, (name, shape) in enumerate(SHAPES.items()):
         bodies[name] = {"shape": dict(shape), "mass": MASS, "position": [R * NORMAL[0], 0.6 * i, R * NORMAL[2]],
                         "orientation": {"axis": "y", "angle": f"{TILT!r} rad"}}
-        if name in ("cylinder", "capsule"):  # It lies along the body's y.
+        if name in ("cylinder", "capsule"):  # Its axis is the body's y.
             bodies[name]["shape"]["orientation"] = {"axis": "x", "angle": "90 deg"}
         if name in ROLLS:
             bodies[name]["inertia"] = [MASS * 0.02, MASS * ROLLS[name] * R * R, MASS * 0.02]
@@ -75,7 +75,7 @@ def laid(friction, **law):
 
 
 def known_of(mu, span):
-    """Way, speed and spin of all shapes a time after they were let go, with a coefficient below the tangent."""
+    """Displacement, speed and spin of all shapes after their release, with a coefficient below the tangent."""
     found = []
     for name in SHAPES:
         a, w = G * (math.sin(TILT) - mu * math.cos(TILT)), 0.0
@@ -114,8 +114,8 @@ def sticks():
     built["variables"] = {"mu": 0.6, "most": 0.6}
     variants = [Variant(f"mu {mu}, static {most}", {"mu": mu, "most": most}, tuple(known))
                 for mu, most in ((0.6, 0.6), (0.5, 0.6))]
-    # While it settles in the band normal forces swing: within 4 % of the bound it may let go of what would stick, and
-    # hold what slides some 30 ms longer.
+    # Normal forces oscillate while a body settles in the band: within 4 % of the bound it may slip instead of sticking, and
+    # stick some 30 ms longer before it slides.
     variants.append(Variant("mu 0.5, static 0.565", {"mu": 0.5, "most": 0.565},
                             tuple(Known(f"{name}: speed down", speed(name), slide, 0.04 * slide) for name in STANDS)))
     return Case("incline_sticks", "Below static friction it stays where it was laid, without creep; above it slides.",

@@ -8,7 +8,7 @@ import math
 from case import FLOOR, Case, Known, Variant, at, body, last, model
 
 G = 9.81
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 
 
 def runge_kutta(rates, y, t, step, until=math.inf, stop=None):
@@ -37,7 +37,7 @@ def runge_kutta(rates, y, t, step, until=math.inf, stop=None):
 
 
 def ladder():
-    """A rod slides down between a smooth wall and a smooth floor from rest at θ₀. While it touches both, energy gives
+    """A rod that slides down between a smooth wall and a smooth floor from rest at θ₀. While it touches both, energy gives
     θ'² = 3 g/l (sin θ₀ - sin θ); the wall's force vanishes at sin θ = ⅔ sin θ₀, from where the centre keeps the velocity
     ⅓ sin θ₀ √(g l sin θ₀) along the floor."""
     l, r, start = 2.0, 0.02, math.radians(60)
@@ -63,7 +63,7 @@ def ladder():
     def steepness(run):
         return (run.probe("ladder_z")["z"][-1] - run.probe("ladder")["z"][-1])
 
-    # The steps in which it sets off and leaves the wall are known to a step; then all of it lags by up to h times its rate.
+    # The times at which it starts and leaves the wall are known to a step, so later values lag by up to h times their rate.
     rate = math.cos(after[0]) * abs(after[1])
     known = (Known("speed along the floor at the end", last("ladder", "vx"), speed, 1e-4 * speed), Known("its centre from the wall [m]", last("ladder", "x"), where, lambda h: 1e-4 + speed * h),
              Known("sine of its angle", steepness, math.sin(after[0]), lambda h: 1e-4 + rate * h),
@@ -74,8 +74,8 @@ def ladder():
 
 
 def billiard():
-    """A ball slides until it rolls at 5/7 v, after 2 v/(7 μ g) and 12 v²/(49 μ g). A rolling ball that meets a like one in
-    its middle, e = 1, gives it all of its speed and keeps its spin: 5/7 v and 2/7 v once both roll again."""
+    """A ball slides until it rolls at 5/7 v, after 2 v/(7 μ g) and 12 v²/(49 μ g). A rolling ball that hits an equal one
+    centrally, e = 1, transfers its whole speed and keeps its spin: 5/7 v and 2/7 v once both roll again."""
     r, v, mu = 0.03, 2.0, 0.2
     t_rolls, way = 2 * v / (7 * mu * G), 12 * v * v / (49 * mu * G)
     end, gap = 0.6, 0.02 * v
@@ -84,14 +84,14 @@ def billiard():
               "cue": {**ball, "position": [0, 0, r], "velocity": [v, 0, 0], "angular_velocity": [0, v / r, 0]},
               "object": {**ball, "position": [2 * r + gap, 0, r]}}
     rolls = 5 / 7 * v * (end - t_rolls) + way
-    met = gap / v  # The other slides up from rest to 2/7 v in the same time.
-    # In the step of the stroke friction of the slip before or after it acts, μ g h either way.
+    met = gap / v  # The other one is accelerated from rest to 2/7 v in the same time.
+    # In the step of the impact the friction is that of the slip before or after it: an error of ±μ g h.
     stroke = lambda h: 2e-4 * v + mu * G * h  # noqa: E731
     known = (Known("sliding ball: speed at the end", last("slides", "vx"), 5 / 7 * v, 1e-4 * v), Known("sliding ball: way [m]", last("slides", "x"), rolls, 1e-4 * rolls),
              Known("sliding ball: speed half-way to rolling", at("slides", "vx", t_rolls / 2), v - mu * G * t_rolls / 2, 1e-4 * v),
              Known("cue ball: speed at the end", last("cue", "vx"), 2 / 7 * v, stroke), Known("object ball: speed at the end", last("object", "vx"), 5 / 7 * v, stroke),
              Known("object ball: way [m]", lambda run: last("object", "x")(run) - 2 * r - gap, 5 / 7 * v * (end - met - t_rolls) + way, lambda h: 1e-4 + 0.5 * stroke(h)))
-    return Case("billiard", "Sliding becomes rolling at 5/7 v; a stroke in the middle leaves 2/7 v and 5/7 v.",
+    return Case("billiard", "Sliding becomes rolling at 5/7 v; a central impact gives 2/7 v and 5/7 v.",
                 model("Billiard", bodies, contacts={"default": {"friction": mu}, "pairs": {"click": {"between": ["cue", "object"], "friction": 0, "restitution": 1}}},
                       probes={name: {"body": name} for name in ("slides", "cue", "object")}),
                 5e-3, end, (Variant("", {}, known),), (1, 0.5, 0.1, 0.02), compare=False, because=CLOSED)
@@ -100,10 +100,10 @@ def billiard():
 def rocking_block():
     """Housner, Bull. Seismol. Soc. Am. 53 (1963), 403-417: a block rocks about its edges, I θ'' = -m g R sin(α - θ), I = 4/3 m R²,
     and keeps the part (1 - 3/2 sin²α)² of its energy whenever it lands with e = 0 on the other edge. Its equation is solved
-    without taking angles for small."""
+    for finite angles."""
     b, t, high = 0.2, 0.3, 0.8  # Width across the edges, thickness, height.
     rounding = 1e-3 * b / 2
-    half, up = b / 2 - rounding, high / 2  # It turns about the middle of its rounded edge, to 1e-4.
+    half, up = b / 2 - rounding, high / 2  # It rotates about the centre of its rounded edge, to 1e-4.
     R, alpha = math.hypot(half, up), math.atan2(half, up)
     gyration = (b * b + high * high) / 12 + R * R
     start = 0.5 * alpha
@@ -117,7 +117,7 @@ def rocking_block():
     angle = lambda run: math.atan2(run.probe("block_x")["z"][-1] - run.probe("block")["z"][-1], run.probe("block_x")["x"][-1] - run.probe("block")["x"][-1])  # noqa: E731
 
     def landing(run):
-        """When the centre has passed over the middle between both edges."""
+        """Time at which the centre passes the middle between both edges."""
         table = run.probe("block_x")
         tilt = [a - c for a, c in zip(table["z"], run.probe("block")["z"])]
         i = next(i for i, v in enumerate(tilt) if v > 0)
@@ -137,7 +137,7 @@ def rocking_block():
 
 
 def turning_table():
-    """A ball that rolls on a table turning at Ω runs round at 2/7 Ω, in a circle of radius 7 v/(2 Ω): v' = 2/7 Ω × v
+    """A ball that rolls on a table rotating at Ω moves in a circle of radius 7 v/(2 Ω) with 2/7 Ω: v' = 2/7 Ω × v
     (Weltner, Am. J. Phys. 47, 1979, 984-986)."""
     r, v, omega, end = 0.05, 0.3, 4.0, 0.8
     rate = 2 / 7 * omega
@@ -146,15 +146,15 @@ def turning_table():
     x, y = v / rate * math.sin(rate * end), v / rate * (1 - math.cos(rate * end))
     known = (Known("x at the end [m]", last("ball", "x"), x, 1e-3 * v / rate), Known("y at the end [m]", last("ball", "y"), y, 1e-3 * v / rate),
              Known("speed at the end", lambda run: math.hypot(last("ball", "vx")(run), last("ball", "vy")(run)), v, 1e-3 * v))
-    return Case("turning_table", "A rolling ball runs round at 2/7 of the table's rate, in a circle.",
+    return Case("turning_table", "A rolling ball moves in a circle at 2/7 of the table's rate.",
                 model("Turning table", bodies, joints={"axle": {"type": "revolute", "bodies": ["ground", "table"], "at": [0, 0, -0.1], "axis": "z"}},
                       contacts={"default": {"friction": 1}}, probes={"ball": {"body": "ball"}}),
                 1e-2, end, (Variant("", {}, known),), (1, 0.5, 0.1, 0.02), compare=False, because=CLOSED)
 
 
 def sliding_rod():
-    """Painlevé's rod where his equations have one answer: its lower end slides on the floor, μ below the paradox. With
-    the arm c from the centre to the touching point, forces (-μ s N, N) there and the end's path on the floor,
+    """Painlevé's rod where its equations have one solution: its lower end slides on the floor, μ below the paradox. With
+    the arm c from the centre to the contact point, forces (-μ s N, N) there and the end's path on the floor,
     N follows from z'' of the end's centre = 0; two equations are integrated."""
     l, r, mu, start, slip = 1.0, 0.01, 0.3, math.radians(60), 1.0
     moment = l * l / 12  # Of 1 kg.
@@ -176,13 +176,13 @@ def sliding_rod():
                                "orientation": {"axis": "y", "angle": f"{math.pi / 2 - start} rad"}, "velocity": [slip, 0, 0]}}
     known = (Known("x at the end [m]", last("rod", "x"), y[2], lambda h: 2e-4 + slip * h), Known("speed at the end", last("rod", "vx"), y[3], lambda h: 2e-4 * slip + mu * G * h),
              Known("sine of its angle", lambda run: run.probe("rod_z")["z"][-1] - run.probe("rod")["z"][-1], math.sin(y[0]), lambda h: 2e-4 + abs(y[1]) * h))
-    return Case("painleve_rod", "Slides with its lower end on the floor, its equations as far as they have one answer.",
+    return Case("painleve_rod", "Slides with its lower end on the floor, where its equations have one solution.",
                 model("Painlevé's rod", bodies, contacts={"default": {"friction": mu}}, probes={"rod": {"body": "rod"}, "rod_z": {"body": "rod", "point": [0, 0, 1]}}),
                 5e-3, end, (Variant("", {}, known),), (1, 0.5, 0.1, 0.02), compare=False, because=CLOSED)
 
 
 def dropped_chain():
-    """Five hinged links fall on the floor one after the other, e = 0 and smooth: no known numbers, but one answer."""
+    """Five hinged links that fall on the floor one after the other, e = 0, without friction: no known numbers, but a unique solution."""
     count, length, thick, tilt = 5, 0.2, 0.03, math.radians(12)
     bodies, joints, exclude = dict(FLOOR), {}, []
     for i in range(count):

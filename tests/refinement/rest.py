@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies that touch from the start, roll, slide to a halt, land flat: gaps, ways and speeds by elementary mechanics."""
+"""Bodies that touch from the start, roll, slide to a halt, land flat: gaps, displacements and speeds of elementary mechanics."""
 from case import FLOOR, Case, Known, Variant, body, fall, last, model, rise, turn_y
 
 G = 9.81
 ABSOLUTE = (1, 0.5, 0.1, 0.01, 0.001)  # 10, 5, 1, 0.1, 0.01 ms
-STILL = "It stands still."
-CLOSED = "Closed forms ask everything."
+STILL = "It is at rest."
+CLOSED = "Closed forms give all results."
 
 
 def touches_at_start():
-    """Placed with gap 0, as everybody does. The band is 1e-3 of the smallest half size, 1e-4 m or less."""
+    """Bodies placed with gap 0, as in most models. The band is 1e-3 of the smallest half size, 1e-4 m or less."""
     shapes = {"ball": ({"sphere": 0.2}, 0.1), "crate": ({"box": [0.4, 0.4, 0.4]}, 0.2),
               "wheel": ({"cylinder": [0.6, 0.2]}, 0.3), "rod": ({"capsule": [0.02, 2]}, 0.01)}
     bodies = dict(FLOOR)
@@ -23,13 +23,13 @@ def touches_at_start():
         known += [Known(f"{name} rises [m]", rise(name, "z"), 0, 1e-9, below=True),
                   Known(f"{name} sinks, of its band", lambda run, n=name, b=band: fall(n, "z")(run) / b, 0, 0.12, below=True),
                   Known(f"{name}: speed at the end", last(name, "vz"), 0, 1e-3)]
-    return Case("touches_at_start", "Ball, crate, wheel and rod on the floor: none is thrown off, each sinks by a part of its band that carries it.",
+    return Case("touches_at_start", "Ball, crate, wheel and rod on the floor: none rises, each sinks by the part of its band that carries it.",
                 model("Touch at the start", bodies, contacts={"default": {"friction": 0.3}}, probes={name: {"body": name} for name in shapes}),
                 1e-2, 0.1, (Variant("", {}, tuple(known)),), ABSOLUTE, compare=False, because=STILL)
 
 
 def set_down():
-    """A ball that rolls at 8 m/s falls from 1 mm: rolling on the floor neither friction nor impact change its speed."""
+    """A rolling ball of 8 m/s that falls from 1 mm: neither friction nor impact changes its speed."""
     r = 0.3
     bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": 2, "position": [0, 0, r + 1e-3], "velocity": [8, 0, 0], "angular_velocity": [0, 8 / r, 0]}}
     known = (Known("speed", last("ball", "vx"), 8, 8e-4),
@@ -42,17 +42,17 @@ def set_down():
 
 
 def spinning_set_down():
-    """Without friction nothing turns it."""
+    """A spinning ball without friction: its spin is constant."""
     r = 0.3
     bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": 2, "position": [0, 0, r + 1e-2], "velocity": [3, 0, 0], "angular_velocity": [0, 5, 0]}}
     known = (Known("speed", last("ball", "vx"), 3, 1e-10), Known("angle [rad]", lambda run: turn_y("ball", "ball_x")(run)[-1], 2.5, 2e-3))
-    return Case("smooth_ball_set_down", "A frictionless ball keeps speed and spin, whatever its restitution.",
+    return Case("smooth_ball_set_down", "A frictionless ball keeps speed and spin for any restitution.",
                 model("Smooth ball set down", bodies, variables={"e": 0}, contacts={"default": {"restitution": "e"}}, probes=body("ball")),
                 1e-2, 0.5, tuple(Variant(f"e {e}", {"e": e}, known) for e in (0, 0.5)), (1, 0.5, 0.1, 0.01), compare=False, because=CLOSED)
 
 
 def cylinder_on_a_box():
-    """Slides on its flat face: v²/(2 μ g)."""
+    """A cylinder that slides on its flat face: it stops after v²/(2 μ g)."""
     v, mu = 2.0, 0.4
     bodies = {"table": {"fixed": True, "shape": {"box": [4, 1, 0.2]}, "position": [1, 0, -0.1]},
               "puck": {"shape": {"cylinder": [0.2, 0.1]}, "mass": 1, "position": [0, 0, 0.05], "velocity": [v, 0, 0]}}
@@ -63,7 +63,7 @@ def cylinder_on_a_box():
 
 
 def lands_flat():
-    """A box with e = 0 stays where it lands; sliding it loses μ w of its speed, sticking it stops."""
+    """A box that lands with e = 0 and stays: if it slides it loses μ w of its speed, if it sticks it stops."""
     bodies = {**FLOOR, "box": {"shape": {"box": [0.2, 0.2, 0.2]}, "mass": 1, "position": [0, 0, 0.1 + 2 * 0.0137], "velocity": ["v", 0, -2]}}
     variants = []
     for v, mu in ((0, 0), (10, 0.05), (0.5, 0.5)):
@@ -76,8 +76,8 @@ def lands_flat():
 
 
 def lifted_after_landing():
-    """A ball of a spring's law lands, e = 0, and is lifted with its own weight: what the impact left below the surface
-    gives it nothing on its way up."""
+    """A ball with a spring law that lands, e = 0, and is lifted by twice its weight: the penetration left by the impact
+    adds no energy on its way up."""
     r, mass, lifted, end = 0.05, 0.1, 0.05, 0.1
     bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": mass, "position": [0, 0, r + 0.0137],
                                 "velocity": [0, 0, -1]}}
@@ -86,9 +86,9 @@ def lifted_after_landing():
                   probes={"ball": {"body": "ball"}}, loads={"lift": lift})
     built["variables"] = {"e": 0}
     speed = G * (end - lifted)
-    # It starts from within the tolerance, 5e-5 m, and the spring that carried it gives back m g times half of that.
+    # It starts from within the tolerance, 5e-5 m, and the spring that carried it releases m g times half of that.
     known = (Known("speed at the end", last("ball", "vz"), speed, lambda h: 5e-3 * speed + G * h),)
-    return Case("lifted_after_landing", "Rises with g, and keeps nothing of the impact.", built, 1e-3, end,
+    return Case("lifted_after_landing", "Rises with g, without energy of the impact.", built, 1e-3, end,
                 tuple(Variant(law, {"contacts.default.law": law}, known) for law in ("barrier", "linear", "hertz")),
                 (1, 0.5, 0.1, 0.01), compare=False, because=CLOSED)
 

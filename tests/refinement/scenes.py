@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes of the validation suite with contact, stops or friction, at many steps: balls on a slope, resistance to rolling, Hertz's
-impact, static friction, friction of joints, a pendulum on its stop, a flat field of heights, beams, cables and a trolley of all."""
+impact, static friction, friction of joints, a pendulum on its stop, a flat height field, beams, cables and a trolley with all of these."""
 import math
 
 from case import FLOOR, Case, Known, Variant, at, body, fall, last, model, rise
 
 G = 9.81
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 
 
 def slope():
-    """Balls on 30 degrees: rolls with 5/7 g sin, slips with g (sin - μ cos) and spins with 5/2 μ g cos/r."""
+    """Balls on a slope of 30 degrees: one rolls with 5/7 g sin, one slips with g (sin - μ cos) and spins with 5/2 μ g cos/r."""
     r, s, c, mu, end = 0.1, 0.5, 3**0.5 / 2, 0.1, 0.5
     bodies = {"slope": {"fixed": True, "shape": {"plane": [s, 0, c]}}}
     for i, name in enumerate(("rolls", "slips")):
@@ -27,7 +27,7 @@ def slope():
 
 
 def resistance():
-    """Resistance to rolling and drilling slows a ball by 5/7 a g/r and b g/(2/5 r²)."""
+    """Rolling and spin resistance of a ball, which slows down by 5/7 a g/r and b g/(2/5 r²)."""
     r, a, b, end = 0.1, 2e-3, 3e-3, 0.5
     bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": 1, "position": [0, 0, r], "velocity": [1, 0, 0], "angular_velocity": [0, 10, 0]},
               "top": {"shape": {"sphere": 2 * r}, "mass": 1, "position": [0, 1, r], "angular_velocity": [0, 0, 20]}}
@@ -48,7 +48,7 @@ def resistance():
 
 
 def hertz():
-    """A ball on a floor by Hertz's law, F = k d^(3/2), e = 1: sinks to δ = (5 m w²/(4 k))^(2/5), in contact for 2.94 δ/w
+    """A ball on a floor by Hertz's law, F = k d^(3/2), e = 1: it sinks to δ = (5 m w²/(4 k))^(2/5), in contact for 2.94 δ/w
     (Johnson, Contact Mechanics, 1985, 11.4)."""
     r, m, w, k = 0.05, 0.5, 1.0, 1e7
     deep = (5 * m * w * w / (4 * k)) ** 0.4
@@ -64,25 +64,25 @@ def hertz():
 
 
 def static_friction():
-    """Pulled with 5 N/s each of 1 kg lets go at μ_s m g = 6 N, 1.2 s, and then has 1 m/s² and more: by μ = 0.5 below."""
+    """Blocks of 1 kg pulled with 5 N/s: each slips at μ_s m g = 6 N, after 1.2 s, with at least 1 m/s², since μ = 0.5."""
     shapes = {"box": {"box": [0.2, 0.2, 0.1]}, "puck": {"cylinder": [0.1, 0.1]}}
     bodies, loads, probes, known = dict(FLOOR), {}, {}, []
     for i, (name, shape) in enumerate(shapes.items()):
         bodies[name] = {"shape": shape, "mass": 1, "position": [0, i, 0.05]}
         loads["pull_" + name] = {"type": "force", "body": name, "force": ["5*t", 0, 0]}
         probes[name] = {"body": name}
-        # v = (5 (t² - t0²)/2 - 5 (t - t0)) after it let go.
+        # v = (5 (t² - t0²)/2 - 5 (t - t0)) after it slips.
         speed = 2.5 * (1.224**2 - 1.2**2) - 5 * 0.024
         known += [Known(f"{name}: speed at 0.59 of its weight", at(name, "vx", 1.18), 0, 1e-3),
-                  # It lets go within 1 % of 0.6: 12 ms, at 1 m/s².
+                  # Slip begins within 1 % of 0.6: 12 ms, at 1 m/s².
                   Known(f"{name}: speed 24 ms after 0.6 of its weight", at(name, "vx", 1.224), speed, 0.012)]
-    return Case("static_friction", "Let go at 0.6 of their weight, to 1 %, and slide with 0.5.",
+    return Case("static_friction", "Slip at 0.6 of the weight, to 1 %, and slide with 0.5.",
                 model("Static friction", bodies, gravity=(0, 0, -10), loads=loads, contacts={"default": {"friction": 0.5, "static_friction": 0.6}}, probes=probes),
                 6e-3, 1.224, (Variant("", {}, tuple(known)),), (1, 0.5, 0.1, 0.05), compare=False, because=CLOSED)
 
 
 def joints_with_friction():
-    """Without gravity: a sled stops after m v²/(2 F), a wheel after J ω²/(2 M)."""
+    """Friction of joints without gravity: a sled stops after m v²/(2 F), a wheel after J ω²/(2 M)."""
     v, omega, F, M, m = 1.0, 5.0, 4.0, 0.1, 2.0
     bodies = {"sled": {"shape": {"box": [0.2, 0.1, 0.1]}, "mass": m, "velocity": [v, 0, 0]},
               "wheel": {"mass": 1, "inertia": [0.01, 0.01, 0.02], "position": [0, 1, 0], "angular_velocity": [0, 0, omega]}}
@@ -99,7 +99,7 @@ def joints_with_friction():
 
 
 def pendulum_on_a_stop():
-    """A bar falls from the horizontal about its end on a stop at 60 degrees: e √(3 g sin/l), and rises by e² of the height."""
+    """A bar that falls from the horizontal about its end on a stop at 60 degrees: it rebounds with e √(3 g sin/l), and rises by e² of the height."""
     l, stop = 1.0, math.radians(60)
     variants = []
     for e in (0, 0.5, 1):
@@ -116,11 +116,11 @@ def pendulum_on_a_stop():
     return Case("pendulum_on_a_stop", "Falls on its stop at 60 degrees; rises by e² of the height, stays with e = 0.",
                 model("Pendulum on a stop", bodies, variables={"e": 0}, joints={"hinge": {"type": "revolute", "bodies": ["ground", "bar"], "at": [0, 0, 0], "axis": "y",
                                                                                           "limits": {"upper": "60 deg", "restitution": "e"}}}, probes={"hinge": {"joint": "hinge"}}),
-                1e-2, 0.9, tuple(variants), (1, 0.5, 0.1, 0.02), skip=("hinge.impulses", "hinge.speeds"), because="Reactions of an instant do not tell the impulse of a stop.")
+                1e-2, 0.9, tuple(variants), (1, 0.5, 0.1, 0.02), skip=("hinge.impulses", "hinge.speeds"), because="Reactions at an instant do not contain the impulse of a stop.")
 
 
 def flat_field():
-    """A field of heights that are all 0 is a plane, a trough along x a line: a smooth ball keeps its speed on either."""
+    """A smooth ball on a flat height field and in a trough along x: it keeps its speed on both."""
     r, v, cell, end = 0.1, 5.0, 0.02, 0.15
     flat = [[0] * 60 for _ in range(21)]
     bodies = {"field": {"fixed": True, "shape": {"height_field": {"spacing": cell, "heights": flat}}},
@@ -148,7 +148,7 @@ def ball_on_cable():
     bodies = {"left": {"shape": {"box": [0.1, 0.2, 0.2]}, "density": 1000, "position": [-0.55, 0, 0]},
               "right": {"shape": {"box": [0.1, 0.2, 0.2]}, "density": 1000, "position": [0.55, 0, 0]},
               "ball": {"shape": {"sphere": "60 mm"}, "density": 2000, "position": [0.02, 0, 0.04], "velocity": [0, 0, -2]}}
-    return Case("ball_on_cable", "A ball flies into a cable between two blocks in space.",
+    return Case("ball_on_cable", "A ball hits a cable between two free blocks.",
                 model("Ball on a cable", bodies, gravity=(0, 0, 0), cables={"rope": {"through": [["left", [0.05, 0, 0]], ["right", [-0.05, 0, 0]]], "stiffness": "20 kN",
                                                                                      "mass_per_length": 0.05, "elements": 20, "contact": {"radius": "4 mm"}}},
                       contacts={"default": {"restitution": 1}}, probes={name: {"body": name} for name in ("left", "right", "ball")}),
@@ -156,7 +156,7 @@ def ball_on_cable():
 
 
 def trolley():
-    """That of tests/validation/data/trolley.yaml, with probes."""
+    """The model of tests/validation/data/trolley.yaml, with probes."""
     box = lambda *sizes: {"box": list(sizes)}  # noqa: E731
     bodies = {**FLOOR, "wall": {"fixed": True, "position": [0.6, 0, 0.2], "shape": box(0.2, 1, 0.4)},
               "trolley": {"shape": box(0.4, 0.2, 0.1), "density": 1000, "position": [0, 0, 0.0502], "velocity": [2, 0, 0]},
@@ -167,19 +167,19 @@ def trolley():
     block = lambda size, cells, place: {"block": {"size": size, "cells": cells}, "position": place}  # noqa: E731
     solids = {"buffer": {"mesh": block([0.04, 0.1, 0.06], [2, 2, 1], [0.22, 0, 0.0502]), "material": "rubber", "bonded": {"trolley": "xmin"}, "contact": {"surface": "xmax"}},
               "stalk": {"mesh": block([0.03, 0.03, 0.16], [1, 1, 2], [-0.1, 0, 0.1802]), "material": "rubber", "bonded": {"trolley": "zmin", "lamp": "zmax"}, "contact": {"touches": False}}}
-    return Case("trolley", "Bodies on bodies, surfaces of solids and stops of joints: until the buffer meets the wall.",
+    return Case("trolley", "Bodies on bodies, surfaces of solids and stops of joints: until the buffer hits the wall.",
                 model("Trolley", bodies, joints=joints, solids=solids, materials={"rubber": {"type": "neo_hookean", "youngs_modulus": "1 MPa", "poisson_ratio": 0.35, "density": 1100}},
                       contacts={"default": {"friction": 0.2, "restitution": 0.4}, "exclude": [["trolley", "lamp"], ["lamp", "floor"], ["buffer", "floor"]]},
                       probes={name: {"body": name} for name in ("trolley", "bell", "lamp", "ball")}),
                 1e-3, 0.12, fractions=(1, 0.5, 0.2, 0.05), until=0.12, floor=3e-4,
-                because="Afterwards waves in the buffer, which nothing damps, open and close its face: steps of 1 to 0.2 ms differ by half a per cent.")
+                because="Afterwards undamped waves in the buffer open and close its face: steps of 1 to 0.2 ms differ by half a per cent.")
 
 
 def page_of_contacts():
     bodies = {**FLOOR, "wheel": {"shape": {"cylinder": [0.5, 0.1]}, "density": 1000, "position": [0, 0, 1], "contact": {"material": "rubber"}},
               "crate": {"shape": {"box": [0.4, 0.4, 0.4]}, "density": 300, "position": [2, 0, 0.2]}}
     known = (Known("crate rises [m]", rise("crate", "z"), 0, 1e-9, below=True), Known("crate sinks [m]", fall("crate", "z"), 0, 1e-5, below=True))
-    return Case("page_of_contacts", "The model of the reference page on contact: the crate stays where it is placed.",
+    return Case("page_of_contacts", "The model of the reference page on contact: the crate stays at rest.",
                 model("Page of contacts", bodies, contacts={"default": {"friction": 0.3, "restitution": 0.2}, "materials": {"rubber": {"friction": 1, "restitution": 0.6}},
                                                             "pairs": {"feet": {"between": ["crate", "floor"], "friction": 0.5}}}, probes={"crate": {"body": "crate"}}),
                 2e-3, 0.2, (Variant("", {}, known),), (1, 0.5, 0.05, 0.005), compare=False, because=CLOSED)

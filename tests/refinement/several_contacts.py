@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Impacts that other contacts have to carry on: with e = 0 everywhere nothing comes back, whoever pushes whom.
+"""Impacts that are transmitted by other contacts: with e = 0 everywhere there is no rebound.
 
-An impulse at one point presses another that touches already, whose own approach is none: it must answer at once, and with
-e = 0 all normal velocities of the island are zero or apart afterwards.
+An impulse at one point loads another one that is closed and has no velocity of approach: it must react at once, and with
+e = 0 all normal velocities of the island are zero or separating afterwards.
 """
 import math
 
@@ -10,12 +10,12 @@ from case import FLOOR, Case, Known, Variant, body, last, model
 
 G = 9.81
 ABSOLUTE = (1, 0.5, 0.1, 0.025, 0.005, 0.001)  # 10, 5, 1, 0.25, 0.05, 0.01 ms
-CLOSED = "Closed forms ask everything."
-BAND = 2e-4  # m: two tolerances of a thousandth of the smallest radius, within which bodies come to rest.
+CLOSED = "Closed forms give all results."
+BAND = 2e-4  # m: two tolerances of 1e-3 of the smallest radius, within which bodies come to rest.
 
 
 def rises(name):
-    """How far it comes up after it was lowest [m]."""
+    """Largest rise after the lowest position [m]."""
 
     def read(run):
         z = run.probe(name)["z"]
@@ -26,8 +26,8 @@ def rises(name):
 
 
 def falls_flat():
-    """A rod, a wide box and a disc stand on one edge, tilted by 5 degrees, and fall on the other side: both sides end at rest.
-    Wide ones do not rock: the landing presses the first edge."""
+    """A rod, a wide box and a disc on one edge, tilted by 5 degrees, that fall on the other edge: both edges end at rest.
+    Wide bodies do not rock, since the landing loads the first edge."""
     tilt = math.radians(5)
     l, r, b, high = 1.0, 0.02, 0.8, 0.2
     bodies = {**FLOOR, "rod": {"shape": {"capsule": [2 * r, l + 2 * r]}, "mass": 1, "position": [0, 0, r + l / 2 * math.sin(tilt)],
@@ -35,13 +35,13 @@ def falls_flat():
               "box": {"shape": {"box": [b, 0.3, high]}, "mass": 1, "position": [0, 3, high / 2 * math.cos(tilt) + b / 2 * math.sin(tilt)], "orientation": {"axis": "y", "angle": f"{tilt} rad"}},
               "disc": {"shape": {"cylinder": [b, high / 2]}, "mass": 1, "position": [0, 6, high / 4 * math.cos(tilt) + b / 2 * math.sin(tilt)], "orientation": {"axis": "y", "angle": f"{tilt} rad"}}}
     known = tuple(Known(f"{name}: comes up after it landed [m]", rises(name), 0, BAND, below=True) for name in ("rod", "box", "disc"))
-    return Case("falls_flat", "What falls over flat with e = 0 stays.",
+    return Case("falls_flat", "Bodies that fall flat with e = 0 stay at rest.",
                 model("Falls flat", bodies, variables={"mu": 0}, contacts={"default": {"friction": "mu"}}, probes={name: {"body": name} for name in ("rod", "box", "disc")}),
                 1e-2, 0.25, tuple(Variant(f"mu {mu}", {"mu": mu}, known) for mu in (0, 0.5)), ABSOLUTE, compare=False, because=CLOSED)
 
 
 def carried_on():
-    """A ball falls on a box that rests, in its middle and beside it; two boxes and two balls, one on the other, fall together."""
+    """A ball that falls on a box at rest, at its middle and beside it; two boxes and two balls, one on the other, that fall together."""
     ball = {"shape": {"sphere": 0.1}, "mass": 1}
     box = {"shape": {"box": [0.3, 0.3, 0.1]}, "mass": 1}
     big = {"shape": {"sphere": 0.2}, "mass": 1}
@@ -50,14 +50,14 @@ def carried_on():
               "low_ball": {**big, "position": [0, 4, 0.2]}, "high_ball": {**big, "position": [0, 4, 0.4]}}
     names = [name for name in bodies if name != "floor"]
     known = tuple(Known(f"{name}: comes up after it fell [m]", rises(name), 0, BAND, below=True) for name in names)
-    return Case("carried_on", "An impact with e = 0 upon what rests on the floor, or on what lands with it: all stays.",
+    return Case("carried_on", "An impact with e = 0 on a body that rests on the floor or lands at the same time: all stay at rest.",
                 model("Carried on", bodies, contacts={"default": {"friction": 0.3}}, probes={name: {"body": name} for name in names}),
                 1e-2, 0.2, (Variant("", {}, known),), ABSOLUTE, compare=False, because=CLOSED)
 
 
 def face_on_face():
-    """A box without weight meets the face of another with e = 0, in its middle or with its lower edges on the edge of that
-    face, as a box on the floor meets a wall on the floor: it loses its energy, and no more."""
+    """A box without weight that hits the face of another one with e = 0, in its middle or with its lower edges on the edge of that
+    face, as a box on the floor hits a wall on the floor: its energy is lost, and no more."""
     v = 2.0
     bodies = {"wall": {"fixed": True, "shape": {"box": [0.2, 2, 1]}, "position": [0.4, 0, 0]},
               "box": {"shape": {"box": [0.2, 0.2, 0.2]}, "mass": 1, "position": [0, 0, "z"], "velocity": [v, 0, 0]}}
@@ -68,8 +68,8 @@ def face_on_face():
 
 
 def two_stops():
-    """Two bars fall about their hinges. The first rests on its stop at 40 degrees when the second, at 7.9 rad/s against it, meets
-    its own at 20: that presses the first into its stop, and with e = 0 both stay, pressed by their weight."""
+    """Two bars that fall about their hinges. The first rests on its stop at 40 degrees when the second, at 7.9 rad/s relative to it,
+    hits its own at 20: that loads the first stop, and with e = 0 both stay closed under their weight."""
     bodies = {"first": {"shape": {"box": [1, 0.05, 0.05]}, "mass": 1, "position": [0.5, 0, 0]}, "second": {"shape": {"box": [1, 0.05, 0.05]}, "mass": 1, "position": [1.5, 0, 0]}}
     joints = {"base": {"type": "revolute", "bodies": ["ground", "first"], "at": [0, 0, 0], "axis": "y", "limits": {"upper": "40 deg", "restitution": 0}},
               "elbow": {"type": "revolute", "bodies": ["first", "second"], "at": [1, 0, 0], "axis": "y", "limits": {"upper": "20 deg", "lower": "-20 deg", "restitution": 0}}}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flat landings, wheels, corners, valleys and bowls of many faces: one motion whatever the features that carry it."""
+"""Flat landings, wheels, corners, valleys and bowls of many faces: the motion does not depend on the features in contact."""
 import math
 
 from case import FLOOR, Case, Known, Variant, body, fall, last, model, rise, turn_y
@@ -8,11 +8,11 @@ G = 9.81
 W = 2.0
 ABSOLUTE = (1, 0.5, 0.1, 0.01, 0.001)  # 10, 5, 1, 0.1, 0.01 ms
 SHORT = {1: 0.03, 0.5: 0.02, 0.1: 0.016, 0.01: 0.0139, 0.001: 0.0138}
-CLOSED = "Closed forms ask everything."
+CLOSED = "Closed forms give all results."
 
 
 def flat_rebound():
-    """A box, a cylinder and a plate of two feet that land flat leave flat with e w: by symmetry each point has its part."""
+    """A box, a cylinder and a body with two round feet that land flat: they rebound flat with e w, as their contact points have equal impulses by symmetry."""
     gap = W * 0.0137
     bodies = {**FLOOR, "box": {"shape": {"box": [0.3, 0.2, 0.2]}, "mass": 1, "position": [0, 0, 0.1 + gap], "velocity": [0, 0, -W]},
               "puck": {"shape": {"cylinder": [0.3, 0.1]}, "mass": 1, "position": [0, 2, 0.05 + gap], "velocity": [0, 0, -W]},
@@ -24,13 +24,13 @@ def flat_rebound():
     variants = tuple(Variant(f"e {e}", {"e": e}, tuple(k for n in names for k in (
         Known(f"{n}: vz after", last(n, "vz"), e * W, 1e-4 * W),
         Known(f"{n}: tilts [m]", lambda run, n=n: abs(run.probe(n + "_x")["z"][-1] - run.probe(n)["z"][-1]), 0, 1e-6, below=True)))) for e in (0, 0.3, 0.7, 1))
-    return Case("flat_rebound", "What lands flat leaves flat, with e w.",
+    return Case("flat_rebound", "Bodies that land flat rebound flat with e w.",
                 model("Flat rebound", bodies, gravity=(0, 0, 0), variables={"e": 0}, contacts={"default": {"restitution": "e"}}, probes={k: p for n in names for k, p in body(n).items()}),
                 1e-2, 0.03, variants, ABSOLUTE, spans=SHORT, compare=False, because=CLOSED)
 
 
 def rolling_wheels():
-    """A wheel, a capsule and a ball roll at 2 m/s, each on its own radius to 1e-4 of it."""
+    """A wheel, a capsule and a ball that roll at 2 m/s, each on its own radius to 1e-4 of it."""
     v, end = 2.0, 0.3
     shapes = {"wheel": ({"cylinder": [0.6, 0.1]}, 0.3), "roller": ({"capsule": [0.2, 0.8]}, 0.1), "ball": ({"sphere": 0.4}, 0.2)}
     bodies, known, probes = dict(FLOOR), [], {}
@@ -47,7 +47,7 @@ def rolling_wheels():
 
 
 def into_a_corner():
-    """A smooth ball flies into a right corner of two walls, at once and one after the other: each speed comes back by e."""
+    """A smooth ball that hits the right-angled corner of two walls, at once and one after the other: each velocity is reversed with e."""
     r, gap = 0.1, 0.0137
     variants = []
     for name, vx, vz in (("at once", 1.0, 1.0), ("one after the other", 1.0, 0.9)):
@@ -56,13 +56,13 @@ def into_a_corner():
             variants.append(Variant(f"{name}, e {e}", {"e": e, "vx": -vx, "vz": -vz}, known))
     bodies = {**FLOOR, "wall": {"fixed": True, "shape": {"plane": "x"}},
               "ball": {"shape": {"sphere": 2 * r}, "mass": 1, "position": [r + gap, 0, r + gap], "velocity": ["vx", 0, "vz"]}}
-    return Case("into_a_corner", "Each speed comes back times e.",
+    return Case("into_a_corner", "Each velocity is reversed with e.",
                 model("Into a corner", bodies, gravity=(0, 0, 0), variables={"e": 0, "vx": 0, "vz": 0}, contacts={"default": {"restitution": "e"}}, probes={"ball": {"body": "ball"}}),
                 1e-2, 0.05, tuple(variants), ABSOLUTE, compare=False, because=CLOSED)
 
 
 def swing_in_a_trough():
-    """A smooth ball slides in a trough whose cross section is a parabola of fine cells, x²/(2 R): its energy stays, and so does its swing."""
+    """A smooth ball in a trough whose cross section is a parabola of fine cells, x²/(2 R): energy and amplitude are constant."""
     R, r, cell, count, start = 1.0, 0.05, 0.02, 61, 0.3
     heights = [[((i - count // 2) * cell) ** 2 / (2 * R) for i in range(count)] for _ in range(7)]
     slope = start / R
@@ -80,8 +80,8 @@ def swing_in_a_trough():
 
     energy = G * (start**2 / (2 * R) + r / n + 4e-5)
     swing = G * start**2 / (2 * R)
-    # With e = 0 each of the valley's kinks may take the motion across it, (cell/R)² of the energy there: half of the swing's on the
-    # mean. It begins with a fall of less than 4e-5 m.
+    # With e = 0 each kink of the valley may remove the velocity normal to it, (cell/R)² of the energy there: half of that of the swing on
+    # average. It begins with a fall of less than 4e-5 m.
     kinks = 2 * start / cell * 1.25 * 0.5 * (cell / R) ** 2 + 4e-5 * G / swing
     known = (Known("gains energy, of the swing's", lambda run: (highest(run) - energy) / swing, 0, 1e-6, below=True),
              Known("loses energy, of the swing's", lambda run: (energy - lowest(run)) / swing, 0, kinks, below=True),
@@ -92,7 +92,7 @@ def swing_in_a_trough():
 
 
 def over_a_hull():
-    """A smooth ball slides over the flat top of a hull of many points, of a box and of a plane: the same motion."""
+    """A smooth ball that slides over the flat top of a hull of many points, of a box and of a plane: the same motion."""
     r, v, end = 0.1, 5.0, 0.15
     points = [[x, y, z] for x in (-0.5, -0.25, 0, 0.2, 0.5) for y in (-0.3, 0.1, 0.3) for z in (-0.2, 0)]
     shapes = {"hull": {"hull": {"points": points}}, "box": {"box": [1, 0.6, 0.2], "position": [0, 0, -0.1]}, "plane": {"plane": "z"}}
@@ -114,7 +114,7 @@ def nonsmooth_ball():
         p = min(mu * (1 + e) * W, 3 / 3.5)
         variants.append(Variant(f"e {e}", {"e": e}, (Known("vz after", last("ball", "vz"), e * W, 1e-4 * W), Known("vx after", last("ball", "vx"), 3 - p, 1e-4 * W))))
     bodies = {**FLOOR, "ball": {"shape": {"sphere": 2 * r}, "mass": 1, "position": [0, 0, r + W * 0.0137], "velocity": [3, 0, -W]}}
-    return Case("nonsmooth_ball", "A ball meets the floor by the non-smooth law: e w, friction μp.",
+    return Case("nonsmooth_ball", "Impact of a ball on the floor with the non-smooth law: e w, friction μp.",
                 model("Non-smooth ball", bodies, gravity=(0, 0, 0), variables={"e": 0}, contacts={"default": {"law": "nonsmooth", "restitution": "e", "friction": mu}},
                       probes={"ball": {"body": "ball"}}),
                 1e-2, 0.05, tuple(variants), ABSOLUTE, compare=False, because=CLOSED)
@@ -126,7 +126,7 @@ def nonsmooth_slide():
     known = (Known("way until it stops [m]", last("box", "x"), v * v / (2 * mu * G), 1e-4), Known("speed at the end", last("box", "vx"), 0, 1e-6), Known("sinks [m]", fall("box", "z"), 0, 1e-5, below=True))
     return Case("nonsmooth_slide", "A box slides to a halt by the non-smooth law.",
                 model("Non-smooth slide", bodies, contacts={"default": {"law": "nonsmooth", "friction": mu}}, probes={"box": {"body": "box"}}),
-                1e-2, 0.6, (Variant("", {}, known),), (1, 0.5, 0.1, 0.01), drift=1e-7, compare=False, because=CLOSED + " Sweeps end at a part of gravity's speed of a step, and so does the energy.")
+                1e-2, 0.6, (Variant("", {}, known),), (1, 0.5, 0.1, 0.01), drift=1e-7, compare=False, because=CLOSED + " Sweeps end at a fraction of gravity's velocity change of a step, which limits the accuracy of the energy.")
 
 
 CASES = [flat_rebound(), rolling_wheels(), into_a_corner(), swing_in_a_trough(), over_a_hull(), nonsmooth_ball(), nonsmooth_slide()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of the validation suite that touch nothing: bodies, beams in motion and at rest, and every kind of solid element.
+"""Models of the validation suite without contact: bodies, beams in motion and at rest, and every kind of solid element.
 
 Of an error C Δt² of order two the constants C are twice the phase by which steps lag, ∫|ω|³ dt/12, times the lever of what is compared.
 """
@@ -7,8 +7,8 @@ import math
 
 from case import Case, Known, Variant, at, falling, last, model, table
 
-WAVES = ("[m/s^2]", "[N]", "[N m]")  # What shows waves in elastic bodies that a step does not resolve.
-WHY_WAVES = "Elastic bodies that are let go or pushed at once ring with waves that the step does not resolve: places are compared; the case with shorter steps resolves them."
+WAVES = ("[m/s^2]", "[N]", "[N m]")  # Columns that show waves in elastic bodies that a step does not resolve.
+WHY_WAVES = "Elastic bodies that are released or loaded suddenly have waves that the step does not resolve: positions are compared; the case with shorter steps resolves them."
 ROUNDING = 1e-9
 
 
@@ -68,8 +68,8 @@ def flying_beam():
     made = beam_model("Flying beam", [[6, 0, 0], [0, 8, 0]], 10, general(1e4, 1e4, 500, 500, 1, [20, 10, 10]),
                       {"push": {"type": "force", "body": "beam.start", "force": [push(0.1), 0, 0]}, "turn": {"type": "moment", "body": "beam.start", "moment": [0, push(-0.5), push(-1)]}},
                       {"start": {"body": "beam.start"}, "end": {"body": "beam.end"}})
-    resolved = case("flying_beam_resolved", "Simo and Vu-Quoc's flying spaghetti as the push begins, its waves resolved.", made, 2.5e-3, 0.1)
-    return (case("flying_beam", "Simo and Vu-Quoc's flying spaghetti while it is pushed.", made, 5e-2, 1.0, order=1.4, skip=WAVES + ("[m/s]",), meshes=({"n": "20"}, {"n": "40"}), mesh_floor=2e-3,
+    resolved = case("flying_beam_resolved", "Simo and Vu-Quoc's flying spaghetti at the beginning of its load, its waves resolved.", made, 2.5e-3, 0.1)
+    return (case("flying_beam", "Simo and Vu-Quoc's flying spaghetti under its load.", made, 5e-2, 1.0, order=1.4, skip=WAVES + ("[m/s]",), meshes=({"n": "20"}, {"n": "40"}), mesh_floor=2e-3,
                  mesh_skip=("[m/s]", "[m/s^2]"), because=WHY_WAVES), resolved)
 
 
@@ -77,7 +77,7 @@ def right_angle():
     made = beam_model("Right-angle cantilever", [[0, 0, 0], [0, 10, 0], [10, 10, 0]], 10, general(1e6, 1e6, 1e3, 1e3, 1, [20, 10, 10]),
                       {"blow": {"type": "force", "body": "beam.5", "force": [0, 0, ramp((0, 0), (1, 50), (2, 0), (3, 0))]}},
                       {"tip": {"body": "beam.end"}, "clamp": {"joint": "beam.start"}}, bonded={"ground": "start"})
-    return case("right_angle_cantilever", "Simo and Vu-Quoc's cantilever under a blow across its plane.", made, 2.5e-2, 0.5)
+    return case("right_angle_cantilever", "Simo and Vu-Quoc's cantilever under a short force across its plane.", made, 2.5e-2, 0.5)
 
 
 def spin_up():
@@ -88,17 +88,17 @@ def spin_up():
                       joints={"axle": {"type": "revolute", "bodies": ["ground", "rotor"], "at": [0, 0, 0], "axis": "z"}}, bonded={"rotor": "start"})
     turned = 0.4 * (1.0**2 / 2 + (15 / (2 * math.pi)) ** 2 * (math.cos(2 * math.pi / 15) - 1))
     known = (Known("turn of the hub at 1 s [rad]", at("hub", "rz", 1.0), turned, lambda h: 0.1 * h * h + 1e-9),)
-    return case("spin_up_beam", "Simo and Vu-Quoc's beam on a rotor; the rotor turns as in closed form.", made, 1e-2, 1.0, (Variant("", {}, known),), fractions=(1, 0.5, 0.2, 0.05),
-                skip=("[N m]",), because="The bearing bears no moment.")
+    return case("spin_up_beam", "Simo and Vu-Quoc's beam on a rotor; the rotor's angle in closed form.", made, 1e-2, 1.0, (Variant("", {}, known),), fractions=(1, 0.5, 0.2, 0.05),
+                skip=("[N m]",), because="The bearing carries no moment.")
 
 
 def flexible_pendulum():
     EI = 1e7 * 1e-4 / 12
     made = beam_model("Flexible pendulum", [[0, 0, 0], [2, 0, 0]], 16, general(1e5, 1e7, EI, EI, 10, [2e-3 * 1e-1 / 12, 1e-3 * 1e-1 / 12, 1e-3 * 1e-1 / 12]), {},
                       {"tip": {"body": "beam.end"}}, gravity=(0, -9.81, 0), joints={"pin": {"type": "revolute", "bodies": ["ground", "beam.start"], "at": [0, 0, 0], "axis": "z"}})
-    # A peer's cables, 64 elements at 0.1 ms, to the digits that its own meshes agree in.
+    # Cables of another program, 64 elements at 0.1 ms, to the digits in which its own meshes agree.
     known = tuple(Known(f"tip {c} at 0.25 s", at("tip", c, 0.25), value, lambda h: 30 * h * h + 5e-4) for c, value in (("x", 1.9535647), ("y", -0.3563068)))
-    return case("flexible_pendulum", "A soft pendulum let go level; tip by a peer's cables.", made, 2e-3, 0.25, (Variant("", {}, known),), fractions=(1, 0.5, 0.2, 0.1),
+    return case("flexible_pendulum", "A soft pendulum released horizontally; tip by cables of another program.", made, 2e-3, 0.25, (Variant("", {}, known),), fractions=(1, 0.5, 0.2, 0.1),
                 meshes=({"n": "32"}, {"n": "64"}), mesh_floor=1e-3, skip=("[m/s^2]",), mesh_skip=("[m/s]",),
                 because=WHY_WAVES.split(";")[0] + ". Finer steps take minutes.")
 
@@ -111,7 +111,7 @@ def cantilever():
     made["analysis"] = {"type": "statics"}
     # Shooting (tests/validation/data/static_beams.csv); the error of 8 elements is four times that of 16.
     known = (Known("tip x", last("tip", "x"), 2 - 0.15097114423929137, lambda h: 3.2e-5 * h * h), Known("tip y", last("tip", "y"), 0.7105685978536354, lambda h: 3.2e-5 * h * h))
-    return Case("cantilever_beam", "A cantilever bent far; ordinary differential equations.", made, 1, 1, statics=True, floor=1e-8, meshes=({"n": "16"}, {"n": "32"}), mesh_known=known, mesh_floor=1e-9)
+    return Case("cantilever_beam", "A cantilever with large bending; ordinary differential equations.", made, 1, 1, statics=True, floor=1e-8, meshes=({"n": "16"}, {"n": "32"}), mesh_known=known, mesh_floor=1e-9)
 
 
 def arc():
@@ -148,11 +148,11 @@ def solid_orders():
                  solids={"bar": {"mesh": {"block": {"size": [6, 0.5, 0.5], "cells": [2, 1, 1]}, "position": [3.5, 0, 0]}, "element": "hex8", "material": "rubber", "bonded": {"hub": "xmin"}}},
                  probes={"hub": {"body": "hub"}, "tip": {"solid": "bar", "node": 5}})
     return case("solid_at_higher_orders", "A solid on a body at orders 4, 6 and 8.", made, 2e-3, 0.04, orders(lambda order: (), 4, 6, 8), fractions=(1, 0.5, 0.2), floor=1e-7,
-                because="Newton knows places to 1e-12 of the size, and a speed to that over the step.")
+                because="Newton's tolerance of positions is 1e-12 of the size, and that of speeds is this over the step.")
 
 
 def spring_chain():
-    """Springs and dampers of every sort between bodies on joints, and a moment that turns with time."""
+    """Springs and dampers of every kind between bodies on joints, and a moment whose direction rotates in time."""
     bodies = {f"b{i}": {"shape": {"box": [0.4, 0.1, 0.05]}, "density": 1000, "position": [0.4 * i + 0.2, 0, 0]} for i in range(3)}
     made = model("Chain", bodies, joints={"j0": {"type": "spherical", "bodies": ["ground", "b0"], "at": [0, 0, 0]}, "j1": {"type": "universal", "bodies": ["b0", "b1"], "at": [0.4, 0, 0], "axes": ["y", "z"]},
                                           "j2": {"type": "revolute", "bodies": ["b1", "b2"], "at": [0.8, 0, 0], "axis": "y"}},
@@ -160,7 +160,7 @@ def spring_chain():
                         "coil": {"type": "torsional_spring", "joint": "j2", "stiffness": 3, "damping": 0.05},
                         "push": {"type": "force", "body": "b2", "at": [1.2, 0, 0], "force": [0, "3*sin(7*t)", 0]}},
                  probes={"tip": {"body": "b2", "point": [0.2, 0, 0]}, "first": {"joint": "j0"}, "second": {"joint": "j1"}, "third": {"joint": "j2"}, "spring": {"load": "spring"}, "coil": {"load": "coil"}})
-    return case("spring_chain", "Bodies on ball, cross and hinge with springs, dampers and a force in time.", made, 5e-3, 0.15, orders(lambda order: (), 2))
+    return case("spring_chain", "Bodies on spherical, universal and revolute joints with springs, dampers and a force that depends on time.", made, 5e-3, 0.15, orders(lambda order: (), 2))
 
 
 CASES = [pendulum(), free_top(), turned_antenna(), *flying_beam(), right_angle(), spin_up(), flexible_pendulum(), cantilever(), arc(), *elements(), solid_orders(), spring_chain()]

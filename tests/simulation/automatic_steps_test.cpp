@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Automatic steps where estimates from the past, or any estimates, lead astray.
+// Automatic steps where estimates from earlier steps, or all estimates of the error, are
+// misleading.
 #include <cmath>
 #include <string>
 
@@ -19,7 +20,7 @@ Model with(const std::string& text, int order, double tolerance) {
   return m;
 }
 
-/// A slider that falls 0.5 m onto a stop, again and again.
+/// A slider that falls 0.5 m onto a stop and rebounds repeatedly.
 std::string slider_on_stop(double restitution) {
   return format(R"(
 format: 1
@@ -48,7 +49,7 @@ double bounced(double e, double t) {
 
 class Stops : public testing::TestWithParam<double> {};
 
-/// Of an impact within the stop's band the time is known to band over speed: 2e-5 s here.
+/// Impacts within the stop's band, whose time is uncertain by band over speed: 2e-5 s here.
 TEST_P(Stops, AreLandedOnByTheTolerance) {
   const double e = GetParam();
   for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
@@ -62,7 +63,7 @@ TEST_P(Stops, AreLandedOnByTheTolerance) {
 INSTANTIATE_TEST_SUITE_P(Of, Stops, testing::Values(0.0, 0.3, 0.5, 0.8, 1.0),
                          [](const auto& p) { return format("restitution_{:.0f}", 10 * p.param); });
 
-/// A light pole on a cart that a spring pulls: the pole turns over quickly now and then.
+/// A light pole on a cart with a spring; at times the pole turns over quickly.
 std::string cart_pole(double mass) {
   return format(R"(
 format: 1
@@ -98,7 +99,7 @@ TEST(AutomaticSteps, FollowALightPoleOnACart) {
   }
 }
 
-/// Two pendulums that know nothing of each other, of very different mass: both are right.
+/// Two independent pendulums of very different mass: both are accurate.
 TEST(AutomaticSteps, FollowAPendulumOfAMilligramBesideOneOfAThousandTons) {
   const std::string text = R"(
 format: 1
@@ -126,7 +127,7 @@ analysis: {duration: 3 s}
     }
 }
 
-/// A tolerance that rounding cannot give is not asked of the steps, and said.
+/// A tolerance below rounding errors: the run finishes with a warning that it was not reached.
 TEST(AutomaticSteps, SayWhenTheyCannotReachATolerance) {
   const std::string text = R"(
 format: 1

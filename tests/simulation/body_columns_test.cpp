@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Further columns of bodies' probes, against a disc on an arm whose motion is known.
+// Optional columns of bodies' probes, for a disc on an arm whose motion is known.
 #include <cmath>
 #include <string>
 
@@ -70,7 +70,7 @@ TEST(BodyColumns, TellTheRotation) {
   expect_numbers(at_end("rotation: quaternion"), 10, {q.w(), q.x(), q.y(), q.z()}, 1e-9);
 }
 
-// ω = (3 cos φ, 3 sin φ, φ̇), its rate, and the same seen from the arm. @tests{relative-motion}
+// ω = (3 cos φ, 3 sin φ, φ̇), its rate, and the same relative to the arm. @tests{relative-motion}
 TEST(BodyColumns, TellAngularMotion) {
   const double c = std::cos(kPhi), s = std::sin(kPhi);
   expect_numbers(at_end("angular: true"), 10,
@@ -84,7 +84,8 @@ TEST(BodyColumns, TellAngularMotion) {
       1e-6);
 }
 
-// Of the disc in the arm: the spindle itself. Against the world: through its turn and slide.
+// Axis of the disc relative to the arm: the spindle. Relative to the ground: from the disc's
+// rotation and displacement.
 // @tests{helical-rate} @tests{helical-finite}
 TEST(BodyColumns, TellHelicalAxes) {
   for (const char* which : {"instantaneous", "finite"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole models with forces that code gives as functions of the motion.
+// Complete models with forces given by code as functions of the motion.
 #include <cmath>
 #include <stdexcept>
 
@@ -124,7 +124,7 @@ output: {hdf5: false}
   EXPECT_EQ(engine.run().end, RunEnd::finished);
   const RunSummary summary = code.run();
   EXPECT_EQ(summary.end, RunEnd::finished);
-  EXPECT_LT(summary.energy_drift, 1e-11);  // what the functions put in is booked
+  EXPECT_LT(summary.energy_drift, 1e-11);  // the work of the functions is in the energy balance
   EXPECT_GT(std::abs(engine.joint("hinge").coordinates[0]), 0.1);
   EXPECT_NEAR(engine.joint("hinge").coordinates[0], code.joint("hinge").coordinates[0], 1e-9);
   EXPECT_LT((engine.body("bob").r - code.body("bob").r).norm(), 1e-9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads that depend on time: none is jumped over, whatever chooses the steps.
+// Loads that depend on time: with every kind of step control none is skipped.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -39,7 +39,7 @@ End end_of(Model model) {
   return {s.body(0).r.x(), s.body(0).v.x(), r};
 }
 
-/// Every way to choose steps, as `set(model)` and a name.
+/// All kinds of step control, as `set(model)` and a name.
 template <class Test>
 void for_all_steps(const Model& model, const Test& test) {
   for (const int order : {2, 6, 8})
@@ -106,7 +106,8 @@ TEST(LoadsInTime, NumericalDampingTakesNothingFromAnImpulse) {
     }
 }
 
-/// Loads on solids count like those on bodies: a free block is as fast as its impulse tells.
+/// Pulses of loads on solids, as on bodies: the velocity of a free block is its impulse over its
+/// mass.
 TEST(LoadsInTime, PulsesOnSolidsGiveTheirWholeImpulse) {
   const char* pulse = "\"t > 0.0317 && t < 0.0324 ? 300 : 0\"";
   const std::string kinds[] = {
@@ -175,7 +176,7 @@ TEST(LoadsInTime, SmoothBumpsAreNotJumpedOver) {
     }
 }
 
-/// The grid of fixed steps stays: only the step that holds a break is taken in parts.
+/// The grid of fixed steps is kept: only a step that contains a break is divided.
 TEST(LoadsInTime, FixedStepsReturnToTheirGrid) {
   Model m = pushed_ball("\"t > 0.733 ? 4 : 0\"", 2.0);
   m.analysis.step = 0.1;
@@ -188,7 +189,7 @@ TEST(LoadsInTime, FixedStepsReturnToTheirGrid) {
   for (int k = 8; k < 21; ++k) EXPECT_NEAR(times[static_cast<std::size_t>(k)], 0.1 * k, 1e-14);
 }
 
-/// Breaks that lie on the grid but for rounding, or nearly, make no tiny steps.
+/// Breaks on the grid to rounding, or nearly: they cause no tiny steps.
 TEST(LoadsInTime, BreaksOnTheGridCutNoStep) {
   for (const char* at : {"0.7", "0.7 + 1e-13", "0.7 - 1e-13"}) {
     Model m = pushed_ball(format("\"t > {} ? 4 : 0\"", at), 2.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of what probes and channels have, for all kinds of things.
+// Names of the columns of probes and channels, for all kinds of objects.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,7 +17,7 @@
 namespace polhode::test::probe_columns_tests {
 namespace {
 
-/// One of each kind, with a probe of it.
+/// A model with one object of each kind and a probe of it.
 const char* const kAll = R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -70,7 +70,7 @@ TEST(ProbeColumns, AreAsManyAsTheNumbersAndHaveNamesOfTheirOwnAndUnits) {
   }
 }
 
-// What probes show and what events and controllers read is one number.
+// Probes, events and controllers read the same number.
 TEST(ProbeColumns, AreWhatChannelsRead) {
   Simulation s = made(kAll);
   (void)finished(s);
@@ -81,7 +81,7 @@ TEST(ProbeColumns, AreWhatChannelsRead) {
     for (const ProbeNumber& c : channel_columns(s.model(), probe)) {
       const ChannelReader reader(s, map, {probe, c.name}, "here");
       const double* x = row.data() + 1 + c.column;
-      if (c.name == "gap") {  // too far for contacts to know
+      if (c.name == "gap") {  // beyond the distance at which contacts know gaps
         EXPECT_NEAR(reader.value(s), 0.4, 1e-3);
       } else if (c.size == 3) {
         EXPECT_EQ(reader.value(s), Vec3(x[0], x[1], x[2]).norm()) << probe.name << ' ' << c.name;

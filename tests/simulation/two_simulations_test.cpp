@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several simulations in one program, side by side and in threads: each is as if it were alone.
+// Several simulations in one program, in turn and in threads: each has the results of a single one.
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace polhode::two_simulations_tests {
 namespace {
 
-/// A bar of elements that swings on a body with a hinge.
+/// A deformable bar that swings on a hinged body.
 Model swing(int cells) {
   return read_model_text(R"(
 format: 1

@@ -57,9 +57,9 @@ struct Example {
         step(X, context_of(c.rho_inf)),
         force(material->bulk_modulus() * std::pow(group->volume(), 2.0 / 3.0)) {
     step.begin(*group);
-    // The mean of two states far apart is a collapsed one, of which midpoint stress makes nothing.
+    // The mean of two distant states is a collapsed one, for which midpoint stress is not defined.
     step.move_at_random(random, 0.06, c.stress == Stress::kMidpoint ? 0.2 : 1.0);
-    // Modes of the step before: any.
+    // Arbitrary modes of the previous step.
     for (double& h : step.history) h = random.number(0.02);
     if (kind.sizes().mean_dilatation) step.history[0] = 0.0;
     group->begin_step(step.history.data(), step.scratch.data());
@@ -97,7 +97,8 @@ TEST_P(EveryElement, HasTheTangentOfItsForces) {
         side[k] = other.evaluate_balanced(*s.group).force;
       }
       const Vec numeric = (side[0] - side[1]) / (2.0 * h);
-      // Truncation 1e-10 of third derivatives; a switch of fibres within the stencil costs more.
+      // Truncation 1e-10 of third derivatives; a switch of fibres within the stencil makes it
+      // larger.
       const double tolerance = s.material->has_fibres() ? 1e-5 : 2e-8;
       EXPECT_LT((r.tangent * direction - numeric).norm(),
                 tolerance * r.tangent.norm() * direction.norm());
@@ -181,7 +182,7 @@ TEST_P(EveryElement, TurnsWithTheWorldAlsoWhenItsCondensationIsOld) {
     };
     for (Vec* v : {&turned.x_n, &turned.x_n1, &turned.v_n, &turned.free_velocity}) turn(*v);
     const int width = kernel_width(), modes = s.kind.sizes().modes();
-    // Scratch begins with the modes, each in a pack.
+    // Scratch memory begins with the modes, each in a SIMD pack.
     const auto modes_of = [&](const SolidStep& of) {
       Vec v(modes);
       for (int k = 0; k < modes; ++k) v[k] = of.scratch[k * width];
@@ -198,7 +199,7 @@ TEST_P(EveryElement, TurnsWithTheWorldAlsoWhenItsCondensationIsOld) {
     turn(expected);
     const Vec after = turned.evaluate(*s.group, false, Q).force;
     EXPECT_LT((after - expected).norm(), 1e-13 * s.force);
-    // And the modes move alike.
+    // The modes are equal, too.
     Vec du(s.step.x_n.size());
     for (double& d : du) d = s.random.number(0.01);
     Vec turned_du = du;
@@ -250,7 +251,7 @@ TEST_P(EveryElementKind, HasTheMassOfItsVolumeAndThatOfRigidMotion) {
   ASSERT_TRUE(group_->mass(0, M.data()));
   EXPECT_LT((M - M.transpose()).norm(), 1e-15 * M.norm());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat>(M).eigenvalues()[0], 1e-4 * M.maxCoeff());
-  // By a rule of many points: mass, first and second moments.
+  // Mass, first and second moments by a rule of many points.
   const Quadrature fine = kind_.shape.substr(0, 3) == "hex" ? hexahedron_rule(5)
                           : kind_.shape == "wedge6"         ? wedge_rule()
                                                             : tetrahedron_rule(7);
@@ -264,7 +265,7 @@ TEST_P(EveryElementKind, HasTheMassOfItsVolumeAndThatOfRigidMotion) {
   }
   Vec3 moment = Vec3::Zero();
   for (int a = 0; a < n; ++a) moment += M.row(a).sum() * X_[static_cast<std::size_t>(a)];
-  // Corners out of place by 0.06 make parts of high degree, cubes of which a lean rule leaves out.
+  // Corners displaced by 0.06 add terms of high degree; a rule of few points omits their cubes.
   EXPECT_NEAR(M.sum(), mass, 2e-4 * mass);
   EXPECT_LT((moment - first).norm(), 1e-3 * mass);
   EXPECT_NEAR(group_->volume(), mass / 1100.0, 2e-3 * group_->volume());

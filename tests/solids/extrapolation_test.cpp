@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values at nodes from those at points of integration.
+// Extrapolation of values from points of integration to nodes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace polhode::extrapolation_tests {
 namespace {
 
-/// Fields that the polynomial of an element has are taken to its nodes exactly.
+/// Fields in the space of an element's polynomials are extrapolated to its nodes exactly.
 // @tests{nodal-stress}
 TEST(Extrapolation, IsExactForThePolynomialsOfEveryKindOfElement) {
   for (const ElementKind& kind : element_kinds()) {

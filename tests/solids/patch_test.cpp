@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of elements: what a mesh of any element must show, and how stiff they are in bending.
+// Patch test of meshes of every element, and their stiffness in bending.
 #include <cmath>
 #include <set>
 
@@ -37,7 +37,7 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-/// Numbers of the components of nodes that keep() does not hold.
+/// Indices of the components of nodes that keep() does not fix.
 template <class Keep>
 std::vector<int> free_components(const std::vector<Vec3>& X, const Keep& keep) {
   std::vector<int> free;
@@ -73,8 +73,8 @@ void distort(Mesh& mesh, const CellShape& cell, Random& random) {
 
 class Patch : public testing::TestWithParam<std::string> {};
 
-// The boundary of a distorted block is strained evenly and at large: the inside follows, and every
-// point feels that strain.
+// The boundary of a distorted block has a homogeneous large strain: the interior has the same
+// strain at every point.
 TEST_P(Patch, IsStrainedEvenlyWhenItsBoundaryIs) {
   const ElementKind& kind = element_kind(GetParam());
   for (const MaterialDescription& d : example_materials()) {
@@ -169,7 +169,7 @@ double cantilever(const std::string& element, int along, int across, double slen
   return deflection / (P * L * L * L / (3.0 * E * I) + P * L / (5.0 / 6.0 * mu * h * h));
 }
 
-// Hexahedra of two nodes an edge: what was found with an independent program, to its three digits.
+// Hexahedra with two nodes per edge, against an independent program to its three digits.
 TEST(Cantilever, IsAsStiffAsItsElementsAreKnownToBe) {
   EXPECT_NEAR(cantilever("hex8_standard", 5, 1, 10.0), 0.367, 1e-3);
   EXPECT_NEAR(cantilever("hex8_standard", 10, 1, 10.0), 0.643, 1e-3);
@@ -178,7 +178,8 @@ TEST(Cantilever, IsAsStiffAsItsElementsAreKnownToBe) {
   EXPECT_NEAR(cantilever("hex8_eas9", 10, 1, 10.0), 0.985, 1e-3);
   EXPECT_NEAR(cantilever("hex8_eas9", 10, 2, 10.0), 0.976, 1e-3);
   EXPECT_NEAR(cantilever("hex8_eas9", 10, 1, 100.0), 0.988, 1e-3);
-  EXPECT_NEAR(cantilever("hex8_q1p0", 10, 1, 10.0), 1.197, 1e-3);  // too soft: one layer is no use
+  EXPECT_NEAR(cantilever("hex8_q1p0", 10, 1, 10.0), 1.197,
+              1e-3);  // too soft: one layer is not enough
   EXPECT_NEAR(cantilever("hex8_q1p0", 10, 2, 10.0), 0.759, 1e-3);
 }
 

@@ -49,7 +49,8 @@ TEST(SolidElements, NameTheElementThatIsInvertedOrFlat) {
   d = cube();
   d.X = flat;
   EXPECT_THAT(make(d), refused("element 0", "flat"));
-  // One corner pushed through the opposite faces: the points of the rule do not see it.
+  // One corner pushed through the opposite faces: the inversion is not visible at the points of the
+  // rule.
   std::vector<Vec3> dented = cell_shape("hex8").nodes;
   dented[6] = Vec3(0.0, 0.0, 0.0);
   d = cube();
@@ -123,8 +124,8 @@ TEST(SolidElements, SayWhichElementCollapses) {
   EXPECT_EQ(r.report.worst_element, 0);
 }
 
-// The pressure of mean dilatation that the tangent uses is extrapolated along the moves of nodes:
-// after a small move it is the pressure there, to second order. Forces do not feel it.
+// The pressure of mean dilatation that the tangent uses is extrapolated with the displacements of
+// nodes: after a small displacement it is exact to second order. Forces do not depend on it.
 TEST(MeanDilatation, ExtrapolatesItsPressureForTangentsOnly) {
   const ElementKind& kind = element_kind("hex8_q1p0");
   Random random(3);
@@ -157,7 +158,7 @@ TEST(MeanDilatation, ExtrapolatesItsPressureForTangentsOnly) {
 
 // @tests{solid-condensation}
 // One correction at a time, nodes and modes together: Newton's method converges as with modes in
-// balance at every evaluation.
+// equilibrium at every evaluation.
 TEST(EnhancedStrains, ConvergeTogetherWithTheNodes) {
   const ElementKind& kind = element_kind("hex8_eas9");
   Random random(3);

@@ -35,8 +35,8 @@ class SolidStep {
     v_n = free_velocity = Vec::Zero(x_n.size());
   }
 
-  /// Both ends strained by chance, turned at large, and apart.
-  /// @param turn  How far the second end is turned from the first; 1: anyhow.
+  /// Random strains at both ends of the step, with large rotations and a displacement.
+  /// @param turn  Size of the rotation of the second end relative to the first; 1: arbitrary.
   void move_at_random(Random& random, double size, double turn = 1.0) {
     const Mat3 first = random.frame();
     const auto place = [&](Vec& x) {
@@ -60,7 +60,7 @@ class SolidStep {
     if (context.ga.alpha_f != 0.5)
       for (int i = 0; i < x_n.size(); ++i) free_velocity[i] = random.number(2.0);
   }
-  /// An instant at x_n: what a static analysis sees.
+  /// The instant at x_n, as in a static analysis.
   void stand_still() {
     alpha_f = 1.0;
     rate = 0.0;
@@ -71,7 +71,7 @@ class SolidStep {
 
   [[nodiscard]] int nodes() const { return static_cast<int>(X.size()); }
 
-  /// Makes room for the internal unknowns of a group.
+  /// Allocates the internal unknowns of a group.
   void begin(const ElementGroup& group) {
     history.assign(group.history_size(), 0.0);
     scratch.assign(group.scratch_size(), 0.0);
@@ -124,7 +124,7 @@ class SolidStep {
               blocks[9 * (static_cast<std::size_t>(i) * n + j) + k];
     return r;
   }
-  /// The same with internal unknowns in balance.
+  /// The same with internal unknowns in equilibrium.
   Result evaluate_balanced(const ElementGroup& group) {
     if (group.scratch_size() > 0) {
       const Vec still = Vec::Zero(x_n.size());
@@ -138,7 +138,7 @@ class SolidStep {
   Work work(const ElementGroup& group) const {
     return with([&](const NodeStep& s) { return group.work(s, history.data(), scratch.data()); });
   }
-  /// Energy at t_n, by an instant there.
+  /// Energy at t_n, evaluated at that instant.
   double stored_at_start(const ElementGroup& group) const {
     SolidStep start = *this;
     start.stand_still();
@@ -147,7 +147,7 @@ class SolidStep {
   }
 };
 
-/// A material of the examples, with viscosity if asked for.
+/// A material of the examples, with viscosity if given.
 [[nodiscard]] inline std::shared_ptr<const Material> example_material(MaterialDescription d,
                                                                       bool viscous = false) {
   if (viscous) d.relaxation_time = 0.2;
@@ -178,7 +178,7 @@ class SolidStep {
                               .isa = isa});
 }
 
-/// Whether a material may go into an element.
+/// Whether a material can be used in an element.
 [[nodiscard]] inline bool suits(const ElementKind& kind, const MaterialDescription& material) {
   return !kind.sizes().mean_dilatation || material_kind(material.kind).uncoupled;
 }

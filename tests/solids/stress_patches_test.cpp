@@ -11,7 +11,7 @@
 namespace polhode::stress_patches_tests {
 namespace {
 
-/// A value at X in the first column.
+/// Values of a field at points, in the first column.
 template <class Field>
 double fitted(const CloudFit& fit, const std::vector<Vec3>& points, const Field& field,
               const Vec3& at) {
@@ -57,7 +57,7 @@ TEST(CloudFit, IsExactForQuadraticsWhereTwoCellsMeetInEveryDirection) {
   }
 }
 
-// A lattice of points is turned as a whole: complete polynomials know no axes.
+// A lattice of points is rotated as a whole: complete polynomials do not depend on axes.
 TEST(CloudFit, IsExactForQuadraticsOfManyPointsHoweverTheyAreTurned) {
   const Mat3 turn = (Mat3() << 0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6).finished();
   const auto field = [](const Vec3& X) {
@@ -92,7 +92,7 @@ TEST(CloudFit, IsExactForProductsOfSquaresAlongDirections) {
   }
 }
 
-// One cell does not tell a square from a constant: what it cannot tell is left out, not guessed.
+// The points of one cell cannot distinguish a square from a constant: such terms are omitted.
 TEST(CloudFit, LeavesOutWhatThePointsDoNotTell) {
   for (const Mat3& shape : kShapes) {
     const Mat3 back = shape.inverse();
@@ -131,7 +131,7 @@ double largest_error(const char* cell, double n) {
       RecoveredValues::Zero(static_cast<Eigen::Index>(corners) * mesh.element_count(), kRecovered);
   for (int e = 0; e < mesh.element_count(); ++e)
     for (int c = 0; c < corners; ++c) {
-      // Linear between points at a part 1/√3 of the way from the middle.
+      // Linear between points at 1/√3 of the distance from the middle.
       const CellShape& shape = mesh.element_shape(e);
       double sum = 0.0;
       const double out = corners == 8 ? std::sqrt(3.0) : 1.0;

@@ -14,7 +14,8 @@ Vec vec(std::initializer_list<double> numbers) {
   return v;
 }
 
-/// Two sides of a roof: what is across cancels, what is along stays. @tests{statics-kink}
+/// Residuals on two sides of a roof: components across the ridge cancel, those along it remain.
+/// @tests{statics-kink}
 TEST(ClarkeCombination, BalancesTwoSidesOfARoof) {
   ClarkeCombination kinks;
   kinks.add(vec({0.0, 2.0, 0.5}));
@@ -23,7 +24,7 @@ TEST(ClarkeCombination, BalancesTwoSidesOfARoof) {
   EXPECT_LT((kinks.shortest() - vec({0.0, 0.0, 0.5})).norm(), 1e-15);
 }
 
-/// Forces of one sign never cancel: the shorter one is the best there is.
+/// Forces of one sign do not cancel: the shorter one is the minimum.
 TEST(ClarkeCombination, DoesNotBalanceWhatPushesOneWay) {
   ClarkeCombination kinks;
   kinks.add(vec({3.0, 0.0}));
@@ -34,7 +35,7 @@ TEST(ClarkeCombination, DoesNotBalanceWhatPushesOneWay) {
   EXPECT_EQ(kinks.shortest(), vec({3.0, 0.0}));
 }
 
-/// Against a fine grid of all mixtures of four, the oldest of five being forgotten.
+/// Against a fine grid of all convex combinations of four residuals; the oldest of five is dropped.
 TEST(ClarkeCombination, IsTheShortestOfAll) {
   for (int seed = 0; seed < 20; ++seed) {
     std::vector<Vec> all;
@@ -59,7 +60,7 @@ TEST(ClarkeCombination, IsTheShortestOfAll) {
   }
 }
 
-/// Sides that tell the same twice.
+/// Equal residuals, given twice.
 TEST(ClarkeCombination, StandsEqualResiduals) {
   ClarkeCombination kinks;
   for (int k = 0; k < 4; ++k) kinks.add(vec({k % 2 == 0 ? 1e-9 : -3e-9, 0.0}));

@@ -84,8 +84,8 @@ TEST(Modes, AnInvertedPendulumHasANegativeSquare) {
   EXPECT_NEAR(report.modes[0].omega_squared, -9.81 / 2.0, 1e-11);
 }
 
-/// The same lattice of bars by the dense way and by Lanczos iterations: free, with a body bonded to
-/// its end and a pendulum on a hinge below that.
+/// The same lattice of bars by the dense solver and by Lanczos iterations: free, with a body bonded
+/// to its end and a pendulum on a hinge below that.
 System hanging_lattice(int cells) {
   System system;
   auto [X, bars] = test::lattice(cells, 2, 2, 0.5, Vec3::Zero());
@@ -119,7 +119,7 @@ TEST(Modes, LanczosAndDenseSolutionsAgreeAndCountTheirModes) {
   EXPECT_TRUE(dense.complete);
   ASSERT_EQ(sparse.modes.size(), 16u);
   for (int i = 0; i < 16; ++i) {
-    // Nothing holds it: six motions of the whole and three turns of the bob are without stiffness.
+    // A free system: six rigid motions and three rotations of the bob have no stiffness.
     EXPECT_EQ(sparse.modes[i].rigid, i < 9) << sparse.modes[i].frequency;
     EXPECT_EQ(dense.modes[i].rigid, i < 9) << dense.modes[i].frequency;
     if (i < 9) continue;

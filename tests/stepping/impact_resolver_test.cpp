@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocities that jump: what impulses do to bodies that joints and solids tie together.
+// Jumps of velocities: effects of impulses on bodies coupled by joints and solids.
 #include <gtest/gtest.h>
 
 #include <polhode/stepping/impact_resolver.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// Impacts that are stated.
+/// Contacts with given impacts.
 class Stated final : public BodyContacts {
  public:
   std::vector<PairImpact> list, lasting;
@@ -50,8 +50,8 @@ class Stated final : public BodyContacts {
   std::vector<Participants> none_;
 };
 
-/// Two bodies that tumble, each with a bar, the second one between a third body and it, which hangs
-/// on a joint if wanted.
+/// Two tumbling bodies, each with a bar; the bar of the second leads to a third body, which may
+/// also be on a joint.
 struct Tumbling {
   Scene s{Vec3::Zero()};
   int a = 0, b = 0, c = 0;
@@ -74,7 +74,7 @@ struct Tumbling {
     if (joint) static_cast<void>(project_velocities(s.system, s.state));
     bond_nodes(s.system, s.state);
   }
-  /// The relative velocity of two bodies along a direction at a place.
+  /// Impact of two bodies with a normal direction, at a position.
   [[nodiscard]] PairImpact impact(int x, int y, const Vec3& place, const Vec3& n) const {
     PairImpact r;
     r.bodies = {x, y};
@@ -169,8 +169,8 @@ TEST(ImpactResolver, OfBodiesWithSolidsKeepMomentaAndTakeTheEnergyTheySay) {
     }
 }
 
-/// A body whose solid is bonded to it with every node is rigid: it answers with the mass and
-/// inertia of both together.
+/// A body with a solid whose nodes are all bonded to it: it is rigid, with the mass and inertia of
+/// both.
 TEST(ImpactResolver, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
   Scene s(Vec3::Zero());
   const int a = s.add_box("a", {0.4, 0.3, 0.2}, 1.0, at({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}));
@@ -193,8 +193,8 @@ TEST(ImpactResolver, ASolidThatIsBondedAllOverWeighsAsARigidBody) {
     EXPECT_NEAR(s.state.node_v[3 * static_cast<std::size_t>(i)], 0.25, 1e-14);
 }
 
-/// A body falls without rebound on the top one of a stack that rests: all are at rest afterwards,
-/// and the impulse goes through to the ground. @tests{impact-carried}
+/// A body that falls without rebound on a stack at rest: all are at rest afterwards, and the
+/// impulse is transmitted to the ground. @tests{impact-carried}
 TEST(ImpactResolver, AreCarriedOnByWhatRests) {
   constexpr int kStack = 4;
   constexpr double kFall = -2.0, kMass = 3.0;

@@ -62,14 +62,14 @@ TEST(AssemblePositions, BringsADisplacedMechanismTogether) {
 }
 
 TEST(AssemblePositions, NamesJointsThatContradictOneAnother) {
-  // A rod one metre long between ground points 1.2 m apart, and an innocent pendulum beside it.
+  // A rod one metre long between ground points 1.2 m apart, and an independent pendulum beside it.
   Mechanism m;
   const int rod = m.body("rod", {0.5, 0, 0});
   m.joint("left", "spherical", kGround, rod, {0, 0, 0});
   m.joint("right", "spherical", kGround, rod, {1.0, 0, 0});
   m.model.joints.back().Z_a = {1.2, 0.0, 0.0};
   const int other = m.body("other", {0.5, 3, 0});
-  m.joint("innocent", "spherical", kGround, other, {0, 3, 0});
+  m.joint("separate", "spherical", kGround, other, {0, 3, 0});
   const System system = m.system();
   State state = system.initial_state();
   const PositionReport report = assemble_positions(system, state);
@@ -106,8 +106,8 @@ TEST(ProjectVelocities, KeepsTheMomentumAboutAHinge) {
   EXPECT_LT(report.residual, 1e-14);
 }
 
-/// A hinge that hardly moves beside a fast body: what violates its rows is small by the speeds of
-/// the model, though not by those of the hinge.
+/// A hinge that hardly moves beside a fast body: the violation of its rows is small relative to the
+/// speeds of the model, not to those of the hinge.
 TEST(ProjectVelocities, TellsTheLargestSpeedOfAnyBody) {
   Mechanism m;
   const int door = m.body("door", {0, 0, 0}, 2.0, {0.1, 0.2, 0.2});
@@ -130,7 +130,8 @@ TEST(ProjectVelocities, WorksWithRedundantRowsAndInSingularPositions) {
     const System system = m.system();
     State state = system.initial_state();
     EXPECT_LT(project_velocities(system, state).residual, 1e-13);
-    EXPECT_EQ(project_velocities(system, state).solves, 0);  // a projection: once is enough
+    EXPECT_EQ(project_velocities(system, state).solves,
+              0);  // a projection: a second one changes nothing
   }
 }
 
@@ -177,7 +178,7 @@ TEST(InstantSolution, WorksInASingularPosition) {
 
 TEST(InstantSolution, SaysWhenVelocitiesFitNoMotionOfASingularPosition) {
   // A flat triangle of two bars whose far end is held: the middle may move across to first order,
-  // and cannot in fact, because the bars would have to stretch: γ ≠ 0 where G has lost a row.
+  // but not to second order, because the bars would stretch: γ ≠ 0 where G has lost a row.
   Mechanism m;
   const Vec3 rod(1e-3, 1.0 / 12.0, 1.0 / 12.0);
   const int first = m.body("first", {0.5, 0, 0}, 1.0, rod);
@@ -191,7 +192,7 @@ TEST(InstantSolution, SaysWhenVelocitiesFitNoMotionOfASingularPosition) {
   const InstantSolution s = instant_solution(system, system.initial_state());
   EXPECT_TRUE(s.solved);
   EXPECT_FALSE(s.consistent);
-  for (double l : s.lambda) EXPECT_LT(std::abs(l), 1e3);  // and does not drown in it
+  for (double l : s.lambda) EXPECT_LT(std::abs(l), 1e3);  // multipliers stay bounded
 }
 
 TEST(InstantSolution, IsTheSameWithEachLinearSolver) {

@@ -151,7 +151,7 @@ TEST(SingleImpact, FollowsSlipAlongItsCurveInSpace) {
 }
 
 /// A slip that ends and resumes in the plane, with round-off across it: the search for its
-/// direction starts and ends there.
+/// direction starts in the plane and ends there.
 TEST(SingleImpact, ResumesSlipWhateverRoundOffIsAcross) {
   SingleImpact s;
   s.mu = s.mu_across = 0.5;
@@ -169,7 +169,8 @@ TEST(SingleImpact, ResumesSlipWhateverRoundOffIsAcross) {
     }
 }
 
-/// A slip that is slow beside the approach takes no more steps than another: the corner of a box.
+/// A slip that is slow relative to the approach, at the corner of a box: it needs no more steps
+/// than others.
 // @tests{routh}
 TEST(SingleImpact, FollowsSlowSlip) {
   Mat3 K;
@@ -182,8 +183,8 @@ TEST(SingleImpact, FollowsSlowSlip) {
   }
 }
 
-/// Taken up and left within, an impact is what it is from beginning to end: e² of what is stored
-/// at the turn comes back.
+/// An impact in parts equals the whole one: e² of the energy stored at the end of compression is
+/// returned.
 // @tests{routh}
 TEST(SingleImpact, GoesOnFromWhatIsStored) {
   Mat3 K = Mat3::Zero();

@@ -49,8 +49,8 @@ TEST(Start, StopsAtConstraintsThatContradictOneAnother) {
   EXPECT_THAT(report.unsatisfied, testing::ElementsAre("joint 'left'", "joint 'right'"));
 }
 
-/// Angular acceleration of a free body a short time later, by many small steps of Euler's
-/// equations (their error, 1e-12, does not count).
+/// Angular acceleration of a free body a short time later, by many small steps of Euler's equations
+/// (whose error, 1e-12, is negligible).
 Vec3 later_acceleration(const Vec3& W_0, const Mat3& J, double tau) {
   const Mat3 J_inverse = J.inverse();
   const auto A = [&](const Vec3& W) -> Vec3 { return -(J_inverse * W.cross(J * W)); };
@@ -125,7 +125,7 @@ TEST(StartSmoothMultipliers, RemovesTheAlternatingPartAtRhoOne) {
       take_step(system, state, engine, 0.005, 1.0);
       lambda.push_back(state.lambda);
     }
-    double largest = 0.0;  // fourth difference: nothing but what alternates
+    double largest = 0.0;  // fourth difference: the alternating part only
     for (std::size_t row = 0; row < lambda[0].size(); ++row)
       largest =
           std::max(largest, std::abs(lambda[4][row] - 4 * lambda[5][row] + 6 * lambda[6][row] -
@@ -150,7 +150,7 @@ TEST(Start, InAFlatFourBarGoesOnAlongItsBranch) {
   const double before = energy(system, state);
   for (int i = 0; i < 50; ++i) ASSERT_FALSE(take_step(system, state, engine, 0.01, 1.0).empty());
   EXPECT_NEAR(energy(system, state), before, 1e-9);
-  // The parallelogram stays one: cranks turn alike, the coupler does not.
+  // The linkage stays a parallelogram: cranks turn alike, the coupler does not.
   EXPECT_LT((system.motion(state, 0).r + Vec3(1, 0, 0) - system.motion(state, 1).r).norm(), 1e-8);
 }
 

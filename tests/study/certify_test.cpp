@@ -80,14 +80,14 @@ TEST(Certify, RefinesTheToleranceOfAutomaticSteps) {
     EXPECT_THAT(c.orders, ElementsAre(6.0));
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(c.runs[k].setting, 1e-5 * std::pow(0.1, k), 1e-12);
-    // Output times that are close do not hide what the tolerance changes.
+    // Close output times do not prevent the tolerance from changing the steps.
     EXPECT_GT(c.runs[1].summary.steps, 1.1 * static_cast<double>(c.runs[0].summary.steps));
     EXPECT_GT(c.runs[2].summary.steps, 1.1 * static_cast<double>(c.runs[1].summary.steps));
     EXPECT_GT(quantity(c, "bar x y z").report.largest_own, 0.0);
   }
 }
 
-// Three pendulums in a row swing wildly: two runs part within seconds.
+// The motion of a chaotic triple pendulum: two runs diverge within seconds.
 TEST(Certify, SaysFromWhenOnChaosLeavesNothing) {
   Model model = read_model_text(
       "format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
@@ -109,7 +109,7 @@ TEST(Certify, SaysFromWhenOnChaosLeavesNothing) {
   EXPECT_LT(*r.lost_from, 30.0);
   EXPECT_TRUE(std::isinf(r.bar.back()));
   EXPECT_TRUE(std::isfinite(r.bar[50]));
-  // What was certain is: a run with a hundredth of the step lies within the bars.
+  // The certified part: a run with a hundredth of the step lies within the bars.
   model.analysis.step = 0.1e-3;
   model.analysis.duration = *r.lost_from;
   Simulation fine(model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences whose error is known by construction: |f_h − exact| = C hᵖ and what is not like that.
+// Sequences with a known error: |f_h − exact| = C hᵖ and exceptions from it.
 #include <polhode/study/grid_convergence.hpp>
 
 #include <cmath>
@@ -164,7 +164,8 @@ TEST(EstimateError, BelievesNothingOfRunsWithTheSameSteps) {
   EXPECT_EQ(*r.lost_from, 0.0);
 }
 
-// A speed that jumps at 3 s + 2 h: sure but about the jump, where the bar is as large as it.
+// A speed that jumps at 3 s + 2 h: certain except near the jump, where the error bar is as large as
+// the jump.
 TEST(EstimateError, IsOfOrderOneAboutAJumpAndSureElsewhere) {
   const RefinedSeries s = series(kHalves, 1000, 10.0, [](double t, double h) {
     return Eigen::Vector2d(t < 3.0 + 2.0 * h ? 1.0 : -0.5, 0.0);

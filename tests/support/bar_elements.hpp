@@ -12,8 +12,8 @@
 namespace polhode::test {
 
 /// Bars with energy ½ EA L ε², ε = (l² − L²)/(2L²): quadratic in squared lengths, so that the
-/// average of the strains at both ends of a step gives the energy's difference exactly. What the
-/// engine does with elements is tested with these, apart from the elements themselves.
+/// average of the strains at both ends of a step gives the energy's difference exactly. Engines are
+/// tested with these bars, independently of the product's elements.
 class Bars final : public ElementGroup {
  public:
   struct Bar {

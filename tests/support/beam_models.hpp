@@ -73,7 +73,8 @@ inline Model flying_beam(int elements) {
   return m;
 }
 
-/// Simo and Vu-Quoc's right-angle cantilever: clamped, a blow across its plane at the elbow.
+/// Simo and Vu-Quoc's right-angle cantilever: clamped, with a short force across its plane at the
+/// elbow.
 inline Model right_angle_cantilever(int elements_per_leg) {
   Model m;
   BeamSpec beam = beam_through({{0, 0, 0}, {0, 10, 0}, {10, 10, 0}}, 2 * elements_per_leg,
@@ -87,7 +88,7 @@ inline Model right_angle_cantilever(int elements_per_leg) {
 }
 
 /// Simo and Vu-Quoc's spin-up: a beam on a rotor (body 0) that goes from rest to 6 rad/s in 15 s.
-/// The rotor is so heavy that a moment gives it the motion, whatever the beam does.
+/// The rotor is so heavy that a moment gives it this motion regardless of the beam.
 inline Model spin_up_beam(int elements) {
   constexpr double kRotor = 1e10;
   ModelBuilder m;
@@ -103,8 +104,8 @@ inline Model spin_up_beam(int elements) {
   return m.model;
 }
 
-/// A flexible pendulum in a plane, released level; Euler and Bernoulli's beam, so shear is stiff
-/// and the section without much rotary inertia.
+/// A flexible pendulum in a plane, released level; an Euler-Bernoulli beam, so shear is stiff and
+/// the rotary inertia of sections small.
 inline Model flexible_pendulum(int elements) {
   constexpr double kEA = 1e5, kEI = 1e7 * 1e-4 / 12.0, kInertia = 1e-3 * 1e3 * 1e-4 / 12.0;
   ModelBuilder m;

@@ -10,8 +10,8 @@
 
 namespace polhode::test {
 
-/// Expects the error to fall with the given order, neither slower nor faster, between each pair of
-/// neighbouring numbers of steps.
+/// Expects the error to decrease with the given order, neither slower nor faster, between each pair
+/// of neighbouring numbers of steps.
 ///
 /// @param error   Error of the solution with n steps (any norm, the same for all).
 /// @param steps   Ascending numbers of steps, all in the range where the order shows: fine enough

@@ -42,7 +42,7 @@ struct FlexibleScene {
                           {{"size", {size[0], size[1], size[2]}}, {"cells", o.cells}}, o.cell);
     system.set_gravity(o.gravity);
     const Vec3 tip_at(size[0] + 1.0, 0, 0);
-    // No mean momentum: a growing distance would only add round-off.
+    // No total momentum, since a growing distance would only add round-off.
     const double bar_mass = 0.5 * size.prod(), hub_mass = 2.0;
     const double mass = bar_mass + hub_mass + (o.two_bodies ? hub_mass : 0.0);
     const Vec3 com = (bar_mass * centre + (o.two_bodies ? hub_mass : 0.0) * tip_at) / mass;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests of surfaces of solids and cables in contact ask over one step.
+// Helpers for tests of contact of solids' surfaces and cables over one step.
 #pragma once
 
 #include <vector>
@@ -42,7 +42,7 @@ struct MovingNodes {
   }
 };
 
-/// On all nodes.
+/// Forces on all nodes.
 inline Vec forces_over(const NodeStep& step, std::size_t size, const ElementGroup& contact,
                        const std::vector<double>& history) {
   Vec f = Vec::Zero(static_cast<Eigen::Index>(size));
@@ -77,12 +77,12 @@ inline Mat tangent(const SolidContact& contact, const MovingNodes& nodes,
                    const std::vector<double>& history) {
   return tangent_over(nodes.step(), nodes.x_n.size(), contact, history);
 }
-/// Numbers that a point of solids in contact remembers: its bristle comes first, then, among
-/// others, by how much its band ends lower.
+/// Size of the history of a contact point of solids: its bristle comes first, later, among others,
+/// the amount by which its band is lowered.
 inline constexpr std::size_t kPointNumbers = 14, kLoweredNumber = 11;
 inline std::size_t first_of_points(const MovingNodes& nodes) { return 3 * nodes.X.size() + 1; }
 
-/// At the start, but with the whole band for points that start within.
+/// History at the start, with the whole band for points that start within it.
 inline std::vector<double> with_whole_bands(const SolidContact& contact, const MovingNodes& nodes) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());

@@ -10,7 +10,7 @@
 
 namespace polhode::test {
 
-/// The same at all times.
+/// Constant function of time.
 class Constant final : public TimeFunction {
  public:
   explicit Constant(double value) : value_(value) {}
@@ -21,8 +21,8 @@ class Constant final : public TimeFunction {
   double value_;
 };
 
-/// Builds models from world coordinates: bodies where they are at the start, joints by a point and
-/// an axis or a frame.
+/// Builder of models from ground coordinates: bodies where they are at the start, joints by a point
+/// and an axis or a frame.
 class ModelBuilder {
  public:
   Model model;

@@ -25,7 +25,7 @@ inline Model planar_pendulum() {
   return m.model;
 }
 
-/// IFToMM library: N squares in a row, bars of 1 m and 1 kg, spatial hinges: 3N rows too many. The
+/// IFToMM library: N squares in a row, bars of 1 m and 1 kg, spatial hinges: 3N redundant rows. The
 /// first body is the vertical whose upper end is B0. `phi` turns the verticals from upright,
 /// clockwise; at π/2 all bars are in one line.
 inline Model n_four_bar(int N, double phi = 0.0) {
@@ -112,8 +112,8 @@ inline int square_bar(ModelBuilder& m, const std::string& name, const Vec3& from
                 Quat::FromTwoVectors(Vec3::UnitX(), to - from));
 }
 
-/// IFToMM library: Bricard's six hinges on the edges of a cube; one row too many everywhere. P3 is
-/// the far end of body 1.
+/// IFToMM library: Bricard's six hinges on the edges of a cube; one redundant row in all positions.
+/// P3 is the far end of body 1.
 inline Model bricard() {
   ModelBuilder m;
   m.model.gravity = kDownPlanar;
@@ -130,8 +130,8 @@ inline Model bricard() {
 }
 inline const Vec3 kBricardP3{0.5, 0.0, 0.0};  ///< From the centre of mass of body 1.
 
-/// Bennett's four hinges: links p, q, p, q with twists α, β where q sin α = p sin β. Mobile
-/// against the count of rows: three of them are redundant.
+/// Bennett's four hinges: links p, q, p, q with twists α, β where q sin α = p sin β. Mobile despite
+/// the count of rows: three of them are redundant.
 inline Model bennett() {
   ModelBuilder m;
   m.model.gravity = kDown;
@@ -280,7 +280,7 @@ inline Model chain(const std::string& type, int links, bool grounded,
   return m.model;
 }
 
-/// A door on two hinges in line: five rows too many. The hinges are not plumb, so it swings.
+/// A door on two hinges in line: five redundant rows. The hinges are not vertical, so it swings.
 inline Model door() {
   ModelBuilder m;
   m.model.gravity = kDown;
@@ -293,7 +293,7 @@ inline Model door() {
   return m.model;
 }
 
-/// Springs of every sort on jointed bodies: to the ground, between neighbours and between distant
+/// Springs of every kind on jointed bodies: to the ground, between neighbours and between distant
 /// bodies, a torsional one in a hinge.
 inline Model sprung_chain(double damping = 0.0) {
   Model model = chain("revolute", 3, true);

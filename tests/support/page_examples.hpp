@@ -13,9 +13,9 @@
 
 namespace polhode::test {
 
-/// Runs the model files that stand in a page of the documentation; parts of files are left out.
+/// Runs the model files of a page of the documentation; parts of files are skipped.
 /// @param page  Path in the repository.
-/// @returns how many there are.
+/// @returns their number.
 inline int run_page_examples(const std::string& page) {
   std::ifstream file(source_dir() + "/" + page);
   EXPECT_TRUE(file.good()) << page;

@@ -5,7 +5,7 @@
 
 namespace polhode::test {
 
-// Kept in one source file, so that the others compile to the same wherever the sources stand.
+// In one source file, so that all others compile to the same code in every folder.
 [[nodiscard]] std::string source_dir();  ///< Root of the sources.
 [[nodiscard]] std::string test_data_dir();
 [[nodiscard]] std::string cli_program();  ///< Command line of this build; "" if it is not built.

@@ -30,7 +30,7 @@ inline std::string text_of(const std::string& path) {
   return std::move(text).str();
 }
 
-/// A program that was started in a folder; wait() collects what became of it.
+/// A program that was started in a folder; wait() returns its result.
 class Program {
  public:
   Program(const std::vector<std::string>& words, const std::string& folder) {

@@ -9,7 +9,7 @@
 
 namespace polhode::test {
 
-/// A case with reference data: its model and what of it is compared.
+/// A case with reference data: its model and the compared quantities.
 struct PublishedCase {
   std::string name;
   Model model;
@@ -50,7 +50,7 @@ inline PublishedCase bricard_case() {
           [](const Simulation& s) -> Vec { return place_of(s, 1, kBricardP3); }, 10.0};
 }
 inline PublishedCase flyball_case() {
-  // Height of the slider along the shaft, which stands plumb.
+  // Height of the slider along the shaft, which is vertical.
   return {"A05", flyball_governor(), "flyball_governor",
           [](const Simulation& s) -> Vec { return s.body(1).r.tail<1>(); }, 10.0};
 }

@@ -10,7 +10,7 @@
 
 namespace polhode::test {
 
-/// Numbers that look random and are the same in every run.
+/// Pseudo-random numbers, the same in every run.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -55,10 +55,11 @@ class Random {
   return {.ga = GeneralizedAlpha::from_spectral_radius(rho_inf), .t_n = t_n, .dt = dt};
 }
 
-/// Where the displacement of side a or b stands in 12 numbers (Δr_a, Δθ_a, Δr_b, Δθ_b).
+/// Displacements of sides a and b in 12 numbers (Δr_a, Δθ_a, Δr_b, Δθ_b).
 using Displacement = Eigen::Matrix<double, 12, 1>;
 
-/// Two bodies in a large step (turns of about a radian), anything or one of them the ground.
+/// Two bodies in a large step (turns of about a radian), in general or with one of them as the
+/// ground.
 struct PairMotion {
   StepContext context;
   BodyMotion a_n, b_n;

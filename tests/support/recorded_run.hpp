@@ -12,7 +12,7 @@
 
 namespace polhode::test {
 
-/// Runs a simulation to its end and writes into a folder what the command line would.
+/// Runs a simulation to its end and writes the results of the command line into a folder.
 inline RunSummary recorded_run(Simulation& simulation, const std::string& folder,
                                bool restarted = false) {
   Recorder recorder(simulation, folder, {}, restarted);
@@ -24,7 +24,7 @@ inline RunSummary recorded_run(Simulation& simulation, const std::string& folder
   return summary;
 }
 
-/// The numbers of a probe's file, without its head; what is no number reads as zero.
+/// Numbers of a probe's file, without its header; other entries are read as zero.
 inline std::vector<std::vector<double>> csv_rows(const std::string& path) {
   std::istringstream lines(read_file(path));
   std::vector<std::vector<double>> all;

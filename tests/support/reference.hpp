@@ -16,12 +16,12 @@
 
 namespace polhode::test {
 
-/// Samples of a known motion: a time and values a row.
+/// Samples of a known motion: a time and values per row.
 struct Reference {
   std::vector<double> t;
   std::vector<Vec> values;
 
-  /// Reads tests/validation/data/<name>.csv; lines that begin with # say where it comes from.
+  /// Reads tests/validation/data/<name>.csv; lines that begin with # name its source.
   static Reference read(const std::string& name) {
     std::ifstream file(test_data_dir() + "/" + name + ".csv");
     if (!file) throw std::runtime_error("no reference data '" + name + "'");
@@ -40,10 +40,10 @@ struct Reference {
   }
 };
 
-/// What is compared with the samples: the first columns of a row.
+/// Values compared with the samples, the first columns of a row.
 using Observation = std::function<Vec(const Simulation&)>;
 
-/// How far a run was from the samples it met.
+/// Deviation of a run from the samples at its times.
 struct Deviation {
   double largest = 0.0;  ///< Largest difference of a value, over all samples.
   double at_end = 0.0;   ///< At the last sample.
@@ -51,8 +51,8 @@ struct Deviation {
   RunSummary summary;
 };
 
-/// Runs a model for `duration` and compares at the samples whose times it meets: those on the grid
-/// of a fixed step; automatic steps are made to end on each.
+/// Runs a model for `duration` and compares it with the samples at its times: those on the grid of
+/// a fixed step; automatic steps end at every sample.
 inline Deviation deviation_from(const Reference& reference, Model model, double duration,
                                 const Observation& observe) {
   const bool automatic = !model.analysis.step;

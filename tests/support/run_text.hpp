@@ -16,14 +16,14 @@ inline Simulation made(const std::string& text, const Overrides& overrides = {})
   return Simulation(read_model_text(text, "model.yaml", overrides));
 }
 
-/// Runs it to its end, which it must reach.
+/// Runs a simulation to its end; it fails the test otherwise.
 inline RunSummary finished(Simulation& s) {
   const RunSummary r = s.run();
   EXPECT_EQ(r.end, RunEnd::finished) << r.message;
   return r;
 }
 
-/// What is said of a model that has a fault; "" if it has none.
+/// Error message for a faulty model; "" if it has no fault.
 inline std::string fault_of(const std::string& text) {
   try {
     (void)made(text);
@@ -33,8 +33,8 @@ inline std::string fault_of(const std::string& text) {
   return "";
 }
 
-/// Expects that a model has a fault that is told in these words.
-inline bool tells(const std::string& text, const std::string& wanted) {
+/// Expects the error message of a model to contain a text. @returns whether it does.
+inline bool expect_fault(const std::string& text, const std::string& wanted) {
   const std::string fault = fault_of(text);
   EXPECT_NE(fault.find(wanted), std::string::npos) << fault;
   return fault.find(wanted) != std::string::npos;

@@ -8,7 +8,7 @@
 
 namespace polhode::test {
 
-/// A folder of its own for one test, removed at the end.
+/// Temporary folder of a test, removed at the end.
 class Scratch {
  public:
   Scratch() {

@@ -8,7 +8,7 @@
 
 namespace polhode::test {
 
-/// Sizes for any kind of shape: as many of the lengths as it has, in the first order that it
+/// Sizes for any kind of shape: as many of the lengths as it has, in the first permutation that it
 /// accepts.
 /// @param lengths  All different [m]; at least as many as sizes.
 [[nodiscard]] inline std::vector<double> fitting_sizes(const ShapeKind& kind,

@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kTolerance = 0.2, kRadius = 0.6;
 
-/// Nodes of 2 × 2 quadrilaterals, of which those in the middle line lie deeper, and after them
-/// three of a cable along that line.
+/// Nodes of 2 × 2 quadrilaterals with a valley along the middle line, followed by three nodes of a
+/// cable along that line.
 struct Scene : MovingNodes {
   LoadedFaces faces{"quad4", {}};
 };
 
-/// @param depth   Of the valley, below zero of the ridge.
+/// @param depth   Of the valley; below zero it is a ridge.
 /// @param height  Of the cable above its bottom.
 Scene scene(unsigned seed, double rho_inf, double depth, double height, double way) {
   Random random(seed);
@@ -74,8 +74,8 @@ SolidContact contact_of(const Scene& s, double mu, double end_share = 0.0) {
 struct Place {
   double depth, height;
 };
-/// Over a ridge, over what is nearly flat, in a shallow and in a steep valley, where both slopes
-/// push.
+/// Depth and height of the cable: over a ridge, over a nearly flat surface, in a shallow and in a
+/// steep valley, where both slopes act.
 const Place kPlaces[] = {{-0.5, 0.55}, {0.02, 0.55}, {0.1, 0.6}, {0.6, 0.75}};
 
 // @tests{cable-on-mesh} @tests{cable-mesh-friction}
@@ -135,9 +135,9 @@ TEST(CableOnMesh, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
           EXPECT_LT(sum.norm(), 1e-12 * (1.0 + f.norm()));
           EXPECT_LT(moment.norm(), 1e-12 * (1.0 + f.norm()));
           contact.commit(s.step(), history.data(), nullptr);
-          const SurfaceReport told = contact.report(history.data());
-          EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-12 * size);
-          EXPECT_LT((told.force - on_cable).norm(), 1e-12 * (1.0 + f.norm()));
+          const SurfaceReport report = contact.report(history.data());
+          EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-12 * size);
+          EXPECT_LT((report.force - on_cable).norm(), 1e-12 * (1.0 + f.norm()));
           still.x_n = s.x_n1;
           EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored,
                       1e-12 * size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of edges that cross, over one step.
+// Contact of crossing lines of edges over one step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ EdgeLines line(Scene& s, const std::vector<Vec3>& at) {
   return lines;
 }
 
-/// The second line crosses the first at x; rough: by how much nodes stand elsewhere.
+/// Two lines that cross at x of the first; `rough` is the size of random displacements of nodes.
 Scene scene(double x, double rough, double way, unsigned seed = 1) {
   Scene s;
   s.first = line(s, {{-1.5, 0, 0}, {-0.5, 0, 0}, {0.5, 0, 0}, {1.5, 0, 0}});
@@ -84,7 +84,7 @@ Scene scene(double x, double rough, double way, unsigned seed = 1) {
 std::vector<double> history_of(const EdgeContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
-  history.back() = 0.0;  // the whole band, wherever it starts
+  history.back() = 0.0;  // the whole band, from any initial gap
   return history;
 }
 
@@ -92,7 +92,7 @@ Vec forces(const EdgeContact& contact, const Scene& s, const std::vector<double>
   return forces_over(s.step(), s.x_n.size(), contact, history);
 }
 
-/// Where a line is crossed does not matter, be it at one of its nodes or of the other line's.
+/// Stored energy at any crossing point, at a node of either line or between nodes: it is the same.
 TEST(EdgeContact, HasNoNotchesAlongALine) {
   double first = 0.0;
   for (const double x : {0.1, 0.2, 0.4999, 0.5, 0.5001, 0.503, 0.6, -0.5}) {
@@ -141,7 +141,7 @@ TEST(EdgeContact, HasTheTangentOfItsForces) {
     }
 }
 
-/// Over several steps, each going on from what the last one left.
+/// Several steps in sequence, each with the history of the last one.
 TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
   for (const double mu : {0.0, 0.1, 10.0})
     for (const unsigned seed : {1U, 2U, 3U, 4U}) {
@@ -150,7 +150,7 @@ TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
       const EdgeContact contact = s.contact(mu);
       std::vector<double> history = history_of(contact);
       Random random(seed + 10);
-      double told = 0.0;
+      double reported = 0.0;
       for (int k = 0; k < 6; ++k) {
         const Vec f = forces(contact, s, history);
         ASSERT_GT(f.norm(), 1e-3);
@@ -173,8 +173,8 @@ TEST(EdgeContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
         const SurfaceReport r = contact.report(history.data());
-        told += w.dissipated;
-        EXPECT_NEAR(r.friction_loss, told, 1e-13);
+        reported += w.dissipated;
+        EXPECT_NEAR(r.friction_loss, reported, 1e-13);
         EXPECT_LT((r.force - on_first).norm(), 1e-12);
         EXPECT_NEAR(contact.work(s.instant(true), history.data(), nullptr).stored, w.stored, 1e-12);
         const std::vector<SurfacePointReport> points =
@@ -197,7 +197,7 @@ TEST(EdgeContact, FollowsAWayThatWouldCross) {
   for (std::size_t i = 4; i < 7; ++i) to.x_n1[3 * i + 2] -= 0.4;  // 0.3 beyond the other line
   const double part = contact.free_part(s.instant(true), to.instant(true), history.data());
   EXPECT_LT(part, 0.25);
-  EXPECT_GT(part, 0.2);  // a tenth of the room is left
+  EXPECT_GT(part, 0.2);  // a tenth of the gap remains
   for (std::size_t i = 4; i < 7; ++i) to.x_n1[3 * i + 2] = 0.5;
   EXPECT_EQ(contact.free_part(s.instant(true), to.instant(true), history.data()), 1.0);
 }
@@ -228,7 +228,7 @@ TEST(EdgeLines, AreTheSharpOnesOfACubeAndTheBorderOfAPlate) {
   EXPECT_EQ(edges.vertices.size(), 8U);
   for (const double part : edges.shared()) EXPECT_DOUBLE_EQ(part, 2.0 / 3.0);
   EXPECT_EQ(sharp_edges(triangulated({{"quad4", {0, 2, 3, 1}}}), X).edges.size(), 4U);
-  // Seen from inside, the cube is a hollow without edges that something could cross.
+  // With reversed orientation the cube is a cavity without convex edges.
   const MeshSurface hollow = triangulated(
       {{"quad4", {1, 3, 2, 0, 6, 7, 5, 4, 4, 5, 1, 0, 3, 7, 6, 2, 2, 6, 4, 0, 5, 7, 3, 1}}});
   EXPECT_TRUE(sharp_edges(hollow, X).edges.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two edges that cross, over one step.
+// Contact of two crossing edges over one step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -173,7 +173,8 @@ TEST(EdgePair, DoesNotSlideWhenItTurnsAsAWhole) {
   const SurfaceLaw l = law(1.0);
   const FourSlide slide = s.pair(l).slide(Vec3::Zero(), false);
   EXPECT_LT(slide.slid.norm(), 1e-10);
-  // The second edge draws along itself: the nearest point of the first one slides by that.
+  // The second edge moves along itself, so its material slides over the nearest point of the first
+  // one.
   const Vec3 draw = 1e-3 * (middle[3] - middle[2]).normalized();
   for (int k = 2; k < 4; ++k) s.moves.u[k] += draw, s.moves.x_n1[k] += draw;
   EXPECT_LT((s.pair(l).slide(Vec3::Zero(), false).slid + draw).norm(), 1e-6);

@@ -25,7 +25,7 @@ TEST(PointBand, BeginsToPressWhereAPointStarts) {
   }
   EXPECT_NEAR(beginning_later(law, lowered_for(law, -1.99e-4)).normal.reach(), -2e-4 + 0.05 * 4e-4,
               1e-18)
-      << "a twentieth is left";
+      << "a twentieth of the gap remains";
 }
 
 // @tests{surface-start}
@@ -97,14 +97,15 @@ TEST(PointBand, BeginsAnImpactOnlyWhereItClosesFromOutside) {
   law.mu = law.end_share = 0.5;  // no rebound
   const double reach = law.normal.reach();
   EXPECT_TRUE(PointPhase{}.in_step(law, reach, -1e-9).in_impact());
-  EXPECT_FALSE(PointPhase{}.in_step(law, reach, 0.0).in_impact()) << "it does not come nearer";
-  EXPECT_FALSE(PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact()) << "it starts within";
+  EXPECT_FALSE(PointPhase{}.in_step(law, reach, 0.0).in_impact()) << "no approach";
+  EXPECT_FALSE(PointPhase{}.in_step(law, 0.5 * reach, -1.0).in_impact())
+      << "it starts within the band";
   PointPhase p = PointPhase{}.in_step(law, reach, -1.0).at_end(law, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.0) << "friction is an impulse";
   p.turn(law, 0.0, 0.0);
   EXPECT_EQ(p.law(law).mu, 0.5);
-  EXPECT_FALSE(p.in_step(law, 0.0, -1.0).in_impact()) << "it presses on";
-  EXPECT_TRUE(p.at_end(law, 0.5 * reach).open()) << "of a band that ends lower";
+  EXPECT_FALSE(p.in_step(law, 0.0, -1.0).in_impact()) << "it is still loaded";
+  EXPECT_TRUE(p.at_end(law, 0.5 * reach).open()) << "of a lowered band";
   EXPECT_GT(p.at_end(law, 0.5 * reach).lowered, 0.0);
   EXPECT_EQ(p.at_end(law, reach).lowered, 0.0);
 }

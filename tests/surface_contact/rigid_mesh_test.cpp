@@ -46,7 +46,7 @@ TEST(NormalLaw, FindsTheGapOfAnEnergy) {
   EXPECT_NEAR(law.gap_of(law.energy(0.0099)), 0.0099, 1e-9);
 }
 
-/// Whatever lies below, and wherever corners and edges are: features that neighbours share count
+/// Gap over a flat surface with arbitrary corners and edges: shared features of neighbours count
 /// once. @tests{surface-feature-sum}
 TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
   const double rho = 0.05;
@@ -75,7 +75,7 @@ TEST(RigidMesh, IsAPlaneWhereItIsFlat) {
   }
 }
 
-/// A box of triangles is a box, at its faces, edges and corners.
+/// Gap of a box of triangles: that of the box, at its faces, edges and corners.
 TEST(RigidMesh, IsTheBoxWhoseTrianglesItHas) {
   using enum RigidSurface::Kind;
   const double rho = 0.2;
@@ -106,8 +106,8 @@ TEST(RigidMesh, IsTheBoxWhoseTrianglesItHas) {
   }
 }
 
-/// A drum of triangles becomes a cylinder with the square of the turn of its sides, whatever the
-/// radius of the ball.
+/// A drum of triangles converges to a cylinder with the square of the angle between its sides, for
+/// any radius of the ball.
 TEST(RigidMesh, BecomesTheCylinderOfSecondOrder) {
   const contact::NormalLaw law = band(0.05);
   for (const double radius : {0.0, 0.3, 2.0}) {
@@ -171,14 +171,14 @@ TEST(RigidMesh, HasTheDerivativesOfItsGap) {
   }
 }
 
-/// Along a way, kept at a distance, the energy changes by what the force does. Returns the most of
-/// it.
+/// Along a path at a distance, the change of energy is the work of the force. @returns the largest
+/// energy.
 double expect_work(const RigidMesh& mesh, const GapQuery& question, const Vec3& from,
                    const Vec3& to, double height, int n = 4000) {
   const contact::NormalLaw& law = question.law;
   const auto over = [&](double part) {
     Vec3 y = from + part * (to - from);
-    for (int i = 0; i < 20; ++i)  // up to it
+    for (int i = 0; i < 20; ++i)  // out to that distance
       y[2] += height + question.radius - mesh.distance(y, 10.0, true);
     return y;
   };
@@ -201,7 +201,7 @@ double expect_work(const RigidMesh& mesh, const GapQuery& question, const Vec3& 
   return most;
 }
 
-/// The energy has no jumps. @tests{surface-feature-sum}
+/// Energy without jumps along a path. @tests{surface-feature-sum}
 TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(hills(0.2));
@@ -213,12 +213,12 @@ TEST(RigidMesh, DoesTheWorkThatItsEnergyChangesBy) {
       from[2] = to[2] = 0.0;
       most = std::max(most, expect_work(mesh, {law, 100.0, false, radius}, from, to, 0.05));
     }
-    EXPECT_GT(most, 1.2 * law.energy(0.05)) << "valleys were met";
+    EXPECT_GT(most, 1.2 * law.energy(0.05)) << "the path crosses valleys";
   }
 }
 
-/// A ball that does not fit through a ring is held back wherever it lies on the hole, by what is
-/// nearest at least, and its energy has no jumps there either. @tests{surface-feature-holes}
+/// A ball that does not fit through a ring: at every position on the hole the force is at least
+/// that of the nearest feature, and the energy has no jumps. @tests{surface-feature-holes}
 TEST(RigidMesh, HoldsBackWhatIsWiderThanAHole) {
   const contact::NormalLaw law = band(0.2);
   const RigidMesh mesh(contact::mesh("ring", torus(3.5, 1.5, 400), {}, 0.2));
@@ -254,9 +254,9 @@ TEST(RigidMesh, KnowsItsInside) {
   EXPECT_GT(within, 200);
 
   const RigidMesh field(hills(0.1));
-  EXPECT_LT(field.distance({0.3, 0.4, -2.0}, 100.0, true), -1.0) << "below it";
+  EXPECT_LT(field.distance({0.3, 0.4, -2.0}, 100.0, true), -1.0) << "a point below";
   EXPECT_GT(field.distance({0.3, 0.4, 2.0}, 100.0, true), 1.0);
-  EXPECT_GT(field.distance({4.5, 0.4, -2.0}, 100.0, true), 1.0) << "beside it";
+  EXPECT_GT(field.distance({4.5, 0.4, -2.0}, 100.0, true), 1.0) << "a point beside";
   EXPECT_GT(field.distance({0.3, 0.4, -2.0}, 100.0, false), 1.0) << "it has two sides in motion";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two pieces of cables over one step: crossing, along each other, and in between.
+// Contact of two pieces of cables over one step: crossing, parallel, and in between.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -144,7 +144,8 @@ TEST(RoundEdgePair, DoesExactlyTheWorkItStoresAndKeepsMomenta) {
   EXPECT_GT(count, 40);
 }
 
-/// Which of the two potentials acts: crossing edges do not feel points, though these are as near.
+/// Choice of the two potentials: for crossing edges the potential of points is zero, although
+/// points are as near.
 TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
   const SurfaceLaw l = law(0.0);
   const auto along = [&](const EdgePair& p) { return p.pressure() - p.pressure_across(); };
@@ -158,8 +159,8 @@ TEST(RoundEdgePair, MeetsByEdgesWhereTheyCrossAndByPointsWhereTheyDoNot) {
   EXPECT_GT(along(between.pair(l)), 0.01);
 }
 
-/// The energy is continuous from lines that lie along each other to lines that cross: a turn in
-/// steps that are four times as small changes it by steps that are.
+/// Continuity of the energy from parallel to crossing lines: in a rotation with four times smaller
+/// steps its changes are four times smaller.
 TEST(RoundEdgePair, StoresWithoutJumpsAsItTurns) {
   const SurfaceLaw l = law(0.0);
   const auto energy = [&](double angle) {
@@ -179,7 +180,7 @@ TEST(RoundEdgePair, StoresWithoutJumpsAsItTurns) {
   EXPECT_NEAR(largest_step(2000) / largest_step(8000), 4.0, 0.1);
 }
 
-/// Along a line of edges a point is met once, wherever it is: also over the nodes.
+/// Contact of a point with a line of edges: it counts once at every position, also over the nodes.
 TEST(RoundEdgePair, MeetsAPointOnceAlongAStraightLineOfEdges) {
   const SurfaceLaw l = law(0.0);
   const auto energy = [&](double shift) {
@@ -269,8 +270,8 @@ TEST(RoundEdgePair, RubsWhereItCrossesWithoutSumOrMoment) {
       }
 }
 
-/// One edge is drawn along itself: that far it slides, whichever way the other one points. Rolled
-/// around it, it does not.
+/// Slip of an edge that moves along itself: its displacement, for any direction of the other edge.
+/// An edge that rolls around the other one does not slip.
 TEST(RoundEdgePair, SlidesByWhatIsDrawnAlongAndRollsFreely) {
   for (const Place place : {Place::along, Place::against}) {
     Scene s = scene(place, 4, 0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tubes are round to cables and to surfaces of solids.
+// Contact of round tubes with cables and with surfaces of solids.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST(RoundTube, HasTheDistanceOfItsProfile) {
     EXPECT_NEAR(gap(0.5, angle, -0.3), 0.1, 1e-15);
     EXPECT_NEAR(gap(0.8, angle, 0.7), 0.2, 1e-15);
     EXPECT_NEAR(gap(1.3, angle, 0.9), std::hypot(0.31, 0.41) - 0.01, 1e-15) << "a rounded edge";
-    EXPECT_NEAR(gap(0.2, angle, 0.9), std::hypot(0.41, 0.41) - 0.01, 1e-15) << "the edge within";
+    EXPECT_NEAR(gap(0.2, angle, 0.9), std::hypot(0.41, 0.41) - 0.01, 1e-15) << "the inner edge";
     EXPECT_NEAR(gap(0.9, angle, 0.1), -0.1, 1e-15) << "in the wall";
     EXPECT_NEAR(gap(0.65, angle, 0.1), -0.05, 1e-15);
   }
@@ -86,8 +86,8 @@ double largest_difference(const Simulation& a, const Simulation& b) {
   return most;
 }
 
-/// However it is turned about its axis, and as a full bar: a polygon of 48 sides has sagittas of
-/// two thousandths of the radius, 0.1 mm here.
+/// Results for any rotation of the tube about its axis, and for a solid bar: a polygon of 48 sides
+/// would have sagittas of 0.002 of the radius, 0.1 mm here.
 // @tests{surface-gap}
 TEST(RoundTube, BendsARopeAsAFullBarDoes) {
   for (const double step : {2e-3, 5e-4, 2e-5}) {
@@ -98,15 +98,15 @@ TEST(RoundTube, BendsARopeAsAFullBarDoes) {
                turned = rope("tube: [0.1, 0.06, 0.4]", 2.0, step);
     (void)finished(tube);
     (void)finished(turned);
-    // In 1,500 steps with impacts rounding grows to 2e-6 m: a turn about the axis of the tube does
-    // as much as the other shape, by one compiler's options and not by another's.
+    // In 1,500 steps with impacts rounding grows to 2e-6 m: with some compilers' options a rotation
+    // of the tube about its axis has as much effect as the other shape.
     const double rounding = step > 1e-4 ? 1e-8 : 5e-6;
     EXPECT_LT(largest_difference(tube, turned), rounding);
     EXPECT_LT(largest_difference(tube, bar), rounding);
   }
 }
 
-/// Rubber that is dropped into a pipe and slides in it.
+/// A rubber block that is dropped into a pipe and slides in it.
 Simulation rubber(double turned, double step) {
   return made(format(R"(
 format: 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids against each other over one step.
+// Contact between surfaces of solids over one step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kTolerance = 0.3;
 
-/// Nodes of two plates of faces above each other, the second one being met, that both move.
+/// Nodes of two moving plates of faces: the upper one has the contact points, the lower one the
+/// triangles.
 struct Scene : MovingNodes {
   std::vector<LoadedFaces> lower, upper;
   std::vector<int> carriers;
@@ -93,8 +94,8 @@ TEST(SolidContact, HasTheTangentOfItsForces) {
       }
 }
 
-// Increments of Newton follow the force where a point slides from one triangle to the next: along a
-// way of half a plate it has no jump, so its changes from place to place halve with their distance.
+// Continuity of the force where a point slides from one triangle to the next: along a path of half
+// a plate its changes between positions halve with their distance.
 // @tests{mesh-friction}
 TEST(SolidContact, RubsWithoutJumpsFromTriangleToTriangle) {
   for (const unsigned seed : {1U, 2U, 3U}) {
@@ -148,11 +149,11 @@ TEST(SolidContact, DoesExactlyTheWorkItStoresAndTakesAndKeepsMomenta) {
         EXPECT_LT(sum.norm(), 1e-12);
         EXPECT_LT(moment.norm(), 1e-12);
         contact.commit(s.step(), history.data(), nullptr);
-        const SurfaceReport told = contact.report(history.data());
-        EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-13);
+        const SurfaceReport report = contact.report(history.data());
+        EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-13);
         Vec3 on_upper = Vec3::Zero();
         for (int i = 9; i < 13; ++i) on_upper += f.segment<3>(3 * i);
-        EXPECT_LT((told.force - on_upper).norm(), 1e-12);
+        EXPECT_LT((report.force - on_upper).norm(), 1e-12);
         still.x_n = s.x_n1;
         EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
       }
@@ -173,7 +174,7 @@ TEST(SolidContact, KeepsMomentaWhenStepsDampToo) {
   EXPECT_LT(moment.norm(), 1e-12);
 }
 
-/// Plates of three and of four elements, parallel: a uniform gap loads every node by its share of
+/// Plates of three and of four elements, parallel: a uniform gap loads every node with its part of
 /// the pressure.
 TEST(SolidContact, LoadsMeshesThatDoNotMatchEvenly) {
   Scene s;
@@ -215,7 +216,7 @@ TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
     still.context.dt = 0.0;
     return contact.work(still.start(), history.data(), nullptr).stored;
   };
-  // To another height; the force on the upper plate.
+  // Step to another height; returns the force on the upper plate.
   const auto go = [&](double z) {
     s.x_n = s.x_n1;
     std::fill(s.u.begin(), s.u.end(), 0.0);
@@ -233,12 +234,12 @@ TEST(SolidContact, StoresNothingWhereItStartsUntilItHasOpened) {
   EXPECT_EQ(forces(contact, s, history).norm(), 0.0);
   EXPECT_GT(go(0.3), 0.0);
   EXPECT_GT(stored(), 0.0);
-  EXPECT_GT(go(0.4), 0.0) << "given back";
+  EXPECT_GT(go(0.4), 0.0) << "while opening";
   EXPECT_EQ(stored(), 0.0);
   EXPECT_EQ(go(0.59), 0.0) << "still within the band of others";
   EXPECT_EQ(go(0.4), 0.0);
   EXPECT_EQ(go(0.61), 0.0);
-  EXPECT_GT(go(0.4), 0.0) << "opened, and closed again";
+  EXPECT_GT(go(0.4), 0.0) << "closed again after opening";
   EXPECT_NEAR(stored(), 4.0 * law(0.0).normal.energy(0.1), 1e-12);
 }
 
@@ -260,7 +261,7 @@ TEST(SolidContact, StopsPointsThatWouldPassThrough) {
   const double most = part({0, 0, -100.0});
   EXPECT_GT(most, 0.002);
   EXPECT_LT(most, 0.0045);
-  // Farther than triangles were looked for.
+  // A displacement beyond the search radius of triangles.
   const SolidContact near = s.contact(l, 1.0);
   std::vector<double> short_sight(near.history_size());
   near.initialize(short_sight.data());

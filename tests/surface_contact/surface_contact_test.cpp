@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids against rigid surfaces over one step.
+// Contact of solids' surfaces with rigid surfaces over one step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace polhode::test::surface_contact_tests {
 namespace {
 
-constexpr double kTolerance = 0.6;  ///< Of the gap: steps of this size stay in the band.
+constexpr double kTolerance = 0.6;  ///< Of the gap; the steps of the tests stay in this band.
 
 /// Nodes that move over a step; the last four, if any, carry the rigid surface.
 struct Nodes {
@@ -186,10 +186,11 @@ Mat tangent(const SurfaceContact& contact, const Nodes& nodes, const std::vector
   return K;
 }
 
-/// Numbers of a point: its bristle comes first, behind it by how much its band ends lower.
+/// Size of a point's history, and the place of the amount by which its band is lowered; the bristle
+/// comes first.
 constexpr std::size_t kNumbers = 14, kLowered = 11;
 
-/// At the start, but with the whole band for points that start within.
+/// History at the start, with the whole band for points that start within it.
 std::vector<double> with_whole_bands(const SurfaceContact& contact) {
   std::vector<double> history(contact.history_size());
   contact.initialize(history.data());
@@ -206,7 +207,7 @@ std::vector<double> bristles(const SurfaceContact& contact, unsigned seed) {
   return history;
 }
 
-/// Points of the faces; or, of two nodes, of a rope between them.
+/// Contact points of the faces, or, with two nodes, of a rope between them.
 SurfacePoints points_of(const Scene& s) {
   if (s.faces.shape != "rope") return surface_points("c", s.faces, s.X);
   SurfacePoints rope;
@@ -240,7 +241,7 @@ TEST(SurfaceContact, HasTheTangentOfItsForces) {
       for_scenes(
           law(mu, mu == 0.0 ? 0.5 : 0.0), rho_inf,
           [](const SurfaceContact& contact, const Scene& s, const auto& history) {
-            // Free nodes move as they like, those of the frame as a rigid body.
+            // Free nodes move independently, those of the frame as a rigid body.
             const auto n = static_cast<Eigen::Index>(s.X.size());
             const Eigen::Index columns = 3 * n + (contact.external() ? 0 : 6);
             const auto moved = [&](const Vec& d) {
@@ -295,13 +296,13 @@ TEST(SurfaceContact, DoesExactlyTheWorkItStoresAndTakes) {
       EXPECT_GE(w.dissipated, 0.0);
       EXPECT_NEAR(-work, w.stored - before + w.dissipated, 1e-12);
       contact.commit(s.nodes.step(), history.data(), nullptr);
-      const SurfaceReport told = contact.report(history.data());
-      EXPECT_NEAR(told.friction_loss + told.normal_loss, w.dissipated, 1e-14);
-      EXPECT_NEAR(told.impulse, told.normal_force * s.nodes.context.dt, 1e-14);
+      const SurfaceReport report = contact.report(history.data());
+      EXPECT_NEAR(report.friction_loss + report.normal_loss, w.dissipated, 1e-14);
+      EXPECT_NEAR(report.impulse, report.normal_force * s.nodes.context.dt, 1e-14);
       Vec3 sum = Vec3::Zero();
       for (std::size_t i = 0; i < s.X.size(); ++i)
         sum += f.segment<3>(3 * static_cast<Eigen::Index>(i));
-      EXPECT_LT((told.force - sum).norm(), 1e-13) << "on the solid";
+      EXPECT_LT((report.force - sum).norm(), 1e-13) << "on the solid";
       still.x_n = s.nodes.x_n1;
       EXPECT_NEAR(contact.work(still.start(), history.data(), nullptr).stored, w.stored, 1e-12);
     });
@@ -353,7 +354,7 @@ TEST(SurfaceContact, StoresNothingWhereItStarts) {
   EXPECT_EQ(contact.report(history.data()).normal_force, 0.0);
 }
 
-/// Points on their way, stopped before they come out on the other side.
+/// Points that move through a shape, stopped before they leave it on the other side.
 TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
   using enum RigidSurface::Kind;
   const RigidSurface plate{.kind = box, .half = {5, 5, 0.5}, .rounding = 0.1};
@@ -368,12 +369,12 @@ TEST(SurfaceContact, StopsPointsThatWouldPassThrough) {
     return contact.free_part(nodes.start(), nodes.step(), nullptr);
   };
   EXPECT_EQ(part({0, 0, -3.0}), 1.0);
-  EXPECT_EQ(part({8, 0, -1.0}), 1.0) << "beside it";
+  EXPECT_EQ(part({8, 0, -1.0}), 1.0) << "past the shape";
   EXPECT_EQ(part({0, 0, 9.0}), 1.0) << "away";
   // From 4 through the plate to −4: free as far as 0.5 − 0.1 + 0.02, a tenth of the band.
   EXPECT_NEAR(part({0, 0, -8.0}), 3.58 / 8.0, 1e-3);
   EXPECT_NEAR(part({1, 0, -100.0}), 3.58 / 100.0, 1e-4);
-  // Across an edge, which a look at the ends would not see.
+  // Across an edge, which positions at the ends alone would not show.
   EXPECT_LT(part({8.0, 0, -8.0}), 0.5);
 }
 
@@ -387,7 +388,7 @@ TEST(SurfaceContact, LeavesOutWhatItIsToldTo) {
   EXPECT_EQ(median_edge({"quad4", {0, 1, 2, 3}}, X), 3.0);
 }
 
-/// Hulls, cones and ellipsoids have the gaps of boxes, flanks and spheres.
+/// Gaps of hulls, cones and ellipsoids equal to those of boxes, flanks and spheres.
 TEST(ConvexSurface, HasTheGapOfTheShapeThatItIs) {
   using enum RigidSurface::Kind;
   Random random(41);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Impacts of points of surfaces on rigid shapes, in whole models.
+// Impacts of points of surfaces on rigid shapes, in complete models.
 #include <gtest/gtest.h>
 
 #include <polhode/core/format.hpp>
@@ -9,8 +9,8 @@
 namespace polhode::test::surface_impacts_tests {
 namespace {
 
-/// A straight rope that meets the floor flat at 1 m/s, without weight, so light at its ends that it
-/// is one with them.
+/// A straight rope that hits the floor flat at 1 m/s, without weight, with ends so light that they
+/// move with it.
 Model rope(double e, double mu, double along, double step) {
   return read_model_text(format(R"(
 format: 1
@@ -37,7 +37,7 @@ TEST(SurfaceImpacts, OfARopeReboundByTheirRestitutionAtAnyStep) {
       const RunSummary summary = simulation.run();
       ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
       for (const char* end : {"left", "right"})
-        EXPECT_NEAR(simulation.body(end).v.z(), e, 2e-3) << "the rope swings by itself";
+        EXPECT_NEAR(simulation.body(end).v.z(), e, 2e-3) << "vibration of the rope itself";
       EXPECT_LT(summary.energy_drift, 1e-10);
     }
 }
@@ -76,7 +76,7 @@ analysis: {{duration: 20 ms, step: {}}}
       const RunSummary summary = simulation.run();
       ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
       EXPECT_LT(simulation.body("table").v.z(), -0.3);
-      EXPECT_LT(summary.energy_drift, 1e-10) << "what is lost is told";
+      EXPECT_LT(summary.energy_drift, 1e-10) << "the loss is in the energy balance";
       EXPECT_LT(summary.linear_momentum_drift, 1e-12);
       EXPECT_LT(summary.angular_momentum_drift, 1e-12);
       ASSERT_TRUE(summary.contacts);
@@ -85,7 +85,7 @@ analysis: {{duration: 20 ms, step: {}}}
     }
 }
 
-/// A straight cable that falls across another one at 1 m/s, without weight, both of one piece.
+/// A straight cable that falls across another one at 1 m/s, without weight, both of one element.
 Model crossing_cables(double e, double mu, double along, double step) {
   return read_model_text(format(R"(
 format: 1
@@ -105,7 +105,8 @@ analysis: {{duration: 6 ms, step: {3}}}
                          "cables.yaml");
 }
 
-/// Equal masses part with the mean of their velocities and half of e times the approach.
+/// Velocities of equal masses after impact: their mean, plus or minus half of e times the approach
+/// velocity.
 // @tests{cable-impact}
 TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) {
   for (const double e : {0.0, 0.3, 0.7, 1.0})
@@ -118,13 +119,13 @@ TEST(SurfaceImpacts, OfCablesAcrossEachOtherReboundByTheirRestitutionAtAnyStep) 
         EXPECT_NEAR(simulation.body(end).v.z(), 0.5 * (e - 1.0), 1e-4);
       for (const char* end : {"front", "back"})
         EXPECT_NEAR(simulation.body(end).v.z(), -0.5 * (1.0 + e), 1e-4);
-      EXPECT_LT(summary.energy_drift, 1e-10) << "what is lost is told";
+      EXPECT_LT(summary.energy_drift, 1e-10) << "the loss is in the energy balance";
       EXPECT_LT(summary.linear_momentum_drift, 1e-12);
       EXPECT_LT(summary.angular_momentum_drift, 1e-12);
     }
 }
 
-/// Each has half of the approach's momentum; what friction takes from one the other one gets.
+/// Friction impulse between two equal cables, which changes their momenta by opposite amounts.
 // @tests{cable-impact}
 TEST(SurfaceImpacts, OfCablesAcrossEachOtherRubByTheirImpulse) {
   const double mu = 0.1, along = 1.0;
@@ -145,7 +146,7 @@ TEST(SurfaceImpacts, OfCablesAcrossEachOtherRubByTheirImpulse) {
     }
 }
 
-/// Two equal bodies, each wholly within a solid that moves with it: as rigid ones.
+/// Two equal bodies, each with a solid bonded to it at all nodes: they rebound as rigid bodies.
 // @tests{mesh-impact}
 TEST(SurfaceImpacts, OfSolidsOnEachOtherReboundByTheirRestitution) {
   for (const double e : {0.0, 0.5, 1.0})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs that are saved amid the impacts of solids and cables and go on from there.
+// Runs that are saved during impacts of solids and cables and continued from there.
 #include <gtest/gtest.h>
 
 #include <polhode/core/format.hpp>
@@ -16,7 +16,8 @@ struct Fall {
   int steps;
 };
 
-/// Rubber and ropes that fall on shapes and on each other, some of it spinning and sliding.
+/// Solids of rubber and ropes that fall on shapes and on each other, some of them spinning and
+/// sliding.
 std::vector<Fall> falls() {
   const std::string rubber =
       "materials: {rubber: {type: neo_hookean, youngs_modulus: 1e6, poisson_ratio: 0.3, density: "
@@ -82,7 +83,7 @@ output: {{hdf5: false}}
                 e, friction, fall.step * fall.steps, fall.step);
 }
 
-/// Saved before the impact and in every fourth step of it, some after its turn.
+/// States saved before the impact and in every fourth step of it, some after maximum compression.
 TEST(SurfaceRestart, AmidImpactsGoesOnBitForBit) {
   for (const Fall& fall : falls())
     for (const double e : {0.0, 0.5}) {

@@ -7,7 +7,7 @@
 namespace polhode::test::free_coordinate_tests {
 namespace {
 
-/// Angle about z on frames R_a, R_b, measured either way round.
+/// Angle about z on frames R_a, R_b, measured from either side.
 FreeAngle angle_about_z(const Mat3& R_a, const Mat3& R_b, bool on_b) {
   if (!on_b) return {R_a.col(0), R_a.col(1), R_b.col(0), false};
   return {R_b.col(0), -R_b.col(1), R_a.col(0), true};  // e × f against the axis.

@@ -11,7 +11,7 @@ struct Sample : InteractionItem {
   static constexpr const char* kKind = "sample";
   void evaluate(const PairStep&, PairTerms&) const {}
 };
-/// Remembers something and writes it nowhere: "comit" is no function of an interaction.
+/// An interaction with a history that is never written: "comit" is not a function of the interface.
 struct Misspelt : Sample {
   [[nodiscard]] int history_size() const { return 1; }
   void initialize(const PairStep&, double*) const {}
@@ -20,19 +20,19 @@ struct Misspelt : Sample {
 struct Remembers : Misspelt {
   void commit(const PairStep&, double*) const {}
 };
-/// Never asked how far its barrier is.
+/// An interaction whose clearance is never queried, since has_barrier() is missing.
 struct HalfBarrier : Sample {
   [[nodiscard]] double clearance(const PairStep&) const { return 0.5; }
 };
-/// A loss that no ledger sees.
+/// An interaction whose losses are missing in the energy balance.
 struct SilentLoss : Sample {
   [[nodiscard]] bool dissipates() const { return true; }
 };
-/// Rows whose accelerations are missing.
+/// An interaction with rows but without their acceleration terms.
 struct Rows : Sample {
   [[nodiscard]] int rows() const { return 1; }
 };
-/// A change of type that a call would round away.
+/// An interaction with a wrong return type, to which a call would convert silently.
 struct WrongType : Sample {
   [[nodiscard]] bool clearance(const PairStep&) const { return true; }
   [[nodiscard]] bool has_barrier() const { return true; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beams in motion against what other meshes, steps and programs say (docs/validation.md), and their
-// conservation over 1e4 steps.
+// Beams in motion, against results of other meshes, steps and programs (docs/validation.md), and
+// their conservation over 1e4 steps.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -20,7 +20,7 @@ Simulation simulate(Model model, double step, double duration) {
   return Simulation(std::move(model));
 }
 
-/// Steps to a time; expects no trouble.
+/// Steps to a time, all of which must be accepted.
 void step_to(Simulation& s, double t) {
   while (s.time() < t - 1e-9) {
     const StepReport report = s.step(t);
@@ -30,8 +30,8 @@ void step_to(Simulation& s, double t) {
 
 }  // namespace
 
-// Energy after the blow: 724.4 J, the limit of meshes of the averaged mass (723.99 with 10
-// elements, 724.41 with 20). Momenta are those of the loads: ∫F dt = 50 N s along x, whatever the
+// Energy after the load: 724.4 J, the limit of meshes with the averaged mass (723.99 with 10
+// elements, 724.41 with 20). Momenta are the impulses of the loads: ∫F dt = 50 N s along x for any
 // mesh.
 TEST(BeamCases, FlyingBeamHasItsEnergyAndMomenta) {
   Simulation s = simulate(flying_beam(20), 0.025, 10.0);
@@ -43,7 +43,7 @@ TEST(BeamCases, FlyingBeamHasItsEnergyAndMomenta) {
   EXPECT_LT(s.summary().energy_drift, 1e-12);
 }
 
-// 1e4 steps in free flight, bent by a good deal: energy and both momenta.
+// Energy and both momenta over 1e4 steps of free flight with large bending.
 TEST(BeamCases, FlyingBeamConservesOverTenThousandSteps) {
   Simulation s = simulate(flying_beam(10), 0.05, 500.0);
   step_to(s, 500.0);
@@ -54,8 +54,8 @@ TEST(BeamCases, FlyingBeamConservesOverTenThousandSteps) {
   EXPECT_LT(r.angular_momentum_drift, 1e-11);
 }
 
-// Largest deflections u_2 = −0.574 (at 6.765 s) and u_1 = −0.0189 in the turning frame; then the
-// steady stretch by the centrifugal force, 5.1465e-4 in closed form.
+// Largest deflections u_2 = −0.574 (at 6.765 s) and u_1 = −0.0189 in the rotating frame; then the
+// steady extension by the centrifugal force, 5.1465e-4 in closed form.
 TEST(BeamCases, SpinUpBeamBendsBackAndStretches) {
   Simulation s = simulate(spin_up_beam(16), 0.01, 20.0);
   double least_u_2 = 0.0, least_at = 0.0, least_u_1 = 0.0, sum = 0.0;
@@ -75,7 +75,7 @@ TEST(BeamCases, SpinUpBeamBendsBackAndStretches) {
   EXPECT_NEAR(sum / count, 5.1465e-4, 2e-6);
 }
 
-// Elbow and tip across the plane, to the three digits that meshes and steps agree in.
+// Out-of-plane displacement of elbow and tip, to the three digits in which meshes and steps agree.
 TEST(BeamCases, RightAngleCantileverSwings) {
   constexpr int kLeg = 10;
   Simulation s = simulate(right_angle_cantilever(kLeg), 0.025, 30.0);
@@ -97,8 +97,9 @@ TEST(BeamCases, RightAngleCantileverSwings) {
   EXPECT_LT(s.summary().energy_drift, 1e-12);
 }
 
-// A peer's ANCF cables, 64 elements at 0.1 ms. Ours is a different element with its own mesh and
-// step error, second order in both: a quarter of the bound of half the elements.
+// Reference: ANCF cables of another program, 64 elements at 0.1 ms. The element of this program is
+// different, with errors of second order in mesh and step: the bound is a quarter of that of half
+// the elements.
 TEST(BeamCases, FlexiblePendulumFollowsThePeers) {
   const struct {
     double t, x, y, within;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What beams with bodies and joints keep over 1e4 steps (docs/validation.md).
+// Conservation of energy and momenta of beams with bodies and joints over 1e4 steps
+// (docs/validation.md).
 #include <gtest/gtest.h>
 
 #include <polhode/simulation/simulation_details.hpp>
@@ -28,7 +29,7 @@ Model two_bodies_and_a_beam(const Scene& scene) {
                                {1e4, 4e3, 160.0, 200.0, 0.125, {5e-3, 2.5e-3, 2.5e-3}});
   beam.section.relaxation_time = scene.relaxation_time;
   beam.bonds = {{hub, false}, {tip, true}};
-  // No mean momentum: a growing distance would only add round-off.
+  // No total momentum, since a growing distance would only add round-off.
   const Vec3 moment = 2.0 * Vec3(7, 0, 0) + Vec3(8, 0, 0) + Vec3(0, 1, 0) + 0.75 * Vec3(3.5, 0, 0);
   const Vec3 pivot = scene.floating ? Vec3(moment / 6.75) : Vec3(0, -0.4, 0);
   const Vec3 rate = scene.floating ? omega : Vec3(0, 0, 1.5);

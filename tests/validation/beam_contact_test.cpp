@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beams that touch: on supports of their own, and each other in free flight.
+// Contact of beams: on two pegs, and with each other in free flight.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -12,7 +12,8 @@
 namespace polhode::beam_contact_tests {
 namespace {
 
-// A viscous bar falls by a hair on two pegs, 1 m apart and 0.1 m from its ends, and comes to rest.
+// A viscous bar falls from a small height on two pegs, 1 m apart and 0.1 m from its ends, and comes
+// to rest.
 constexpr const char* kOnPegs = R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -72,14 +73,14 @@ TEST(BeamContact, CrossingRodsKeepEnergyAndMomenta) {
   EXPECT_LT(r.energy_drift, 1e-10);
   EXPECT_LT(r.linear_momentum_drift, 1e-12);
   EXPECT_LT(r.angular_momentum_drift, 1e-12);
-  // They have met: the lower one moves, neither has passed through the other.
+  // After contact: the lower one moves, and neither has passed through the other.
   const std::vector<Vec3> upper = s.beam(0).position, lower = s.beam(1).position;
   EXPECT_LT(s.body(11 + 5).v.z(), -0.1);
   EXPECT_GT(upper[6].z() - lower[5].z(), 0.0);
 }
 
-/// The same with a rebound of less and a mass that is partly consistent: an impulse on one node
-/// moves its neighbours, too.
+/// The same with a smaller restitution and a partly consistent mass: an impulse on one node moves
+/// its neighbours, too.
 // @tests{turn-law}
 TEST(BeamContact, RodsOfConsistentMassReboundWithoutGainingEnergyOrMomentum) {
   std::string text = kCrossing;
@@ -100,7 +101,7 @@ TEST(BeamContact, RodsOfConsistentMassReboundWithoutGainingEnergyOrMomentum) {
   });
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   const Balance end = s.balance();
-  EXPECT_LT(energy, 0.995 * start.kinetic) << "nothing was lost";
+  EXPECT_LT(energy, 0.995 * start.kinetic) << "no loss: there was no impact";
   EXPECT_LT((end.linear_momentum - start.linear_momentum).norm(), 1e-12 * s.state().ledger.p_scale);
   EXPECT_LT((end.angular_momentum - start.angular_momentum).norm(),
             1e-12 * s.state().ledger.l_scale);

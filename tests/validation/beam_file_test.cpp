@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Published beams as a user writes them: model files with arcs, sections and loads, in statics.
+// Published beams in model files with arcs, sections and loads: statics and frequencies.
 #include <cmath>
 
 #include <gtest/gtest.h>

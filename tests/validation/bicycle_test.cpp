@@ -19,8 +19,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Steer and lean of the bicycle, 4 unknowns of a linear motion: they follow a recursion of the
-/// fourth order, whose roots are exp(λ Δ).
+/// Eigenvalues from steer and lean of the bicycle: as a linear motion with 4 unknowns they satisfy
+/// a recursion of the fourth order, whose roots are exp(λ Δ).
 std::vector<Complex> eigenvalues(double v, double delta = 0.04, int samples = 60) {
   Simulation s(read_model(
       test::source_dir() + "/examples/bicycle/model.yaml",
@@ -32,7 +32,7 @@ std::vector<Complex> eigenvalues(double v, double delta = 0.04, int samples = 60
     const Mat3 R = s.body(1).Lambda();
     y.emplace_back(s.joint(1).coordinates.at(0), std::asin(R(2, 1)));
   }
-  // Of the two signals, each scaled to size one.
+  // Recursion of the two signals, each scaled to size one.
   const int rows = samples - 4;
   Mat A(2 * rows, 4);
   Vec b(2 * rows);
@@ -54,7 +54,7 @@ std::vector<Complex> eigenvalues(double v, double delta = 0.04, int samples = 60
   return list;
 }
 
-/// The one nearest to a guess.
+/// Eigenvalue nearest to a guess.
 Complex nearest(const std::vector<Complex>& list, Complex guess) {
   Complex best = list.front();
   for (const Complex& one : list)
@@ -62,7 +62,7 @@ Complex nearest(const std::vector<Complex>& list, Complex guess) {
   return best;
 }
 
-/// Where the real part changes its sign, by secants.
+/// Speed at which the real part changes its sign, by the secant method.
 double critical_speed(double v_0, double v_1, Complex guess) {
   double f_0 = nearest(eigenvalues(v_0), guess).real();
   for (int i = 0; i < 4; ++i) {
@@ -93,7 +93,7 @@ TEST(Bicycle, HasThePublishedEigenvalues) {
     A.bottomRightCorner<2, 2>() = -M.inverse() * (v * C_1);
     const auto list = eigenvalues(v);
     for (const Complex exact : Eigen::EigenSolver<Eigen::Matrix4d>(A).eigenvalues()) {
-      if (exact.real() < -5.0) continue;  // castering: gone after a few samples
+      if (exact.real() < -5.0) continue;  // castering mode: decays within a few samples
       EXPECT_LT(std::abs(nearest(list, exact) - exact), 1e-4) << v << ' ' << exact;
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables that touch: over drums and pegs, hit by balls, across beams.
+// Contact of cables: over drums and pegs, hit by balls, across beams.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -62,7 +62,7 @@ TEST(CableContact, BallThatHitsATightCableKeepsEnergyAndMomenta) {
     }
 }
 
-/// At ten and at thirty times the speed the ball crosses the cable's thickness many times in a
+/// At ten and at thirty times the speed the ball moves by many times the cable's thickness in a
 /// step.
 TEST(CableContact, AFastBallDoesNotPassThroughAThinCable) {
   for (const double speed : {30.0, 100.0}) {
@@ -72,7 +72,7 @@ TEST(CableContact, AFastBallDoesNotPassThroughAThinCable) {
         {}, [&](Simulation& now) { least = std::min(least, now.body(2).r.z() - node_z(now, 10)); });
     ASSERT_EQ(r.end, RunEnd::finished) << r.message;
     EXPECT_GT(least, 0.02) << "the ball stays above the middle of the cable";
-    EXPECT_LT(s.body(2).v.z(), 0.0) << "and still draws it along";
+    EXPECT_LT(s.body(2).v.z(), 0.0) << "and pulls it along";
     EXPECT_LT(r.energy_drift, 1e-9);
   }
 }
@@ -96,15 +96,15 @@ TEST(CableContact, RopeOverADrumHoldsBelowTheRatioOfEytelwein) {
     Simulation s(drum.model);
     EXPECT_LT(std::abs(drum.acceleration(s)), 1e-4) << pieces;
     EXPECT_LT(std::abs(s.body(drum.heavy).v.z()), 1e-5) << pieces;
-    // Friction carries the difference of the weights, pressure the rest.
+    // Friction carries the difference of the weights, the normal force the rest.
     const ContactReport c = s.contact(0);
     const double weight = (1.0 + 0.9 * ratio + drum.rope_mass) * Drum::g;
     EXPECT_NEAR(c.force.z() / weight, 1.0, 1e-3) << pieces;
   }
 }
 
-/// Above it the weights fall by a = g (m_2 − q m_1)/(m_2 + q m_1), q = exp(μφ), and the error falls
-/// with the square of the turn of a piece.
+/// Above it the weights fall by a = g (m_2 − q m_1)/(m_2 + q m_1), q = exp(μφ), and the error
+/// decreases with the square of the angle of a piece.
 TEST(CableContact, RopeOverADrumSlipsAboveTheRatioOfEytelwein) {
   const double mu = 0.2, ratio = std::exp(mu * pi), heavy = 1.25 * ratio;
   const double a = Drum::g * (heavy - ratio) / (heavy + ratio);
@@ -141,7 +141,7 @@ TEST(CableContact, SmoothDrumIsAPulley) {
 }
 
 /// A rope that sags onto a thin peg, at rest: each half is a parabola between two supports, whose
-/// tension follows from the length; the peg carries what its ends do not.
+/// tension follows from the length; the peg carries the part of the weight that the ends do not.
 TEST(CableContact, RopeOnAPegCarriesItsWeightAsTheParabolaSays) {
   const double l = 0.5, EA = 1e4, free = 0.495, w = 1.5 * 9.81;
   Simulation s(read_model_text(R"(

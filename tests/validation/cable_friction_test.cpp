@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction of cables on the points that they run over: the law of Euler and Eytelwein.
+// Friction of cables on the points that they pass: the law of Euler and Eytelwein.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// Two weights on the ends of a rope that turns by a right angle on each of two points.
+/// Two weights on the ends of a rope that bends by a right angle at each of two points.
 std::string weights(double heavy, const std::string& rope, double duration = 0.5) {
   return format(R"(
 format: 1
@@ -37,8 +37,8 @@ output: {{hdf5: false}}
 
 }  // namespace
 
-// While it slides the tensions are in the ratio e^{μβ}, to what the rope still trembles in a step,
-// and the weights fall as M(g − a) = R m (g + a). It stretches a little: mm of the way of 0.5 m.
+// Tensions of a sliding rope: in the ratio e^{μβ}, apart from its vibrations, and the weights fall
+// as M(g − a) = R m (g + a). The rope is extended by millimetres, of a displacement of 0.5 m.
 // @tests{cable-capstan}
 TEST(CableFriction, SlidesAtTheCapstansRatio) {
   const double mu = 0.2, R = std::exp(mu * std::numbers::pi), M = 8.0, m = 2.0;
@@ -53,13 +53,14 @@ TEST(CableFriction, SlidesAtTheCapstansRatio) {
     EXPECT_NEAR(s.body(0).r[2], -2.0 - 0.125 * a, 0.01) << h;
     EXPECT_NEAR(s.body(1).v[2], 0.5 * a, 0.02 * a) << h;
     EXPECT_LT(r.energy_drift, 1e-10) << h;
-    // What friction takes: the difference of tensions times the way, near enough.
+    // Energy dissipated by friction: approximately the difference of tensions times the
+    // displacement.
     const double way = 2.0 + s.body(1).r[2], T = m * (kG + a);
     EXPECT_NEAR(s.balance().dissipated, (R - 1.0) * T * way, 0.05 * (R - 1.0) * T * way) << h;
   }
 }
 
-// One turn about the first point more.
+// An additional turn about the first point.
 TEST(CableFriction, CountsWholeTurns) {
   Simulation s = made(weights(30.0, "friction: 0.2, wraps: [1, 0]", 0.6));
   (void)finished(s);
@@ -68,7 +69,7 @@ TEST(CableFriction, CountsWholeTurns) {
   EXPECT_NEAR(rope.tension[1] / rope.tension[2], std::exp(0.1 * std::numbers::pi), 1e-8);
 }
 
-// Within the ratio the weights hang on their own pieces of the rope, and do not creep.
+// Below the limiting ratio the weights hang on their own pieces of the rope and do not creep.
 TEST(CableFriction, HoldsWithoutCreep) {
   for (const double h : {0.02, 0.002}) {
     Simulation s = made(weights(3.5, "friction: 0.2", 8.0), {"h=" + std::to_string(h)});
@@ -76,7 +77,7 @@ TEST(CableFriction, HoldsWithoutCreep) {
     const double z = s.body(0).r[2];
     EXPECT_NEAR(s.cable(0).tension[0], 3.5 * kG, 1e-6) << h;
     EXPECT_NEAR(s.cable(0).tension[2], 2.0 * kG, 1e-6) << h;
-    EXPECT_GT(z, -2.0 - 5.0 * 3.5 * kG / 4e4) << h;  // all the rope's stretch
+    EXPECT_GT(z, -2.0 - 5.0 * 3.5 * kG / 4e4) << h;  // the whole extension of the rope
     EXPECT_LT(r.energy_drift, 1e-10) << h;
     Simulation longer = made(weights(3.5, "friction: 0.2", 16.0), {"h=" + std::to_string(h)});
     (void)finished(longer);
@@ -84,8 +85,8 @@ TEST(CableFriction, HoldsWithoutCreep) {
   }
 }
 
-// A pendulum on a rope over a corner swings its weight up and down: it sticks and slips in turns,
-// with the same motion at finer steps, and the balance holds.
+// A pendulum on a rope over a corner moves the weight at the other end up and down: alternating
+// stick and slip, convergence with the step, and energy balance.
 TEST(CableFriction, ConvergesWhileItSticksAndSlips) {
   const auto end = [](double h, const char* rho) {
     Simulation s = made(R"(
@@ -127,11 +128,11 @@ TEST(CableFriction, GoesOnAfterARestartBitForBit) {
 }
 
 TEST(CableFriction, TellsWhatIsWrong) {
-  tells(weights(3.0, "friction: 0.2, tension: 3"),
-        "cables.rope.friction: cannot be combined with tension.");
-  tells(weights(3.0, "friction: 0.2, wraps: [1]"),
-        "cables.rope.wraps: has 1 numbers for 2 points between the ends.");
-  tells(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: requires 'friction'.");
+  expect_fault(weights(3.0, "friction: 0.2, tension: 3"),
+               "cables.rope.friction: cannot be combined with tension.");
+  expect_fault(weights(3.0, "friction: 0.2, wraps: [1]"),
+               "cables.rope.wraps: has 1 numbers for 2 points between the ends.");
+  expect_fault(weights(3.0, "wraps: [1, 0]"), "cables.rope.wraps: requires 'friction'.");
 }
 
 }  // namespace polhode::test::cable_friction_tests

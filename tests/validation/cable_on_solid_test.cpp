@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables on the surfaces of deformable solids.
+// Contact of cables with surfaces of deformable solids.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,8 +45,8 @@ ContactReport between(const Simulation& s, const std::string& a, const std::stri
   throw std::logic_error("no such pair");
 }
 
-/// Along a line of nodes, which then becomes a valley with a slope on both sides; beside it; and at
-/// a cube that tumbles, whose edges and corners hit.
+/// Impacts along a line of nodes, which deforms to a valley with a slope on both sides; beside that
+/// line; and on edges and corners of a tumbling cube.
 TEST(CableOnSolid, KeepsEnergyAndMomenta) {
   for (const char* cube :
        {"position: [0.003, 0, 0.056]}, velocity: [0, 0, -3]",
@@ -64,7 +64,7 @@ TEST(CableOnSolid, KeepsEnergyAndMomenta) {
   }
 }
 
-/// Friction and impacts take energy, and the momenta stay.
+/// Friction and impacts dissipate energy and conserve momenta.
 TEST(CableOnSolid, RubsAndKeepsMomenta) {
   Simulation s(thrown("position: [0.003, 0.013, 0.056]}, velocity: [1, 0.5, -3]", "1 MPa",
                       "restitution: 0.5, friction: 0.5", 0.01, 2e-4));
@@ -77,12 +77,12 @@ TEST(CableOnSolid, RubsAndKeepsMomenta) {
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(rise, 1e-10);
   EXPECT_GT(r.contacts->lost_by_friction, 1e-3);
-  EXPECT_LT(r.energy_drift, 1e-10) << "the ledger knows where it went";
+  EXPECT_LT(r.energy_drift, 1e-10) << "the loss is in the energy balance";
   EXPECT_LT(r.linear_momentum_drift, 1e-12);
   EXPECT_LT(r.angular_momentum_drift, 1e-12);
 }
 
-/// In a step the plate would cross the cable three times.
+/// A plate that moves by three thicknesses of the cable in a step.
 TEST(CableOnSolid, AFastPlateDoesNotPassThroughAThinCable) {
   Simulation s(read_model_text(R"(
 format: 1
@@ -111,10 +111,10 @@ analysis: {duration: 2 ms, step: 1 ms}
   EXPECT_LT(r.energy_drift, 1e-10);
 }
 
-/// What starts within a solid is told, but for where the cable is fastened to what the solid is
-/// bonded to.
+/// Cables that start within a solid are refused, except where the cable is attached to a body to
+/// which the solid is bonded.
 TEST(CableOnSolid, RefusesStartsWithin) {
-  const auto told = [](const std::string& bonded, double height) -> std::string {
+  const auto error_of = [](const std::string& bonded, double height) -> std::string {
     try {
       Simulation(read_model_text(format(R"(
 format: 1
@@ -137,12 +137,13 @@ analysis: {{duration: 0.1 ms, step: 0.1 ms}}
     }
     return {};
   };
-  EXPECT_THAT(told("", 0.053), HasSubstr("rope in pad by 0.002 m"));
-  EXPECT_EQ(told("", 0.0552), "");
-  EXPECT_EQ(told(", bonded: {core: zmin}", 0.053), "") << "leaves what it is fastened to";
+  EXPECT_THAT(error_of("", 0.053), HasSubstr("rope in pad by 0.002 m"));
+  EXPECT_EQ(error_of("", 0.0552), "");
+  EXPECT_EQ(error_of(", bonded: {core: zmin}", 0.053), "") << "leaves the body it is attached to";
 }
 
-/// A cable that is drawn down across a soft block: what presses is what its ends carry.
+/// A cable that is pulled down across a soft block: the contact force balances the forces of its
+/// ends.
 TEST(CableOnSolid, PressesWithWhatItsEndsCarry) {
   for (const double beside : {0.0, 0.013}) {
     Simulation s(read_model_text(format(R"(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables over meshes, fields of heights and tubes.
+// Contact of cables with meshes, height fields and tubes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,8 +47,8 @@ double impulses(const Simulation& s) {
   return sum;
 }
 
-/// A rope two metres above a field of heights is not told to overlap with it, whatever the last
-/// digits of its radius.
+/// A rope two metres above a height field: no overlap is reported, for any last digits of its
+/// radius.
 TEST(CableOnTriangles, FarAboveAFieldOverlapsNothing) {
   for (const double radius : {5.8e-3, 5.85e-3, 5.9e-3, 6e-3, 7e-3, 8e-3}) {
     const Model model = read_model_text(format(R"(
@@ -93,7 +93,7 @@ TEST(CableOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   }
 }
 
-/// In a step of 1 ms the plate, and the wall of the tube, would cross the cable many times.
+/// In a step of 1 ms the plate, and the wall of the tube, would pass the cable many times.
 TEST(CableOnTriangles, FastThinBodiesDoNotPassThroughAThinCable) {
   const Scratch folder;
   write_obj(folder / "plate.obj", plate({0.12, 0.12, 0.004}, 4));
@@ -137,8 +137,8 @@ TEST(CableOnTriangles, RopeOverADrumOfTrianglesHoldsBelowTheRatioOfEytelwein) {
   EXPECT_NEAR(s.contact(0).force.z() / weight, 1.0, 1e-2);
 }
 
-/// What slips over triangles slips as over the cylinder, if sides of the drum turn by less than the
-/// pieces of the rope: else these catch on its corners.
+/// A rope slips over triangles as over the cylinder if the angle between sides of the drum is less
+/// than that between pieces of the rope; otherwise these catch on its corners.
 TEST(CableOnTriangles, RopeOverADrumOfTrianglesSlipsAsOverTheCylinder) {
   const Scratch folder;
   const double mu = 0.2, ratio = std::exp(mu * pi), heavy = 1.25 * ratio;
@@ -173,7 +173,7 @@ analysis: {{type: statics}}
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   const ContactReport c = s.contact(0);
-  EXPECT_NEAR(c.force.z() / (0.5 * 0.2 * 9.81), 0.9, 1e-4) << "half a piece is each end's";
+  EXPECT_NEAR(c.force.z() / (0.5 * 0.2 * 9.81), 0.9, 1e-4) << "each end carries half a piece";
   EXPECT_LT(std::abs(c.force.y()), 1e-9);
   for (int k = 1; k < 10; ++k) {
     EXPECT_NEAR(node_z(s, k), height, 2e-3 * radius) << k;
@@ -181,11 +181,11 @@ analysis: {{type: statics}}
   }
 }
 
-/// How deep a cable starts within is told.
+/// Depth of a cable that starts within a body: it is in the message.
 TEST(CableOnTriangles, RefusesStartsWithin) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
-  const auto told = [&](const std::string& from, double height, const std::string& shape) {
+  const auto error_of = [&](const std::string& from, double height, const std::string& shape) {
     try {
       Simulation(read_model_text(format(R"(
 format: 1
@@ -208,12 +208,12 @@ analysis: {{duration: 1 ms, step: 1 ms}}
   const std::string box = format("{{mesh: {}}}", folder / "box.obj"),
                     field =
                         "{height_field: {spacing: 1, heights: [[0, 0, 0], [0, 0, 0], [0, 0, 0]]}}";
-  EXPECT_THAT(told("ground", 0.0, box), HasSubstr("rope in rock by 0.26 m"))
+  EXPECT_THAT(error_of("ground", 0.0, box), HasSubstr("rope in rock by 0.26 m"))
       << "through the middle";
-  EXPECT_THAT(told("ground", 0.255, box), HasSubstr("rope in rock by 0.005 m"));
-  EXPECT_EQ(told("ground", 0.2601, box), "");
-  EXPECT_THAT(told("ground", -1.0, field), HasSubstr("rope in rock by 1.01 m"));
-  EXPECT_EQ(told("ground", 0.0101, field), "");
+  EXPECT_THAT(error_of("ground", 0.255, box), HasSubstr("rope in rock by 0.005 m"));
+  EXPECT_EQ(error_of("ground", 0.2601, box), "");
+  EXPECT_THAT(error_of("ground", -1.0, field), HasSubstr("rope in rock by 1.01 m"));
+  EXPECT_EQ(error_of("ground", 0.0101, field), "");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables that press and rub one another, against closed forms.
+// Normal and friction forces between cables, against closed forms.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,7 +18,7 @@ namespace {
 constexpr double g = 9.81;
 
 /// Two tight cables across each other, the ends of the upper one 30 mm below those of the lower
-/// one: both are kinked where they press, by angles that follow from the forces.
+/// one: both are kinked at the contact, by angles that follow from the forces.
 TEST(CablePairs, TightCablesKinkEachOtherAsForcesSay) {
   const double radius = 5e-3, below = 0.03, EA_1 = 2e4, EA_2 = 5e4, half_1 = 1.0, half_2 = 0.7;
   const double free_1 = 0.995, free_2 = 0.69, kGuess = 0.02;
@@ -34,7 +34,8 @@ analysis: {{type: statics}}
 )",
                                        EA_1, 2.0 * free_1, EA_2, 2.0 * free_2),
                                 "kink.yaml");
-  // The file draws them straight, one below the other: they begin as a guess has them.
+  // The cables of the file are straight, one below the other; the kinked shape here is an initial
+  // guess.
   const auto kink = [&](const std::string& cable, int pieces, double ends, double middle) {
     for (int k = 0; k <= pieces; ++k)
       model.bodies[static_cast<std::size_t>(model.body_index(cable + "." + std::to_string(k)))]
@@ -45,7 +46,8 @@ analysis: {{type: statics}}
   Simulation s(model);
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
-  // 2 T_1 sin(kink_1) = 2 T_2 sin(kink_2), and the pieces, which lean, keep apart by the radii.
+  // 2 T_1 sin(kink_1) = 2 T_2 sin(kink_2), and the distance of the inclined pieces is the sum of
+  // the radii.
   const auto press = [](double EA, double half, double free, double depth) {
     const double length = std::hypot(half, depth);
     return 2.0 * EA * (length / free - 1.0) * depth / length;
@@ -69,13 +71,14 @@ analysis: {{type: statics}}
   EXPECT_NEAR(z_2 + below, w_2, band);
   const ContactReport c = s.contact(0);
   EXPECT_NEAR(c.force.z() / press(EA_1, half_1, free_1, w_1), -1.0, 1e-3)
-      << "they touch beside the nodes";
-  EXPECT_NEAR(c.normal_force / c.force.z(), -lean, 2e-5) << "on the lower one, named first";
-  EXPECT_EQ(c.points, 4) << "two pieces on each side of the nodes that meet";
+      << "contact is beside the nodes";
+  EXPECT_NEAR(c.normal_force / c.force.z(), -lean, 2e-5)
+      << "on the lower cable, the first of the pair";
+  EXPECT_EQ(c.points, 4) << "two pieces on each side of the nodes in contact";
 }
 
-/// A bar of two welded bodies and a cable between them, across two cables that hold it like rails,
-/// on a slope: gravity leans by it.
+/// A bar of two fixed bodies with a cable between them, across two cables that carry it like rails,
+/// on a slope, which is given by the direction of gravity.
 RunSummary sled(Simulation& s, double* v_1, double* t_1) {
   return s.run({}, [&](Simulation& now) {
     if (now.time() < 0.05 + 1e-9) *t_1 = now.time(), *v_1 = now.body(0).v.x();
@@ -118,14 +121,13 @@ TEST(CablePairs, ACableAcrossTwoOthersSlidesOnASlopeAsCoulombSays) {
     if (expected > 0.0)
       EXPECT_NEAR(r.contacts->lost_by_friction, mu * g * std::cos(slope) * way, 5e-3 * g * way);
     else
-      EXPECT_LT(way, 1e-4) << "sticks: what it gave until the bristle held it";
+      EXPECT_LT(way, 1e-4) << "it sticks: the displacement until the bristle held it";
     EXPECT_LT(r.energy_drift, 1e-6);
   }
 }
 
-/// A bar like that lies lengthwise in the groove between two others that touch: of three equal
-/// round bars the normals stand at 30 degrees, so both carry W/(2 cos 30°), and friction is
-/// μ W/cos 30°.
+/// A similar bar lies lengthwise in the groove between two others that touch: of three equal round
+/// bars the normals stand at 30 degrees, so both carry W/(2 cos 30°), and friction is μ W/cos 30°.
 TEST(CablePairs, ACableAlongTwoOthersSlidesInTheirGrooveAsAWedge) {
   const double mu = 0.3, radius = 4e-3, wedge = mu / std::cos(std::numbers::pi / 6.0);
   for (const double slope : {std::atan(wedge) - 0.01, std::atan(wedge) + 0.01, 0.6}) {
@@ -159,7 +161,7 @@ analysis: {{step: 0.5 ms, duration: 0.25}}
     for (int k = 0; k < 2; ++k) normal += s.contact(k).impulse / s.time();
     EXPECT_NEAR(normal / (g * std::cos(slope) / std::cos(std::numbers::pi / 6.0)), 1.0, 1e-2);
     EXPECT_NEAR(s.body(0).r.z(), radius * std::sqrt(3.0), 8e-3 * radius);
-    EXPECT_LT(r.energy_drift, 1e-5) << "the rails are so tight that rounding is that";
+    EXPECT_LT(r.energy_drift, 1e-5) << "the rounding of energies of such tight rails";
   }
 }
 

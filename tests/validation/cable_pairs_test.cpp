@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables that touch one another, and themselves.
+// Contact between cables, and of a cable with itself.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +20,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kRadius = 4e-3;
-/// Ends of pieces that cross count to both.
+/// Tolerance at the ends of crossing pieces, which belong to both neighbours.
 constexpr double kEnds = 1e-9;
 
 /// Two tight cables between blocks in space, one across the other, thrown at each other.
@@ -56,7 +56,7 @@ std::vector<Vec3> line(const Simulation& s, const std::string& cable, int pieces
   return x;
 }
 
-/// Seen from above two lines cross: the least height of one above the other there.
+/// Smallest height of one line above the other where both cross as seen from above.
 double height_where_they_cross(const std::vector<Vec3>& upper, const std::vector<Vec3>& lower,
                                int& crossings) {
   double least = 1.0;
@@ -90,7 +90,7 @@ TEST(CablePairs, CrossedCablesKeepEnergyAndMomenta) {
     }
 }
 
-/// At these speeds one cable crosses the other's thickness many times in a step.
+/// Speeds at which one cable moves by many times the other's thickness in a step.
 TEST(CablePairs, FastCablesDoNotPassThroughEachOther) {
   for (const double angle : {0.5 * pi, 0.2, 0.02})
     for (const double speed : {30.0, 100.0}) {
@@ -110,8 +110,8 @@ TEST(CablePairs, FastCablesDoNotPassThroughEachOther) {
     }
 }
 
-/// Which bodies a cable couples with others changes while bodies touch, too: two balls collide, and
-/// the second one the upper cable.
+/// Changing coupling of bodies by a cable while other bodies are in contact: two balls collide,
+/// then the second one hits the upper cable.
 TEST(CablePairs, EverySolverOfTheBodiesDoesTheSame) {
   const auto model = [](const std::string& solver) {
     Model m = crossed(2e-4, 0.02, 3.0, 0.9);
@@ -135,7 +135,7 @@ analysis: {duration: 1, step: 0.1}
   EXPECT_LT(r.linear_momentum_drift, 1e-12);
   EXPECT_LT(r.angular_momentum_drift, 1e-12);
   const auto last = static_cast<int>(by_blocks.model().bodies.size()) - 1;
-  EXPECT_LT(by_blocks.body(last).v.z(), -3.5) << "the balls have met";
+  EXPECT_LT(by_blocks.body(last).v.z(), -3.5) << "the balls have collided";
   for (const char* solver : {"klu", "sparse_lu"}) {
     Simulation s(model(solver));
     ASSERT_EQ(s.run().end, RunEnd::finished);
@@ -228,7 +228,7 @@ TEST(CablePairs, StrandsOfOneRopeDoNotPassEachOther) {
     EXPECT_LT(r.energy_drift, 1e-10) << speed;
     EXPECT_LT(r.linear_momentum_drift, 1e-12) << speed;
     EXPECT_LT(r.angular_momentum_drift, 1e-12) << speed;
-    EXPECT_EQ(s.contact(0).force.norm(), 0.0) << "what it does to itself has no sum";
+    EXPECT_EQ(s.contact(0).force.norm(), 0.0) << "forces on itself have no resultant";
   }
   Simulation without(loop(3.0, 1e-4, 0.02, "restitution: 1", ""));
   double least = 1.0;
@@ -240,7 +240,7 @@ TEST(CablePairs, StrandsOfOneRopeDoNotPassEachOther) {
                      })
                 .end,
             RunEnd::finished);
-  EXPECT_LT(least, -1e-3) << "that do not touch it pass";
+  EXPECT_LT(least, -1e-3) << "without contact it passes through";
 }
 
 TEST(CablePairs, GoOnFromACheckpointInTheSameBits) {
@@ -260,7 +260,7 @@ TEST(CablePairs, GoOnFromACheckpointInTheSameBits) {
     ASSERT_GT(touched, 3);
     EXPECT_GT(r.contacts->lost_by_friction, 0.0);
     EXPECT_GT(r.contacts->lost_in_impacts, 0.0);
-    EXPECT_LT(r.energy_drift, 1e-9) << "what is lost is told";
+    EXPECT_LT(r.energy_drift, 1e-9) << "the loss is in the energy balance";
     Simulation continued(model, read_checkpoint(file, model, straight.system()));
     EXPECT_LT(continued.time(), straight.time());
     ASSERT_EQ(continued.run().end, RunEnd::finished);
@@ -268,8 +268,8 @@ TEST(CablePairs, GoOnFromACheckpointInTheSameBits) {
   }
 }
 
-/// Three ropes from one hook at small angles, thinner there than they are thick, and one that ends
-/// where it began: what is near to the hook does not meet; and what overlaps elsewhere is told.
+/// Three ropes from one hook at small angles, which overlap there, and one that ends where it
+/// began: pieces near the hook are excluded from contact, and overlaps elsewhere are reported.
 TEST(CablePairs, LeaveOutWhatIsNearACommonAttachment) {
   Simulation s(read_model_text(R"(
 format: 1
@@ -290,7 +290,8 @@ analysis: {duration: 0.05, step: 0.5 ms}
   const RunSummary r = s.run();
   ASSERT_EQ(r.end, RunEnd::finished) << r.message;
   EXPECT_LT(r.energy_drift, 1e-9);
-  EXPECT_LT(std::abs(s.body(s.model().body_index("first.1")).r.x()), 1e-3) << "nothing throws it";
+  EXPECT_LT(std::abs(s.body(s.model().body_index("first.1")).r.x()), 1e-3)
+      << "no contact force acts on it";
   try {
     Simulation crossing(read_model_text(R"(
 format: 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cams and grooves in whole models.
+// Cams and grooves in complete models.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -70,7 +70,7 @@ TEST(Cam, MovesItsFollowerByTheClosedForm) {
     const double rate = 10.0 * (lift(13.0 + d) - lift(13.0 - d)) / (2.0 * d);
     const double second = 100.0 * (lift(13.0 + d) - 2.0 * lift(13.0) + lift(13.0 - d)) / (d * d);
     EXPECT_NEAR(o.body(1).v.y(), rate, 1e-6) << step.text;
-    // What the cam exerts along the guide is the follower's mass times its acceleration.
+    // The force of the cam along the guide is the follower's mass times its acceleration.
     EXPECT_NEAR(o.load[1], 0.5 * second, 1e-4 + 2000.0 * step.h * step.h) << step.text;
     const Outcome spline = run(eccentric(points(), "speed: 10 rad/s"), {step_of(step)});
     EXPECT_NEAR(spline.body(1).r.y(), lift(13.0), 1e-7) << step.text;
@@ -78,7 +78,7 @@ TEST(Cam, MovesItsFollowerByTheClosedForm) {
   }
 }
 
-// Under a moment the energy of cam and follower is the work put in. @tests{curve-gradient}
+// Under a moment the energy of cam and follower is the supplied work. @tests{curve-gradient}
 TEST(Cam, PassesOnTheWorkThatItIsGiven) {
   for (const Step& step : kSteps) {
     const Outcome o = run(eccentric(kCircle, "moment: 0.3 N*m"), {step_of(step)});
@@ -106,7 +106,7 @@ TEST(Cam, HasItsOrders) {
         "order " + std::to_string(order));
 }
 
-// A bead in a groove that is an ellipse: energy, and the speed that it tells; the plane is held.
+// A bead in an elliptic groove: energy, reported speed, and its position in the plane.
 TEST(Groove, LeadsABeadWithoutWork) {
   for (const Step& step : kSteps) {
     const Outcome o = run(R"(

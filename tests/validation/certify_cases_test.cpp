@@ -21,7 +21,7 @@
 namespace polhode::test::certify_cases_tests {
 namespace {
 
-/// What a quantity is at a time; an empty vector where it is not known.
+/// Exact value of a quantity at a time; an empty vector where it is not known.
 using Exact = std::function<Vec(double t)>;
 
 /// The rows of a reference as values at its times.
@@ -43,7 +43,7 @@ ProbeSpec point_probe(const Model& model, int body, const Vec3& Z) {
   return probe;
 }
 
-/// A model, how it is run, and what is known of its quantities.
+/// A model, its run, and the exact values of its quantities.
 struct CertifiedCase {
   std::string name;
   Model model;
@@ -127,7 +127,7 @@ CertifiedCase symmetric() {
           {{"p x y z", [=](double t) { return Vec3(known.orientation(t) * Z); }}}};
 }
 
-/// A mass on a spring with a damper, let go: any book on vibrations.
+/// A mass on a spring with a damper, released at rest: closed form of textbooks on vibrations.
 CertifiedCase damped_oscillator() {
   Model model = read_model_text(R"(format: 1
 bodies:

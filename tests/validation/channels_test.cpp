@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events and controllers on what cables, beams, solids and contacts report, against closed forms.
+// Events and controllers on channels of cables, beams, solids and contacts, against closed forms.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ constexpr double kCoarse = 0.02, kDefault = 0.002, kFine = 0.00002;
 
 std::string step(double h) { return format("h={:.17g}", h); }
 
-/// The time at which the event `e` came.
+/// Time of the event `e`.
 double time_of(const std::string& text, double h, const Overrides& more = {}) {
   Overrides overrides = more;
   overrides.push_back(step(h));
@@ -30,7 +30,7 @@ double time_of(const std::string& text, double h, const Overrides& more = {}) {
   return r.events[0].time;
 }
 
-/// Checks that what `of` returns tends to the truth with order 2, from the coarse step to a
+/// Checks that the value of `of` converges to the exact one with order 2, from the coarse step to a
 /// hundredth of the default one.
 template <class Of>
 void expect_second_order(Of&& of, double truth) {
@@ -40,7 +40,7 @@ void expect_second_order(Of&& of, double truth) {
   EXPECT_LT(std::abs(of(kFine) - truth), 1e-5 * first + 1e-9);
 }
 
-/// A weight of 2 kg let go on an elastic cable of 200 N/m that has its free length.
+/// A weight of 2 kg released on an elastic cable of 200 N/m that has its free length.
 std::string weight(const std::string& more, const std::string& duration = "0.6") {
   return R"(
 format: 1
@@ -59,7 +59,7 @@ output: {hdf5: false}
 
 }  // namespace
 
-// T = m g (1 − cos ωt): 1.5 m g at cos ωt = −1/2. The rope lets go of nothing: the run ends there.
+// T = m g (1 − cos ωt): 1.5 m g at cos ωt = −1/2. The event ends the run there.
 // @tests{event-time}
 TEST(Channels, TensionOfACableLetsAnEventCome) {
   const double w = std::sqrt(200.0 / 2.0);
@@ -68,7 +68,7 @@ TEST(Channels, TensionOfACableLetsAnEventCome) {
   expect_second_order([&](double h) { return time_of(text, h); }, 2.0 * kPi / 3.0 / w);
 }
 
-// A force k_p (T_r − T) on the weight: a spring of k (1 − k_p) about another rest.
+// A force k_p (T_r − T) on the weight: a spring of k (1 − k_p) about another equilibrium.
 // @tests{controller-steps}
 TEST(Channels, TensionOfACableIsControlled) {
   const double kp = 0.4, target = 10.0, m = 2.0, k = 200.0, t = 0.6;
@@ -85,8 +85,8 @@ TEST(Channels, TensionOfACableIsControlled) {
       -1.0 + rest * (1.0 - std::cos(w * t)));
 }
 
-// Of a cable that slides, the rate of its length is known: a winch that holds its speed. m ẍ = u
-// with the cable's length 1 + x, u = −k_p (v_r − ẋ) seen from the cable.
+// Control of a cable's rate of length, which is known for running cables: a winch at constant
+// speed. m ẍ = u with the cable's length 1 + x, u = −k_p (v_r − ẋ) seen from the cable.
 TEST(Channels, RateOfACableThatSlidesIsControlled) {
   const double tau = 0.5, v = 0.2, t = 1.0;
   for (const double h : {kCoarse, kDefault, kFine}) {
@@ -145,7 +145,7 @@ output: {hdf5: false}
   }
 }
 
-// A node of a beam reports as a body does: the tip of a bar that falls freely.
+// Channels of a node of a beam are those of a body: the tip of a bar in free fall.
 TEST(Channels, NodesOfBeamsAndSolidsLetEventsCome) {
   for (const char* of : {"body: bar.end", "solid: cube, node: 0", "solid: cube, point: [0, 0, 0]"})
     for (const double h : {kCoarse, kDefault, kFine})
@@ -194,8 +194,9 @@ output: {{hdf5: false}}
   }
 }
 
-// A sampled integral controller of the force at an interface: a body pushes a solid that is all
-// bonded to it. Its share c = m_s/(m + m_s) of the push makes a recurrence, met to rounding.
+// A sampled integral controller of the force at an interface: a body accelerates a solid all of
+// whose nodes are bonded to it. Its part c = m_s/(m + m_s) of the force gives a recurrence,
+// satisfied to rounding.
 TEST(Channels, ForceAtAnInterfaceIsControlled) {
   const double T = 0.05, ki = 60.0, target = 3.0, c = 1.0 / 3.0;
   double u = 0.0, sum = 0.0, last = target;
@@ -227,7 +228,7 @@ output: {hdf5: false, probes: {c: {controller: c}}}
 
 namespace {
 
-/// Two balls of radius 0.1 m whose surfaces are 0.6 m apart; one comes nearer.
+/// Two balls of radius 0.1 m whose surfaces are 0.6 m apart; one approaches.
 std::string balls(const std::string& more, const std::string& duration = "1") {
   return R"(
 format: 1
@@ -246,7 +247,7 @@ output: {hdf5: false}
 
 }  // namespace
 
-// The gap falls by 1 m in 1 s, wherever it is known to contacts or not, of sensors too.
+// The gap decreases by 1 m in 1 s, within and beyond the range of contact and for sensors, too.
 TEST(Channels, GapsLetEventsCome) {
   for (const double h : {kCoarse, kDefault, kFine})
     for (const double level : {0.55, 0.3, 0.01, -0.05}) {
@@ -262,7 +263,7 @@ TEST(Channels, GapsLetEventsCome) {
     }
 }
 
-// A spring made of the gap: 2 ẍ = −k (g_r − g), with g = x − 0.2.
+// A controller as a spring of the gap: 2 ẍ = −k (g_r − g), with g = x − 0.2.
 TEST(Channels, GapsAreControlled) {
   const double w = 5.0, t = 0.8;
   const std::string text = balls(
@@ -282,7 +283,7 @@ TEST(Channels, GapsAreControlled) {
 
 namespace {
 
-/// A block of 2 kg that rests on a floor, pushed onto it by what `push` says.
+/// A block of 2 kg that rests on a floor, pressed onto it by the force `push`.
 std::string pressed(const std::string& push, const std::string& more) {
   return R"(
 format: 1
@@ -303,8 +304,8 @@ output: {hdf5: false, probes: {press: {contact: [block, floor]}}}
 
 }  // namespace
 
-// m g + 40 t = 39.62 N at half a second: a slow ramp is in balance at any step, but for what the
-// block still swings on its barrier.
+// m g + 40 t = 39.62 N at half a second: a slow ramp is in equilibrium at any step, apart from
+// vibrations of the block on its barrier.
 TEST(Channels, ForcesOfContactLetEventsCome) {
   for (const char* channel : {"normal", "fz", "force"}) {
     const std::string text =
@@ -333,7 +334,7 @@ TEST(Channels, ForcesOfContactLetEventsCome) {
   }
 }
 
-// A press holds a force by samples: u_k from the force m g + u_{k−1} of the last step.
+// Sampled control of a press to a given force: u_k from the force m g + u_{k−1} of the last step.
 TEST(Channels, ForcesOfContactAreControlledBySamples) {
   const double T = 0.1, ki = 5.0, target = 50.0, weight = 2.0 * kG;
   double u = 0.0, sum = 0.0, last = target;
@@ -355,8 +356,8 @@ TEST(Channels, ForcesOfContactAreControlledBySamples) {
   }
 }
 
-// What is watched is reported as if it were not: forces of contact are those of the step, not of
-// the one before.
+// Reports do not depend on whether events or controllers read them: forces of contact are those of
+// the step, not of the previous one.
 TEST(Channels, AreReportedAsIfNobodyReadThem) {
   const std::string probes = "output.probes.block={body: block}";
   Simulation plain = made(pressed("40*t", ""), {probes});
@@ -370,7 +371,7 @@ TEST(Channels, AreReportedAsIfNobodyReadThem) {
   }
 }
 
-// In two parts, cut before the event: the same bits, what trial steps did leaves no trace.
+// A run in two parts, divided before the event: the same bits, since trial steps leave no trace.
 TEST(Channels, GoOnBitForBitAfterARestart) {
   const std::string text =
       pressed("40*t",
@@ -393,24 +394,26 @@ TEST(Channels, SayWhatIsWrong) {
   const auto event = [](const std::string& when) {
     return weight("events: {e: {when: {" + when + ", above: 1}, stop: true}}");
   };
-  tells(event("cable: rope, channel: tensoin"),
-        "events.e.when.channel: 'tensoin' is no channel of the cable 'rope'. Did you mean "
-        "'tension'? Channels: tension, length.");
-  tells(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
-  tells(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
-  tells(event("cable: rope, node: 3, channel: tension"),
-        "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
-  tells(event("cable: rope, joint: guide, channel: tension"), "names more than one object");
-  tells(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
-  tells(weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),
-        "events.e.when.above: expects a force (N)");
-  tells(weight("loads: {lift: {type: linear_motor, joint: guide, force: {controller: c}}}\n"
-               "controllers: {c: {cable: rope, channel: tension, derivative: 1}}"),
-        "controllers.c.derivative: needs the rate of 'tension', which is not available.");
-  tells(pressed("{controller: c}",
-                "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1}}"),
-        "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
-        "continuous controller cannot use. Give a sample time.");
+  expect_fault(event("cable: rope, channel: tensoin"),
+               "events.e.when.channel: 'tensoin' is no channel of the cable 'rope'. Did you mean "
+               "'tension'? Channels: tension, length.");
+  expect_fault(event("cable: rop, channel: tension"), "unknown cable 'rop'. Did you mean 'rope'?");
+  expect_fault(event("cable: rope, element: 3, channel: tension"), "events.e.when.element: is 3");
+  expect_fault(event("cable: rope, node: 3, channel: tension"),
+               "events.e.when.node: cannot be combined with 'cable'. It belongs to a solid.");
+  expect_fault(event("cable: rope, joint: guide, channel: tension"), "names more than one object");
+  expect_fault(event("contact: [weight, weight], channel: gap"), "events.e.when.contact");
+  expect_fault(
+      weight("events: {e: {when: {cable: rope, channel: tension, above: 1 m}, stop: true}}"),
+      "events.e.when.above: expects a force (N)");
+  expect_fault(weight("loads: {lift: {type: linear_motor, joint: guide, force: {controller: c}}}\n"
+                      "controllers: {c: {cable: rope, channel: tension, derivative: 1}}"),
+               "controllers.c.derivative: needs the rate of 'tension', which is not available.");
+  expect_fault(
+      pressed("{controller: c}",
+              "controllers: {c: {contact: [block, floor], channel: normal, proportional: 1}}"),
+      "controllers.c: is missing: 'normal' of a contact is a mean over the step, which a "
+      "continuous controller cannot use. Give a sample time.");
   // The same models in code.
   Model model = read_model_text(
       pressed("{controller: c}",
@@ -420,7 +423,7 @@ TEST(Channels, SayWhatIsWrong) {
   model.controllers[0].sample.reset();
   try {
     Simulation s(model);
-    ADD_FAILURE() << "nothing was said";
+    ADD_FAILURE() << "no error was thrown";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("controllers.c: is continuous, but 'normal' of a contact "
                                          "is a mean over the step. Give it a sample time"),

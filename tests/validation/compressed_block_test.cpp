@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A block between two smooth plates in plane strain: the even state solves the equations of every
-// element, whatever the compression. Elements with enhanced strains find it unstable where the
+// A block between two smooth plates in plane strain: the homogeneous state satisfies the equations
+// of every element at any compression. Elements with enhanced strains find it unstable where the
 // solid is not (false wrinkles, "hourglassing").
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ struct Compression {
   int unstable;  ///< Directions in which an independent implementation finds the state unstable.
 };
 
-/// As hard to change in volume as a thousand times in shape.
+/// Ratio of bulk and shear modulus.
 constexpr double kBulkOverShear = 1000.0;
 
 class CompressedBlock : public testing::TestWithParam<Compression> {};

@@ -14,7 +14,7 @@ namespace polhode::connectors {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// End of a run with connectors.
+/// Final state of a run with connectors.
 struct Outcome {
   RunSummary summary;
   std::vector<double> load;  ///< Report of the load "it" at the end, if there is one.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs, bushings, servos and drag in whole models: closed forms at coarse, usual and fine steps.
+// Springs, bushings, servos and drag in complete models: closed forms at coarse, usual and fine
+// steps.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace polhode::connectors_tests {
 
 using namespace connectors;
 
-// 2 ẍ = −50 x − 60 x³ from 0.8 m comes back after 4 K(m)/ω, ω² = 25 + 30·0.64, m = 30·0.64/2ω²
+// 2 ẍ = −50 x − 60 x³ from 0.8 m returns after 4 K(m)/ω, ω² = 25 + 30·0.64, m = 30·0.64/2ω²
 // (Duffing; e.g. Kovacic and Brennan, The Duffing Equation, 2011, 4.1). @tests{law-mean}
 TEST(Connectors, ADuffingOscillatorHasThePeriodOfItsEllipticIntegral) {
   const double omega = std::sqrt(25.0 + 30.0 * 0.64), m = 30.0 * 0.64 / (2.0 * omega * omega);
@@ -42,8 +43,8 @@ TEST(Connectors, AQuadraticSpringHasThePeriodOfItsBetaFunction) {
   }
 }
 
-// A spring that only pulls lets go at x = 0: a quarter of its period later the slider has the speed
-// A ω and keeps it.
+// A spring in tension only releases the slider at x = 0: from a quarter of the period on it has the
+// speed A ω.
 TEST(Connectors, ASpringOnOneSideLetsGo) {
   const double omega = 5.0, T = 0.5 * kPi / omega + 0.4;
   for (const Step& step : kSteps) {
@@ -56,7 +57,7 @@ TEST(Connectors, ASpringOnOneSideLetsGo) {
   }
 }
 
-// A table is the function that its straight lines make: energy at any step.
+// A table as a piecewise linear function: energy at any step.
 TEST(Connectors, ATableKeepsItsEnergy) {
   for (const Step& step : kSteps) {
     const Outcome o = run(slider("type: translational_spring, spring_force: {table: [[-1, -90], "
@@ -103,8 +104,8 @@ output: {hdf5: false}
   }
 }
 
-// Two bodies about their common centre: half axis 1.5 of the relative orbit, eccentricity 0.4, once
-// round after 2π √(a³ m₁m₂/(m₁+m₂)/K). @tests{attraction-gradient}
+// Two bodies about their common centre: half axis 1.5 of the relative orbit, eccentricity 0.4,
+// period 2π √(a³ m₁m₂/(m₁+m₂)/K). @tests{attraction-gradient}
 TEST(Connectors, TwoBodiesGoRoundKeplersEllipse) {
   const double K = 7.0, m_1 = 2.0, m_2 = 3.0, reduced = m_1 * m_2 / (m_1 + m_2), a = 1.5, e = 0.4;
   const double T = 2.0 * kPi * std::sqrt(a * a * a * reduced / K);
@@ -196,7 +197,8 @@ TEST(Connectors, ABushingKeepsItsEnergyAndTheOrderOfTheMethod) {
   }
 }
 
-// In statics: a weight at the bushing's point sinks by m g/k_z, a moment turns by 2 tan(θ/2) = M/k.
+// In statics a weight at the bushing's point is displaced by m g/k_z, and a moment causes a
+// rotation with 2 tan(θ/2) = M/k.
 TEST(Connectors, ABushingAtRestHasTheDeflectionOfItsStiffness) {
   const std::string text = R"(
 format: 1
@@ -254,8 +256,8 @@ TEST(Connectors, APDServoHasTheStepResponseOfASecondOrderSystem) {
   EXPECT_NEAR(error[1] / error[2], 16.0, 2.0);
 }
 
-// Speed control with k ∫(s − ω) and a brake of 0.5 N m: the speed returns to what is wanted, as
-// J ω̈ + d ω̇ + k (ω − s) = 0 with ω(0) = 0, ω̇(0) = (d s − 0.5)/J.
+// Speed control with k ∫(s − ω) and a brake of 0.5 N m: the speed returns to its setpoint, as J ω̈
+// + d ω̇ + k (ω − s) = 0 with ω(0) = 0, ω̇(0) = (d s − 0.5)/J.
 TEST(Connectors, APIServoHoldsItsSpeedUnderLoad) {
   const double k = 12.0, d = 0.6, J = 0.2, s = 3.0;
   const double sigma = d / (2.0 * J), damped = std::sqrt(k / J - sigma * sigma);
@@ -283,7 +285,7 @@ TEST(Connectors, AServoAtItsLimitAcceleratesEvenly) {
   }
 }
 
-// A pull of 3 N between a free ball and the ground; a damper against the motion of a point.
+// A tension of 3 N between a free ball and the ground; a damper of the motion of a point.
 TEST(Connectors, ForcesAndDampersBetweenPointsHaveTheirClosedForms) {
   const auto ball = [](const std::string& load) {
     return R"(
@@ -309,9 +311,9 @@ output: {hdf5: false}
   }
 }
 
-// On an upright cylinder a bead goes round evenly as it falls; on a lying one it swings as a
-// pendulum of its radius, from 90 degrees down in K(1/√2) √(R/g); on an ellipsoid it keeps its
-// energy.
+// A bead on surfaces: on a vertical cylinder it turns uniformly as it falls; on a horizontal one it
+// swings as a pendulum of its radius, from 90 degrees to the bottom in K(1/√2) √(R/g); on an
+// ellipsoid it conserves energy.
 // @tests{surface-row}
 TEST(Connectors, ABeadOnACylinderFallsOrSwings) {
   const auto bead = [](const std::string& axes, const std::string& v, const std::string& T) {
@@ -376,7 +378,7 @@ output: {hdf5: false}
   EXPECT_NEAR(o.load[3], 2.5 / 60.0, 1e-9);
 }
 
-// Impossible connectors are refused with their place.
+// Impossible connectors are refused with their location.
 TEST(Connectors, RefuseWhatTheyCannotDo) {
   const auto message = [](const std::string& text) -> std::string {
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long runs at ρ∞ = 1: energy and momenta stay at round-off, whatever holds the bodies together.
+// Long runs at ρ∞ = 1: energy and momenta are conserved to round-off with every kind of connection.
 //
 // The bounds are those the engine promises: 1e-11 over 1e6 steps of a free body, 1e-10 over 1e5
 // steps of mechanisms. Round-off alone, a random walk of 1e-16 a step, would be 1e-13.
@@ -67,14 +67,14 @@ std::vector<ChainCase> chains() {
   std::vector<ChainCase> all;
   for (const bool grounded : {false, true})
     for (const JointKind& kind : joint_kinds()) {
-      if (kind.name == "fixed" && grounded) continue;  // stands still, see below
+      if (kind.name == "fixed" && grounded) continue;  // does not move, see below
       // Rods and links keep their points apart: shafts_and_rods_test.cpp has theirs.
       if (kind.points_apart && kind.name != "distance") continue;
       if (kind.name != "generic") {
         all.push_back({kind.name, {}, grounded});
         continue;
       }
-      // What no other kind leaves free: a translation with rotations about other axes.
+      // Freedoms that no other kind has: a translation with rotations about other axes.
       all.push_back({"generic", {"x", "ry"}, grounded});
       all.push_back({"generic", {"z", "rx", "ry"}, grounded});
       all.push_back({"generic", {"x", "z", "rx", "ry", "rz"}, grounded});
@@ -116,8 +116,7 @@ TEST(Conservation, WeldedToTheGroundAllStandsStill) {
 INSTANTIATE_TEST_SUITE_P(Of, Chain, testing::ValuesIn(chains()),
                          [](const auto& p) { return name_of(p.param); });
 
-// Dampers: what is stored and what was dissipated stay the same together, and no step creates
-// energy.
+// Dampers: the sum of stored and dissipated energy is constant, and no step creates energy.
 void expect_dissipation(Model model, double step, std::int64_t steps, double least_dissipated) {
   model.analysis.step = step;
   model.analysis.duration = step * static_cast<double>(steps);
@@ -134,7 +133,7 @@ void expect_dissipation(Model model, double step, std::int64_t steps, double lea
     last = energy;
   }
   const Balance end = simulation.balance();
-  EXPECT_GT(end.dissipated, least_dissipated * scale) << "the dampers do not matter here";
+  EXPECT_GT(end.dissipated, least_dissipated * scale) << "the dampers have too little effect here";
   EXPECT_LE(rise, 1e-13 * scale) << "a step created energy";
   EXPECT_LE(simulation.summary().energy_drift, kJointed);
   EXPECT_NEAR(end.kinetic + end.potential + end.dissipated, start.kinetic + start.potential,
@@ -146,7 +145,7 @@ TEST(Dampers, NeverCreateEnergyInAChain) {
 }
 
 TEST(Dampers, NeverCreateEnergyInTheFlyballGovernor) {
-  // Stiff springs hold the rods: little is lost, but far more than round-off.
+  // Stiff springs hold the rods: the loss is small, but far above round-off.
   expect_dissipation(flyball_governor(), 1e-3, 20'000, 1e-6);
 }
 

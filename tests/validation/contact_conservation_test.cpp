@@ -12,10 +12,10 @@ namespace {
 
 using namespace test;
 
-/// Two bodies that a spring pulls together collide again and again; nothing else acts. Without
-/// friction and with e = 1 energy and both momenta stay. What is left is the rounding of gaps where
-/// an impact is stopped within a step: the fewer steps it has, the deeper it ends in the barrier. A
-/// ball against a mesh needs shorter steps for that: its distance is that of its centre.
+/// Two bodies connected by a spring that collide repeatedly. Without friction and with e = 1 energy
+/// and both momenta are conserved, apart from the rounding of gaps where an impact is stopped
+/// within a step: the fewer steps it has, the deeper it ends in the barrier. A ball against a mesh
+/// needs shorter steps, since its distance is that of its centre.
 struct Tie {
   int first, second;
   double step;  ///< [s]
@@ -31,7 +31,7 @@ void tie(Scene& s, int a, int b) {
   load_kind("spring_damper").add(s.system, spring);
 }
 
-/// Goes all steps. @returns how often bodies met; −1 if a step failed.
+/// Takes all steps. @returns the number of impacts; −1 if a step failed.
 int count_hits(Scene& s) {
   int hits = 0;
   bool touched = false;

@@ -25,7 +25,8 @@ contact::ContactLaw with(double mu) {
   return law;
 }
 
-/// SLIDE_TO_ROLL: v = 5/7 v_0; the transition falls inside a step, which costs O(Δt²) [-].
+/// SLIDE_TO_ROLL: v = 5/7 v_0; the transition falls inside a step, which causes an error of O(Δt²)
+/// [-].
 TEST(ContactFriction, BowlingBallRollsInTheEnd) {
   Scene s;
   const int ball = s.add_ball("ball", 0.1, 1.0, at({0.0, 0.0, 0.1}, {2.0, 0.0, 0.0}));
@@ -54,7 +55,7 @@ TEST(ContactFriction, SlippingBallOnASlope) {
   EXPECT_NEAR(s.motion(ball).omega().y(), omega, 1e-3 * omega);
 }
 
-/// SLIDE_ON_INCLINE: at 30 degrees 1.314292 m in 2 s with μ = 0.5, nothing with 0.6.
+/// SLIDE_ON_INCLINE: at 30 degrees 1.314292 m in 2 s with μ = 0.5, no motion with 0.6.
 TEST(ContactFriction, BoxOnThirtyDegrees) {
   const double angle = std::numbers::pi / 6.0;
   for (const double mu : {0.5, 0.6}) {
@@ -143,7 +144,7 @@ TEST(ContactFriction, RollingAndDrillingResistanceStopABall) {
   EXPECT_LT(s.motion(ball).omega().norm(), 1e-5);
 }
 
-/// The same block in metres and in millimetres.
+/// Motion of the same block in metres and in millimetres.
 TEST(ContactFriction, MovesTheSameInMillimetres) {
   const auto run = [](double unit) {
     Scene s(Vec3(1.0, 0.0, -kGravity) * unit);

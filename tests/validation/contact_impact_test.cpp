@@ -36,7 +36,7 @@ TEST(ContactImpact, HertzForceAndTime) {
   EXPECT_NEAR(s.motion(ball).v.z(), 1.0, 1e-10);
 }
 
-/// Five balls with gaps: one after the other, the last one leaves with all the speed.
+/// Five balls with gaps: impacts in sequence, the last ball leaves with the whole speed.
 TEST(ContactImpact, CradleWithGaps) {
   const double R = 0.05, gap = 2e-3;
   Scene s(Vec3::Zero());
@@ -70,8 +70,9 @@ TEST(ContactImpact, CradleThatTouchesIsAHertzChain) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(s.motion(i).v.x(), expected[i], 1e-3) << i;
 }
 
-/// The damper of Gonthier, Carvalho and Martins gives back e where the impact is resolved; of the
-/// published figures (two balls at 10 m/s, 1e6 N/m) 0.101, 0.304, 0.500, 0.700, 0.900.
+/// The damper of Gonthier, Carvalho and Martins gives the restitution e where the impact is
+/// resolved by the steps; published figures (two balls at 10 m/s, 1e6 N/m) 0.101, 0.304, 0.500,
+/// 0.700, 0.900.
 /// @tests{contact-damped}
 TEST(ContactImpact, DampedReboundByAResolvedForce) {
   const double published[5] = {0.10099, 0.30423, 0.50018, 0.69997, 0.90001};

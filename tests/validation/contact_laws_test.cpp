@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws of contact beside the barrier: springs carry and rebound as they should at any step, and
-// impulses move bodies as forces do.
+// Laws of contact other than the barrier: forces at rest and rebound of spring laws at any step,
+// and the motion by impulses compared with that by forces.
 #include <gtest/gtest.h>
 
 #include <polhode/core/error.hpp>
@@ -60,7 +60,7 @@ const std::vector<Pile> kPiles = {
      "  b: {shape: {sphere: 0.1}, mass: 1000, position: [0, 0, 0.15]}",
      {1e-3, 1e3}}};
 
-/// Springs carry what rests on them, whatever the masses and the step; nothing rises.
+/// Spring laws carry bodies at rest for any masses and steps; no body rises.
 /// @tests{spring-stiffness}
 TEST(SpringLaws, CarryAnyBodyOfTheModel) {
   for (const Pile& pile : kPiles)
@@ -86,8 +86,8 @@ TEST(SpringLaws, CarryAnyBodyOfTheModel) {
       }
 }
 
-/// Speed of rebound over that of approach, of a ball that falls by 5 cm, from how high it comes;
-/// the mean number of iterations.
+/// Speed of rebound over that of approach, of a ball that falls by 5 cm, from its apex, and the
+/// mean number of iterations.
 std::pair<double, double> rebound(const Scene& scene, const std::string& law, double step) {
   Simulation run = scene.with(law, step);
   double highest = 0.0;
@@ -101,8 +101,8 @@ std::pair<double, double> rebound(const Scene& scene, const std::string& law, do
           static_cast<double>(done.newton_iterations) / static_cast<double>(done.steps)};
 }
 
-/// e of the speed at the surface at any step, by the turn law and by a damper, whose stiffness is
-/// that of the impact and not of the step. The apex lies between two steps: 2.5e-3 at 10 ms.
+/// Restitution e at the surface at any step, by the turn law and by a damper, whose stiffness
+/// depends on the impact and not on the step. The apex lies between two steps: 2.5e-3 at 10 ms.
 /// @tests{turn-law} @tests{contact-damped}
 TEST(SpringLaws, ReboundAsStatedAtAnyStep) {
   for (const char* law : {"hertz", "linear"})
@@ -119,7 +119,8 @@ TEST(SpringLaws, ReboundAsStatedAtAnyStep) {
       }
 }
 
-/// A block between friction and static friction is held at any step, not only at coarse ones.
+/// A block on a slope between the coefficients of sliding and static friction sticks at any step,
+/// not only at coarse ones.
 /// @tests{contact-patch}
 TEST(SpringLaws, HoldABlockOnASlopeAtAnyStep) {
   for (const char* law : {"barrier", "hertz", "linear"})
@@ -132,7 +133,7 @@ TEST(SpringLaws, HoldABlockOnASlopeAtAnyStep) {
         EXPECT_LT(run.body(1).r.x(), 2e-4) << where;
         EXPECT_LT(run.body(1).v.norm(), 4e-4) << where;
         // Above the bound of static friction it slides by ½ g (sin − μ cos) t², once it is faster
-        // than gravity makes it in two steps.
+        // than after two steps of gravity.
         scene.slope = 0.7;
         Simulation slides = scene.with(law, step);
         ASSERT_EQ(slides.run().end, RunEnd::finished) << where;
@@ -143,7 +144,7 @@ TEST(SpringLaws, HoldABlockOnASlopeAtAnyStep) {
       }
 }
 
-/// What lies on a plane by springs keeps its smallest gap through a restart.
+/// Smallest gap of a body on a plane with a spring law, through a restart.
 TEST(SpringLaws, RememberTheSmallestGap) {
   const Scene scene{kBall, "restitution: 0.5", 0.3};
   for (const char* law : {"hertz", "linear"}) {
@@ -261,7 +262,7 @@ TEST(NonsmoothLaw, MovesBodiesAsTheBarrierDoes) {
 }
 
 /// Gap, energy lost in impacts and rise of energy of a frictionless coin that spins, tilted, on the
-/// floor: nothing sinks and nothing is lost but in its first impact, of 0.5 mm.
+/// floor: no penetration, and no loss except in its first impact, after a fall of 0.5 mm.
 /// @tests{nonsmooth-exit} @tests{contact-direction}
 TEST(NonsmoothLaw, NothingRollsOrSlidesIntoTheFloor) {
   const Scene coin{
@@ -291,7 +292,7 @@ TEST(NonsmoothLaw, NothingRollsOrSlidesIntoTheFloor) {
   }
 }
 
-/// A ton on a gram: solved to the tolerance, or refused by name, but never one inside the other.
+/// A ton on a gram: solved to the tolerance or refused with names, but never with penetration.
 TEST(NonsmoothLaw, RefusesToPassThrough) {
   for (const Pile& pile : kPiles)
     for (const double step : {1e-2, 1e-3, 1e-4}) {
@@ -307,8 +308,8 @@ TEST(NonsmoothLaw, RefusesToPassThrough) {
     }
 }
 
-/// So few sweeps, and so many points that nothing else can help, that a heavy slab would sink into
-/// the boxes below it.
+/// A heavy slab that would sink into the boxes below it, with few sweeps and with too many points
+/// for the other searches.
 TEST(NonsmoothLaw, SaysWhatWouldOverlap) {
   std::string bodies =
       "  heavy: {shape: {box: [2, 2, 0.5]}, mass: 1000000, position: [0, 0, 0.55]}";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that touch in models with deformable solids, from model files.
+// Contact between bodies in models with deformable solids, from model files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace polhode::test::contact_solids_models_tests {
 namespace {
 
-/// Bodies, joints with stops, surfaces of solids: what one step settles together.
+/// Impacts of bodies, stops of joints and surfaces of solids, solved together in a step.
 TEST(ContactSolidsModel, TrolleyLosesEnergyOnlyAndItsBalancesClose) {
   Simulation simulation(read_model(source_dir() + "/tests/validation/data/trolley.yaml"));
   const auto total = [&] { return simulation.balance().kinetic + simulation.balance().potential; };

@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 
 /// A ball whose centre of mass lies below its middle, spinning fast: it turns over. The component
-/// of the angular momentum along the arm to the point of contact (Jellett) stays.
+/// of the angular momentum along the arm to the point of contact (Jellett) is conserved.
 TEST(ContactSpin, TippeTopTurnsOver) {
   const double m = 6e-3, R = 1.5e-2, a = 0.3 * R;
   Scene s;
@@ -52,8 +52,8 @@ TEST(ContactSpin, TippeTopTurnsOver) {
   EXPECT_LT(s.iterations, 5 * s.steps);
 }
 
-/// An ellipsoid whose principal axes of inertia stand askew to its shape: spun one way it goes on,
-/// spun the other way it rattles and turns back.
+/// An ellipsoid whose principal axes of inertia are rotated relative to its shape: in one direction
+/// it continues to spin, in the other one it rattles and reverses.
 TEST(ContactSpin, RattlebackReversesOneWayOnly) {
   for (const double sign : {-1.0, 1.0}) {
     Scene s;
@@ -90,15 +90,15 @@ TEST(ContactSpin, RattlebackReversesOneWayOnly) {
       largest = std::max(largest, spin);
     }
     if (sign < 0.0) {
-      EXPECT_GT(largest, 1.0) << "did not turn back";
+      EXPECT_GT(largest, 1.0) << "did not reverse";
     } else {
-      EXPECT_GT(least, 4.0) << "lost its spin the way it should keep it";
+      EXPECT_GT(least, 4.0) << "lost its spin in the direction in which it should continue";
     }
   }
 }
 
 /// A rod pushed along a rough floor under an angle at which no finite friction force solves the
-/// rigid equations: the step goes through, the tip is arrested, nothing is gained.
+/// rigid equations: the step is accepted, the tip stops, and no energy is gained.
 TEST(ContactSpin, PainleveRodIsArrested) {
   for (const double v : {-1.0, 1.0})
     for (const double dt : {2e-3, 5e-4}) {

@@ -13,7 +13,7 @@
 namespace polhode::test::controllers_tests {
 namespace {
 
-/// A cart of 2 kg on a rail, pushed by what a controller sets.
+/// A cart of 2 kg on a rail with the force of a controller.
 std::string cart(const std::string& controller, const std::string& more = "") {
   return R"(
 format: 1
@@ -45,7 +45,7 @@ output: {hdf5: false}
 )";
 }
 
-/// Checks that what `end` returns tends to the truth with order 2, at h, h/2 and h/100.
+/// Checks that the value of `end` converges to the exact one with order 2, at h, h/2 and h/100.
 template <class End>
 void expect_second_order(End&& end, double truth, double h) {
   for (const char* rho : {"1", "0.7"}) {
@@ -69,7 +69,7 @@ TEST(Controllers, HaveTheStepResponseOfPd) {
         Simulation s = made(cart("setpoint: 0.1, proportional: 50, derivative: 6"),
                             {format("h={:.17g}", h), format("rho={}", rho)});
         const RunSummary r = finished(s);
-        // Its work is put in.
+        // Its work is supplied energy.
         if (std::string(rho) == "1") {
           EXPECT_LT(r.energy_drift, 1e-11);
         }
@@ -78,15 +78,15 @@ TEST(Controllers, HaveTheStepResponseOfPd) {
       x, 0.02);
 }
 
-// A setpoint that jumps at 0.3 s and has a kink at 0.6 s, which are ends of steps: order 2 all the
-// same. By superposition of step and ramp responses.
+// A setpoint that jumps at 0.3 s and has a kink at 0.6 s, which are ends of steps: order 2
+// nevertheless. By superposition of step and ramp responses.
 TEST(Controllers, FollowASetpointThatJumps) {
   const double d = 1.5, w = std::sqrt(25.0 - d * d);
   const auto step = [&](double t) {
     return 1.0 - std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t));
   };
-  // The rate of a setpoint counts, jumps in it do not: 50 r + 6 ṙ = 50·0.1 after the jump, and
-  // behind the kink (50·0.4 t + 6·0.4) in addition: a ramp of ∫ step, and a step of 2.4/50.
+  // The rate of a setpoint acts, its jumps do not: 50 r + 6 ṙ = 50·0.1 after the jump, and behind
+  // the kink (50·0.4 t + 6·0.4) in addition: a ramp of ∫ step, and a step of 2.4/50.
   double ramp = 0.0;
   const int n = 4000;
   for (int k = 0; k < n; ++k) ramp += step(0.4 * (k + 0.5) / n) * 0.4 / n;
@@ -104,7 +104,7 @@ TEST(Controllers, FollowASetpointThatJumps) {
 }
 
 // Between samples the force is constant, and the cart's parabola exact: the sampled loop is a
-// recurrence, met to rounding at any step.
+// recurrence, satisfied to rounding at any step.
 TEST(Controllers, AreSampled) {
   const double T = 0.04, m = 2.0, kp = 50.0, kd = 6.0, ki = 30.0;
   double x = 0.0, v = 0.0, sum = 0.0, last = 0.1, u = 0.0;
@@ -152,7 +152,7 @@ TEST(Controllers, HoldASpeed) {
       w, 0.01);
 }
 
-// Step responses of a lag, of an oscillator and of a lead, on an error that stands at 1.
+// Step responses of a lag, of an oscillator and of a lead, to a constant error of 1.
 TEST(Controllers, AreTransferFunctions) {
   const std::string text = R"(
 format: 1
@@ -185,7 +185,8 @@ output: {hdf5: false, probes: {lag: {controller: lag}}}
   }
 }
 
-// The limits hold, and the integral does not wind up: it leaves the limit as the error turns.
+// The limits hold without windup of the integral: the controller leaves its limit when the error
+// changes its sign.
 TEST(Controllers, KeepTheirLimits) {
   Simulation s = made(disc("setpoint: 10, proportional: 0.5, integral: 4, minimum: -3, maximum: 3"),
                       {"analysis.duration=4"});
@@ -196,7 +197,7 @@ TEST(Controllers, KeepTheirLimits) {
   });
   EXPECT_EQ(r.end, RunEnd::finished);
   EXPECT_EQ(most, 3.0);
-  EXPECT_LT(peak, 10.5);  // 3 N m hold 10 rad/s just so
+  EXPECT_LT(peak, 10.5);  // 3 N m are just enough for 10 rad/s
   EXPECT_NEAR(s.body(0).omega()[2], 10.0, 0.3);
 }
 
@@ -218,7 +219,7 @@ output: {hdf5: false}
   EXPECT_NEAR(s.joint(0).coordinates[0], 1.0, 1e-5);
 }
 
-// Simulations made of one model do not meddle with each other.
+// Simulations of the same model are independent of each other.
 TEST(Controllers, BelongToOneSimulation) {
   const std::string text = cart("sample: 40 ms, setpoint: 0.1, proportional: 50, derivative: 6");
   Simulation alone = made(text);
@@ -255,31 +256,34 @@ TEST(Controllers, GoOnBitForBitAfterARestart) {
 }
 
 TEST(Controllers, TellWhatIsWrong) {
-  tells(cart("proportional: 1, sampl: 3"), "controllers.c: unknown key 'sampl'");
-  tells(cart("setpoint: 1"), "controllers.c: has no gains. Give proportional, integral");
-  tells(cart("proportional: 1, numerator: 1"), "Give gains or a transfer function.");
-  tells(cart("numerator: [1, 2], denominator: 3"), "is of higher order than the denominator");
-  tells(cart("proportional: 1, minimum: 2, maximum: 1"), "controllers.c.maximum: is below");
-  tells(cart("proportional: 1, filter: 1 s"), "controllers.c.filter: requires a derivative gain");
+  expect_fault(cart("proportional: 1, sampl: 3"), "controllers.c: unknown key 'sampl'");
+  expect_fault(cart("setpoint: 1"), "controllers.c: has no gains. Give proportional, integral");
+  expect_fault(cart("proportional: 1, numerator: 1"), "Give gains or a transfer function.");
+  expect_fault(cart("numerator: [1, 2], denominator: 3"),
+               "is of higher order than the denominator");
+  expect_fault(cart("proportional: 1, minimum: 2, maximum: 1"), "controllers.c.maximum: is below");
+  expect_fault(cart("proportional: 1, filter: 1 s"),
+               "controllers.c.filter: requires a derivative gain");
   std::string text = cart("proportional: 1");
   text.replace(text.find("channel: z"), 10, "channel: y");
-  tells(text, "controllers.c.channel: 'y' is no channel of the joint 'rail'.");
+  expect_fault(text, "controllers.c.channel: 'y' is no channel of the joint 'rail'.");
   text = cart("derivative: 1");
   text.replace(text.find("channel: z"), 10, "channel: fx");
-  tells(text, "controllers.c.derivative: needs the rate of 'fx', which is not available");
+  expect_fault(text, "controllers.c.derivative: needs the rate of 'fx', which is not available");
   text = cart("proportional: 1");
   text.replace(text.find("controller: c}"), 14, "controller: d}");
-  tells(text, "loads.push.force.controller: unknown controller 'd'. Controllers: c.");
+  expect_fault(text, "loads.push.force.controller: unknown controller 'd'. Controllers: c.");
   text = cart("proportional: 1");
   text.replace(text.find("force:"), 6, "displacement:");
-  tells(text, "loads.push.displacement: is prescribed, but the output of a controller may jump.");
+  expect_fault(text,
+               "loads.push.displacement: is prescribed, but the output of a controller may jump.");
   text = cart("proportional: 1");
   text.replace(text.find("type: dynamics"), 14, "order: 4, type: dynamics");
-  tells(text, "controllers.c: is continuous, which requires order 2, not 4.");
+  expect_fault(text, "controllers.c: is continuous, which requires order 2, not 4.");
   text = cart("proportional: 1");
   text.replace(text.find("type: dynamics, duration: 1 s, step: h, rho_inf: rho"), 52,
                "type: statics");
-  tells(text, "controllers: act in time, which statics and modes do not have.");
+  expect_fault(text, "controllers: act in time, which statics and modes do not have.");
 }
 
 }  // namespace polhode::test::controllers_tests

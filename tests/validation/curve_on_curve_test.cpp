@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cams on cams in whole models.
+// Cams on cams in complete models.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -52,12 +52,12 @@ const std::string kOnFlat =
 // begins at the angle kBegin from where its nearer end points along the line of centres.
 constexpr double kLong = 0.05, kEps = 0.6, kBegin = 0.7;
 
-/// The angle of the other one, the other way round.
+/// Angle of the other ellipse, in the opposite direction.
 double rolled(double theta) {
   return 2.0 * std::atan((1.0 - kEps) / (1.0 + kEps) * std::tan(0.5 * theta));
 }
 
-/// Frames in the foci whose x points along the long axes, at the start as they stand.
+/// Model with frames in the foci, x along the long axes in their initial directions.
 std::string ellipses(const std::string& drive, const std::string& duration) {
   const auto axis = [](double angle) {
     char text[96];
@@ -65,7 +65,7 @@ std::string ellipses(const std::string& drive, const std::string& duration) {
     return std::string(text);
   };
   const std::string first = "curve_x: 0.05*cos(s) - 0.03, curve_y: 0.04*sin(s)";
-  // Its far end meets the other one's near end.
+  // Its far end touches the near end of the other one.
   const std::string second = "other_curve_x: 0.05*cos(s) - 0.03, other_curve_y: 0.04*sin(s)";
   return scene(R"(
   one: {mass: 1, inertia: [0.01, 0.01, 0.002], position: [0, 0, 0]}
@@ -84,7 +84,8 @@ double turned(const BodyMotion& body) { return 2.0 * std::atan2(body.q.z(), body
 
 }  // namespace
 
-// The lift is r + e cos θ and the flat slides at ω times it. Either side may have the circle.
+// The lift is r + e cos θ, and the flat follower slides at ω times the lift. The circle may be on
+// either side.
 // @tests{curves-distance}
 TEST(CurveOnCurve, LiftsAFlatFollowerByTheClosedForm) {
   const std::string other_way =
@@ -129,7 +130,7 @@ TEST(CurveOnCurve, TwoEllipsesRollAboutTheirFoci) {
   }
 }
 
-// Under a moment the energy of both is the work put in. @tests{curves-gradient}
+// Under a moment the energy of both is the supplied work. @tests{curves-gradient}
 TEST(CurveOnCurve, PassesOnTheWorkThatItIsGiven) {
   for (const Step& step : kAtSteps) {
     const std::string duration = step.h < 1e-4 ? "0.2 s" : "0.8 s";
@@ -159,8 +160,8 @@ TEST(CurveOnCurve, HasItsOrders) {
         "order " + std::to_string(order));
 }
 
-// A disc falls around another one in a plane, off its own middle: the circles' centres are a rod
-// apart, or, within a ring, as far as both radii differ.
+// A disc with an eccentric centre of mass that falls around another one in a plane: the distance of
+// the circles' centres is that of a rod, the sum of the radii or, within a ring, their difference.
 TEST(CurveOnCurve, KeepsTheCentresOfTwoCirclesApart) {
   const auto at = [](bool rod, const std::string& contact, const std::string& h,
                      const std::string& duration) {
@@ -218,7 +219,7 @@ TEST(CurveOnCurve, EndsWhereACurveEnds) {
 
 namespace {
 
-/// What turns within a ring of 55 mm that only goes up and down.
+/// A curve that turns within a ring of 55 mm on a vertical guide.
 std::string in_a_ring(const std::string& x, const std::string& y) {
   return scene(R"(
   cam: {mass: 1, inertia: [0.01, 0.01, 0.02]}
@@ -236,16 +237,16 @@ std::string in_a_ring(const std::string& x, const std::string& y) {
 
 }  // namespace
 
-// An ellipse of semi-axes a and b turns in a ring of radius R that only goes up and down. Where its
-// own radius of curvature comes to R at P, the ring's centre P − R n is back on the guide at an
-// angle in closed form; from there on the place would jump. @tests{curves-distance}
+// An ellipse of semi-axes a and b turns in a ring of radius R on a vertical guide. Where its radius
+// of curvature reaches R at P, the ring's centre P − R n is on the guide at an angle in closed
+// form; from there on the contact point would jump. @tests{curves-distance}
 TEST(CurveOnCurve, EndsWhereTheCurvesFitEachOther) {
   const double a = 0.05, b = 0.04, R = 0.055;
   const double slope_2 = std::pow(a * b * R, 2.0 / 3.0);  // |dP/ds|² there
   const double s = std::asin(std::sqrt((slope_2 - b * b) / (a * a - b * b)));
   const double x = a * std::cos(s) - R * b * std::cos(s) / std::sqrt(slope_2);
   const double y = b * std::sin(s) - R * a * std::sin(s) / std::sqrt(slope_2);
-  // The centre starts at the polar angle π of the ellipse's axes and goes round against the drive.
+  // The centre starts at the polar angle π of the ellipse's axes and turns against the drive.
   const double fit = (std::atan2(y, x) + kPi) / kOmega;
   for (const Step& step : kAtSteps) {
     Simulation run(read_model_text(in_a_ring("0.05*cos(s)", "0.04*sin(s)"), "curves.yaml",

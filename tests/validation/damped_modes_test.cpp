@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modes with dampers against closed forms, free motions in words, and modes of cables.
+// Modes with dampers against closed forms, reports of free motions, and modes of cables.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -70,8 +70,8 @@ TEST(DampedModes, OfADamperAloneAreAFreeMotionAndOneThatDies) {
   EXPECT_NEAR(r.modes[1].eigenvalue.real(), -2.0, 1e-9);
 }
 
-/// A block of a material that creeps with 1/τ: its oscillations, λ² + τω²λ + ω² = 0 with the ω of
-/// the elastic block, come first, each of its motions that are overdamped behind them.
+/// A block of viscoelastic material: its oscillations, λ² + τω²λ + ω² = 0 with the ω of the elastic
+/// block, come first, overdamped modes after them.
 TEST(DampedModes, OfAViscousSolidBeginWithItsOscillations) {
   const std::string block = R"(
 format: 1
@@ -101,7 +101,7 @@ analysis: {type: modes, count: 4}
     EXPECT_NEAR(damped.damping, zeta, 1e-6);
   }
   EXPECT_EQ(oscillations, 2);
-  ASSERT_EQ(viscous.modes.size(), 6u) << "as many overdamped ones behind as were asked for";
+  ASSERT_EQ(viscous.modes.size(), 6u) << "followed by overdamped ones up to the given number";
   for (std::size_t i = 2; i < 6; ++i) {
     EXPECT_EQ(viscous.modes[i].kind, ModeKind::overdamped);
     EXPECT_LT(viscous.modes[i].eigenvalue.real(), -1.0 / tau);
@@ -109,7 +109,7 @@ analysis: {type: modes, count: 4}
 }
 
 /// Chains of n masses with one damper at the end: the eigenvalues of the companion matrix. Longer
-/// ones go by Arnoldi iterations.
+/// chains are solved by Arnoldi iterations.
 TEST(DampedModes, OfAChainWithADamperAtItsEndAreThoseOfItsCompanionMatrix) {
   for (const int n : {5, 60}) {
     std::string bodies, joints, loads;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints that springs hold, and exact ones whose stiffnesses tell how they share: closed forms,
-// balances and orders.
+// Joints enforced by springs, and exact ones whose stiffnesses determine the distribution of
+// redundant reactions: closed forms, balances and orders.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,8 +20,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// A slider of 2 kg along x, at rest in its rail, which holds it by springs of 800 N/m across and
-/// of 50 N m/rad.
+/// A slider of 2 kg along x, enforced by springs of 800 N/m across its rail and of 50 N m/rad.
 std::string cart(const std::string& body, const std::string& analysis,
                  const std::string& more = "") {
   return R"(
@@ -54,7 +53,7 @@ TEST(Penalty, MakesAMassSwingAcrossItsRail) {
     const RunSummary r = finished(s);
     EXPECT_LT(r.energy_drift, 1e-12) << steps;
     EXPECT_NEAR(s.body(0).r.x(), 0.3, 1e-12);
-    EXPECT_NEAR(s.joint(0).force.y(), -800.0 * s.body(0).r.y(), 1e-9) << "what the spring exerts";
+    EXPECT_NEAR(s.joint(0).force.y(), -800.0 * s.body(0).r.y(), 1e-9) << "force of the spring";
     return std::abs(s.body(0).r.y() - 0.1 / 20.0 * std::sin(20.0));
   };
   expect_order([&](int n) { return error(n, 2); }, {100, 400, 10000}, 2.0, 0.1, "order 2");
@@ -77,7 +76,7 @@ TEST(Penalty, IsOfOrderTwoWithNumericalDamping) {
 
 // Two springs of 800 N/m, three of 50 N m/rad about axes of J = 0.1, 0.2, 0.3; and the free slide.
 TEST(Penalty, GivesTheFrequenciesOfItsSprings) {
-  for (const double factor : {1.0, 1e4}) {  // to springs that are all but rigid
+  for (const double factor : {1.0, 1e4}) {  // up to nearly rigid springs
     const ModalAnalysis modes(read_model_text(
         cart("", "type: modes, count: 6"), "model.yaml",
         {format("joints.rail.enforcement.stiffness={:.17g}", 800.0 * factor),
@@ -125,7 +124,7 @@ TEST(Penalty, GivesTheFrequenciesOfManySprings) {
   }
 }
 
-// It sags by m g/k, as much as its springs say.
+// Sag in statics: m g/k of its springs.
 TEST(Penalty, SagsInStatics) {
   Simulation s = made(
       cart("", "type: statics", "gravity: [0, 0, -9.81]\n") +
@@ -186,7 +185,7 @@ std::string text_of(const Flight& f) {
 
 }  // namespace
 
-// Soft springs that open by centimetres: energy and both momenta at every step and order.
+// Soft springs with deflections of centimetres: energy and both momenta at every step and order.
 // @tests{compliance-row}
 TEST(Penalty, KeepsEnergyAndMomentaOfEveryJoint) {
   for (const Flight& flight : flights())
@@ -204,7 +203,7 @@ TEST(Penalty, KeepsEnergyAndMomentaOfEveryJoint) {
       }
 }
 
-// All at their orders, against a fine run of order 8.
+// Orders of all joints, against a fine run of order 8.
 TEST(Penalty, IsOfItsOrderForEveryJoint) {
   for (const Flight& flight : flights()) {
     const auto end = [&](int steps, int order) {
@@ -227,7 +226,7 @@ TEST(Penalty, IsOfItsOrderForEveryJoint) {
 
 namespace {
 
-/// A four-bar that falls, with a load; its last hinge as told.
+/// A four-bar that falls, with a load; the enforcement of its last hinge is given.
 std::string four_bar(const std::string& enforcement) {
   std::string text = R"(
 format: 1
@@ -251,8 +250,8 @@ output: {hdf5: false}
 
 }  // namespace
 
-// The stiffer the springs, the nearer to the exact joint, in proportion and at each step: also
-// where steps are far longer than a vibration of the springs.
+// Difference from the exact joint: inversely proportional to the stiffness at each step, also where
+// steps are far longer than a period of the springs.
 TEST(Penalty, TendsToTheExactJoint) {
   for (const char* rho : {"1", "0.5"})
     for (const char* h : {"2 ms", "0.5 ms", "0.1 ms"}) {
@@ -276,7 +275,7 @@ TEST(Penalty, TendsToTheExactJoint) {
     }
 }
 
-// The same by any solver.
+// Results of all solvers agree.
 TEST(Penalty, GoesWithTheSolversOfTreesAndOfBlocks) {
   const std::string text =
       four_bar(", enforcement: {type: penalty, stiffness: 1e6, turning_stiffness: 1e5}");
@@ -289,7 +288,7 @@ TEST(Penalty, GoesWithTheSolversOfTreesAndOfBlocks) {
 
 namespace {
 
-/// A gate of 40 kg on two hinges one above the other: along their axis one more than needed.
+/// A gate of 40 kg on two hinges one above the other: along their axis one redundant row.
 std::string gate(const std::string& type, const std::string& analysis) {
   return R"(
 format: 1
@@ -311,7 +310,7 @@ output: {hdf5: false}
 
 }  // namespace
 
-// Held exactly, its weight is borne as the stiffnesses are, 3 to 1, at each step.
+// With exact joints the weight is divided in the ratio of the stiffnesses, 3 to 1, at each step.
 // @tests{augmented-rows}
 TEST(Augmented, SharesTheWeightByStiffnessAndHolds) {
   for (const char* solver : {"tree", "block_lu"})
@@ -328,7 +327,7 @@ TEST(Augmented, SharesTheWeightByStiffnessAndHolds) {
     }
 }
 
-// In equilibrium as well, where a spring about its axis holds the gate.
+// The same in equilibrium, where a spring about its axis holds the gate.
 TEST(Augmented, SharesTheWeightInStatics) {
   std::string text = gate("augmented", "type: statics") +
                      "loads: {closer: {type: torsional_spring, joint: low, stiffness: 100}}\n";
@@ -343,7 +342,7 @@ TEST(Augmented, SharesTheWeightInStatics) {
   EXPECT_LT(s.joint(1).residual, 1e-12);
 }
 
-// Springs of the same stiffnesses, damped out by rho_inf 0, bear the same.
+// Springs of the same stiffnesses, damped by rho_inf 0, carry the same forces.
 TEST(Augmented, SharesAsSpringsDo) {
   Simulation springs =
       made(gate("penalty", "type: dynamics, duration: 0.5 s, step: h, rho_inf: 0"));
@@ -358,8 +357,8 @@ TEST(Augmented, SharesAsSpringsDo) {
   }
 }
 
-// x = A sin 5t + B sin ωt follows a frame that is led along 0.1 m sin 5t, by springs of ω = 20/s;
-// the work put in is the energy that is there.
+// x = A sin 5t + B sin ωt follows a frame with the motion 0.1 m sin 5t, by springs of ω = 20/s; the
+// supplied work is the energy.
 TEST(Penalty, FollowsAFrameThatMoves) {
   const std::string text = R"yaml(
 format: 1
@@ -386,7 +385,8 @@ output: {hdf5: false}
       {100, 400, 10000}, 2.0, 0.1);
 }
 
-// A ball of 1 kg meets a wall at 2 m/s with e = 0.5; what springs tie to it flies on at first.
+// A ball of 1 kg hits a wall at 2 m/s with e = 0.5; a body connected to it by springs continues at
+// first.
 TEST(Penalty, CarriesNoImpulse) {
   for (const char* h : {"2 ms", "0.5 ms", "0.02 ms"}) {
     const auto end = [&](const std::string& enforcement) {
@@ -418,8 +418,8 @@ output: {hdf5: false}
   }
 }
 
-// Let go while its springs are drawn, and held again where it is then: the balance knows what the
-// springs had, and the cart flies on at the speed that it had.
+// Released while its springs are deflected, and held again at its position then: the energy of the
+// springs is in the balance, and the cart continues with its velocity.
 TEST(Penalty, IsSwitchedWithItsEnergy) {
   std::string text =
       cart(", velocity: [0, 0.1, 0]", kDynamics,
@@ -449,15 +449,16 @@ joints:
 analysis: {type: dynamics, duration: 1 s, step: 1 ms}
 )";
   };
-  tells(hinge("type: penalty, stiffness: 1e6"),
-        "'turning_stiffness' is missing. The joint constrains rotations: give their stiffness.");
-  tells(hinge("type: penalti, stiffness: 1e6, turning_stiffness: 1"), "penalty");
-  tells(hinge("type: penalty, stiffness: -1, turning_stiffness: 1"), "stiffness");
+  expect_fault(
+      hinge("type: penalty, stiffness: 1e6"),
+      "'turning_stiffness' is missing. The joint constrains rotations: give their stiffness.");
+  expect_fault(hinge("type: penalti, stiffness: 1e6, turning_stiffness: 1"), "penalty");
+  expect_fault(hinge("type: penalty, stiffness: -1, turning_stiffness: 1"), "stiffness");
   std::string ball = hinge("type: penalty, stiffness: 1e6, turning_stiffness: 1");
   ball.replace(ball.find("revolute"), 8, "spherical");
-  tells(ball, "the joint constrains no rotations. Leave it out.");
+  expect_fault(ball, "the joint constrains no rotations. Leave it out.");
   std::string apart = hinge("type: augmented, stiffness: 1e9, turning_stiffness: 1");
-  tells(apart, "augmented joints have stiffnesses from 1 to 1e+09");
+  expect_fault(apart, "augmented joints have stiffnesses from 1 to 1e+09");
 }
 
 }  // namespace polhode::test::enforcement_models_tests

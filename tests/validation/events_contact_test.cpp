@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts that events switch: a lid that opens, a net that catches, against closed forms.
+// Contacts switched by events: a lid that opens, a net that catches, against closed forms.
 #include <cmath>
 #include <string>
 
@@ -43,8 +43,8 @@ output: {hdf5: false}
 
 }  // namespace
 
-// A lid opens under a ball that lies on it: the ball falls as bodies do, from where it lay, past
-// the lid's inside, and the spring that bore it is lost energy. @tests{switch-loss}
+// A lid opens under a ball that lies on it: the ball falls freely through the lid, and the energy
+// of the spring that carried it is lost. @tests{switch-loss}
 TEST(ContactEvents, LetABallFallThroughALid) {
   for (const double h : {0.01, 0.001, 0.00002}) {
     const double t_e = h < 1e-4 ? 0.03 : 0.3, T = t_e + (h < 1e-4 ? 0.07 : 0.4);
@@ -64,8 +64,8 @@ TEST(ContactEvents, LetABallFallThroughALid) {
   }
 }
 
-// Held on a lid whose contact is off, then handed over to it: it lies still, and no energy comes or
-// goes but what bears it.
+// A ball held on a lid whose contact is off, then released as the contact is switched on: it stays
+// at rest, and the energy changes only by that of the contact that carries it.
 TEST(ContactEvents, HandABallOverToALid) {
   for (const double h : {0.01, 0.001, 0.0001}) {
     Simulation s =
@@ -82,10 +82,11 @@ TEST(ContactEvents, HandABallOverToALid) {
   }
 }
 
-// On again while the ball is above: it rebounds from there with all of its speed; before that it
-// has been through the lid and back.
+// A contact switched on again while the ball is above the lid: it rebounds with its whole speed;
+// before, it passes through the lid upwards.
 TEST(ContactEvents, CatchWhatComesBack) {
-  // Up from below at v, through the lid that is off; on at the top; then it stays above.
+  // Upwards from below at v, through the lid, which is off; on at the top; then the ball stays
+  // above.
   const double v = 4.0, start = -0.5, top = start + 0.5 * v * v / kG;
   for (const double h : {0.002, 0.0005}) {
     std::string text = lid("-0.5",
@@ -97,15 +98,15 @@ TEST(ContactEvents, CatchWhatComesBack) {
     const RunSummary r = finished(s);
     EXPECT_NEAR(r.events[1].time, v / kG, 1e-9) << h;
     EXPECT_LT(r.energy_drift, 1e-9) << h;
-    // It falls from the top by what is between it and the lid, and rises to it again.
+    // It falls from the top onto the lid and rises to the top again.
     const double fall = std::sqrt(2.0 * (top - 0.05) / kG), since = 0.95 - v / kG - 2.0 * fall;
     EXPECT_NEAR(s.body(0).r[2], top - 0.5 * kG * since * since, 5e-3) << h;
     EXPECT_GT(s.body(0).r[2], 0.05);
   }
 }
 
-// A ball whose contacts all go falls through lid and floor as bodies do; a lid that goes leaves the
-// floor. @tests{switch-loss}
+// A ball all of whose contacts are switched off falls freely through lid and floor; if those of the
+// lid are switched off, the floor remains. @tests{switch-loss}
 TEST(ContactEvents, SwitchAllContactsOfABody) {
   for (const double h : {0.01, 0.001, 0.00002}) {
     const double t_e = h < 1e-4 ? 0.03 : 0.3, T = t_e + (h < 1e-4 ? 0.07 : 0.6);
@@ -116,7 +117,7 @@ TEST(ContactEvents, SwitchAllContactsOfABody) {
                {"h=" + std::to_string(h)});
       while (s.time() < t_e - 1e-12) ASSERT_TRUE(s.step(t_e).accepted);
       const double z = s.body(0).r[2], v = s.body(0).v[2];
-      // Until it comes to the floor, if it does.
+      // Until it reaches the floor, if it does.
       const double fall = std::sqrt(2.0 * (z + 0.95) / kG), tau = T - t_e;
       const RunSummary r = finished(s);
       EXPECT_LT(r.energy_drift, 1e-9) << h;
@@ -130,7 +131,7 @@ TEST(ContactEvents, SwitchAllContactsOfABody) {
   }
 }
 
-// A pair and a body of it are switched each by itself: they meet while both are on.
+// A pair and a body of it are switched independently: there is contact while both are on.
 TEST(ContactEvents, SwitchAPairAndABodyOfIt) {
   const auto lies = [](const std::string& events) {
     Simulation s = made(lid("50 mm", events, "0.3"));
@@ -158,7 +159,7 @@ TEST(ContactEvents, RefuseToBeginWhereShapesOverlap) {
       << r.message;
 }
 
-// In two parts, cut before, between and after the events: the same bits.
+// A run in two parts, divided before, between and after the events: the same bits.
 TEST(ContactEvents, GoOnBitForBitAfterARestart) {
   const std::string text =
       lid("0.1",
@@ -185,26 +186,28 @@ TEST(ContactEvents, SayWhatIsWrong) {
   const auto with = [](const std::string& names) {
     return lid("0.1", "  e: {at: 1 s, off: [" + names + "]}", "1");
   };
-  tells(with("on_lidd"),
-        "events.e.off: unknown joint, load, pair of contacts or body 'on_lidd'. Did you mean "
-        "'on_lid'?");
-  tells(with("bal"),
-        "events.e.off: unknown joint, load, pair of contacts or body 'bal'. Did you "
-        "mean 'ball'?");
+  expect_fault(
+      with("on_lidd"),
+      "events.e.off: unknown joint, load, pair of contacts or body 'on_lidd'. Did you mean "
+      "'on_lid'?");
+  expect_fault(with("bal"),
+               "events.e.off: unknown joint, load, pair of contacts or body 'bal'. Did you "
+               "mean 'ball'?");
   std::string both = with("on_lid");
   both.replace(both.find("contacts:"), 9,
                "joints: {on_lid: {type: spherical, bodies: [ground, ball], at: [0, 0, 0.1]}}\n"
                "contacts:");
-  tells(both, "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
+  expect_fault(both,
+               "events.e.off: 'on_lid' is a pair of contacts and a joint. Rename one of them.");
   std::string bare = with("ghost");
   bare.replace(bare.find("  lid:"), 6, "  ghost: {mass: 1, inertia: [1, 1, 1]}\n  lid:");
-  tells(
+  expect_fault(
       bare,
       "events.e.off: the body 'ghost' has no contact that could be switched. Give it a shape that "
       "touches.");
 }
 
-// What contacts of solids, cables and materials do not know, each refused by its name.
+// Switching of contacts of solids, cables and materials: each is refused by its name.
 TEST(ContactEvents, RefuseContactsThatAreNotSwitched) {
   const auto with = [](const std::string& name) {
     return R"(
@@ -231,20 +234,25 @@ events:
 analysis: {type: dynamics, duration: 0.2 s, step: 1 ms}
 )";
   };
-  tells(with("on_pad"),
-        "events.e.off: 'on_pad' is the contact of a solid, which cannot be switched. Name a pair "
-        "of bodies in contacts.pairs.");
-  tells(with("on_rope"),
-        "events.e.off: 'on_rope' is the contact of a cable, which cannot be switched. Name a pair "
-        "of bodies in contacts.pairs.");
-  tells(with("of_steel"),
-        "events.e.off: 'of_steel' is a pair of materials, which cannot be switched. Name a pair of "
-        "bodies in contacts.pairs.");
-  tells(with("ball"),
-        "events.e.off: 'ball' touches 'pad', a contact that cannot be switched. Name pairs of "
-        "bodies instead, or exclude the two in contacts.");
-  tells(with("drum"), "events.e.off: 'drum' touches 'pad', a contact that cannot be switched.");
-  tells(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
+  expect_fault(
+      with("on_pad"),
+      "events.e.off: 'on_pad' is the contact of a solid, which cannot be switched. Name a pair "
+      "of bodies in contacts.pairs.");
+  expect_fault(
+      with("on_rope"),
+      "events.e.off: 'on_rope' is the contact of a cable, which cannot be switched. Name a pair "
+      "of bodies in contacts.pairs.");
+  expect_fault(
+      with("of_steel"),
+      "events.e.off: 'of_steel' is a pair of materials, which cannot be switched. Name a pair of "
+      "bodies in contacts.pairs.");
+  expect_fault(
+      with("ball"),
+      "events.e.off: 'ball' touches 'pad', a contact that cannot be switched. Name pairs of "
+      "bodies instead, or exclude the two in contacts.");
+  expect_fault(with("drum"),
+               "events.e.off: 'drum' touches 'pad', a contact that cannot be switched.");
+  expect_fault(with("pad"), "events.e.off: unknown joint, load, pair of contacts or body 'pad'.");
   EXPECT_EQ(fault_of(with("far")), "");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints and loads that events switch: release, clutch, breaking, against closed forms.
+// Joints and loads switched by events: release, clutch, breaking, against closed forms.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kG = 9.81, kDegree = std::numbers::pi / 180.0;
 
-/// A ball of 2 kg on a rod of 0.8 m, from 60 degrees at rest; the joint's angle counts from there.
+/// A ball of 2 kg on a rod of 0.8 m, from 60 degrees at rest; the zero of the joint's angle is
+/// there.
 struct Pendulum {
   static constexpr double m = 2.0, l = 0.8, J_c = 0.05, start = 60.0 * kDegree;
   static constexpr double J = J_c + m * l * l;
@@ -54,7 +55,7 @@ output: {hdf5: false}
   }
 };
 
-// It flies from the angle on, at the speed that it has there: a parabola, and an even turn.
+// After the release at the angle: a parabola with the velocity there, and a uniform rotation.
 // @tests{event-time} @tests{switch-rows}
 TEST(Events, LetAPendulumFlyAtItsAngle) {
   const std::string text = Pendulum::text(
@@ -86,8 +87,8 @@ TEST(Events, LetAPendulumFlyAtItsAngle) {
   }
 }
 
-// Where the event is: the angle to round-off; before and after it the same positions and
-// velocities.
+// Location of the event: the angle to round-off, with the same positions and velocities before and
+// after it.
 TEST(Events, AreLocatedToRoundOff) {
   for (const char* more : {"", "analysis.rho_inf=0.6", "analysis.order=4", "analysis.step=auto"}) {
     Overrides overrides;
@@ -105,7 +106,7 @@ TEST(Events, AreLocatedToRoundOff) {
   }
 }
 
-// At order 4 the flight is right to the fourth power of the step.
+// At order 4 the error of the flight is of the fourth power of the step.
 TEST(Events, KeepOrderFour) {
   const double angle = Pendulum::release, T = 1.2, free = T - Pendulum::time_at(angle);
   const double omega = Pendulum::omega_at(angle), l = Pendulum::l;
@@ -128,7 +129,7 @@ TEST(Events, KeepOrderFour) {
   }
 }
 
-// A hook holds the ball at rest until 0.3 s, whatever the steps; then it is a pendulum from there.
+// A hook holds the ball at rest until 0.3 s, at any step; then it swings as a pendulum.
 TEST(Events, ReleaseALatchAtItsTime) {
   const std::string text = Pendulum::text(R"(
   hook: {type: fixed, bodies: [ground, ball], at: [0, 0, 0]}
@@ -164,8 +165,8 @@ output: {hdf5: false}
 )";
 }
 
-// Angular momentum is shared, J1 J2/(J1 + J2) Δω²/2 is lost; on which side the load acts does not
-// matter. @tests{switch-impulse} @tests{switch-loss}
+// Angular momentum is conserved, J1 J2/(J1 + J2) Δω²/2 is lost; on which side the load acts does
+// not matter. @tests{switch-impulse} @tests{switch-loss}
 TEST(Events, CloseAClutch) {
   const double common = (0.2 * 20.0 - 0.6 * 4.0) / 0.8;
   const double lost = 0.5 * 0.2 * 0.6 / 0.8 * 24.0 * 24.0;
@@ -194,7 +195,7 @@ events:
       EXPECT_NEAR(s.balance().dissipated, lost, 1e-10 * lost) << h << fixed;
       EXPECT_LT(r.energy_drift, 1e-11) << h << fixed;
       EXPECT_LT(r.angular_momentum_drift, 1e-11) << h << fixed;
-      // They stay as they stood: each turned by its own speed until then.
+      // The relative angle is that of the closure: each turned by its own speed until then.
       const double apart = -24.0 * 0.37;
       const Mat3 turn = s.body(0).Lambda().transpose() * s.body(1).Lambda();
       EXPECT_NEAR(
@@ -203,7 +204,7 @@ events:
     }
 }
 
-// It can be closed and opened again; what is not locked turns freely.
+// Closed and opened again: discs that are not locked turn freely.
 TEST(Events, CloseAndOpenAgain) {
   Simulation s = made(discs(R"(
   clutch: {type: fixed, bodies: [one, two], at: [0, 0, 0.05]}
@@ -222,7 +223,7 @@ events:
   EXPECT_LT(r.energy_drift, 1e-11);
 }
 
-// A spring that is cut takes its energy with it, and one that is hung in brings it.
+// A spring that is switched off removes its energy, and one that is switched on adds it.
 TEST(Events, BookTheEnergyOfSprings) {
   Simulation s = made(R"(
 format: 1
@@ -311,7 +312,7 @@ output: {hdf5: false}
   }
 }
 
-// A swinging pendulum: its pivot bears m g (cos φ + ...) and breaks where that is 30 N.
+// A swinging pendulum: its pivot carries m g (cos φ + ...) and breaks where that is 30 N.
 TEST(Events, BreakASwingingPendulum) {
   const double m = Pendulum::m, l = Pendulum::l, J = Pendulum::J, limit = 30.0;
   // Radial m g cos φ + m l ω², across m g sin φ − m l α with α = m g l sin φ/J.
@@ -338,7 +339,7 @@ TEST(Events, BreakASwingingPendulum) {
   }
 }
 
-// In two parts, cut in a later phase: the same bits.
+// A run in two parts, divided in a later phase: the same bits.
 TEST(Events, GoOnBitForBitAfterARestart) {
   const std::string text = discs(R"(
   clutch: {type: fixed, bodies: [one, two], at: [0, 0, 0.05]}
@@ -368,21 +369,24 @@ TEST(Events, TellWhatIsWrong) {
   const auto with = [](const std::string& events) {
     return Pendulum::text("events:\n  e: " + events);
   };
-  tells(with("{at: 1 s, off: [pivott]}"),
-        "events.e.off: unknown joint or load 'pivott'. Did you mean 'pivot'?");
-  tells(with("{off: [pivot]}"), "events.e: never occurs. Give at (a time) or when (a condition).");
-  tells(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
-  tells(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
-  tells(with("{at: 1 s, off: [pivot], repeat: true}"),
-        "events.e.repeat: cannot be combined with 'at'");
-  tells(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
-        "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
-  tells(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"), "unknown joint 'pivo'");
-  tells(with("{when: {joint: pivot, channel: rz, above: 1 m}, off: [pivot]}"),
-        "events.e.when.above");
-  tells(with("{when: {joint: pivot, channel: rz}, off: [pivot]}"),
-        "events.e.when: has no level. Give above or below.");
-  tells(with("{when: {channel: ry, above: 1}, off: [pivot]}"), "names no object that reports");
+  expect_fault(with("{at: 1 s, off: [pivott]}"),
+               "events.e.off: unknown joint or load 'pivott'. Did you mean 'pivot'?");
+  expect_fault(with("{off: [pivot]}"),
+               "events.e: never occurs. Give at (a time) or when (a condition).");
+  expect_fault(with("{at: 1 s}"), "events.e: does nothing. Give off, on, or stop: true.");
+  expect_fault(with("{at: 1 s, off: [pivot], after: f}"), "unknown event 'f'");
+  expect_fault(with("{at: 1 s, off: [pivot], repeat: true}"),
+               "events.e.repeat: cannot be combined with 'at'");
+  expect_fault(with("{when: {joint: pivot, channel: ry, above: 1}, off: [pivot]}"),
+               "events.e.when.channel: 'ry' is no channel of the joint 'pivot'");
+  expect_fault(with("{when: {joint: pivo, channel: rz, above: 1}, off: [pivot]}"),
+               "unknown joint 'pivo'");
+  expect_fault(with("{when: {joint: pivot, channel: rz, above: 1 m}, off: [pivot]}"),
+               "events.e.when.above");
+  expect_fault(with("{when: {joint: pivot, channel: rz}, off: [pivot]}"),
+               "events.e.when: has no level. Give above or below.");
+  expect_fault(with("{when: {channel: ry, above: 1}, off: [pivot]}"),
+               "names no object that reports");
   EXPECT_NE(fault_of(R"(
 format: 1
 bodies: {a: {mass: 1, inertia: [1, 1, 1]}}
@@ -390,7 +394,7 @@ joints: {j: {type: revolute, bodies: [ground, a], at: [0, 0, 0], axis: z, breaks
 )")
                 .find("joints.j.breaks: no limit is given. Give force, moment, or both."),
             std::string::npos);
-  // A joint that does not fit when it is to close.
+  // A joint that is not assembled when it is to be switched on.
   Simulation s = made(discs(R"(
   pin: {type: spherical, bodies: [one, two], at_body: [[0.3, 0, 0.05], [0, 0.3, -0.05]]}
 events:

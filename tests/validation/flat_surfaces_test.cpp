@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flat is flat: bodies move over the triangles of a plane as over the plane, and swing in fine
-// troughs and bowls as in smooth ones.
+// Motion over triangles of a plane, compared with that over the plane, and oscillations in finely
+// triangulated troughs and bowls, compared with smooth ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using namespace test;
 
 constexpr double kWidth = 0.6, kMargin = 0.35;
 
-/// Closed, with its upper side in z = 0; diagonals turn from cell to cell.
+/// Closed slab with its upper side in z = 0; diagonals alternate from cell to cell.
 TriangleSurface slab(double cell, double length) {
   TriangleSurface s;
   const int nx = static_cast<int>(std::ceil(length / cell)),
@@ -69,8 +69,8 @@ std::vector<Shape> surfaces(double cell, double length) {
 
 enum class Moving { sliding_ball, sliding_box, sliding_capsule, falling_ball, falling_box };
 
-/// Moves one body over each of the surfaces. @returns the most by which position, velocity (over
-/// the speed, if above 1 m/s) and orientation at the end differ from those over the plane.
+/// Moves one body over each of the surfaces. @returns the largest difference of position, velocity
+/// (over the speed, if above 1 m/s) and orientation at the end from those over the plane.
 double difference(double cell, double speed, double dt, double mu, Moving moving) {
   const double time = std::min({0.2, 200.0 * dt, 0.8 / speed}), way = speed * time;
   BodyMotion by_plane;
@@ -89,7 +89,7 @@ double difference(double cell, double speed, double dt, double mu, Moving moving
                                  {0.004, 0.01, 0.01}, start)
                          : s.add_box("box", {0.3, 0.2, 0.2}, 1.0, start);
     s.contacts->add_shape({kGround, "ground", surface});
-    // By default the depth in which bodies rest goes by the size of triangles.
+    // The default tolerance, and so the depth of bodies at rest, depends on the size of triangles.
     s.law(mu, falls ? 0.5 : 0.0, 4e-6);
     s.begin(dt);
     if (!s.run(time)) return std::numeric_limits<double>::infinity();
@@ -123,8 +123,8 @@ struct Swing {
 
 class SwingOnTriangles : public testing::TestWithParam<Swing> {};
 
-/// Each edge of a valley takes the speed across the next face, δ v for the angle δ, and leaves the
-/// rest: of a swing with the amplitude A that is A δ of the amplitude, here 1e-3.
+/// Each edge of a valley removes the velocity normal to the next face, δ v for the angle δ: a swing
+/// with the amplitude A loses A δ of the amplitude, here 1e-3.
 /// @tests{contact-one-gap}
 TEST_P(SwingOnTriangles, KeepsItsAmplitudeOverTenSwings) {
   const auto [bowl, cell, dt] = GetParam();

@@ -25,7 +25,7 @@ bool flutters(const ModesReport& r) {
   return false;
 }
 
-/// The load at which flutter begins, between two loads.
+/// Load at which flutter begins, between two loads.
 template <class Report>
 double flutter_load(double stable, double fluttering, Report&& report_at) {
   EXPECT_FALSE(flutters(report_at(stable)));
@@ -138,7 +138,8 @@ TEST(Flutter, ZieglersPendulumFluttersAtItsLoadsUndampedAndDamped) {
 }
 
 TEST(Flutter, ZieglersPendulumDivergesUnderAWeight) {
-  // A force that stays upright: (3 − √5)/2 k/l, as of Euler; beyond it grows without swinging.
+  // A vertical dead force: (3 − √5)/2 k/l, Euler's load; beyond it the motion grows without
+  // oscillation.
   const std::string dead = [] {
     std::string text = kZiegler;
     const std::string follower = ", body_fixed: true";
@@ -150,12 +151,12 @@ TEST(Flutter, ZieglersPendulumDivergesUnderAWeight) {
     EXPECT_TRUE(r.symmetric);
     EXPECT_EQ(r.modes[0].kind, part < 1.0 ? ModeKind::oscillation : ModeKind::divergence);
     ASSERT_EQ(r.modes.size(), 2u);
-    EXPECT_FALSE(r.warnings.empty());  // four were asked for
+    EXPECT_FALSE(r.warnings.empty());  // four were wanted
   }
 }
 
-/// A follower force spread evenly over a cantilever: 40.05 E I/L³ (H. Leipholz, Ing.-Arch. 34
-/// (1965) 255-263), as forces at the nodes.
+/// A follower force distributed uniformly over a cantilever: 40.05 E I/L³ (H. Leipholz, Ing.-Arch.
+/// 34 (1965) 255-263), as forces at the nodes.
 std::string leipholz(int n, double q) {
   std::string text = format(R"(
 format: 1

@@ -131,8 +131,7 @@ output: {hdf5: false}
   }
 }
 
-/// A satellite that turns an antenna about a prescribed cone, with a pendulum on it; nothing holds
-/// it.
+/// A free satellite that turns an antenna about a prescribed cone, with a pendulum on it.
 constexpr const char* kSatellite = R"yaml(
 format: 1
 variables: {h: 20 ms, T: 2 s}
@@ -183,7 +182,8 @@ TEST(PrescribedMotion, HasTheOrderOfTheMethod) {
   }
 }
 
-// A table's ramp: the body goes with the slope from the kink on, and rests after the last.
+// A table's ramp: the body has the velocity of the slope from the kink on, and rests after the last
+// one.
 TEST(PrescribedMotion, GoesOnAfterKinksWithTheDrivesVelocity) {
   for (const char* h : {"30 ms", "2 ms", "0.2 ms"}) {
     Simulation s(read_model_text(

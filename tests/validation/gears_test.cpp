@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gears, racks and screws in whole models: ratios, reduced inertia, reactions.
+// Gears, racks and screws in complete models: ratios, reduced inertia, reactions.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -14,9 +14,9 @@ namespace polhode::gears_tests {
 
 using namespace connectors;
 
-// Willis: with the ring held, ω_c = ω_s z_s/(z_s + z_r) = ω_s/4. The sun is driven over the
-// carrier: its speed against it is ω_s − ω_c = 3 ω_c. Reduced to the carrier, the moment M on the
-// sun against the carrier turns J = J_c + m_p R² + 16 J_s + (1−3)² J_p. @tests{gear-row}
+// Willis: with the ring held, ω_c = ω_s z_s/(z_s + z_r) = ω_s/4. The sun is driven relative to the
+// carrier, with the speed ω_s − ω_c = 3 ω_c. The moment M between sun and carrier accelerates the
+// inertia reduced to the carrier, J = J_c + m_p R² + 16 J_s + (1−3)² J_p. @tests{gear-row}
 // @tests{gear-angle}
 TEST(Connectors, APlanetaryTrainHasWillisRatioAndItsInertia) {
   const double J = 0.08 + 0.04 + 16.0 * 0.02 + 4.0 * 0.008, M = 0.6;
@@ -29,7 +29,7 @@ TEST(Connectors, APlanetaryTrainHasWillisRatioAndItsInertia) {
     EXPECT_NEAR(o.body(2).W.z(), -2.0 * omega_c, 1e-9) << step.text;
     EXPECT_NEAR(omega_c, 3.0 * M / J * 2.0, 200.0 * step.h * step.h) << step.text;
     EXPECT_LT(o.summary.energy_drift, 1e-11) << step.text;
-    // The teeth turn the sun back: M − J_s ω̇_s.
+    // Moment of the teeth on the sun: M − J_s ω̇_s.
     EXPECT_NEAR(o.load[0], -(M - 0.02 * 12.0 * M / J), 30.0 * step.h * step.h + 1e-8) << step.text;
     EXPECT_NEAR(o.load[1], o.load[0], 1e-12) << step.text;  // ratio −1: the same on the planet
   }
@@ -40,15 +40,15 @@ TEST(Connectors, APlanetaryTrainDrivenAtConstantSpeedKeepsItsRatioOverManyTurns)
     const Outcome o = run(
         planetary("  drive: {type: rotary_motor, joint: main, speed: 20 rad/s}",
                   "type: dynamics, duration: 10 s, step: 20 ms, order: " + std::to_string(order)));
-    // Turns counted: the sun 600 rad against the carrier.
+    // Turns counted: the sun by 600 rad relative to the carrier.
     EXPECT_NEAR(o.load[2], 600.0, 1e-8) << order;
     EXPECT_NEAR(o.load[3], -600.0, 1e-8) << order;
     EXPECT_LT(o.summary.energy_drift, 1e-10) << order;
   }
 }
 
-// A car's differential: bevel wheels on a carrier that turns; ω_left + ω_right = 2 ω_carrier, and a
-// moment on one side is shared in halves.
+// A car's differential: bevel wheels on a carrier that turns; ω_left + ω_right = 2 ω_carrier, and
+// the response to a moment on one side.
 TEST(Connectors, ADifferentialSharesTheSpeedOfItsCarrier) {
   const std::string text = R"(
 format: 1
@@ -75,7 +75,7 @@ output: {hdf5: false}
     const Outcome o = run(text, {step_of(step)});
     const double left = o.body(1).W.y(), right = o.body(2).W.y();
     EXPECT_NEAR(left + right, 20.0, 1e-9) << step.text;
-    // −0.3 on one side: J_left and J_right and the spider (twice as fast) give way together.
+    // −0.3 on one side: J_left, J_right and the spider (twice as fast) are accelerated together.
     const double J = 0.02 + 0.02 + 4.0 * 0.001;
     EXPECT_NEAR(left, 10.0 - 0.3 / J, 60.0 * step.h * step.h) << step.text;
     EXPECT_LT(o.summary.energy_drift, 1e-11) << step.text;
@@ -83,7 +83,7 @@ output: {hdf5: false}
 }
 
 // Rack of 2 kg and pinion of J = 0.02 and 0.1 m: s̈ = (M/r)/(m + J/r²); on the ground, and on a
-// carrier that is itself carried along.
+// moving carrier.
 TEST(Connectors, ARackRunsUnderItsPinion) {
   const auto text = [](const std::string& carrier) {
     return R"(

@@ -31,7 +31,7 @@ analysis: {type: dynamics, duration: 1 s, step: h, rho_inf: rho}
 output: {hdf5: false, every: 0.1 s}
 )";
 
-// The motion is known, so velocities and accelerations are those of the drives, whatever the step.
+// The motion is known, so velocities and accelerations are those of the drives at any step.
 TEST(InverseDynamics, GivesTheMomentsOfLagrangesEquations) {
   for (const char* h : {"h=0.1", "h=0.005", "h=0.0005"})
     for (const char* rho : {"rho=1", "rho=0.5"}) {

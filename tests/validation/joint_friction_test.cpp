@@ -34,7 +34,7 @@ double angle_of(const Simulation& s) { return s.joint(0).coordinates[0]; }
 
 double energy_of(const Simulation& s) { return s.balance().kinetic + s.balance().potential; }
 
-/// Where the rate changes its sign, from the angles before and after.
+/// Angles at which the rate changes its sign, from the angles before and after.
 std::vector<double> turning_angles(Simulation& s, double start, double duration) {
   std::vector<double> list;
   double rate = 0.0;
@@ -68,8 +68,8 @@ TEST_P(PinFriction, TurnsThePendulumWhereItShouldAndHoldsItInTheEnd) {
   EXPECT_LT(s.state().ledger.energy_drift, 1e-10);
 }
 
-/// The cross of a universal joint has two pins: about either of them the pendulum swings as about
-/// that of a revolute joint, while the other one sticks.
+/// The two pins of a universal joint: about either of them the pendulum swings as about that of a
+/// revolute joint, while the other one sticks.
 // @tests{joint-friction-limit}
 TEST(UniversalFriction, TurnsThePendulumLikeAPinAboutEitherAxis) {
   for (const int pin : {0, 1}) {
@@ -102,8 +102,8 @@ TEST(UniversalFriction, TurnsThePendulumLikeAPinAboutEitherAxis) {
   }
 }
 
-/// A shaft that coasts about both pins at once, each with a constant moment of its own: energy only
-/// falls, until both stick.
+/// A shaft that coasts about both pins at once, each with a constant friction moment: energy
+/// decreases until both stick.
 TEST(UniversalFriction, NeverRaisesTheEnergyAboutBothPins) {
   ModelBuilder b;
   const int rod = b.body("rod", {0.0, 0.0, -0.5}, 1.0, Vec3(0.1, 0.12, 0.02));
@@ -195,7 +195,7 @@ TEST(JointLimits, BringThePendulumToRestAtAStopWithoutRestitution) {
   EXPECT_NEAR(s.joint(0).stops[0], 0.5 * kG * std::sin(0.6 + angle_of(s)), 1e-6);
 }
 
-/// A block of 2 kg on a guide that falls by an angle.
+/// A block of 2 kg on a guide with a slope angle.
 Model slider(double slope, double step) {
   ModelBuilder b;
   b.model.gravity = {0.0, 0.0, -kG};
@@ -247,11 +247,12 @@ TEST(JointLimits, BounceASliderOnItsStop) {
     ASSERT_LT(now.coordinates[0], 1.0 + 1e-4);
   }
   ASSERT_GE(peaks.size(), 3U);
-  for (std::size_t k = 0; k < 3; ++k)  // the peak is met within a step: g dt²/8
+  for (std::size_t k = 0; k < 3; ++k)  // the peak lies within a step: g dt²/8
     EXPECT_NEAR(peaks[k], std::pow(e, 2.0 * (static_cast<double>(k) + 1.0)), 2e-4) << k;
 }
 
-// With I = m r² the cone's direction stays: spin and slide stop together, after m √(v² + r²ω²)/F.
+// With I = m r² the direction of slip is constant: spin and slide stop together, after m √(v² +
+// r²ω²)/F.
 TEST(JointFriction, StopsASleeveAlongItsHelix) {
   ModelBuilder b;
   b.model.gravity.setZero();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads that no equilibrium near the start carries beyond a point: the load steps must end there,
-// neither before nor after, at the last state that stands, and say so; or find what is far.
+// Limit loads of equilibria: the load steps must end at the limit, neither before nor after, at the
+// last equilibrium, with a message, or find a distant equilibrium.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,11 +19,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of the limit: the load steps end when a part of 1e-4 of the whole load cannot be added.
+/// Tolerance for the limit: load steps end when 1e-4 of the whole load cannot be added.
 constexpr double kResolution = 4e-4;
 
-/// A weight on a vertical guide between two springs that lean on each other, a shallow roof: its
-/// push is 2k (L₀ − L) z/L, largest where L³ = L₀ b².
+/// A weight on a vertical guide between two inclined springs, a shallow roof: the force is 2k (L₀ −
+/// L) z/L, largest where L³ = L₀ b².
 constexpr double kHalfSpan = 1.0, kRise = 0.4, kStiffness = 1000.0;
 
 double push(double z) {
@@ -67,7 +67,7 @@ TEST(LimitLoad, OfAShallowRoofIsCarriedUpToItsLimitAndBeyondItOnTheOtherSide) {
   EXPECT_NEAR(push(beyond), 1.25 * limit, 1e-9 * limit);
 }
 
-/// A bar of St. Venant-Kirchhoff's material pressed along itself, ν = 0: P = E λ(1 − λ²)/2 is
+/// A bar of St. Venant-Kirchhoff's material under axial compression, ν = 0: P = E λ(1 − λ²)/2 is
 /// largest at λ = 1/√3.
 TEST(LimitLoad, OfASolidOfSaintVenantsMaterialIsThatOfItsClosedForm) {
   const double limit = 1.0 / (3.0 * std::sqrt(3.0));
@@ -86,7 +86,7 @@ TEST(LimitLoad, OfASolidOfSaintVenantsMaterialIsThatOfItsClosedForm) {
   d.connectivity = mesh.blocks.at(0).nodes;
   d.X = mesh.nodes;
   system.add_elements(make_solid_elements(std::move(d)));
-  // Guided: it may not buckle to the side.
+  // Guided, so that it does not buckle sideways.
   const auto still = std::make_shared<test::Constant>(0.0);
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
     if (mesh.nodes[static_cast<std::size_t>(i)].z() >= -0.5 + 1e-9)

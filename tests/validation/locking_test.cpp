@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements that are too stiff where the volume cannot change, or in bending, say so before a run.
+// Warnings before a run of elements that are too stiff for incompressible material or in bending.
 #include <array>
 #include <cmath>
 #include <map>
@@ -31,7 +31,7 @@ Solved solve(const std::string& text, const std::string& element, double poisson
   return {s.solid_point(0, point)[1][component], !s.solids()[0].plan.warnings.empty()};
 }
 
-// Lamé: u(a) = (1 + ν)/E p a²/(b² − a²) ((1 − 2ν) a + b²/a), whatever ν.
+// Lamé: u(a) = (1 + ν)/E p a²/(b² − a²) ((1 − 2ν) a + b²/a), for any ν.
 constexpr const char* kTube = R"(
 format: 1
 variables: {n: 2}

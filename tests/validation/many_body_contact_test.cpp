@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Crowds in contact by forces, see also tests/engines/contact_cg_engine_test.cpp.
+// Many bodies in contact by forces, see also tests/engines/contact_cg_engine_test.cpp.
 #include <gtest/gtest.h>
 
 #include <contact/scene.hpp>

@@ -35,7 +35,8 @@ Driven run(const std::string& text, const Overrides& overrides = {}) {
   return d;
 }
 
-// 2 kg at 0.5 m from a horizontal hinge, from straight out; about y, positive turns downward.
+// 2 kg at 0.5 m from a horizontal hinge along y, released horizontally; positive angles are
+// downward.
 std::string arm(const std::string& motor, const std::string& step = "h") {
   return R"(
 format: 1
@@ -79,8 +80,8 @@ TEST(Motor, TurnsAnArmWithTheMomentOfTheClosedForm) {
     }
 }
 
-// Work is what the weight gained and the arm holds: ½ J φ̇² − m g l sin φ, but for what the velocity
-// of the step differs from the drive's by.
+// Work of the motor: the energy of the arm, ½ J φ̇² − m g l sin φ, up to the difference between the
+// velocities of step and drive.
 TEST(Motor, PutsInTheEnergyThatTheArmHas) {
   for (const char* h : {"10 ms", "1 ms"}) {
     const Driven d = run(arm("angle: \"3*t^2\""), {std::string("variables.h=") + h});
@@ -140,8 +141,8 @@ TEST(Motor, DrivesACartWithTheOrderOfTheMethodAndItsWork) {
   }
 }
 
-// Order 8 at steps that are long enough to see it: errors fall by more than 2^7 as the step halves,
-// down to round-off.
+// Order 8 at steps that are long enough to show it: errors decrease by more than 2^7 as the step
+// halves, down to round-off.
 TEST(Motor, DrivesACartWithOrderEight) {
   const auto x_of = [](const char* h, int order) {
     Simulation s(read_model_text(
@@ -159,8 +160,8 @@ TEST(Motor, DrivesACartWithOrderEight) {
   EXPECT_NEAR(x_of("5 ms", 6), reference, 1e-10);
 }
 
-// A ramp that begins and ends: after its kinks the force is that of the pendulum alone and does not
-// alternate. @tests{drive-kink}
+// A ramp that begins and ends: after its kinks the force is that of the pendulum alone, without
+// oscillations. @tests{drive-kink}
 TEST(Motor, DoesNotRingAfterAKink) {
   const std::string table =
       "loads.motor.displacement={table: [[0, 0], [0.2, 0], [0.6, 0.2]], interpolation: linear}";

@@ -50,8 +50,8 @@ TEST(NonsmoothContact, BoxOnAnInclineOfThirtyDegrees) {
   }
 }
 
-/// A rod that meets the floor with its end, e = 1, slipping at first the way in which friction will
-/// hold it: an impulse that ends the slip would give it a seventh of its energy.
+/// A rod that hits the floor with its end, e = 1, whose initial slip has the direction for which
+/// sticking adds energy: an impulse that ends the slip would add a seventh of its energy.
 /// @tests{nonsmooth-energy}
 TEST(NonsmoothContact, FrictionGivesNoEnergyToARod) {
   for (const double slip : {0.5, 1.0})
@@ -68,7 +68,7 @@ TEST(NonsmoothContact, FrictionGivesNoEnergyToARod) {
       s.begin(2e-3);
       const double before = s.energy();
       ASSERT_TRUE(s.run(0.03));
-      EXPECT_GT(s.motion(rod).v.z(), start.v.z() + 0.2) << "it has met the floor";
+      EXPECT_GT(s.motion(rod).v.z(), start.v.z() + 0.2) << "there was an impact";
       EXPECT_LE(s.energy(), before * (1.0 + 1e-12)) << angle << ' ' << slip;
       EXPECT_LT(s.drift(), 1e-12 * before) << angle << ' ' << slip;
     }
@@ -102,8 +102,8 @@ TEST(NonsmoothContact, BowlingBallEndsRolling) {
   EXPECT_NEAR(s.state.ledger.dissipated.value(), 0.5 * 4.0 * 2.0 / 7.0, 1e-10);
 }
 
-/// Rolling friction μ_r slows a ball that rolls by 5 μ_r g/(7 R); drilling friction one that spins
-/// on the spot by 5 μ_t g/(2 R²).
+/// Rolling friction μ_r slows a ball that rolls by 5 μ_r g/(7 R); spin friction (torsional) slows
+/// one that spins in place by 5 μ_t g/(2 R²).
 TEST(NonsmoothContact, RollingAndDrillingFrictionSlowABall) {
   Scene s;
   const double R = 0.1, mu_r = 2e-3, mu_t = 1e-3;
@@ -150,7 +150,7 @@ TEST(NonsmoothContact, StackOfTenBoxesStands) {
   }
 }
 
-/// Moreau's law hands an impact on in a row of balls with gaps.
+/// Moreau's law transmits an impact through a row of balls with gaps.
 TEST(NonsmoothContact, CradleWithGapsHandsTheImpactOn) {
   Scene s(Vec3::Zero());
   for (int k = 0; k < 5; ++k)

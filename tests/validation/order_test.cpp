@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders of accuracy, measured on whole models from the model to the report.
+// Orders of accuracy, measured on complete models from the model to the report.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -143,7 +143,7 @@ TEST_P(SecondOrderInChangingSteps, OnAChainOfRevoluteJoints) {
   const auto error = [&](int n) {
     return largest_error(run_in_changing_steps(model, t_end, n), exact);
   };
-  // The error of the joints' accelerations dies out as the steps get shorter, so the order is
+  // The error of the joints' accelerations vanishes as the steps get shorter, so the order is
   // reached from above.
   EXPECT_GE(std::log2(error(72) / error(288)), 2.0 * 1.9);
 }

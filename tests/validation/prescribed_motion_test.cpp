@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prescribed motion of nodes: what is held or driven has the velocity of its drive, and reactions,
-// energy and work follow from it at any step.
+// Prescribed motion of nodes: velocity of the drive, and reactions, energy and work at any step.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -57,7 +56,7 @@ Seen run(const std::string& text) {
 
 constexpr const char* kSteps[] = {"5 ms", "1 ms", "0.2 ms"};
 
-// A ramp of 10 mm over 0.1 s, held from then on; the material damps waves away within a second.
+// A ramp of 10 mm over 0.1 s, held from then on; the material damps waves within a second.
 // @tests{prescribed-velocity} @tests{prescribed-kink}
 TEST(PrescribedMotion, AViscousBarThatIsHeldAfterARampRests) {
   const std::string ramp = "{table: [[0, 0], [0.1, -0.01]], interpolation: linear}";
@@ -74,7 +73,8 @@ TEST(PrescribedMotion, AViscousBarThatIsHeldAfterARampRests) {
   }
 }
 
-// What moves with a sine, a table with kinks, a spline or a jerk: energy put in is energy found.
+// Drives by a sine, a table with kinks, a spline, jumps of acceleration or velocity: the supplied
+// work is the energy of the model.
 // @tests{prescribed-work}
 TEST(PrescribedMotion, WorkPutInIsEnergyFoundWhateverTheDrive) {
   for (const char* end :
@@ -120,7 +120,7 @@ TEST(PrescribedMotion, ConvergesWithTheOrderOfTheMethod) {
   }
 }
 
-// At rho_inf < 1 as well: held nodes stand, and the wave of the ramp is damped.
+// The same at rho_inf < 1: fixed nodes are at rest, and the wave of the ramp is damped.
 TEST(PrescribedMotion, HeldNodesStandWithNumericalDamping) {
   for (const char* rho : {"0", "0.5", "0.9"})
     for (const char* step : {"2 ms", "0.2 ms"}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The published cases at the steps that a peer, Exudyn 1.11, was measured with on the same
-// definitions (docs/validation.md says from where): our error against the reference, its bound from
-// the step, and the peer's error at the same step.
+// The published cases at the steps of another program, Exudyn 1.11, on the same definitions
+// (sources are in docs/validation.md): error of this program against the reference, its bound from
+// the step, and the error of the other program at the same step.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -17,9 +17,10 @@ struct PeerStep {
   std::string name;
   PublishedCase published;
   double step, duration;
-  double peer;              ///< Best figure of the peer's implicit integrators at this step.
-  double constant;          ///< Bound on error/Δt², see below.
-  bool peer_ahead = false;  ///< The peer is better here; the reason is in docs/validation.md.
+  double peer;      ///< Smallest error of the other program's implicit integrators at this step.
+  double constant;  ///< Bound on error/Δt², see below.
+  bool peer_ahead =
+      false;  ///< The other program is more accurate here; the reason is in docs/validation.md.
 };
 
 /// The bound C Δt²: twice the phase by which Cayley steps lag, ∫|ω|³ dt/12 per Δt², from the
@@ -80,7 +81,7 @@ TEST_P(Published, IsMetAtThePeersStep) {
   EXPECT_EQ(d.summary.rejected_steps, 0);
   EXPECT_LE(d.largest, c.constant * c.step * c.step);
   if (c.peer > 0.0 && !c.peer_ahead) {
-    EXPECT_LE(d.largest, c.peer) << "the peer is better at this step";
+    EXPECT_LE(d.largest, c.peer) << "the other program is more accurate at this step";
   }
   EXPECT_LE(d.summary.energy_drift, 1e-10);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mechanisms with more rows than they need, and positions where they need more than they have.
+// Mechanisms with redundant rows, and singular positions where the rank is deficient.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -61,7 +61,7 @@ TEST_P(Redundancy, DoesNotDisturbTheMotion) {
 INSTANTIATE_TEST_SUITE_P(Of, Redundancy, testing::ValuesIn(overconstrained()),
                          [](const auto& p) { return p.param.name; });
 
-/// Largest departure of the verticals from parallel: the branch that the four-bars must keep.
+/// Largest departure of the verticals from parallel: the four-bars must stay on that branch.
 double branch_deviation(const Simulation& s, int N) {
   double most = 0.0;
   const Vec3 first = s.body(0).q * Vec3::UnitX();
@@ -69,8 +69,8 @@ double branch_deviation(const Simulation& s, int N) {
   return most;
 }
 
-// The flat position has N + 1 motions to first order, and leaves in one of them only. Energy
-// carries the mechanism through; whatever fraction of a step it falls on must not matter.
+// The flat position has N + 1 motions to first order, and the mechanism leaves it in one of them
+// only. Energy carries the mechanism through it, at any fraction of a step.
 struct Grid {
   int N;
   double step, phi;
@@ -116,9 +116,9 @@ TEST_P(FlatStart, RunsInTheDirectionOfItsVelocities) {
 }
 INSTANTIATE_TEST_SUITE_P(Of, FlatStart, testing::Values(1, 2, 3));
 
-// A motor that turns the first hinge: increments after the second are the proximal iteration's
-// alone, which no mechanism of constraints needs to continue (2.28 iterations at 10 ms if it does).
-// Upper ends move on circles.
+// A motor that turns the first hinge: increments after the second are those of the proximal
+// iteration alone, which need not be continued (2.28 iterations at 10 ms if it is). Upper ends move
+// on circles.
 TEST(DrivenFourBar, NeedsTwoIterationsAStepAndFollowsItsMotor) {
   for (const double step : {0.02, 0.01, 0.001, 0.0001}) {
     const int N = 40;

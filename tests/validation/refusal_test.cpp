@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps that must not be taken: a body turning too far, a joint reaching its mirror image, a motion
-// that cannot be continued.
+// Steps that must be rejected: a rotation that is too large, a joint that reaches its mirror image,
+// a motion that cannot be continued.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -33,8 +33,8 @@ TEST(StepRefusal, HalvesAStepThatTurnsABodyTooFar) {
 }
 
 TEST(StepRefusal, OfALargeTurnStillFollowsTheTumblingBody) {
-  // Steps of half a turn are refused until |Θ| ≤ 2, where the motion is followed roughly but
-  // energy and momentum exactly.
+  // Steps of half a turn are rejected until |Θ| ≤ 2, where the motion is approximate, but energy
+  // and momentum are exact.
   const FreeSymmetricTop exact{1.0, 2.0, {3.0, 0.0, 12.0}};
   Model model = free_symmetric_top(exact.W_0);
   model.analysis.step = 0.25;
@@ -47,9 +47,9 @@ TEST(StepRefusal, OfALargeTurnStillFollowsTheTumblingBody) {
   EXPECT_LE(r.angular_momentum_drift, 1e-12);
 }
 
-/// Two hinged bodies that turn about any axis, thrown about by stiff springs, in steps much too
-/// long. Bodies may turn as far as they like in a step: then the hinge may come out turned over,
-/// its axes opposite, which its right angles allow.
+/// Two hinged bodies on stiff springs that turn about any axis, in steps that are much too long.
+/// With unlimited rotations in a step the hinge may end in its mirror image, with opposite axes,
+/// which its rows allow.
 Model thrown_about(unsigned seed) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
@@ -79,7 +79,7 @@ TEST(StepRefusal, RejectsAStepThatReachesTheMirrorImageOfAJointAndHalvesIt) {
   int mirrored = 0;
   for (unsigned seed = 0; seed < 2000 && mirrored < 2; ++seed) {
     const Model model = thrown_about(seed);
-    Model once = model;  // a single trial, so that its reason is told
+    Model once = model;  // a single trial, so that its reason is reported
     once.analysis.min_step = 0.9 * *once.analysis.step;
     once.analysis.duration = *once.analysis.step;
     const RunSummary trial = Simulation(once).run();
@@ -102,10 +102,10 @@ TEST(StepRefusal, RejectsAStepThatReachesTheMirrorImageOfAJointAndHalvesIt) {
     EXPECT_NEAR(on_a.dot(on_b), 1.0, 1e-10) << seed;
     EXPECT_LE(r.energy_drift, 1e-10) << seed;
   }
-  EXPECT_GE(mirrored, 1) << "no step of these reaches a mirror image: take others";
+  EXPECT_GE(mirrored, 1) << "none of these steps reaches a mirror image, so this test needs others";
 }
 
-// A four-bar in large steps near its dead points stays the mechanism it was.
+// A four-bar in large steps near its dead points keeps its assembly mode.
 TEST(StepRefusal, KeepsTheHingesOfAFourBarAsTheyWereAssembled) {
   for (const double step : {0.02, 0.05, 0.1}) {
     Model model = n_four_bar(1);
@@ -125,9 +125,9 @@ TEST(StepRefusal, KeepsTheHingesOfAFourBarAsTheyWereAssembled) {
   }
 }
 
-/// A motor without a limit drives a rotor, which turns faster than the least step can follow: the
-/// Cayley vector's length is the mean angular velocity times the step, so at 0.5 ms its limit, 2,
-/// is reached at 4000 rad/s.
+/// A motor without a limit drives a rotor, which becomes too fast for the smallest step: the Cayley
+/// vector's length is the mean angular velocity times the step, so at 0.5 ms its limit, 2, is
+/// reached at 4000 rad/s.
 Model runaway() {
   ModelBuilder m;
   const int frame = m.body("frame", {0.5, 0, 0}, 2.0, {0.01, 0.1, 0.1});
@@ -154,7 +154,7 @@ TEST(StepRefusal, EndsARunThatNoStepCanFollowAndSaysWhoIsAtFault) {
   EXPECT_LE(r.constraint_residual_max, 1e-12);
 }
 
-/// A load that has no value from some time on.
+/// A load that is not defined after a certain time.
 Model hopeless() {
   ModelBuilder m;
   const int a = m.body("arm", {0.5, 0.0, 0.0}, 1.0, {0.01, 0.1, 0.1});
@@ -182,7 +182,7 @@ TEST(StepRefusal, KeepsTheLastGoodStateWhenALoadHasNoValue) {
   EXPECT_EQ(r.end, RunEnd::not_converged);
   EXPECT_THAT(r.message, testing::HasSubstr("body 'arm'"));
   EXPECT_THAT(r.message, testing::HasSubstr("t = "));
-  // The last good state is still there.
+  // The last accepted state is kept.
   EXPECT_NEAR(r.t, 0.05, 0.0101);
   EXPECT_TRUE(s.body(0).r.allFinite());
   EXPECT_LE(r.constraint_residual_max, 1e-12);

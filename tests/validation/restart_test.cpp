@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same run twice, and in two parts, ends in the same bits.
+// Bitwise equal results of a run that is repeated, and of one in two parts.
 #include <string>
 #include <vector>
 
@@ -28,21 +28,21 @@ Model with(Model model, double duration, std::optional<double> step,
   return model;
 }
 
-/// An example with contact, whose points remember bristles, gaps and approach speeds.
+/// An example with contact, whose points have histories of bristles, gaps and approach speeds.
 Model touching(const std::string& name, double duration) {
   Model model = read_model(source_dir() + "/examples/" + name + "/model.yaml");
   model.analysis.duration = duration;
   return model;
 }
 
-/// Bodies, surfaces of solids and stops of joints, all of which touch.
+/// Bodies, surfaces of solids and stops of joints, all of them in contact.
 Model trolley() {
   Model model = read_model(source_dir() + "/tests/validation/data/trolley.yaml");
   model.analysis.duration = 0.25;
   return model;
 }
 
-/// A rope that rubs over a drum on the way to its beam, with a ball at its end.
+/// A rope that slides over a drum, from a beam to a ball at its end.
 Model rope(const std::string& drum = "{cylinder: [0.1, 0.1]}") {
   return read_model_text(
       R"(
@@ -63,7 +63,7 @@ analysis: {duration: 0.4 s, step: 1 ms}
       "rope.yaml");
 }
 
-/// A rope that rubs over a soft block, with a ball at its end.
+/// A rope that slides over a soft block, with a ball at its end.
 Model rope_on_pad() {
   return read_model_text(R"(
 format: 1
@@ -82,7 +82,7 @@ analysis: {duration: 30 ms, step: 1 ms}
                          "pad.yaml");
 }
 
-/// The same by impulses, whose points remember what acted.
+/// The same with the impulse law, whose points have histories of impulses.
 Model by_impulses(Model model) {
   model.contacts.standard.potential = "nonsmooth";
   return model;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wheels and balls that roll without slip, in whole models.
+// Wheels and balls that roll without slip, in complete models.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -100,7 +100,7 @@ TEST(Rolling, HasItsOrders) {
 
 namespace {
 
-/// A ball or wheel on a slope of 0.3 rad: the plane is level, gravity is not.
+/// A ball or wheel on a slope of 0.3 rad: the plane is horizontal, gravity is inclined.
 std::string slope(const std::string& body, const std::string& load, const std::string& more = "") {
   return R"(
 format: 1
@@ -115,7 +115,8 @@ output: {hdf5: false}
 
 }  // namespace
 
-// s̈ = g sin α/(1 + J/(m r²)): 5/7 of it for a ball, 2/3 for a disc; friction is the rest.
+// s̈ = g sin α/(1 + J/(m r²)): 5/7 of it for a ball, 2/3 for a disc; the rest is the friction
+// force.
 TEST(Rolling, RunsDownASlope) {
   struct Case {
     const char* body;
@@ -143,13 +144,13 @@ TEST(Rolling, RunsDownASlope) {
       EXPECT_NEAR(o.body(0).W.y(), a / 0.1, 1e-7) << step.text;
       EXPECT_NEAR(o.load[0], -(1.0 - c.part) * m * 2.8990, 1e-6) << step.text;
       EXPECT_NEAR(o.load[6], m * 9.3718, 1e-6) << step.text;
-      EXPECT_NEAR(o.load[3], 0.5 * a, 1e-9) << step.text;  // where it touches
+      EXPECT_NEAR(o.load[3], 0.5 * a, 1e-9) << step.text;  // contact point
       EXPECT_LT(o.summary.energy_drift, 1e-12) << step.text;
     }
 }
 
-// A ball on a turntable runs in circles, with 2/7 of the table's speed (Earnshaw): seen from the
-// world, v̇ = (2/7) Ω ẑ × v. The plane turns, its body is driven.
+// A ball on a turntable runs in circles, with 2/7 of the table's speed (Earnshaw): in the ground
+// frame v̇ = (2/7) Ω ẑ × v. The body of the plane is driven.
 TEST(Rolling, CirclesOnATurntable) {
   const double Omega = 6.0, v = 0.4, T = 2.0 * kPi / (2.0 / 7.0 * Omega),
                R = v / (2.0 / 7.0 * Omega);
@@ -171,7 +172,7 @@ output: {hdf5: false}
 )",
                                  "table.yaml"));
     const RunSummary summary = s.run();
-    // Half a circle of radius R to the left: at (0, 2R), flying back.
+    // Half a circle of radius R to the left: at (0, 2R), moving in the opposite direction.
     const BodyMotion ball = s.body(1);
     EXPECT_NEAR(ball.r.x(), 0.0, 40.0 * h * h + 2e-6) << h;
     EXPECT_NEAR(ball.r.y(), 2.0 * R, 40.0 * h * h + 2e-6) << h;
@@ -180,7 +181,7 @@ output: {hdf5: false}
   }
 }
 
-// A wheel on a plane that another free body carries: both momenta are kept.
+// A wheel on a plane of another free body: both momenta are conserved.
 TEST(Rolling, KeepsMomentaOnAFreePlane) {
   for (const int order : {2, 4, 6}) {
     const Outcome o = run(R"(
@@ -215,7 +216,7 @@ TEST(Rolling, GoesOnAfterARestartBitForBit) {
   EXPECT_EQ(straight.body(0).W, again.body(0).W);
 }
 
-// Spun up to a stop and let go a coin falls on its side.
+// A coin that falls flat on its side.
 TEST(Rolling, EndsWhereAWheelFallsFlat) {
   Simulation s(read_model_text(R"(
 format: 1

@@ -14,8 +14,8 @@
 
 namespace polhode::test {
 
-/// A rope over a drum that stands still, half around it, with weights at its ends: straight pieces
-/// whose middles touch at the start. The light weight is 1 kg.
+/// A rope over a fixed drum, half around it, with weights at its ends: straight pieces whose
+/// middles touch the drum at the start. The light weight is 1 kg.
 struct Drum {
   static constexpr double kRadius = 0.1, kRope = 4e-3, kPerLength = 0.01, g = 9.81;
   Model model;
@@ -51,7 +51,7 @@ analysis: {{step: 0.5 ms, duration: {8:g}}}
                                    -corner, -leg * piece, heavy_mass, corner, kPerLength, length,
                                    path.size() - 1, mu, duration, shape),
                             "drum.yaml");
-    const int first = model.body_index("rope.0");  // the file draws it straight across
+    const int first = model.body_index("rope.0");  // the rope of the file is straight
     for (std::size_t k = 0; k < path.size(); ++k)
       model.bodies[static_cast<std::size_t>(first) + k].position = path[k];
   }

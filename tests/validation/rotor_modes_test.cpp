@@ -23,13 +23,13 @@ using Complex = std::complex<double>;
 ModesReport modes_of(const std::string& text, const Overrides& overrides = {}) {
   const ModalAnalysis analysis(read_model_text(text, "rotor.yaml", overrides));
   EXPECT_TRUE(analysis.converged()) << analysis.message();
-  // Freedoms next to without mass swing fast and are given to some digits only.
+  // Freedoms with nearly no mass have high frequencies, which are accurate to some digits only.
   for (const std::string& warning : analysis.report().warnings)
     EXPECT_NE(warning.find("is accurate to"), std::string::npos) << warning;
   return analysis.report();
 }
 
-/// Angular frequencies of what swings, ascending.
+/// Angular frequencies of oscillations, ascending.
 std::vector<double> frequencies(const ModesReport& r) {
   std::vector<double> list;
   for (const Mode& mode : r.modes)
@@ -38,10 +38,9 @@ std::vector<double> frequencies(const ModesReport& r) {
   return list;
 }
 
-/// A disc at the end of a shaft without mass, held at the other end by a bearing that lets it turn.
-/// With w = y + iz: (k_11 − mω²)(k_22 + J_p Ω ω − J_t ω²) = k_12², k of the cantilever, ω of both
-/// signs: forward and backward whirl (Stodola; G. Genta, Dynamics of Rotating Systems, 2005,
-/// chapter 4).
+/// A disc at the end of a shaft without mass, with a bearing at the other end. With w = y + iz:
+/// (k_11 − mω²)(k_22 + J_p Ω ω − J_t ω²) = k_12², k of the cantilever, ω of both signs: forward and
+/// backward whirl (Stodola; G. Genta, Dynamics of Rotating Systems, 2005, chapter 4).
 constexpr const char* kOverhung = R"(
 format: 1
 variables: {spin: 100, flat: 0}
@@ -95,7 +94,7 @@ TEST(RotorModes, OfABodyThatIsNotAlikeAboutItsAxisAreSaidToBeThoseOfAnInstant) {
 }
 
 /// A round shaft on two bearings, EI k⁴ − (μ + ι k²) ω² + 2 ι k² Ω ω = 0, k = nπ/L, with the rotary
-/// inertia ι = ρI (Rayleigh's beam that turns).
+/// inertia ι = ρI (rotating Rayleigh beam).
 constexpr const char* kRayleigh = R"(
 format: 1
 variables: {spin: 50, n: 60}
@@ -111,7 +110,7 @@ analysis: {type: modes, count: 9}
 
 // @tests{modes-gyroscopic}
 TEST(RotorModes, OfARayleighShaftAreThoseOfItsEquation) {
-  for (const char* n : {"30", "60"})  // all at once, and by Arnoldi iterations
+  for (const char* n : {"30", "60"})  // dense, and by Arnoldi iterations
     for (const double spin : {50.0, 400.0}) {
       const ModesReport r =
           modes_of(kRayleigh, {format("variables.spin={}", spin), std::string("variables.n=") + n});
@@ -131,7 +130,7 @@ TEST(RotorModes, OfARayleighShaftAreThoseOfItsEquation) {
     }
 }
 
-/// A point-like disc on a viscous shaft that turns, and dampers to the ground: m λ² + (c_i + c_e) λ
+/// A point-like disc on a rotating viscous shaft, with dampers to the ground: m λ² + (c_i + c_e) λ
 /// + k − iΩ c_i = 0 in y + iz. It whirls with growing amplitude above ω (1 + c_e/c_i) (Jeffcott's
 /// rotor with internal damping: Genta, chapter 3).
 constexpr const char* kJeffcott = R"(

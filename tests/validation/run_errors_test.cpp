@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures a run says of itself: estimated errors, warnings, drifts of what rests.
+// Summary of a run: estimated errors, warnings, drifts of models at rest.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -56,7 +56,8 @@ TEST(RunErrors, OfAnOscillatorAreThoseOfTheMidpointRule) {
   }
 }
 
-// A pole of 10 g on a cart of 1 kg, with a weight of 1 kg at its foot: it turns over within a step.
+// A pole of 1 g on a cart of 1 kg, with its centre of mass 1 mm above the hinge: it turns over in a
+// few steps.
 constexpr const char* kPole = R"(
 format: 1
 gravity: [0, 0, -9.81]
@@ -104,7 +105,7 @@ output: {hdf5: false}
   }
 }
 
-// A stated stiffness closes and opens in 3 ms: steps of 1 ms say nothing of its force.
+// An impact with a given stiffness lasts 3 ms: steps of 1 ms do not resolve its force.
 TEST(RunErrors, AnImpactShorterThanItsLawAsksForIsSaid) {
   const char* text = R"(
 format: 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cables that run over points of several bodies, and muscles on them: closed forms, conservation,
+// Running cables over points of several bodies, and muscles on them: closed forms, conservation,
 // order, an independent integration.
 #include <array>
 #include <cmath>
@@ -37,8 +37,8 @@ output: {hdf5: false}
 )";
 }
 
-// Atwood's machine: a = (m1 − m2) g/(m1 + m2), exactly where the rope is stretched as it stays;
-// parabolas are exact at any step. @tests{running-cable}
+// Atwood's machine: a = (m1 − m2) g/(m1 + m2), exactly if the initial extension is that of the
+// motion; parabolas are exact at any step. @tests{running-cable}
 TEST(RunningCable, IsAtwoodsMachine) {
   const double T = 2.0 * 3.0 * 2.0 * kG / 5.0, a = kG / 5.0;
   const double stiffness = 4e4, free = 5.0 / (1.0 + T / stiffness);
@@ -55,7 +55,7 @@ TEST(RunningCable, IsAtwoodsMachine) {
   }
 }
 
-// A given tension: each weight has its own parabola; the work is put in.
+// A given tension: each weight has its own parabola; its work is supplied energy.
 TEST(RunningCable, PullsWithItsTension) {
   for (const double h : {0.05, 0.0005}) {
     Simulation s = made(weights("tension: 25 N"), {"h=" + std::to_string(h)});
@@ -68,8 +68,8 @@ TEST(RunningCable, PullsWithItsTension) {
   }
 }
 
-// A tackle: a block on two falls, the end of the rope wound by a weight. T = 3 g/(4/M + 1/m) in
-// the mean; the stiff rope trembles about it.
+// A tackle: a block on two falls, with a weight at the end of the rope. T = 3 g/(4/M + 1/m) in the
+// mean; the stiff rope vibrates about it.
 TEST(RunningCable, IsATackle) {
   Simulation s = made(R"(
 format: 1
@@ -93,7 +93,7 @@ output: {hdf5: false}
   EXPECT_LT(r.energy_drift, 1e-11);
 }
 
-/// Three free bodies that a rope ties, off their centres.
+/// Three free bodies coupled by a rope at eccentric points.
 const char* const kTied = R"(
 format: 1
 variables: {h: 5 ms, rho: 1}
@@ -119,7 +119,7 @@ TEST(RunningCable, KeepsEnergyAndBothMomenta) {
 
 TEST(RunningCable, HasTheOrderOfTheMethod) {
   const auto end = [](double h, int order, const char* rho) {
-    // Where a cable becomes slack its force has a corner: here it pushes.
+    // Where a cable becomes slack its force has a corner: here the force is compressive.
     Simulation s = made(kTied, {"h=" + std::to_string(h), "analysis.order=" + std::to_string(order),
                                 std::string("rho=") + rho, "cables.rope.tension_only=false"});
     (void)finished(s);
@@ -136,7 +136,7 @@ TEST(RunningCable, HasTheOrderOfTheMethod) {
   EXPECT_GT(std::log2(error(0.02, 6, "1") / error(0.01, 6, "1")), 5.5);
 }
 
-// Becomes slack and taut again: energy stays.
+// Energy of a cable that becomes slack and taut again is conserved.
 TEST(RunningCable, MayBeSlack) {
   Simulation s = made(kTied, {"cables.rope.free_length=3.4", "analysis.duration=3"});
   bool slack = false, taut = false;
@@ -228,7 +228,7 @@ TEST(RunningCable, LiftsAsAMuscle) {
 
 TEST(RunningCable, TellsWhatIsWrong) {
   const auto has = [](const std::string& rope, const std::string& wanted) {
-    tells(weights(rope), wanted);
+    expect_fault(weights(rope), wanted);
   };
   has("slides: true",
       "cables.rope: 'stiffness' is missing. Give EA or, for a sliding cable, a tension.");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reactions of solids that viscosity overdamps: what the motion needs, not what Newmark's
-// velocities ring with. @tests{settled-rate}
+// Reactions of solids with overdamped modes: those of the motion, without the oscillations of
+// Newmark's velocities. @tests{settled-rate}
 #include <string>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace polhode::settled_reactions_tests {
 namespace {
 
-/// Σw = 1, no first and (with four) no second moment, and nothing of what alternates.
+/// Σw = 1, zero first and (with four) second moment, and zero response to alternating terms.
 /// @tests{settled-weights}
 TEST(SettledReactions, TakeWeightsThatAreExactForQuadraticsAndLeaveOutWhatAlternates) {
   for (const std::vector<double>& dt :
@@ -38,12 +38,12 @@ TEST(SettledReactions, TakeWeightsThatAreExactForQuadraticsAndLeaveOutWhatAltern
     EXPECT_NEAR(alternating * dt[0], 0.0, 1e-12);
   }
   EXPECT_TRUE(extrapolation_weights({0.1, 0.1}).empty());
-  EXPECT_TRUE(extrapolation_weights({0.1, -0.1, 0.1}).empty()) << "a stage that goes back";
+  EXPECT_TRUE(extrapolation_weights({0.1, -0.1, 0.1}).empty()) << "a stage with a negative step";
 }
 
 /// A body of 20 kg with a bar of 10 kg bonded to it, pushed by 30 N from rest, spinning or not: the
-/// bar is pulled by its mass times the acceleration of its centre. Its modes die in hundredths of a
-/// second, or cannot oscillate at all, at steps that resolve none of them.
+/// bar is pulled by its mass times the acceleration of its centre. Its modes decay in hundredths of
+/// a second or are overdamped, at steps that resolve none of them.
 TEST(SettledReactions, PullABarByItsMassTimesItsAcceleration) {
   const char* text = R"(
 format: 1
@@ -68,7 +68,7 @@ output: {hdf5: false}
     EXPECT_NEAR(s.interface_reaction(0, 0).force.x(), 10.0, 2e-3) << step;
     EXPECT_LT(summary.energy_drift, 1e-11) << step;
   }
-  // Spinning freely: the hub goes round the common centre of mass, which moves as it did at the
+  // Spinning freely: the hub moves around the common centre of mass, which moves as it did at the
   // start.
   for (const char* step : {"10 ms", "5 ms", "2 ms"}) {
     Simulation s(read_model_text(

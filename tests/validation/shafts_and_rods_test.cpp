@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constant-velocity joints, rods and links with slack in whole models.
+// Constant-velocity joints, rods and links with slack in complete models.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ using namespace connectors;
 
 namespace {
 
-/// A driven shaft along x and one that is bent off it by beta in the x, z plane, in a sleeve.
+/// A driven shaft along x and one at an angle beta to it in the x, z plane, in a sleeve.
 std::string bent_shafts(const std::string& type, double beta, const std::string& drive) {
   const std::string axis =
       "[" + std::to_string(std::cos(beta)) + ", 0, " + std::to_string(std::sin(beta)) + "]";
@@ -80,7 +80,7 @@ TEST(ConstantVelocity, PassesTheWholeMomentOn) {
 
 namespace {
 
-/// Two free bodies that turn and fly, held together by one joint.
+/// Two free rotating bodies with one joint between them.
 std::string flying_pair(const std::string& joint, int order) {
   return R"(
 format: 1
@@ -189,7 +189,7 @@ output: {hdf5: false}
 
 }  // namespace
 
-// Falls by 0.3 m, is thrown back with e times its speed: z = −0.5 + e v t − g t²/2.
+// Fall of 0.3 m and rebound with e times the speed: z = −0.5 + e v t − g t²/2.
 // @tests{turn-law}
 TEST(SlackLink, ThrowsBackWhatFallsIntoIt) {
   const double g = 9.81, t = 0.35, v = std::sqrt(2.0 * g * 0.3), fall = v / g;
@@ -198,7 +198,7 @@ TEST(SlackLink, ThrowsBackWhatFallsIntoIt) {
       const Outcome o = run(leash(e), {"variables.h=" + std::to_string(dt) + " s"});
       const double after = t - fall;
       const double z = o.body(0).r.z(), w = o.body(0).v.z();
-      // The impact is met within a step; the energy after it does not depend on when.
+      // The impact lies within a step; the energy after it does not depend on its time.
       EXPECT_NEAR(0.5 * w * w + g * (z + 0.5), e * e * g * 0.3, 2e-3 * g * 0.3) << e << ' ' << dt;
       EXPECT_NEAR(z, -0.5 + e * v * after - 0.5 * g * after * after, 2.0 * dt + 2e-4)
           << e << ' ' << dt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statics of what is slack, of what snaps through, and of what cannot move at all.
+// Statics of slack cables, of snap-through, and of models without freedoms.
 #include <cmath>
 #include <string>
 
@@ -36,7 +36,7 @@ analysis: {type: statics}
 output: {hdf5: false}
 )";
 
-/// Laid out straight, half as long again as the span: all of it is slack.
+/// A straight initial shape, with a free length of 1.5 times the span: the whole cable is slack.
 /// @tests{statics-relaxation}
 TEST(SlackCable, FindsTheShapeOfTheCatenary) {
   for (const auto& [n, s] : {std::pair(20, 1.5), {40, 1.5}, {40, 1.05}, {40, 3.0}, {100, 1.5}}) {
@@ -119,12 +119,12 @@ TEST(Snap, PastALimitPointIsSaidWhateverTheLoadSteps) {
           kMises, "truss.yaml",
           {format("variables.P={}", part * limit), format("variables.steps={}", steps)}));
       const RunSummary r = s.run();
-      if (r.end != RunEnd::finished) {  // Newton's method did not jump: the run ends there
+      if (r.end != RunEnd::finished) {  // Newton's method did not snap through: the run ends there
         EXPECT_NEAR(r.statics->load_factor * part, 1.0, 1e-3) << steps << ' ' << part;
         EXPECT_THAT(r.message, HasSubstr("It may be a limit point"));
         continue;
       }
-      EXPECT_LT(s.body(s.model().body_index("top")).r.z(), -0.2);  // through
+      EXPECT_LT(s.body(s.model().body_index("top")).r.z(), -0.2);  // snapped through
       ASSERT_EQ(r.statics->limit_points.size(), 1u) << steps << ' ' << part;
       const LimitPoint& point = r.statics->limit_points[0];
       EXPECT_TRUE(point.jump);
@@ -143,7 +143,7 @@ TEST(Snap, PastALimitPointIsSaidWhateverTheLoadSteps) {
   }
 }
 
-/// Its squared frequency falls to zero at the limit load: by the tangent, dP/dz.
+/// The squared frequency decreases to zero at the limit load: by the tangent, dP/dz.
 TEST(Snap, TheTrussHasTheFrequencyOfItsTangent) {
   const double limit = mises_limit(), l_0 = std::hypot(1.0, 0.2);
   for (const double part : {0.5, 0.9, 0.99, 0.999}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What deformable solids on rigid bodies keep: energy and momenta over long runs, at every element,
-// and the order of the method.
+// Conservation of energy and momenta of deformable solids on rigid bodies over long runs, for every
+// element, and the order of the method.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ std::vector<Kind> kinds() {
 
 class EveryElement : public testing::TestWithParam<Kind> {};
 
-/// 10 000 steps of a bar on a tumbling body: what round-off of 4·10⁴ iterations may leave.
+/// 10 000 steps of a bar on a tumbling body: within the round-off of 4·10⁴ iterations.
 TEST_P(EveryElement, KeepsEnergyAndMomentaOfASpinningBar) {
   const Kind& k = GetParam();
   FlexibleScene s({.element = k.element,
@@ -77,10 +77,11 @@ TEST_P(EveryElement, KeepsEnergyBetweenTwoBodiesOnJointsUnderGravity) {
   run_between_two_bodies(GetParam(), 2000);
 }
 
-// So long a motion of two heavy bodies crumples a bar as soft as the others; this one is stiffer.
+// In such a long motion two heavy bodies would crush a bar as soft as the others, so this one is
+// stiffer.
 TEST_P(EveryElement, KeepsEnergyBetweenTwoBodiesOnJointsOverTenThousandSteps) {
   if (std::getenv("POLHODE_SLOW_TESTS") == nullptr)
-    GTEST_SKIP() << "set POLHODE_SLOW_TESTS to run the minutes this takes";
+    GTEST_SKIP() << "takes minutes; set POLHODE_SLOW_TESTS to run it";
   run_between_two_bodies(GetParam(), 10'000, 10.0);
 }
 
@@ -93,7 +94,7 @@ TEST(SolidConservation, MidpointStressDoesNotKeepEnergy) {
   plain.run(500);
   EXPECT_LE(exact.energy_drift(), 1e-12);
   EXPECT_GE(plain.energy_drift(), 1e-4);
-  EXPECT_LE(plain.momentum_drift(), 1e-11);  // any symmetric stress keeps the moment
+  EXPECT_LE(plain.momentum_drift(), 1e-11);  // any symmetric stress conserves momenta
 }
 
 TEST(SolidConservation, ViscosityTakesWhatTheLedgerSays) {

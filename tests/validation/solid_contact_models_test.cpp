@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solids that touch each other and themselves, from model files.
+// Contact between solids and of a solid with itself, from model files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ analysis: )" + analysis,
 }
 
 /// Three by three elements below, four by four above, pressed by a dead load while the sides are
-/// held: numerical damping brings them to rest.
+/// held: numerical damping brings them to rest. The stress is uniform.
 TEST(SolidContactModel, PassesThePatchTestWithMeshesThatDoNotMatch) {
   const double p = 30.0;
   Simulation simulation(read_model_text(R"(
@@ -87,7 +87,7 @@ analysis: {duration: 4 s, step: 0.05 s, rho_inf: 0}
   EXPECT_LT(worst, 1e-10) << "stress of elements";
 }
 
-/// Results of a bar of 1 m and 10 kg at 0.01 m/s that meets another at rest end on.
+/// Results of a bar of 1 m and 10 kg at 0.01 m/s that hits another one at rest, end on.
 struct Blow {
   double duration = 0.0;  ///< [s]
   double impulse = 0.0;   ///< As a part of the momentum of the first.
@@ -133,10 +133,10 @@ output: {{hdf5: false}}
   return blow;
 }
 
-/// St Venant's bars: a wave of the force ρ c A v/2 runs to both free ends and back. Equal bars part
-/// after 2L/c and have exchanged their velocities; a bar half as long takes all its momentum in
-/// half the time (Goldsmith, Impact, 1960, section 3.2). Nothing of that depends on the
-/// restitution. Finer meshes come closer.
+/// St Venant's bars: a wave of the force ρ c A v/2 runs to both free ends and back. Equal bars
+/// separate after 2L/c with exchanged velocities; a bar half as long stops the motion in half the
+/// time with all of its momentum (Goldsmith, Impact, 1960, section 3.2). None of this depends on
+/// the restitution. Errors are smaller with finer meshes.
 TEST(SolidContactModel, ElasticBarsExchangeTheirVelocities) {
   const double period = 0.2;  // 2L/c
   for (const int restitution : {0, 1}) {
@@ -203,7 +203,7 @@ TEST(SolidContactModel, GoesOnFromACheckpointInTheSameBits) {
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
 }
 
-/// A cube that would go through a sheet of rubber in two steps.
+/// A cube that would pass a sheet of rubber in two steps.
 TEST(SolidContactModel, NothingPassesThroughASheet) {
   Simulation simulation(read_model_text(R"(
 format: 1
@@ -272,18 +272,19 @@ TEST(SolidContactModel, ARingThatCollapsesDoesNotPassThroughItself) {
     double& most = least[self ? 0 : 1];
     const RunSummary summary =
         simulation.run({}, [&](Simulation& s) { most = std::min(most, opening(s)); });
-    if (!self) continue;  // passed through, it may not go on for long
+    if (!self) continue;  // after it passed through itself, a run need not continue for long
     ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
     EXPECT_GT(simulation.contact(0).impulse, 0.0);
     EXPECT_TRUE(simulation.contact(0).force.isZero(0.0)) << "of a surface on itself";
     EXPECT_LT(summary.energy_drift, 1e-11);
   }
   EXPECT_GT(least[0], 0.0);
-  EXPECT_LT(least[0], 0.01) << "it did collapse";
-  EXPECT_LT(least[1], 0.0) << "without self: true it passes";
+  EXPECT_LT(least[0], 0.01) << "the ring collapsed";
+  EXPECT_LT(least[1], 0.0) << "without self: true it passes through itself";
 }
 
-/// Two bars of one element, each on an edge, cross in their middles, where neither has a node.
+/// Two bars of one element, each standing on an edge, that cross in their middles, where neither
+/// has a node.
 Model crossing_edges(const std::string& law, const std::string& spin) {
   return read_model_text(R"(
 format: 1
@@ -321,7 +322,7 @@ struct Crossing {
       std::copy_n(order.begin(), 2, ends + 2 * solid);
     }
   }
-  /// Of the second above the first one.
+  /// Height of the second above the first one.
   [[nodiscard]] double height(const Simulation& s) const {
     const std::vector<Vec3> below = s.solid(0).position, above = s.solid(1).position;
     const Vec3 &a = below[ends[0]], &c = above[ends[2]];
@@ -347,7 +348,7 @@ TEST(SolidContactModel, EdgesThatCrossBetweenTheirNodesDoNotPass) {
     });
     ASSERT_EQ(summary.end, RunEnd::finished) << summary.message;
     EXPECT_GT(least, 0.0);
-    EXPECT_LT(least, 2e-4) << "they met";
+    EXPECT_LT(least, 2e-4) << "there was contact";
     EXPECT_GT(simulation.contact(0).impulse, 1.0);
     EXPECT_LT(summary.energy_drift, 1e-11);
     EXPECT_LT(rise, 1e-11);
@@ -373,7 +374,7 @@ analysis: {duration: 1 ms, step: 1 ms}
 )",
                            "stack.yaml");
   };
-  const auto told = [&](double z) -> std::string {
+  const auto error_of = [&](double z) -> std::string {
     try {
       Simulation(stacked(z)).run();
     } catch (const InputError& e) {
@@ -381,9 +382,10 @@ analysis: {duration: 1 ms, step: 1 ms}
     }
     return {};
   };
-  EXPECT_NE(told(0.1).find("lower touches upper"), std::string::npos) << told(0.1);
-  EXPECT_NE(told(0.095).find("lower in upper by 0.005 m"), std::string::npos) << told(0.095);
-  EXPECT_EQ(told(0.1002), "");
+  EXPECT_NE(error_of(0.1).find("lower touches upper"), std::string::npos) << error_of(0.1);
+  EXPECT_NE(error_of(0.095).find("lower in upper by 0.005 m"), std::string::npos)
+      << error_of(0.095);
+  EXPECT_EQ(error_of(0.1002), "");
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ struct CarriedBar {
 
 class SolidBarOnABody : public testing::TestWithParam<CarriedBar> {};
 
-// What a body and a solid bonded to it do together: 2 kg, a bar of 6 m, free in space.
+// Frequencies of a body with a solid bonded to it: 2 kg, a bar of 6 m, free in space.
 TEST_P(SolidBarOnABody, VibratesAsItsMeshIsKnownTo) {
   const CarriedBar& c = GetParam();
   System system;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equilibria of solids that touch each other, from model files.
+// Equilibria of solids in contact, from model files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace polhode::test::solids_in_statics_tests {
 namespace {
 
-/// Three by three elements below, four by four above, which nothing but the contact holds.
+/// Three by three elements below, four by four above, which is held by the contact only.
 TEST(SolidsInStatics, PassThePatchTestWithMeshesThatDoNotMatch) {
   const double p = 30.0;
   Simulation simulation(read_model_text(R"(
@@ -54,9 +54,9 @@ analysis: {type: statics}
   EXPECT_NEAR(simulation.contact(0).normal_force, p, 1e-9);
 }
 
-/// A block that nothing holds, pulled at one end and, by the body it is bonded to, held back at the
-/// other: it gets as long as one whose body is welded to the ground, and does not move away,
-/// whatever the size of the load. @tests{statics-deflation} @tests{statics-rigid}
+/// A free block that is pulled at one end and, by the body it is bonded to, at the other: its
+/// elongation is that of one whose body is fixed to the ground, and it does not drift for any size
+/// of the load. @tests{statics-deflation} @tests{statics-rigid}
 TEST(SolidsInStatics, ThatNothingHoldsStretchWhereTheyAre) {
   const auto run = [](bool held, const std::string& load) {
     Simulation s(read_model_text(
@@ -101,9 +101,9 @@ output: {hdf5: false}
   }
 }
 
-/// A ball pressed into one twice as stiff: the stiff one's pole rests in a dent of the other, as
-/// near to one triangle as to its mirror image. Hertz: 4/3 E* √R* δ^(3/2) (K. L. Johnson, Contact
-/// Mechanics, 1985, section 4.2). @tests{statics-kink}
+/// A ball pressed onto one twice as stiff: the pole of the stiffer one rests in a dent of the
+/// other, as near to one triangle as to its mirror image. Hertz: 4/3 E* √R* δ^(3/2) (K. L. Johnson,
+/// Contact Mechanics, 1985, section 4.2). @tests{statics-kink}
 TEST(SolidsInStatics, SettleInADent) {
   Simulation simulation(read_model_text(R"(
 format: 1
@@ -133,7 +133,8 @@ analysis: {type: statics, load_steps: 6}
   EXPECT_NEAR(4.0 * simulation.contact(0).normal_force / force, 1.0, 0.1);  // measured 1.04
 }
 
-/// A small block is pushed across a large one, farther than is looked for partners at a time.
+/// A small block pushed across a large one, farther than the search radius of the contact neighbour
+/// list.
 TEST(SolidsInStatics, FindTheirPartnersWhereTheyGo) {
   const auto pressed = [](double start, double way) {
     Simulation simulation(read_model_text(format(R"(
@@ -162,7 +163,7 @@ analysis: {{type: statics, load_steps: 8}}
   };
   const double stays = pressed(0.35, 0.0), goes = pressed(-0.35, 0.7);
   EXPECT_GT(stays, 100.0);
-  EXPECT_NEAR(goes / stays, 1.0, 0.03) << "its mesh meets that of the table in other places";
+  EXPECT_NEAR(goes / stays, 1.0, 0.03) << "the meshes are at other relative positions";
 }
 
 }  // namespace

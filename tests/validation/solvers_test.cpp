@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every case with every solver: they solve the same equations, so they take the same iterations
-// and reach the same state but for round-off and what the motion makes of it.
+// Every case with every solver: they solve the same equations, so they take the same iterations and
+// reach the same state up to round-off, amplified by the motion.
 #include <algorithm>
 #include <string>
 #include <vector>

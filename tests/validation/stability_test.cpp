@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads at which slender beams buckle, by statics: located, named, and the same for any mesh.
+// Buckling loads of slender beams by statics: located, named in the message, and the same for any
+// mesh.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -51,8 +52,9 @@ TEST(Stability, OfTheRightAngleFrameIsLostAtItsLoadWhateverTheMesh) {
   }
 }
 
-/// The lowest squared frequency falls with the load and is zero where the frame buckles, on a line
-/// through two loads on either side. Its equilibrium is in the plane, its mode out of it.
+/// The lowest squared frequency decreases with the load and is zero where the frame buckles, by
+/// interpolation between a load below and one above. Its equilibrium is in the plane, its mode out
+/// of it.
 TEST(Stability, OfTheRightAngleFrameIsLostWhereItsLowestFrequencyIsZero) {
   for (const int n : {5, 10, 40, 200}) {  // above 33 elements a leg by Lanczos iterations
     const auto lowest = [&](double load) {
@@ -111,8 +113,8 @@ TEST(Stability, OfACantileverColumnIsLostAtEulersLoad) {
   }
 }
 
-/// A wire under tension or none: transverse tones of a cantilever, (1.875104/L)² √(E I/(ρ A)), for
-/// any slenderness, conditions of the stiffness to 1e14 and more.
+/// A wire under tension or none: transverse frequencies of a cantilever, (1.875104/L)² √(E I/(ρ
+/// A)), for any slenderness, conditions of the stiffness to 1e14 and more.
 TEST(Stability, WiresHaveTheirTonesHoweverSlender) {
   for (const auto& [d, n] :
        {std::pair("0.01", 20), {"1e-3", 40}, {"1e-4", 40}, {"1e-5", 40}, {"1e-5", 200}}) {
@@ -160,7 +162,8 @@ TEST(Stability, AnElasticaBendsAsKnownHoweverStiffAlongItself) {
     }
 }
 
-// A taut string of point masses in two planes: k √(T/m)/(2 L), but for the length of its pieces.
+// A taut string of point masses in two planes: k √(T/m)/(2 L), apart from the effect of the length
+// of its pieces.
 constexpr const char* kString = R"(
 format: 1
 cables:

@@ -9,7 +9,7 @@
 namespace polhode::static_friction_tests {
 namespace {
 
-/// Speed of what is pulled with half its weight a second, so long after the start [m/s].
+/// Speed of a body that is pulled with half its weight per second, at a time after the start [m/s].
 double speed_after(double t, const char* bodies, const char* law, const char* step) {
   Simulation run(read_model_text(format(R"(
 format: 1
@@ -27,7 +27,7 @@ analysis: {{type: dynamics, duration: {:.17g} s, step: {}}}
   return run.body(1).v.x();
 }
 
-/// Lets go at 0.6 of the weight to 1 %, and goes on with 0.5: 12 ms at 1 m/s².
+/// Slip begins at 0.6 of the weight to 1 % and continues with 0.5: 12 ms at 1 m/s².
 /// @tests{contact-patch}
 TEST(StaticFriction, IsThatOfThePatch) {
   const char* kBox = "a: {shape: {box: [0.2, 0.2, 0.1]}, mass: 1, position: [0, 0, 0.05]}";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stresses at nodes, where engineers read them: bending of beams that are one, two and four
-// elements thick, Lamé's tube, Kirsch's hole; and how well their error is estimated.
+// Stresses at nodes: bending of beams that are one, two and four elements thick, Lamé's tube,
+// Kirsch's hole; and how well their error is estimated.
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -80,7 +80,7 @@ TEST(NodalStress, OfACantileverIsThatOfBendingHoweverThinTheMesh) {
 }
 
 // Lamé: an inner pressure p in a tube of radii a, b: hoop stress p a²/(b² − a²)(1 + b²/r²), radial
-// stress the same with a minus. Nothing holds the tube in its plane, and nothing has to.
+// stress the same with a minus. The tube is not fixed in its plane, which statics allows.
 constexpr const char* kTube = R"(
 format: 1
 variables: {n: 2, m: 1}
@@ -100,7 +100,7 @@ output: {hdf5: false}
 
 // Two quadratic elements across the wall: within 5 % of the largest stress at every node, then 1 %.
 // Tetrahedra have no lattice: quadratic polynomials through the exact stress of 45 degrees of the
-// wall are 11 % off at its inner face, then 3.5 %. With two layers vertices lie inside as well.
+// wall are 11 % off at its inner face, then 3.5 %. With two layers there are inner vertices, too.
 // @tests{stress-patch} @tests{stress-error} @tests{stress-error-energy}
 TEST(NodalStress, OfATubeUnderPressureIsThatOfLame) {
   for (const auto& [element, layers] :
@@ -136,9 +136,9 @@ TEST(NodalStress, OfATubeUnderPressureIsThatOfLame) {
   }
 }
 
-// The estimate against the truth: what elements lack in strain energy under given loads is the
-// energy of their error. The exact energy is half of p times the change of volume inside, by
-// u(a) = (1 + ν)/E p a²/(b² − a²) ((1 − 2ν) a + b²/a). So small a pressure that all is linear.
+// The estimate against the truth: the missing strain energy of elements under given loads is the
+// energy of their error. The exact energy is half of p times the change of volume inside, by u(a) =
+// (1 + ν)/E p a²/(b² − a²) ((1 − 2ν) a + b²/a). So small a pressure that all is linear.
 // @tests{stress-error-energy}
 TEST(StressError, ApproachesTheTrueOne) {
   constexpr double p = 1e3, a = 0.1, b = 0.2, E = 200e9, nu = 0.3;
@@ -210,8 +210,8 @@ output: {{hdf5: false}}
                 nodes, elements);
 }
 
-// Kirsch: 3 σ across the pull, −σ along it. The plate is a twentieth as wide as it would have to be
-// to hide the hole: 3.01 (R. E. Peterson, Stress Concentration Factors, 1974).
+// Kirsch: 3 σ across the pull, −σ along it. For the finite width of the plate the factor is 3.01
+// (R. E. Peterson, Stress Concentration Factors, 1974).
 // @tests{stress-patch}
 TEST(NodalStress, AtAHoleInAPlateIsThatOfKirsch) {
   double before = 0.0;
@@ -231,7 +231,7 @@ TEST(NodalStress, AtAHoleInAPlateIsThatOfKirsch) {
   }
 }
 
-// A mesh too coarse for its load is said to be so: a cantilever by linear elements of one layer.
+// Warning of a mesh that is too coarse for its load: a cantilever by linear elements of one layer.
 TEST(StressError, IsToldInWordsWhereItIsLarge) {
   const Solved coarse = solve(kTube, {"solids.tube.element=tet4"});
   EXPECT_GT(coarse.summary.solids.at(0).error, 0.1);

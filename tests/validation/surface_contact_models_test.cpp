@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids in contact, from model files.
+// Contact of solids' surfaces, from model files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ analysis: {type: statics}
   }
 }
 
-/// A hammer with a head of rubber and a free ball, in space: they meet while both turn.
+/// A hammer with a head of rubber and a free ball, in space, which collide while both rotate.
 TEST(SurfaceContactModel, KeepsEnergyAndMomentaOfASolidThatIsBondedToABody) {
   Simulation simulation(read_model_text(R"(
 format: 1
@@ -109,7 +109,7 @@ analysis: {duration: 0.4 s, step: 0.5 ms}
   EXPECT_GT(summary.contacts->least_gap, -5e-5);
 }
 
-/// A bar that meets a wall end on: a wave of the stress ρcv runs to its free end and back, for 2L/c
+/// A bar that hits a wall end on: a wave of the stress ρcv runs to its free end and back, for 2L/c
 /// (St Venant's rod; Goldsmith, Impact, 1960, section 3.2).
 TEST(SurfaceContactModel, AnElasticBarRestsOnAWallWhileAWaveRunsThroughIt) {
   const double density = 100.0, c = 10.0, area = 0.1, v = 0.01, length = 1.0;
@@ -200,7 +200,8 @@ analysis: {type: statics}
 }
 
 /// The same with an octant of the whole ball, cells graded towards the pole: six of them over the
-/// radius of contact, a/R = 0.04. What is left is mostly the finite size of the ball and the mesh.
+/// radius of contact, a/R = 0.04. The remaining error is mostly that of the finite size of the ball
+/// and of the mesh.
 TEST(SurfaceContactModel, CarriesAnOctantOfABallAsHertzSays) {
   constexpr double kModulus = 1e6, kPoisson = 0.3;
   Simulation simulation(read_model_text(R"(
@@ -241,7 +242,7 @@ analysis: {type: statics}
   EXPECT_NEAR(farthest / a, 1.0, 0.1);
 }
 
-/// A cube of solid flies against a body that spins freely.
+/// A deformable cube that hits a free spinning body.
 TEST(SurfaceContactModel, KeepsEnergyAndMomentaOnConesEllipsoidsAndHulls) {
   for (const std::string shape :
        {"{cone: [0.12, 0.15]}", "{ellipsoid: [0.1, 0.14, 0.2]}",
@@ -271,7 +272,8 @@ analysis: {duration: 0.15 s, step: 0.5 ms}
   }
 }
 
-/// A cube of rubber is shot at a plate that it would pass in a twentieth of a step.
+/// A cube of rubber that hits a plate at a speed at which it would pass it in a twentieth of a
+/// step.
 TEST(SurfaceContactModel, NothingPassesThroughAThinPlate) {
   for (const char* shape : {"{box: [1, 1, 0.005]}", "{cylinder: [1, 0.005]}"}) {
     Simulation simulation(read_model_text(std::string(R"(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable solids against rigid surfaces: what is kept when they bounce, patches.
+// Deformable solids against rigid surfaces: conservation in impacts, patch test.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Block {
   int contact = -1;
   std::unique_ptr<Stepper> stepper;
 
-  /// @param place  Where a node of the block centred at the origin starts, and its velocity.
+  /// @param place  Initial position and velocity from a node of the block centred at the origin.
   template <class Place>
   Block(const std::vector<double>& size, const std::vector<double>& cells,
         const std::vector<double>& grading, Place&& place) {
@@ -129,7 +129,7 @@ SurfaceLaw stiff(double tolerance, double k, double mu) {
 
 const auto kAll = [](const Vec3&) { return true; };
 
-/// Thrown obliquely, spinning, on a plane: bounces, vibrates, tumbles.
+/// A spinning block thrown obliquely on a plane: it bounces, vibrates, tumbles.
 Block thrown(double mu, double step) {
   const Vec3 omega(0.6, 1.0, -0.4);
   const Mat3 turned =
@@ -227,7 +227,7 @@ class Pressure final : public TimeFunction {
   double p_;
 };
 
-/// A distorted mesh pressed on a plane: the pressure arrives as it is.
+/// A distorted mesh pressed on a plane: the contact pressure is uniform.
 TEST(SurfaceContact, PassesThePatchTest) {
   const double p = 30.0;
   Block b({1.0, 1.2, 0.8}, {3, 3, 3}, {1, 1, 1}, [&](const Vec3& own) {
@@ -256,7 +256,7 @@ TEST(SurfaceContact, PassesThePatchTest) {
   StepContext still;
   b.system.nodes().group(0).sample(node_instant(b.system, b.state, still),
                                    b.state.element_history.data(), samples);
-  double area = 1.0;  // stretches across: dead pressure is per undeformed area
+  double area = 1.0;  // lateral stretches: dead pressure is per undeformed area
   for (const ElementSample& s : samples) {
     area = s.principal_stretches[0] * s.principal_stretches[1];
     EXPECT_NEAR(s.cauchy(2, 2) * area / p, -1.0, 1e-10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of solids on rigid meshes, fields of heights and tubes, from model files.
+// Contact of solids' surfaces with rigid meshes, height fields and tubes, from model files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -63,8 +63,8 @@ TEST(SurfaceOnTriangles, KeepsEnergyAndMomentaOnBodiesThatSpin) {
   }
 }
 
-/// By a spring's law points are within the surface: what is told to be stored at the end of each
-/// step is what the step stored.
+/// With a spring law points are within the surface: the balance with the reported stored energy is
+/// closed after each step.
 TEST(SurfaceOnTriangles, TellsWhatSpringsStoreWithin) {
   Simulation simulation(
       meeting("{tube: [0.16, 0.08, 0.1]}", "law: linear, restitution: 1", "0.1 s"));
@@ -102,7 +102,7 @@ TEST(SurfaceOnTriangles, GoesOnFromACheckpointInTheSameBits) {
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
 }
 
-/// Places of the nodes of a block after a run on a body.
+/// Positions of the nodes of a block after a run on a body.
 std::vector<Vec3> after_run(const std::string& body, const std::string& block,
                             const std::string& duration) {
   Simulation simulation(read_model_text(R"(
@@ -130,8 +130,7 @@ double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return most;
 }
 
-/// Triangles in a plane are that plane: a block slides across their edges and corners as if there
-/// were none.
+/// A block on triangles in a plane: it slides across their edges and corners as on the plane.
 TEST(SurfaceOnTriangles, SlidesDownAFieldAsDownAPlane) {
   const double slope = 20.0 / 180.0 * std::acos(-1.0);
   const std::string turned = "orientation: {axis: y, angle: 20 deg}";
@@ -156,12 +155,13 @@ TEST(SurfaceOnTriangles, SlidesDownAFieldAsDownAPlane) {
                         2.0 * way(after_run(turned + ", shape: {plane: z}", block, "0.45 s")) +
                         way(after_run(turned + ", shape: {plane: z}", block, "0.3 s"));
   EXPECT_NEAR(second / (0.15 * 0.15) / acceleration, 1.0, 1e-6);
-  // It lands with four times its weight, and bristles take 3 ms to hold against that: 2.1 % of its
-  // way by steps of 2 ms, 0.8 % by 0.4 ms, 0.7 % by 0.1 ms.
+  // It lands with four times its weight, against which bristles need 3 ms to hold: the effect is
+  // 2.1 % of its displacement with steps of 2 ms, 0.8 % by 0.4 ms, 0.7 % by 0.1 ms.
   EXPECT_NEAR(way(on_field) / (0.5 * acceleration * 0.36), 1.0, 0.025);
 }
 
-/// Edges and corners included, if they are rounded alike.
+/// A block that falls on a box: the motion on a box of triangles is the same, including edges and
+/// corners with the same rounding.
 TEST(SurfaceOnTriangles, FallsOnABoxOfTrianglesAsOnABox) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.3, 0.3, 0.2}, 3));
@@ -175,7 +175,8 @@ TEST(SurfaceOnTriangles, FallsOnABoxOfTrianglesAsOnABox) {
   EXPECT_GT(farthest(on_box, {on_box.size(), Vec3(0.143, 0.137, 0.1)}), 0.1) << "it fell off";
 }
 
-/// A cube of rubber is shot at what it would pass in a twentieth of a step.
+/// A cube of rubber that hits thin walls at a speed at which it would pass them in a twentieth of a
+/// step.
 TEST(SurfaceOnTriangles, NothingPassesThroughThinWalls) {
   const Scratch folder;
   write_obj(folder / "plate.obj", plate({1.0, 1.0, 0.005}, 6));
@@ -210,7 +211,7 @@ analysis: {duration: 40 ms, step: 5 ms}
   }
 }
 
-/// The pressure arrives at every node, over corners and edges of the field, too.
+/// Uniform contact pressure at every node, also over corners and edges of the field.
 TEST(SurfaceOnTriangles, PassesThePatchTestOnAField) {
   Simulation simulation(read_model_text(R"(
 format: 1
@@ -240,7 +241,7 @@ analysis: {type: statics}
 TEST(SurfaceOnTriangles, RefusesStartsWithin) {
   const Scratch folder;
   write_obj(folder / "box.obj", plate({0.5, 0.5, 0.5}, 2));
-  const auto told = [](const std::string& body, const std::string& law = "") -> std::string {
+  const auto error_of = [](const std::string& body, const std::string& law = "") -> std::string {
     try {
       Simulation(read_model_text(R"(
 format: 1
@@ -260,14 +261,14 @@ analysis: {duration: 1 ms, step: 1 ms}
     return {};
   };
   const std::string box = format("shape: {{mesh: {}}}", folder / "box.obj");
-  EXPECT_THAT(told(box), HasSubstr("pad in rock by 0.2 m")) << "all of it is within";
-  EXPECT_THAT(told(box + ", position: [0.28, 0, 0]"), HasSubstr("pad in rock by 0.02 m"));
-  EXPECT_EQ(told(box + ", position: [0.3001, 0, 0]"), "");
+  EXPECT_THAT(error_of(box), HasSubstr("pad in rock by 0.2 m")) << "the whole solid is within";
+  EXPECT_THAT(error_of(box + ", position: [0.28, 0, 0]"), HasSubstr("pad in rock by 0.02 m"));
+  EXPECT_EQ(error_of(box + ", position: [0.3001, 0, 0]"), "");
   const std::string field = "shape: " + flat_field(5, 0.1);
-  EXPECT_THAT(told(field + ", position: [0, 0, 1]"), HasSubstr("pad in rock by 1.05 m"));
-  EXPECT_EQ(told(field + ", position: [0, 0, -0.0501]"), "");
-  EXPECT_EQ(told(field + ", position: [1, 0, 1]"), "") << "beside it";
-  EXPECT_THAT(told(box + ", position: [1, 0, 0]", "default: {gap_tolerance: 0.1}"),
+  EXPECT_THAT(error_of(field + ", position: [0, 0, 1]"), HasSubstr("pad in rock by 1.05 m"));
+  EXPECT_EQ(error_of(field + ", position: [0, 0, -0.0501]"), "");
+  EXPECT_EQ(error_of(field + ", position: [1, 0, 1]"), "") << "beside it";
+  EXPECT_THAT(error_of(box + ", position: [1, 0, 0]", "default: {gap_tolerance: 0.1}"),
               HasSubstr("a gap_tolerance of 0.1 m, above a quarter of the median edge of its "
                         "triangles, 0.0884 m"));
 }

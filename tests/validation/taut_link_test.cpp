@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slack links that begin at their stop and are pulled from there on.
+// Links with slack that begin at their stop and are loaded from there on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLength = 0.05;
 
-/// A stone on a string that begins at its full length, across which it moves.
+/// A stone on a string at its full length, with a velocity normal to the string.
 Simulation stone(double e, double step, double along) {
   return made(format(R"(
 format: 1
@@ -38,7 +38,7 @@ double run_taut(Simulation& s) {
 
 constexpr double kSpan = 0.4, kBand = 1e-3 * 0.01414;  // a thousandth of its radius of gyration
 
-/// The pull is the centripetal force; the angle goes with v t / l.
+/// The tension is the centripetal force; the angle is v t / l.
 // @tests{turn-law}
 TEST(TautLink, LeadsAStoneRoundInACircle) {
   for (const double e : {0.0, 0.5})
@@ -48,12 +48,14 @@ TEST(TautLink, LeadsAStoneRoundInACircle) {
       EXPECT_LT(run_taut(s), 0.5 * kBand);
       const double angle = kSpan / kLength;
       const Vec3 r = kLength * Vec3(std::cos(angle), std::sin(angle), 0.0);
-      EXPECT_LT((s.body(0).r - r).norm(), 20.0 * step * step + 2e-5) << "order 2, and what lands";
+      EXPECT_LT((s.body(0).r - r).norm(), 20.0 * step * step + 2e-5)
+          << "order 2, and the initial settling";
     }
 }
 
-/// The string takes the speed along it, and then pulls without sinking in. It did not know the pull
-/// from an impact in each step, and came nearer to the end of its band each time.
+/// The string stops the velocity along it and then carries its tension without further penetration.
+/// An earlier version took the tension for an impact in each step and moved towards the end of its
+/// band each time.
 // @tests{turn-law}
 TEST(TautLink, TakesUpAPull) {
   for (const double e : {0.0, 0.5})

@@ -50,8 +50,8 @@ Deviation end_of(const ToleranceCase& c, double tolerance, std::optional<int> or
   return deviation_from(reference, model, c.duration, c.published.observe);
 }
 
-/// What the issue asks of step control: not more than 200 times the tolerance over these spans,
-/// in metres or radians, and energy at round-off, within what conservation_test.cpp asks.
+/// Requirements on step control: an error of at most 200 times the tolerance over these spans, in
+/// metres or radians, and energy at round-off, within the bounds of conservation_test.cpp.
 void expect_followed(const Deviation& d, double tolerance) {
   testing::Test::RecordProperty("error", testing::PrintToString(d.at_end));
   testing::Test::RecordProperty("steps", std::to_string(d.summary.steps));
@@ -61,9 +61,9 @@ void expect_followed(const Deviation& d, double tolerance) {
 
 TEST_P(Tolerance, IsFollowedByTheError) {
   const auto& [c, tolerance] = GetParam();
-  // Order 2 takes millions of steps to these.
+  // Order 2 needs millions of steps for these.
   if (c.name == "A05" && tolerance < 5e-8 && std::getenv("POLHODE_SLOW_TESTS") == nullptr)
-    GTEST_SKIP() << "set POLHODE_SLOW_TESTS to run the minutes this takes";
+    GTEST_SKIP() << "takes minutes; set POLHODE_SLOW_TESTS to run it";
   const Deviation d = end_of(c, tolerance, {});
   EXPECT_EQ(d.summary.order, c.name == "A05" ? 2 : 6);
   expect_followed(d, tolerance);

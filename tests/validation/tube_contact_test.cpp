@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tubes touch with their round faces: what rolls within them, rolling and standing on a plane.
+// Contact with the round faces of tubes: rolling within them, tubes rolling and standing on a
+// plane.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 using namespace contact;
 using namespace test;
 
-/// Carries z to y.
+/// Rotation of z to y.
 Mat3 along_y() { return (Mat3() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished(); }
 
 enum class Rolling { ball, capsule, cylinder };
@@ -37,8 +38,8 @@ std::string name_of(const Inside& c) {
 
 class RollingInATube : public testing::TestWithParam<Inside> {};
 
-/// Swings about the bottom with ω² = g/((1 + k)(R − ρ)), k = I/(m ρ²), on its own radius: the way
-/// of its centre is ρ times its turn. A polygon of 48 sides would take it to 2e-3 of R.
+/// Oscillation about the bottom with ω² = g/((1 + k)(R − ρ)), k = I/(m ρ²): the displacement of the
+/// centre is ρ times the rotation. With a polygon of 48 sides the error would be 2e-3 of R.
 TEST_P(RollingInATube, SwingsOnItsOwnRadius) {
   const auto [kind, dt] = GetParam();
   const double R = 0.5, rho = 0.1, A = 0.1, k = kind == Rolling::ball ? 0.4 : 0.5;
@@ -105,7 +106,7 @@ TEST_P(TubeOnAPlane, RollsOnItsOwnRadius) {
     turn += 2.0 * std::asin((s.motion(wheel).q * before.conjugate()).y());
     EXPECT_NEAR(s.motion(wheel).r.z(), R, 1e-4 * R);
   }
-  // Cayley's rotation of a step turns by 2 atan(θ/2).
+  // The Cayley rotation of a step has the angle 2 atan(θ/2).
   const double cayley = v / R * dt * v / R * dt / 12.0;
   EXPECT_NEAR(s.motion(wheel).r.x() / (R * turn), 1.0, 1e-4 + cayley);
   EXPECT_NEAR(s.motion(wheel).v.x(), v, 1e-4 * v);

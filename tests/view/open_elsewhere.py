@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What `polhode convert` writes opens in VTK and in pyarrow, with the numbers that results.h5 holds.
+"""Reads the files of `polhode convert` with VTK and pyarrow and compares their numbers with results.h5.
 
-POLHODE=path/to/polhode says which program runs. VTK, pyarrow and h5py are looked for in this Python, else installed into a
-virtual environment under build/. Ends with 77, skipped, where they cannot be had.
+POLHODE=path/to/polhode is the program. VTK, pyarrow and h5py are those of this Python or are installed into a
+virtual environment under build/. Exit code 77, skipped, if they cannot be installed.
 """
 import os
 import pathlib
@@ -60,13 +60,13 @@ output: {every: 2 ms}
 
 
 def turned(q, p):
-    """p turned by the quaternion w, x, y, z."""
+    """p rotated by the quaternion w, x, y, z."""
     w, u = q[0], q[1:]
     return p + 2 * np.cross(u, np.cross(u, p) + w * p)
 
 
 def enclosed(grid):
-    """Volume within the faces that VTK finds, by the divergence theorem: negative if they look inward."""
+    """Volume within the faces that VTK finds, by the divergence theorem: negative if they face inward."""
     surface, triangles = vtk.vtkDataSetSurfaceFilter(), vtk.vtkTriangleFilter()
     surface.SetInputData(grid)
     triangles.SetInputConnection(surface.GetOutputPort())
@@ -101,7 +101,7 @@ def vtkhdf(results):
                 for quantity in stored[part]:
                     if quantity not in ("reference", "connectivity", "offsets", "vtk_type"):
                         assert (field(name, of, quantity) == stored[f"{part}/{quantity}"][frame]).all(), quantity
-            assert abs(enclosed(block) - 1) < 1e-3, enclosed(block)  # cells are not inside out
+            assert abs(enclosed(block) - 1) < 1e-3, enclosed(block)  # cells are not inverted
         assert blocks["block_a"].GetCellType(0) == vtk.VTK_QUADRATIC_HEXAHEDRON and blocks["wedge"].GetCellType(0) == vtk.VTK_WEDGE
         mast = results["beams/mast/nodes/position"][frame]
         assert (vtk_to_numpy(blocks["mast"].GetPoints().GetData()) == mast).all() and blocks["mast"].GetNumberOfCells() == 4

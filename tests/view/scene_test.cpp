@@ -116,7 +116,7 @@ TEST_F(SceneTest, HoldsEveryKindOfThing) {
               testing::IsSupersetOf({"height_field", "sphere", "box", "cylinder", "capsule", "cone",
                                      "ellipsoid", "tube", "hull", "mesh", "inertia"}));
   EXPECT_EQ(body["ball"]["line"], 7);
-  std::map<std::string, json> joint;  // The beam's bond is one of them.
+  std::map<std::string, json> joint;  // Includes the fixed joint of the beam.
   for (const json& j : m["joints"]) joint[j["name"]] = j;
   EXPECT_EQ(joint["hinge"]["type"], "revolute");
   std::map<std::string, json> load;
@@ -153,7 +153,7 @@ TEST_F(SceneTest, HoldsFieldsOfNodesAndElementsOfSolidsAsSeenFromOutside) {
   const SceneData data = scene();
   const json m = json::parse(data.manifest), solid = m["solids"][0];
   const ResultsReader results(folder_ / "model.results/results.h5");
-  // All eight elements of the cube are seen, in some order: that of the triangles they own.
+  // All eight elements of the cube own triangles, in some order.
   EXPECT_EQ(solid["owners"]["n"], solid["triangles"]["n"]);
   std::map<std::string, std::size_t> found;
   for (const json& field : solid["fields"]) {

@@ -99,7 +99,7 @@ TEST(ScenePage, HasWhatIsComparedAndLaterNumbersBehindThePlayer) {
   EXPECT_LT(page.find("id=\"chunk-1-0\">Yw=="), script);
   EXPECT_GT(page.find("id=\"chunk-1\">Yg=="), script);
   EXPECT_NE(page.find("id=\"chunk-1\">Yg=="), std::string::npos);
-  // A player without that place takes everything in front.
+  // A player without that marker gets all data at its beginning.
   const std::string plain = scene_page("<!--POLHODE-DATA--><script>", scene);
   EXPECT_LT(plain.find("id=\"chunk-1\">Yg=="), plain.find("<script>"));
 }

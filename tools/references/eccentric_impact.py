@@ -36,14 +36,14 @@ LAWS = ("stronge", "poisson", "newton")
 
 
 class Outcome:
-    """An impact: impulse and velocities at the point, what slip did, the work of the normal and tangential impulse."""
+    """An impact: impulse and velocities at the point, mode of slip, work of the normal and tangential impulse."""
 
     def __init__(self, K, u0):
         self.K, self.u0 = K, u0
         self.impulse = [0.0, 0.0, 0.0]
         self.mode = ""
         self.work = 0.0  # Of the normal impulse so far [J].
-        self.least = 0.0  # Its least value so far.
+        self.least = 0.0  # Its minimum so far.
         self.p_turn = 0.0  # Normal impulse when the normal velocity vanished.
 
     @property
@@ -110,7 +110,7 @@ def impact(K, velocity, mu, e, law="stronge"):
         raise ValueError("the bodies do not approach: the third component of the velocity must be negative")
     found = Outcome([[float(x) for x in row] for row in K], [float(x) for x in velocity])
     slip = math.hypot(velocity[0], velocity[1])
-    # Slip this slow is none: it is the rounding of a velocity.
+    # Slower slip is the rounding of a velocity and counts as none.
     if mu > 0 and slip > 1e-14 * abs(velocity[2]):
         if slides(found, mu, e, law):
             return found
@@ -124,14 +124,14 @@ def impact(K, velocity, mu, e, law="stronge"):
 
 
 def slides(found, mu, e, law):
-    """Slips until the impact ends (True) or slip does (False)."""
+    """Slip until the end of the impact (True) or of slip (False)."""
     K = found.K
     u = found.velocity
     s0, phi = math.hypot(u[0], u[1]), math.atan2(u[1], u[0])
     a, b, d = slip_rates(K, mu, phi)
     found.mode = "slides"
     size = max(abs(x) for row in K for x in row)
-    if abs(b) < 1e-14 * size:  # It keeps its direction: as in the plane.
+    if abs(b) < 1e-14 * size:  # Slip of constant direction, as in the plane.
         q = -s0 / a if a < 0 else math.inf
         if straight(found, [-mu * d[0], -mu * d[1], 1.0], e, law, q):
             return True
@@ -148,7 +148,7 @@ def slip_rates(K, mu, phi):
 
 
 def target(found, e, law):
-    """Excess over what the law asks for: positive once the impact has ended, if the normal velocity has turned."""
+    """Excess over the law's condition: positive once the impact has ended, if the normal velocity has changed its sign."""
     p, u_n = found.impulse[2], found.velocity[2]
     if law == "stronge":
         return found.work - (1 - e * e) * found.least
@@ -176,7 +176,7 @@ def straight(found, f, e, law, length):
         found.least, found.p_turn = min(found.least, found.work), found.impulse[2]
         length, u = length - turn, 0.0
     if law == "stronge":
-        rest = (1 - e * e) * found.least - found.work  # What is still to be risen by.
+        rest = (1 - e * e) * found.least - found.work  # Remaining rise.
         q = ends = 2 * rest / (u + math.sqrt(max(u * u + 2 * c * rest, 0.0))) if rest > 0 else 0.0
     elif law == "poisson":
         q = ends = max((1 + e) * found.p_turn - found.impulse[2], 0.0)
@@ -250,9 +250,9 @@ def curved(found, mu, e, law, s0, phi):
             put(event(lambda: target(found, e, law)))
             return True
         if turned_back and found.velocity[2] < 0:
-            turned_back = False  # It is compressed again.
+            turned_back = False  # Compression again.
         y = new
-        if y[0] < -32:  # 1e-14 of the slip is left.
+        if y[0] < -32:  # 1e-14 of the slip remains.
             found.least = min(found.least, found.work)
             return False
         h *= min(5, max(0.2, 0.9 * max(error, 1e-10) ** -0.2))
@@ -260,7 +260,7 @@ def curved(found, mu, e, law, s0, phi):
 
 
 def resting_force(K, mu):
-    """Tangential force per normal force once slip has ended, and what the point does."""
+    """Tangential force per normal force once slip has ended, and the mode of the point."""
     det = K[0][0] * K[1][1] - K[0][1] * K[1][0]
     stick = [-(K[1][1] * K[0][2] - K[0][1] * K[1][2]) / det, -(K[0][0] * K[1][2] - K[1][0] * K[0][2]) / det]
     if math.hypot(*stick) <= mu * (1 + 1e-12):
@@ -279,7 +279,7 @@ def resting_force(K, mu):
         a, _, d = slip_rates(K, mu, high)
         if a > 0:
             return [-mu * d[0], -mu * d[1]], "slips again"
-    raise ArithmeticError("no direction in which slip could begin")
+    raise ArithmeticError("no direction in which slip can begin")
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -309,7 +309,7 @@ def planar_by_wang_and_mason(B1, B2, B3, S0, C0, mu, e):
 
 
 def marched(K, u0, mu, e, count=5000):
-    """The same by small increments of p with friction as the nearest force of its cone that ends the slip: rough but simple."""
+    """The same by small increments of p with friction as the nearest force of its cone that ends the slip: a simple method of low accuracy."""
     u, P, W, least, turned_back = list(u0), [0.0] * 3, 0.0, 0.0, False
     dp = -u0[2] / K[2][2] / count
     det = K[0][0] * K[1][1] - K[0][1] * K[1][0]
@@ -335,7 +335,7 @@ def marched(K, u0, mu, e, count=5000):
 
 
 def numbers(seed, count):
-    """Numbers between 0 and 1, always the same ones (Park and Miller)."""
+    """Pseudo-random numbers between 0 and 1, the same in every run (Park and Miller)."""
     x = seed
     for _ in range(count):
         x = 16807 * x % 2147483647
@@ -343,7 +343,7 @@ def numbers(seed, count):
 
 
 def check_planar():
-    """All five modes of Wang and Mason, from rods and discs anywhere, to round-off."""
+    """All five modes of Wang and Mason, from random rods and discs, to round-off."""
     seen, worst = {}, 0.0
     for i in range(2000):
         a, b, c, d, m, ee = numbers(i + 1, 6)
@@ -351,7 +351,7 @@ def check_planar():
         B1, B2, B3 = 1 + y * y / radius**2, 1 + x * x / radius**2, x * y / radius**2
         S0, C0, mu, e = 6 * d - 3, -1.0, 1.5 * m, ee
         mode, Px, Py = planar_by_wang_and_mason(B1, B2, B3, S0, C0, mu, e)
-        # The other tangent is that of a body as heavy: no coupling.
+        # The other tangent has the mobility of an equal mass without coupling.
         K = [[B1, 0, -B3], [0, 1, 0], [-B3, 0, B2]]
         ours = impact(K, [S0, 0, C0], mu, e, "poisson")
         assert ours.mode == mode, (ours.mode, mode)
@@ -371,8 +371,8 @@ def random_case(seed):
 
 
 def check_energy():
-    """Of the impact in space: normal work by the energetic coefficient, energy never rises, work of friction never positive,
-    the impulse within its cone; and what friction that never changes direction makes of all three laws."""
+    """Checks of impacts in space: normal work by the energetic coefficient, energy never rises, work of friction never positive,
+    the impulse within its cone; and agreement of all three laws where friction does not change its direction."""
     worst, modes = 0.0, {}
     for seed in range(1, 51):
         K, u = random_case(seed)
@@ -394,7 +394,7 @@ def check_energy():
 
 
 def check_march():
-    """A march by small increments of p, to a thousandth of the impulse."""
+    """Integration by small increments of p, to a thousandth of the impulse."""
     worst = 0.0
     for seed in (3, 7, 11, 19):
         K, u = random_case(seed)
@@ -402,7 +402,7 @@ def check_march():
             ours, rough = impact(K, u, mu, e).impulse, marched(K, u, mu, e)
             worst = max(worst, max(abs(a - b) for a, b in zip(ours, rough)) / ours[2])
     assert worst < 1e-3, worst
-    return f"a march in 5,000 increments: {worst:.0e} of the impulse"
+    return f"integration in 5,000 increments: {worst:.0e} of the impulse"
 
 
 def check_ball():
@@ -429,8 +429,8 @@ def box_shape(a, b, c, mass):
 
 
 def rows():
-    """Rods on an edge and on a corner, boxes on an edge and on a corner: on the fixed floor z = 0, not turning before. An edge
-    is struck in its middle, as its two corners are when the body moves in the plane across it."""
+    """Rods on an edge and on a corner, boxes on an edge and on a corner: on the fixed floor z = 0, without initial rotation. An edge
+    is hit in its middle, which is equivalent to its two corners if the body moves in the plane normal to it."""
     mass, approach = 1.0, 2.0
     bodies = []
     for angle in (20, 45, 70):
@@ -467,11 +467,11 @@ def written(value):
 
 
 def compare(path):
-    """The stored table against what comes out now, and each row against bounds that any impact keeps."""
+    """Checks the stored table against the present results, and each row against bounds of any impact."""
     with open(path, newline="") as lines:
         stored = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     fresh = list(rows())
-    assert len(stored) == len(fresh), f"{path} has {len(stored)} rows instead of {len(fresh)}; write it anew with --write"
+    assert len(stored) == len(fresh), f"{path} has {len(stored)} rows instead of {len(fresh)}; write it again with --write"
     for old, new in zip(stored, fresh):
         for key, value in new.items():
             same = old[key] == value if isinstance(value, str) else abs(float(old[key]) - value) < 1e-9
@@ -492,7 +492,7 @@ def compare(path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", metavar="FILE", help="writes the table")
-    parser.add_argument("--check", metavar="FILE", help="checks the solution and a table that was written")
+    parser.add_argument("--check", metavar="FILE", help="checks the solution and a stored table")
     options = parser.parse_args()
     if options.write:
         table = list(rows())
@@ -505,7 +505,7 @@ def main():
         for check in (check_planar, check_energy, check_march, check_ball, lambda: compare(options.check)):
             print(check())
     if not options.write and not options.check:
-        parser.error("say --write FILE or --check FILE")
+        parser.error("give --write FILE or --check FILE")
     return 0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limit load of Lee's frame by shooting along Reissner's plane beam, with nothing of Polhode.
+"""The limit load of Lee's frame by shooting along Reissner's plane beam, independent of Polhode.
 
 S.-L. Lee, F. S. Manuel, E. C. Rossow: Large deflections and stability of elastic frames, Journal of the Engineering
 Mechanics Division ASCE 94 (1968) 521-547. Two legs of 1.2 m at a right angle, hinged at both far ends; the load pushes
@@ -18,7 +18,7 @@ GA = SHEAR_FACTOR * E / (2 * (1 + NU)) * WIDE * HIGH
 
 
 def rate(state, force, turned):
-    """Along the beam: place, angle and moment; `turned` is the leg's own direction, `force` what the far part exerts."""
+    """Integration along the beam: position, angle and moment; `turned` is the leg's own direction, `force` the force of the far part."""
     _, _, angle, moment = state
     c, s = math.cos(angle + turned), math.sin(angle + turned)
     normal, shear = force[0] * c + force[1] * s, -force[0] * s + force[1] * c
@@ -39,7 +39,7 @@ def march(state, force, turned, length, steps):
 
 
 def shoot(unknowns, sinks):
-    """Far end's error and that of the load's way down, for the foot's angle and force and the load."""
+    """Errors of the far end and of the load's displacement, as a function of the foot's angle and force and of the load."""
     angle, fx, fz, load = unknowns[0], *(1e4 * u for u in unknowns[1:])
     state = march([0.0, 0.0, angle, 0.0], (fx, fz), math.pi / 2, LEG, STEPS)
     state = march(state, (fx, fz), 0.0, LOADED, STEPS // 4)

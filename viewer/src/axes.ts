@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The instantaneous helical axis of a body relative to another one, and where it has been.
+// The instantaneous helical axis of a body relative to another one, and its earlier positions.
 import { BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, LineSegments, Quaternion, Vector3 } from "three";
 import type { Scene } from "./data";
 import { type Poses, valuesAt } from "./poses";
@@ -9,14 +9,14 @@ export interface HelicalAxis {
   point: Vector3;   // of the line, nearest to the body's centre of mass [m]
   along: Vector3;   // unit vector of the angular velocity
   rate: number;     // [rad/s]
-  pitch: number;    // way along the axis for one radian [m/rad]
+  pitch: number;    // displacement along the axis per radian [m/rad]
 }
 
 interface Motion { r: Vector3; v: Vector3; w: Vector3 }
 
 /**
- * Axis of a motion seen from another one (Mozzi 1763): the points whose velocity lies along ω. Null where the bodies do not turn
- * against one another, by less than `still` [rad/s].
+ * Axis of a motion relative to another one (Mozzi 1763): the points whose velocity is along ω. Null where the relative angular
+ * velocity is less than `still` [rad/s].
  */
 export function helicalAxis(body: Motion, from: Motion, still: number): HelicalAxis | null {
   const w = body.w.clone().sub(from.w), rate = w.length();
@@ -26,7 +26,7 @@ export function helicalAxis(body: Motion, from: Motion, still: number): HelicalA
   return { point: body.r.clone().addScaledVector(new Vector3().crossVectors(w, v), 1 / (rate * rate)), along: w.clone().divideScalar(rate), rate, pitch: v.dot(w) / (rate * rate) };
 }
 
-const kMost = 240;  // Axes of other times that are drawn.
+const kMost = 240;  // Number of drawn axes of other times.
 
 export class Axes {
   readonly group = new Group();
@@ -47,7 +47,7 @@ export class Axes {
     this.group.visible = false;
   }
 
-  /** Shows the axis of a body seen from another one, −1: the ground; of no body: none. */
+  /** Shows the axis of a body relative to another one, −1: the ground; no body: no axis. */
   async choose(body: number, from: number): Promise<void> {
     this.body = body;
     this.from = from;

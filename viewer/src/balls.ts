@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Balls as discs that face the eye and are shaded as balls: two triangles each instead of hundreds, so that thousands move without a graphics processor.
+// Balls as discs that face the camera and are shaded as balls: two triangles each instead of hundreds, so that thousands can be drawn without a graphics processor.
 import { InstancedMesh, MeshLambertMaterial, PlaneGeometry, Sphere, Vector3 } from "three";
 
 const kVertexHead = `#include <common>
@@ -26,7 +26,7 @@ varying vec3 vBallCentre, vBallAt;
 varying vec4 vBallDepth;
 uniform float ballRadius;`;
 
-// Where the ray through this pixel meets the ball, in the frame of the eye.
+// Intersection of the ray through this pixel with the ball, in the camera's frame.
 const kFragment = `
 float faceDirection = 1.0;
 vec3 ballFrom = isOrthographic ? vec3(vBallAt.xy, 0.0) : vec3(0.0), ballWay = isOrthographic ? vec3(0.0, 0.0, -1.0) : normalize(vBallAt);
@@ -48,6 +48,6 @@ export function discsFor(balls: InstancedMesh): InstancedMesh {
   const discs = new InstancedMesh(new PlaneGeometry(2, 2), material, balls.count);
   discs.instanceMatrix = balls.instanceMatrix;
   discs.frustumCulled = false;
-  discs.raycast = () => undefined;  // the balls themselves are met by rays
+  discs.raycast = () => undefined;  // picking uses the balls themselves
   return discs;
 }

@@ -11,7 +11,7 @@ import type { Poses } from "./poses";
 
 export type Showing = "shown" | "ghost" | "hidden";
 
-/** Colours that differ for colour-blind eyes too (after Okabe and Ito 2008), softened. */
+/** Colours that are distinct for colour-blind users, too (after Okabe and Ito 2008), less saturated. */
 const kPalette = ["#4c86c6", "#e0a030", "#4fa287", "#cc6f4a", "#8f7bc0", "#7fb7dd", "#c9b64a", "#b06a92"];
 const kFixed = "#9aa5ae";
 const kChosen = new Color("#ffd23f");
@@ -22,10 +22,10 @@ export const vector = (v: Triple | undefined): Vector3 => (v ? new Vector3(...v)
 interface Part { body: number; local: Matrix4 }
 interface Batch { parts: Part[]; solid: InstancedMesh; ghost: InstancedMesh; discs: InstancedMesh | null }
 
-/** Layer of what rays meet and nobody sees. */
+/** Layer of invisible objects for picking. */
 export const kUnseen = 1;
 
-/** How planes are shaded; unlit, they cost least for each pixel, but take no shadows. */
+/** Shading of planes; unlit planes cost least per pixel, but receive no shadows. */
 const planeSurface = (lit: boolean, opacity: number): Surface | MeshBasicMaterial => {
   const look = { color: kFixed, transparent: true, opacity, side: DoubleSide, depthWrite: false };
   return lit ? surface(look) : new MeshBasicMaterial(look);
@@ -43,7 +43,7 @@ export class Bodies {
   plain = false;
   private open = false;
   private shadows = false;
-  /** One colour for all, of a recording that is compared. */
+  /** Common colour of all bodies of a compared recording. */
   tint: Color | null = null;
 
   private constructor(private readonly scene: Scene, private readonly poses: Poses) {
@@ -86,7 +86,7 @@ export class Bodies {
       const flat = new BufferGeometry();
       flat.setAttribute("position", new BufferAttribute(await this.scene.floats(m.meshes[k].points), 3));
       flat.setIndex(new BufferAttribute(await this.scene.integers(m.meshes[k].triangles), 1));
-      // Shapes without edges share their corners, and so do surfaces so large that sharp edges would cost too much.
+      // Corners are shared in shapes without edges, and in surfaces too large for sharp edges.
       const smooth = m.meshes[k].triangles.n > 200000 || ["sphere", "ellipsoid", "capsule"].includes(m.meshes[k].type);
       const geometry = smooth ? flat : toCreasedNormals(flat, 0.6);
       if (smooth) geometry.computeVertexNormals();
@@ -111,7 +111,7 @@ export class Bodies {
     this.update();
   }
 
-  /** Whether a section opens the bodies, so that their insides are seen. */
+  /** Whether a section cuts the bodies, so that their insides are visible. */
   setOpen(open: boolean): void {
     this.open = open;
     for (const { solid, discs } of this.batches)
@@ -127,7 +127,7 @@ export class Bodies {
       }
   }
 
-  /** Whether bodies throw shadows: discs that stand for balls have none, nor do planes that are not lit take any. */
+  /** Whether bodies cast shadows: discs for balls cast none, and unlit planes receive none. */
   setShadows(on: boolean): void {
     this.shadows = on;
     for (const { mesh } of software ? this.planes : []) {
@@ -138,10 +138,10 @@ export class Bodies {
     this.setOpen(this.open);
   }
 
-  /** How much of what lies behind a ghost it hides. */
+  /** Opacity of ghosts. */
   setGhostOpacity(opacity: number): void { for (const { ghost } of this.batches) (ghost.material as Surface).opacity = opacity; }
 
-  /** Box around all bodies now; planes do not count, of ghosts the centre of mass alone. */
+  /** Box around all bodies at the present time, without planes; of ghosts the centre of mass only. */
   box(): Box3 {
     const all = new Box3(), matrix = new Matrix4(), one = new Box3();
     for (const batch of this.batches) {
@@ -158,10 +158,10 @@ export class Bodies {
     return all;
   }
 
-  /** Planes have no end: squares that reach beyond the scene. */
+  /** Unbounded planes, drawn as squares larger than the scene. */
   sizePlanes(size: number): void {
     for (const plane of this.planes) plane.local.scale(new Vector3(1.6 * size, 1.6 * size, 1));
-    // A bin has walls on all sides; those that hide the scene are left as outlines of light.
+    // A bin has walls on all sides; those that would hide the scene are drawn as outlines.
     if (this.planes.length > 1) for (const plane of this.planes) (plane.mesh.material as Surface).opacity = 0.07;
     this.update();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera, time and choice in the address, so that a link shows the same picture.
+// Camera, time and selection in the address, so that a link shows the same picture.
 import type { Player } from "./player";
 import type { Choice, View } from "./view";
 
@@ -13,7 +13,7 @@ export function bookmarkOf(view: View, player: Player): string {
   return `#${parts.join("&")}`;
 }
 
-/** Puts camera and time where the address says; returns what it chooses. */
+/** Sets camera and time from the address; returns its selection. */
 export function follow(hash: string, view: View, player: Player): Choice | null {
   const values = new Map(hash.slice(1).split("&").map((part) => { const [key, ...rest] = part.split("="); return [key, rest.join("=")] as const; }));
   const triple = (key: string): [number, number, number] | null => {

@@ -15,7 +15,7 @@ export interface LoadEntry {
   name: string; type: string; first: number; columns: { name: string; unit: string; size: number }[];
   line?: number; a?: number; b?: number; Za?: Triple; Zb?: Triple; joint?: string; damping?: number; stiffness?: number; coil?: boolean; damper?: boolean;
 }
-/** Values at nodes or in elements, those that are seen. */
+/** Values at the visible nodes or elements. */
 export interface FieldEntry { name: string; of?: "nodes" | "elements"; unit: string; size: number; data: Packed }
 export interface SolidEntry {
   name: string; nodes: number; elements: number; shown: number[]; reference: Packed; triangles: Packed; edges: Packed;
@@ -33,7 +33,7 @@ export interface Manifest {
   beams: BeamEntry[]; cables: CableEntry[]; contacts: string[]; channels: ChannelEntry[];
 }
 
-/** The player's own element: what stands before it in the page is there, what stands behind it is still being read. */
+/** Script element of the player: data before it in the page are available, data after it are still being read. */
 const player = document.currentScript;
 
 const readToTheEnd = (): Promise<unknown> =>
@@ -72,7 +72,7 @@ export class Scene {
     for (const channel of manifest.channels) this.byPath.set(channel.path, channel);
   }
 
-  /** Scene inside the page, or of the server that the page came from; the second one is what the first is compared with. */
+  /** Scene inside the page, or from its server; the second scene is the one for comparison. */
   static async load(second = false): Promise<Scene> {
     const suffix = second ? "-1" : "", inside = document.getElementById(`polhode-scene${suffix}`);
     if (inside) {
@@ -80,16 +80,16 @@ export class Scene {
       inside.remove();
       return new Scene(Scene.checked(manifest), false, suffix);
     }
-    if (location.protocol === "file:") throw new Error("This page holds no results. Make one with 'polhode view RESULTS --html FILE'.");
+    if (location.protocol === "file:") throw new Error("This page contains no results. Make one with 'polhode view RESULTS --html FILE'.");
     if (!second) Scene.stamp = await Scene.askStamp();
     const answer = await fetch(`scene${suffix}.json`);
     const text = await answer.text();
-    // The server tells what is wrong with a model in plain text.
+    // Error message of the server as plain text.
     if (!answer.ok || answer.headers.get("content-type")?.startsWith("text/plain")) throw new Error(text);
     return new Scene(Scene.checked(JSON.parse(text) as Manifest), true, suffix);
   }
 
-  /** When the served file was saved, asked before it was read: what is saved meanwhile differs. */
+  /** Time at which the served file was saved, queried before it is read, so that later changes are detected. */
   static stamp = "";
   static askStamp(): Promise<string> { return fetch("stamp").then((answer) => answer.text()); }
 
@@ -126,14 +126,14 @@ export class Scene {
   integers(packed: Packed): Promise<Uint32Array<ArrayBuffer>> { return this.words(packed); }
 
   entry(path: string): ChannelEntry | undefined { return this.byPath.get(path); }
-  /** Numbers of a channel, frame by frame; null if there is no such channel. */
+  /** Numbers of a channel, frame by frame; null if the channel does not exist. */
   async channel(path: string): Promise<Float32Array<ArrayBuffer> | null> {
     const entry = this.byPath.get(path);
     return entry ? this.floats(entry.data) : null;
   }
 }
 
-/** Row of a moment between frames: the frame before it and the part of the way to the next one. */
+/** Row of a time between frames: the frame before it and the fraction of the interval to the next one. */
 export function frameAt(time: number[], t: number): { frame: number; part: number } {
   const last = time.length - 1;
   if (last <= 0 || t <= time[0]) return { frame: 0, part: 0 };

@@ -14,7 +14,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Att
   return element;
 }
 
-/** A number in four figures. */
+/** Text of a number with four digits. */
 export function figure(x: number): string {
   if (!Number.isFinite(x)) return "–";
   if (x === 0) return "0";

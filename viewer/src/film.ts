@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A film of the recording, which `polhode convert` asks the page for (apps/polhode/film.cpp): pictures of one size, the camera
-// turned about the middle, sent back to the server that the page came from.
+// A film of the recording for `polhode convert` (apps/polhode/film.cpp): pictures of one size with a camera that rotates
+// about the middle, sent to the server of the page.
 import { follow } from "./bookmark";
 import { gif, type Picture } from "./gif";
 import type { Player } from "./player";
@@ -12,12 +12,12 @@ export const filmWanted = (): boolean => location.protocol !== "file:" && locati
 
 export async function shoot(view: View, player: Player, app: HTMLElement, holder: HTMLElement): Promise<void> {
   const send = async (name: string, body: BodyInit): Promise<void> => {
-    if (!(await fetch(`film/${name}`, { method: "POST", body })).ok) throw new Error(`${name} was not taken.`);
+    if (!(await fetch(`film/${name}`, { method: "POST", body })).ok) throw new Error(`the server did not accept ${name}.`);
   };
   try {
     const how = await (await fetch("film.json")).json() as How, { stage } = view;
     const from = Math.max(player.begin, how.from ?? player.begin), to = Math.min(player.end, how.to ?? player.end);
-    if (!(to >= from)) throw new Error(`there is nothing between ${how.from ?? player.begin} and ${how.to ?? player.end} s; the recording goes from ${player.begin} to ${player.end} s`);
+    if (!(to >= from)) throw new Error(`there are no frames between ${how.from ?? player.begin} and ${how.to ?? player.end} s; the recording goes from ${player.begin} to ${player.end} s`);
     app.classList.add("film");
     stage.renderer.setPixelRatio(1);
     stage.fixedSize = [how.width, how.height];
@@ -36,7 +36,7 @@ export async function shoot(view: View, player: Player, app: HTMLElement, holder
       stage.draw();
       context.drawImage(canvas, 0, 0, how.width, how.height);
       if (how.kind === "gif") pictures.push({ width: how.width, height: how.height, rgba: context.getImageData(0, 0, how.width, how.height).data });
-      else await send(`${String(k).padStart(5, "0")}.png`, await new Promise<Blob>((resolve, reject) => flat.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("There is no picture."))))));
+      else await send(`${String(k).padStart(5, "0")}.png`, await new Promise<Blob>((resolve, reject) => flat.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The browser returned no picture."))))));
     }
     if (how.kind === "gif") await send("film.gif", new Blob([gif(pictures, how.rate)]));
     await send("done", "");

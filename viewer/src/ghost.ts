@@ -47,7 +47,7 @@ export class Ghost {
     this.alone = this.joints.group.visible = this.loads.group.visible = on;
     bodies.tint = on ? null : new Color(kTint);
     bodies.plain = !on;
-    // What never moves is in both; boxes that stand for mass alone would hide what has a shape.
+    // Fixed objects are the same in both; boxes of inertia would hide bodies with shapes.
     const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
     m.bodies.forEach((body, i) => {
       const part = body.parts?.[0]?.mesh, inertia = shapes && part !== undefined && m.meshes[part].type === "inertia";
@@ -62,7 +62,7 @@ export class Ghost {
   setRange(range: [number, number]): void { this.solids.range = range; this.solids.fixedRange = true; }
   setShadows(on: boolean): void { this.bodies.setShadows(on); }
   setFaintLight(on: boolean): void { this.bodies.setGhostOpacity(on ? kOpacity : 0.16); }
-  /** What rays may meet. */
+  /** Objects for picking. */
   get objects(): Object3D[] { return [this.bodies.group, this.solids.group, this.lines.group]; }
 
   get end(): number { return this.scene.manifest.time[this.scene.manifest.time.length - 1]; }
@@ -78,7 +78,7 @@ export class Ghost {
     this.loads.update(this.size);
   }
 
-  /** Extent of what both recordings show, which planes and joints follow. */
+  /** Extent of both recordings, for the size of planes and joints. */
   setSize(size: number): void {
     this.size = size;
     this.bodies.sizePlanes(size);

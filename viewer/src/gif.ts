@@ -3,7 +3,7 @@
 
 export interface Picture { width: number; height: number; rgba: Uint8ClampedArray }
 
-/** Colours by median cut (Heckbert 1982) of those that occur, in 15 bits. */
+/** Palette by median cut (Heckbert 1982) of the colours that occur, in 15 bits. */
 function palette(pictures: Picture[]): { table: Uint8Array; index: Uint8Array } {
   const count = new Uint32Array(32768);
   for (const { rgba } of pictures)

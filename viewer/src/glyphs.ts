@@ -12,7 +12,7 @@ import { valuesAt, type Poses } from "./poses";
 const kNothing = new Matrix4().makeScale(0, 0, 0);
 const kZ = new Vector3(0, 0, 1);
 
-/** A coil along z from 0 to 1, of radius 1 across. Springs are some 20 times as long as wide: their wire is made thin along z. */
+/** A coil along z from 0 to 1, of radius 1. Springs are about 20 times as long as wide, so their wire is thin along z. */
 function coil(): BufferGeometry {
   const turns = 9, long = 20, points: Vector3[] = [new Vector3(0, 0, 0), new Vector3(0, 0, 0.06 * long)];
   for (let i = 0; i <= 12 * turns; i++) {
@@ -43,7 +43,7 @@ const byKind = (types: string[]): Map<string, number[]> => {
   return map;
 };
 
-/** Joints, each kind with its own shape, links with a rod between their points; those with a remark stand out. */
+/** Joints, each kind with its own shape, links with a rod between their points; those with a note are highlighted. */
 export class Joints {
   readonly group = new Group();
   private readonly kinds: Glyphs[] = [];
@@ -62,7 +62,7 @@ export class Joints {
     const links = list.flatMap((j, i) => (kLinks.includes(j.type ?? "") && j.Za && j.Zb ? [i] : []));
     this.rods = new Glyphs(alongZ(new CylinderGeometry(0.16, 0.16, 1, 12)).translate(0, 0, 0.5), "#ffffff", links, "joint");
     this.group.add(this.rods.mesh);
-    // Joints are as large as suits the bodies that they tie together.
+    // Size of joints from the bodies that they connect.
     const arms = list.filter((j) => j.Za && j.Zb).map((j) => Math.max((j.a ?? -1) < 0 ? 0 : Math.hypot(...j.Za!), (j.b ?? -1) < 0 ? 0 : Math.hypot(...j.Zb!))).filter((x) => x > 0).sort((x, y) => x - y);
     this.arm = arms.length > 0 ? arms[arms.length >> 1] : Infinity;
     this.colours();
@@ -154,14 +154,14 @@ class Arrows {
     this.head = new Glyphs(alongZ(new ConeGeometry(1, 1, 14)).translate(0, 0, 0.5), colour, all, kind);
     this.group.add(this.shaft.mesh, this.head.mesh);
     for (const { mesh } of [this.shaft, this.head]) {
-      // Forces act inside what they press on: arrows are seen through it.
+      // Arrows are visible through bodies, since forces act inside them.
       Object.assign(mesh.material, { depthTest: false, transparent: true, opacity: 0.9 });
       mesh.renderOrder = 4;
       mesh.castShadow = false;
     }
   }
   begin(): void { this.shaft.mesh.count = this.head.mesh.count = 0; }
-  /** One more arrow, of the force with that index. Arrows that are not there cost nothing. */
+  /** Adds an arrow for the force with an index. Unused arrows cost nothing. */
   add(index: number, at: Vector3, along: Vector3, length: number, thick: number): void {
     if (!(length > 0)) return;
     const i = this.shaft.mesh.count;
@@ -183,7 +183,7 @@ export class Forces {
   threshold = 0.01;
   private data: Float32Array | null = null;
   private filling = false;
-  /** Called when numbers that were not wanted before are there. */
+  /** Called when newly loaded data are available. */
   onfilled: () => void = () => undefined;
   private constructor(private readonly count: number, private readonly width: number, private readonly source: () => Promise<Float32Array>,
     private readonly offset: (i: number) => number, private readonly place: (i: number, frame: number, part: number, out: Vector3) => Vector3,
@@ -191,7 +191,7 @@ export class Forces {
     this.arrows = new Arrows(count, colour, kind);
     this.group = this.arrows.group;
   }
-  /** Takes the numbers when they are first to be seen: those of large recordings take long. */
+  /** Loads the data when they are first shown, which takes long for large recordings. */
   async fill(): Promise<void> {
     if (this.filling) return;
     this.filling = true;
@@ -221,7 +221,7 @@ export class Forces {
     const n = scene.manifest.contacts.length;
     const [force, point] = await Promise.all([scene.channel("packed/contacts/force"), scene.channel("packed/contacts/point")]);
     if (!force || !point || n === 0) return null;
-    // A point jumps to the origin when a contact opens: no interpolation of places.
+    // A point jumps to the origin when a contact opens, so positions are not interpolated.
     return new Forces(n, 3 * n, async () => force, (i) => 3 * i, (i, frame, _, out) => out.fromArray(point, frame * 3 * n + 3 * i), "#c2185b", "contact");
   }
   static async reactions(scene: Scene, joints: Joints): Promise<Forces | null> {

@@ -6,10 +6,10 @@ import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js
 export const alongZ = (g: BufferGeometry): BufferGeometry => g.rotateX(Math.PI / 2);
 export const merged = (...parts: BufferGeometry[]): BufferGeometry => mergeGeometries(parts.map((p) => p.toNonIndexed()));
 
-/** Kinds that tie two points apart: a rod is drawn between them. */
+/** Kinds between two separate points: a rod is drawn between them. */
 export const kLinks = ["distance", "revolute_spherical", "universal_spherical", "slack_link"];
 
-/** Shape of a kind of joint in its own axes, of size 1; z is the axis. Generic joints, and kinds that are not known, are octahedra. */
+/** Shape of a kind of joint in its own axes, of size 1; z is the axis. Generic joints and unknown kinds are octahedra. */
 export function jointShape(type: string): BufferGeometry {
   const pin = (r: number, l: number) => alongZ(new CylinderGeometry(r, r, l, 20));
   switch (type) {

@@ -10,9 +10,9 @@ import { Plot, type Mode } from "./plots";
 import { offered, seriesOf } from "./series";
 import { View, type Choice } from "./view";
 
-const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, as at first"],
-  ["o", "parallel projection"], ["f", "follow what is chosen"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["v", "compared recording side by side"], ["/", "search"],
-  ["d", "dark or light"], ["b", "put camera and time into the address"], ["Esc", "choose nothing"], ["?", "this list"]];
+const kKeys: [string, string][] = [["Space", "play or pause"], ["← →", "frame by frame"], ["Home End", "start or end"], ["+ −", "faster or slower"], ["1 2 3 4 0", "front, side, top, oblique, initial view"],
+  ["o", "parallel projection"], ["f", "follow the selected object"], ["h g i a", "hide, ghost, isolate, show all"], ["m", "measure: click two or three points"], ["t", "trails"], ["p", "plots"], ["c", "show or hide the compared recording"], ["v", "compared recording side by side"], ["/", "search"],
+  ["d", "dark or light"], ["b", "write camera and time into the address"], ["Esc", "clear the selection"], ["?", "this list"]];
 
 /** Speed at which a recording takes about ten seconds, from 1, 2, 5 times a power of ten; real time if that is near. */
 function pleasantSpeed(duration: number): number {
@@ -24,12 +24,12 @@ function pleasantSpeed(duration: number): number {
 async function start(app: HTMLElement): Promise<void> {
   const begun = performance.now();
   const scene = await Scene.load(), m = scene.manifest;
-  if (m.time.length === 0) throw new Error("These results hold no whole frame yet. Run the model, or run it longer.");
+  if (m.time.length === 0) throw new Error("These results contain no complete frame. Run the model, or run it longer.");
   document.title = `${m.title || "Model"} – Polhode`;
   const dark = matchMedia("(prefers-color-scheme: dark)").matches;
   document.documentElement.dataset.theme = dark ? "dark" : "light";
 
-  const holder = h("main", { class: "view", "aria-label": "Moving picture" });
+  const holder = h("main", { class: "view", "aria-label": "Animation" });
   const drift = h("span", { class: "drift", title: "Change of the energy balance since the start, over the largest energy" });
   const head = h("header", {}, h("h1", {}, m.title || m.source.file || "Model"), drift);
   const side = h("aside", { "aria-label": "Objects and display" });
@@ -44,7 +44,7 @@ async function start(app: HTMLElement): Promise<void> {
   const canvas = view.stage.renderer.domElement;
   canvas.setAttribute("tabindex", "0");
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", `${m.title || "Model"}: ${m.bodies.length} bodies, ${m.joints.length} joints in motion. Drag to turn, scroll to come nearer.`);
+  canvas.setAttribute("aria-label", `${m.title || "Model"}: ${m.bodies.length} bodies, ${m.joints.length} joints in motion. Drag to rotate, scroll to zoom.`);
   const player = new Player(m.time[0], m.time[m.time.length - 1]);
   player.speed = pleasantSpeed(player.end - player.begin || 1);
 
@@ -91,8 +91,8 @@ async function start(app: HTMLElement): Promise<void> {
     h("div", { class: "addplot" }, search, h("button", { type: "button", onclick: () => void tryPlot(false) }, "Add"), h("button", { type: "button", onclick: () => void tryPlot(true) }, "New plot")), trouble,
     h("div", { class: "buttons" }, preset("Energy drift", ["energy.drift"]), preset("Ledger", ["energy.kinetic", "energy.potential", "energy.dissipated"], "stacked"),
       preset("Work and losses", ["energy.put_in", "energy.dissipated"]), preset("Momentum", ["momentum.linear", "momentum.angular"]), preset("Step length", ["solver.dt"])),
-    h("p", { class: "faint" }, "Click a plot to move the time there; drag to zoom, double-click for the whole range. A phase plot draws the other curves over the first. "
-      + "The ledger stacks energies, each counted from its lowest value if that is below zero."));
+    h("p", { class: "faint" }, "Click a plot to set the time; drag to zoom, double-click for the whole range. A phase plot draws the other curves over the first. "
+      + "The ledger stacks energies; those with negative values are relative to their minimum."));
   search.addEventListener("keydown", (e) => { if (e.key === "Enter") void tryPlot(false); });
 
   const display = displayPanel(view, () => { tick(); view.stage.dirty = true; }, theme);
@@ -127,14 +127,14 @@ async function start(app: HTMLElement): Promise<void> {
     const x = scrub.valueAsNumber, k = Math.min(m.frames - 1, Math.floor(x));
     player.seek(m.time[k] + (x - k) * ((m.time[k + 1] ?? m.time[k]) - m.time[k]));
   } });
-  const shown = h("output", { class: "clock", "aria-label": "Time now" });
+  const shown = h("output", { class: "clock", "aria-label": "Current time" });
   const speeds = [...new Set([player.speed, ...[1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 100, 1000]])].sort((a, b) => a - b);
   const speed = h("select", { "aria-label": "Speed", onchange: () => { player.speed = Number(speed.value); } }, ...speeds.map((s) => h("option", { value: s, selected: s === player.speed }, `${s}×`)));
-  const loop = h("button", { type: "button", class: "optional", "aria-pressed": "true", title: "Start again at the end", onclick: () => { player.loop = !player.loop; loop.setAttribute("aria-pressed", String(player.loop)); } }, "Loop");
+  const loop = h("button", { type: "button", class: "optional", "aria-pressed": "true", title: "Repeat the recording", onclick: () => { player.loop = !player.loop; loop.setAttribute("aria-pressed", String(player.loop)); } }, "Loop");
   bar.append(play, scrub, shown, speed, loop);
   if (m.frames < 2) for (const control of [play, scrub, speed, loop]) control.disabled = true;
 
-  // Numbers that are wanted later may be missing, in a page that was cut.
+  // Data that are loaded later may be missing in a truncated page.
   addEventListener("unhandledrejection", (event) => {
     event.preventDefault();
     const message = event.reason instanceof Error ? event.reason.message : String(event.reason);
@@ -142,7 +142,7 @@ async function start(app: HTMLElement): Promise<void> {
     holder.append(h("p", { class: "notes trouble", role: "alert" }, message));
   });
   const notes = [...m.notes];
-  if (m.cut_short) notes.unshift(`The results file is cut short: shown up to its last whole frame, ${m.statics ? "load factor" : "t ="} ${figure(player.end)}${m.statics ? "" : " s"}.`);
+  if (m.cut_short) notes.unshift(`The results file is cut short: shown up to its last complete frame, ${m.statics ? "load factor" : "t ="} ${figure(player.end)}${m.statics ? "" : " s"}.`);
   if (notes.length > 0) {
     const box = h("div", { class: "notes", role: "note" }, h("button", { type: "button", "aria-label": "Close the notes", onclick: () => box.remove() }, "✕"), h("ul", {}, ...notes.map((note) => h("li", {}, note))));
     holder.append(box);
@@ -227,7 +227,7 @@ async function start(app: HTMLElement): Promise<void> {
   if (filmWanted()) return shoot(view, player, app, holder);
   let last = performance.now(), frames = 0, slow = 0;
   const loopFrame = (now: number): void => {
-    // Three pictures in a row that took long while it plays: the machine wants less to draw.
+    // Three slow pictures in a row during playback: the rendering effort is reduced.
     slow = player.playing && now - last > 120 ? slow + 1 : 0;
     if (slow >= 3) { view.lighten(); slow = 0; }
     player.advance(Math.min(0.25, (now - last) / 1000));
@@ -239,7 +239,7 @@ async function start(app: HTMLElement): Promise<void> {
   if (scene.served) watchFile();
 }
 
-/** Loads the page again when the file it shows is saved. */
+/** Reloads the page when its file is saved. */
 function watchFile(): void {
   const look = (): void => void Scene.askStamp().then((stamp) => {
     if (Scene.stamp && stamp !== Scene.stamp && stamp !== "gone") location.reload();

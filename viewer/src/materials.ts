@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How surfaces are shaded, and how much a machine can draw.
+// Shading of surfaces, and rendering effort by the machine.
 import { MeshLambertMaterial, MeshStandardMaterial, type MeshStandardMaterialParameters } from "three";
 
-/** Whether pictures are computed without a graphics processor: then what costs most for each pixel is left out. */
+/** Whether rendering is in software: then the effects that cost most per pixel are off. */
 export const software = ((): boolean => {
   const context = document.createElement("canvas").getContext("webgl2"), names = context?.getExtension("WEBGL_debug_renderer_info");
   const name = context && names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The panel beside the picture: objects, what is shown, the model file.
+// The panel beside the picture: objects, display options, the model file.
 import { Color, Plane, Vector3 } from "three";
 import type { Scene } from "./data";
 import { figure, h } from "./dom";
@@ -26,7 +26,7 @@ export function objectsOf(scene: Scene): Named[] {
 
 const kShownMost = 250;
 
-/** Objects by name, with a search; the chosen one with its values and its line of the model file. */
+/** Objects by name, with a search; the selected one with its values and its line of the model file. */
 export class ObjectPanel {
   readonly element: HTMLElement;
   private readonly all: Named[];
@@ -54,7 +54,7 @@ export class ObjectPanel {
       return h("li", {}, h("button", { type: "button", class: "object", "aria-pressed": String(same), onclick: () => this.actions.choose({ kind: o.kind, index: o.index }) },
         h("b", {}, o.name), h("span", { class: "faint" }, ` ${o.about}`)));
     }));
-    this.more.textContent = found.length > kShownMost ? `and ${found.length - kShownMost} more: search` : found.length === 0 ? "Nothing has that name." : "";
+    this.more.textContent = found.length > kShownMost ? `and ${found.length - kShownMost} more: search` : found.length === 0 ? "No object has this name." : "";
   }
 
   async choose(choice: Choice | null): Promise<void> {
@@ -148,24 +148,24 @@ export function displayPanel(view: View, refresh: () => void, theme: (dark: bool
       m.joints.length > 0 ? slide("Size of joints", 0.1, 5, 1, (x) => { view.joints.scale = view.loads.scale = x; }) : null),
     all.length > 0 ? part("Forces", contacts ? check("Contact forces", true, (on) => { contacts.group.visible = on; }) : null, reactions ? check("Reactions of joints", false, (on) => { reactions.group.visible = on; }) : null,
       loads ? check("Applied and spring forces", true, (on) => { loads.group.visible = on; }) : null, slide("Length of arrows", 0.1, 5, 1, (x) => all.forEach((f) => { f.scale = x; })),
-      slide("Smallest shown, part of the largest", 0, 0.5, 0.01, (x) => all.forEach((f) => { f.threshold = x; }))) : null,
+      slide("Smallest shown, relative to the largest", 0, 0.5, 0.01, (x) => all.forEach((f) => { f.threshold = x; }))) : null,
     m.bodies.some((b) => !b.fixed) ? helicalPart(view, part, update) : null, m.solids.length > 0 ? solidPart(view, part, slide, update) : null,
-    part("Section", sectionAxis, slide("Place of the section", -0.5, 0.5, 0, (x) => { offset = x; section(); })),
+    part("Section", sectionAxis, slide("Position of the section", -0.5, 0.5, 0, (x) => { offset = x; section(); })),
     part("Page", check("Dark", document.documentElement.dataset.theme === "dark", theme)));
 }
 
-/** Choice of the two bodies of a helical axis, and its figures now. */
+/** Choice of the two bodies of a helical axis, and its present values. */
 function helicalPart(view: View, part: (title: string, ...rows: HTMLElement[]) => HTMLElement, update: () => void): HTMLElement {
   const list = view.scene.manifest.bodies.map((b, i) => ({ ...b, i })).filter((b) => !b.node), options = (first: string, all: typeof list) => [h("option", { value: -1 }, first), ...all.slice(0, 2000).map((b) => h("option", { value: b.i }, b.name))];
   const choose = () => void view.helical.choose(Number(body.value), Number(from.value)).then(update);
   const body = h("select", { "aria-label": "Body of the helical axis", onchange: choose }, ...options("none", list.filter((b) => !b.fixed)));
-  const from = h("select", { "aria-label": "Helical axis seen from", onchange: choose }, ...options("ground", list));
+  const from = h("select", { "aria-label": "Helical axis relative to", onchange: choose }, ...options("ground", list));
   const text = h("p", { class: "faint helical", role: "status" });
   view.onupdate = () => {
     const { now, group } = view.helical;
-    text.textContent = !group.visible ? "" : !now ? "They do not turn against one another." : `${figure(now.rate)} rad/s about ${now.along.toArray().map((x) => x.toFixed(3)).join(", ")} through ${now.point.toArray().map((x) => x.toFixed(4)).join(", ")} m; ${figure(now.pitch)} m along it for a radian`;
+    text.textContent = !group.visible ? "" : !now ? "The bodies have no relative rotation." : `${figure(now.rate)} rad/s about ${now.along.toArray().map((x) => x.toFixed(3)).join(", ")} through ${now.point.toArray().map((x) => x.toFixed(4)).join(", ")} m; pitch ${figure(now.pitch)} m/rad`;
   };
-  return part("Helical axis", h("label", {}, "of ", body), h("label", {}, "seen from ", from), text);
+  return part("Helical axis", h("label", {}, "of ", body), h("label", {}, "relative to ", from), text);
 }
 
 function solidPart(view: View, part: (title: string, ...rows: HTMLElement[]) => HTMLElement, slide: (l: string, a: number, b: number, v: number, act: (x: number) => void) => HTMLElement, update: () => void): HTMLElement {
@@ -179,7 +179,7 @@ function solidPart(view: View, part: (title: string, ...rows: HTMLElement[]) => 
     h("option", { value: -1, selected: solids.choice < 0 }, "plain"), ...solids.choices.map((c, i) => h("option", { value: i, selected: i === solids.choice }, c.label.replaceAll("_", " "))));
   show();
   return part("Solids", h("label", {}, "Colour by ", field), h("div", { class: "range" }, low, " to ", high, h("button", { type: "button", onclick: () => { solids.fixedRange = false; solids.range = solids.fullRange(true); show(); update(); } }, "Peaks")),
-    slide("Displacements times", 1, 50, 1, (x) => { solids.enlarge = x; }));
+    slide("Displacement factor", 1, 50, 1, (x) => { solids.enlarge = x; }));
 }
 
 /** Scale of colours of solids. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The clock of the page: time of the recording against time of the wall. */
+/** The clock of the page: time of the recording as a function of wall time. */
 export class Player {
   t: number;
   playing = false;

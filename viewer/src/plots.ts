@@ -9,7 +9,7 @@ export type Mode = "time" | "spectrum" | "phase" | "stacked" | "difference";
 /** A curve: of this recording, or of the one that it is compared with (dashed). */
 interface Curve extends Series { ink: number; other: boolean }
 
-/** Units that people read more easily: factor from SI. */
+/** Common units: factor from SI. */
 const kUnits: Record<string, [string, number]> = {
   rad: ["deg", 180 / Math.PI], "rad/s": ["rpm", 30 / Math.PI], m: ["mm", 1e3], "m/s": ["mm/s", 1e3], N: ["kN", 1e-3], "N m": ["kN m", 1e-3], Pa: ["MPa", 1e-6], J: ["mJ", 1e3],
 };
@@ -95,7 +95,7 @@ export class Plot {
       const stacked = curves.map((s) => {
         let low = Infinity;
         for (const v of s.values) if (v < low) low = v;
-        // Quantities that can be below zero, as potential energies, count from their lowest value.
+        // Quantities that can be negative, such as potential energies, are relative to their minimum.
         const values = s.values.map((v, i) => (sum[i] += v - Math.min(0, low)));
         return { ...s, values: Float64Array.from(values) };
       });
@@ -185,7 +185,7 @@ export class Plot {
     return rows.join("\n") + "\n";
   }
 
-  /** The plot as it stands, zoomed or not, as a vector picture. */
+  /** The visible range of the plot as a vector picture. */
   svg(): string {
     const { x, label, curves } = this.table(), width = 640, height = 320, left = 70, top = 14 + 16 * curves.length, bottom = 44;
     const u = this.plot;
@@ -215,7 +215,7 @@ export class Plot {
   private png(): void { this.plot?.ctx.canvas.toBlob((blob) => { if (blob) save("plot.png", blob); }); }
 }
 
-/** Path builder of phase plots: points in the order of time, joined. */
+/** Path builder of phase plots: points joined in the order of time. */
 const path: uPlot.Series.PathBuilder = (u, index) => {
   const [xs, ys] = u.data[index] as unknown as [ArrayLike<number>, ArrayLike<number>];
   const stroke = new Path2D();

@@ -6,7 +6,7 @@ const kGround = new Vector3();
 const kUnit = new Quaternion();
 const kOne = new Vector3(1, 1, 1);
 
-/** Places of all bodies at the present moment, between frames by interpolation. */
+/** Poses of all bodies at the present time, interpolated between frames. */
 export class Poses {
   readonly position: Float32Array;
   readonly orientation: Float32Array;  // x y z w
@@ -49,13 +49,13 @@ export class Poses {
   r_of(body: number, out: Vector3): Vector3 { return body < 0 ? out.copy(kGround) : out.fromArray(this.position, 3 * body); }
   q_of(body: number, out: Quaternion): Quaternion { return body < 0 ? out.copy(kUnit) : out.fromArray(this.orientation, 4 * body); }
   matrix_of(body: number, out: Matrix4): Matrix4 { return out.compose(this.r_of(body, new Vector3()), this.q_of(body, new Quaternion()), kOne); }
-  /** A point of a body, given from its centre of mass in its axes, in the world. */
+  /** World coordinates of a point of a body, given relative to its centre of mass in body axes. */
   point(body: number, Z: ArrayLike<number>, out: Vector3): Vector3 {
     out.set(Z[0], Z[1], Z[2]);
     if (body < 0) return out;
     return out.applyQuaternion(this.q_of(body, scratch)).add(this.r_of(body, scratchPoint));
   }
-  /** Place and turn of a body at another time than the present one; −1: the ground. */
+  /** Position and orientation of a body at a given time; −1: the ground. */
   placeAt(body: number, frame: number, part: number, out: Vector3): Vector3 {
     return body < 0 ? out.copy(kGround) : out.fromArray(valuesAt(this.r, 3 * this.count, 3 * body, 3, frame, part));
   }
@@ -75,7 +75,7 @@ export class Poses {
 }
 const scratch = new Quaternion(), scratchPoint = new Vector3();
 
-/** Numbers of a channel at a moment, between frames by interpolation. */
+/** Numbers of a channel at a time, interpolated between frames. */
 export function valuesAt(data: Float32Array, width: number, at: number, size: number, frame: number, part: number): number[] {
   const values: number[] = [];
   for (let k = 0; k < size; k++) {

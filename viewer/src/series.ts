@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels by the names that people use: bodies.crank.position.x, joints.A.force, energy.kinetic.
+// Channels by their names for users: bodies.crank.position.x, joints.A.force, energy.kinetic.
 import type { Scene } from "./data";
 
 export interface Series { name: string; unit: string; values: Float64Array }
@@ -33,7 +33,7 @@ function find(scene: Scene, name: string): { found: Found; rest: string; head: s
   const split = (group: string, names: string[], quantities: string[]): { index: number; quantity: string; rest: string } | null => {
     if (!name.startsWith(group + ".")) return null;
     const tail = name.slice(group.length + 1);
-    // Names may hold dots: the longest one that fits.
+    // Names may contain dots: the longest one that matches.
     let best = -1;
     names.forEach((n, i) => { if (tail.startsWith(n + ".") && (best < 0 || n.length > names[best].length)) best = i; });
     if (best < 0) return null;
@@ -124,7 +124,7 @@ export function quantitiesOf(scene: Scene, kind: string, name: string): string[]
   return scene.manifest.channels.filter((c) => c.path.startsWith(prefix)).map((c) => c.path.replaceAll("/", "."));
 }
 
-/** Names to offer; of many objects only a part. */
+/** Names for completion; for many objects only a part. */
 export function offered(scene: Scene): string[] {
   const m = scene.manifest, most = 60;
   const plain = m.channels.filter((c) => !c.path.startsWith("packed/") && c.data.w <= 12).map((c) => c.path.replaceAll("/", "."));

@@ -12,9 +12,9 @@ export function mapped(x: number, out: Color): Color {
   return out.lerpColors(kMap[k], kMap[k + 1], at - k);
 }
 
-/** A field by its name, of nodes or elements, which not all solids must have. Component −1: size. */
+/** A field by its name, of nodes or elements; some solids may lack it. Component −1: size. */
 interface Choice { label: string; name: string; of: string; unit: string; component: number }
-/** Triangles with corners of their own, each in the colour of its element. */
+/** Triangles with separate corners, each in the colour of its element. */
 interface Cells { mesh: Mesh; corners: Uint32Array; owners: Uint32Array }
 interface Own {
   entry: SolidEntry; index: number; reference: Float32Array; displacement: Float32Array | null; mesh: Mesh; lines: LineSegments; geometry: BufferGeometry; cells: Cells | null;
@@ -107,7 +107,7 @@ export class Solids {
     return { mesh: own, corners, owners };
   }
 
-  /** Range of nearly all values of all frames: the highest half per cent, peaks at edges, are left out unless `peaks`. */
+  /** Range of nearly all values of all frames: without the highest half per cent, peaks at edges, unless `peaks`. */
   fullRange(peaks = false): [number, number] {
     const all: number[] = [];
     this.own.forEach(({ entry }, s) => {
@@ -121,7 +121,7 @@ export class Solids {
     });
     if (all.length === 0) return [0, 1];
     const sorted = Float64Array.from(all).sort(), cut = peaks ? 0 : Math.floor(0.005 * sorted.length);
-    // Sizes are counted from zero, unless all are far from it, as stretches are.
+    // Ranges of sizes begin at zero, unless all values are far from it, as stretches are.
     const high = sorted[sorted.length - 1 - cut], low = sorted[0] >= 0 && sorted[cut] < 0.5 * high ? 0 : sorted[cut];
     return [low, high > low ? high : low + 1e-30];
   }
@@ -167,7 +167,7 @@ export class Solids {
     });
   }
 
-  /** Colours of all rows of the field, nodes or elements, at this moment; plain where there is none. */
+  /** Colours of all rows of the field, nodes or elements, at the present time; plain where there is none. */
   private colours({ entry, reference }: Own, s: number): Float32Array {
     const { frame, part } = this.poses, colour = new Color(this.plain), data = this.fields[s] ?? null, size = data ? this.width(entry) : 1;
     const n = data && this.byElement ? (this.fieldOf(entry)?.data.w ?? 0) / size : reference.length / 3, rows = new Float32Array(3 * n), [low, high] = this.range;

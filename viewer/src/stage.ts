@@ -23,13 +23,13 @@ export class Stage {
   readonly section = new Plane(new Vector3(-1, 0, 0), 0);
   private readonly sun = new DirectionalLight(0xffffff, 2.6);
   private readonly box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-  /** Direction of the present look, until somebody moves the camera: then a resize changes nothing. */
+  /** Direction of the present view, until the user moves the camera; after that a resize changes nothing. */
   looking: Vector3 | null = null;
   size = 1;
   dirty = true;
-  /** Size of the picture that a film has; null: that of the window. */
+  /** Size of the pictures of a film; null: that of the window. */
   fixedSize: [number, number] | null = null;
-  /** Two pictures side by side with one camera; called with 0 and 1 before each is drawn, and with −1 behind. */
+  /** Two pictures side by side with one camera; called with 0 and 1 before each is drawn, and with −1 afterwards. */
   halves: ((half: number) => void) | null = null;
 
   constructor(readonly holder: HTMLElement, readonly up: Vector3, shadows: boolean) {
@@ -51,7 +51,7 @@ export class Stage {
     new ResizeObserver(() => { if (this.looking) this.view(this.looking); else this.resize(); }).observe(holder);
   }
 
-  /** Fits light, grid and cameras to what the scene fills. */
+  /** Fits light, grid and cameras to the extent of the scene. */
   fit(box: Box3): void {
     this.box.copy(box);
     const middle = box.getCenter(new Vector3());
@@ -59,7 +59,7 @@ export class Stage {
     const [e1, e2] = this.sides();
     this.sun.position.copy(middle).addScaledVector(this.up, this.size).addScaledVector(e1, 0.45 * this.size).addScaledVector(e2, -0.7 * this.size);
     this.sun.target.position.copy(middle);
-    // Far enough for a ground well below what moves: shadows of parallel light stay as wide as what casts them.
+    // Far enough for a ground well below the moving bodies: shadows of parallel light have constant width.
     const shadow = this.sun.shadow.camera, half = 0.62 * this.size;
     Object.assign(shadow, { left: -half, right: half, top: half, bottom: -half, near: 0.1 * this.size, far: 12 * this.size });
     shadow.updateProjectionMatrix();
@@ -75,7 +75,7 @@ export class Stage {
     this.view(this.firstLook());
   }
 
-  /** A flat mechanism is seen from the front, others obliquely. */
+  /** View of a planar mechanism from the front, of others obliquely. */
   firstLook(): Vector3 {
     const [e1, e2] = this.sides(), size = this.box.getSize(new Vector3()), all = [size.x, size.y, size.z], k = all.indexOf(Math.min(...all));
     const normal = new Vector3().setComponent(k, 1), right = new Vector3().crossVectors(this.up, normal);
@@ -127,7 +127,7 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Looks at the middle of the scene from a direction, as near as shows all of it. */
+  /** View of the middle of the scene from a direction, at the smallest distance that shows all of it. */
   view(direction: Vector3): void {
     this.resize();
     const to = direction.clone().normalize(), middle = this.box.getCenter(new Vector3());
@@ -180,7 +180,7 @@ export class Stage {
     this.dirty = true;
   }
 
-  /** Makes drawing cheaper, where a machine is too slow: with fewer pixels. */
+  /** Reduces the rendering effort on slow machines: fewer pixels. */
   lighten(): void {
     if (this.renderer.getPixelRatio() > 0.5) this.renderer.setPixelRatio(Math.max(0.5, 0.7 * this.renderer.getPixelRatio()));
     this.resize();
@@ -195,7 +195,7 @@ export class Stage {
     return caster;
   }
 
-  /** Which half of the window a point is in: 0, or 1 for the right one of two. */
+  /** Half of the window that contains a point: 0, or 1 for the right one of two. */
   halfAt(x: number): number {
     const box = this.renderer.domElement.getBoundingClientRect();
     return this.halves && x - box.left > box.width / 2 ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The moving picture: what stands in the scene, what is chosen, hidden, measured and followed.
+// The animation: objects of the scene, and those that are selected, hidden, measured and followed.
 import { Box3, BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, type Object3D, Points, PointsMaterial, SphereGeometry, Vector3 } from "three";
 import { Axes } from "./axes";
 import { Bodies, type Showing } from "./bodies";
@@ -22,8 +22,8 @@ export class View {
   readonly helical: Axes;
   ghost: Ghost | null = null;
   beside = false;
-  shadowsAsked = false;  // by somebody: then a slow machine leaves them as they are
-  /** Called when shadows came or went, and when something has moved. */
+  shadowsAsked = false;  // by the user: then they are kept on slow machines, too
+  /** Called when shadows are switched, and when something has moved. */
   onshadows: () => void = () => undefined;
   onupdate: () => void = () => undefined;
   private t = 0;
@@ -63,7 +63,7 @@ export class View {
     view.centres.visible = view.frames.visible = false;
     for (const object of [view.centres, view.frames]) object.frustumCulled = false;
     view.centres.renderOrder = 5;
-    // Boxes that stand for mass and inertia would hide what has a shape.
+    // Boxes of mass and inertia would hide bodies with shapes.
     const shapes = m.solids.length > 0 || m.meshes.some((mesh) => mesh.type !== "inertia");
     if (shapes) m.bodies.forEach((body, i) => { if (body.parts?.[0]?.mesh !== undefined && m.meshes[body.parts[0].mesh].type === "inertia") bodies.showing[i] = "ghost"; });
     stage.fit(view.box());
@@ -106,7 +106,7 @@ export class View {
     this.ghost?.show(on || this.beside, this.t);
     this.stage.dirty = true;
   }
-  /** The other recording in a picture of its own to the right, seen from the same place, or as a ghost over this one. */
+  /** The other recording in a separate picture to the right with the same camera, or as a ghost over this one. */
   async setBeside(on: boolean): Promise<void> {
     const { ghost, stage, solids } = this;
     if (!ghost) return;
@@ -201,10 +201,10 @@ export class View {
     this.ghost?.setShadows(on);
     this.onshadows();
   }
-  /** Makes drawing cheaper, where a machine is too slow: first without shadows. */
+  /** Reduces the rendering effort on slow machines: first without shadows. */
   lighten(): void { if (this.stage.shadows && !this.shadowsAsked) this.setShadows(false); else this.stage.lighten(); }
 
-  /** What is at a point of the window; in the picture of the other recording, what has the same name here. */
+  /** Object at a point of the window; in the picture of the other recording, the object of the same name here. */
   pick(x: number, y: number): { choice: Choice; point: Vector3 } | null {
     if (this.ghost && this.stage.halfAt(x) === 1) {
       const met = this.met(x, y, this.ghost.objects);
@@ -282,7 +282,7 @@ export class View {
       .setAttribute("color", new BufferAttribute(new Float32Array(colours), 3));
   }
 
-  /** Paths of the centres of mass up to now: of the chosen body, else of up to 40 bodies. */
+  /** Paths of the centres of mass up to now: of the selected body, otherwise of up to 40 bodies. */
   private updateTrails(): void {
     const wanted = this.chosen?.kind === "body" ? [this.chosen.index] : this.moving().slice(0, 40), key = wanted.join(" ");
     if (this.trails.userData.key !== key) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A headless Chromium without network, and what every test of the page wants.
+// A headless Chromium without network, and helpers of all tests of the page.
 import { existsSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -14,7 +14,7 @@ export async function launch() {
 /** A page that notes every message of the console, every fault and every request to a network. */
 export async function openPage(browser, address, options = {}) {
   const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, offline: !address.startsWith("http"), ...options });
-  // What the page has drawn, as commands to the graphics processor.
+  // Drawing commands of the page to the graphics processor.
   await context.addInitScript(() => {
     window.drawCalls = 0;
     for (const name of ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"]) {
@@ -24,7 +24,7 @@ export async function openPage(browser, address, options = {}) {
   });
   const page = await context.newPage();
   const faults = [], requests = [];
-  // Chromium says so when a picture is read back from its software renderer; it is no fault of the page.
+  // A message of Chromium when a picture is read back from its software renderer, not an error of the page.
   page.on("console", (m) => { if (["error", "warning"].includes(m.type()) && !/GL Driver Message|software WebGL/.test(m.text())) faults.push(m.text()); });
   page.on("pageerror", (e) => faults.push(String(e)));
   page.on("request", (r) => { if (/^(https?|wss?):/.test(r.url()) && !r.url().startsWith("http://127.0.0.1")) requests.push(r.url()); });

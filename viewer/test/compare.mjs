@@ -17,7 +17,7 @@ await test("a second recording is a ghost, and plots show the difference", async
   const both = await steady();
   const becomes = (same) => page.waitForFunction(([was, want]) => (document.querySelector(".view > canvas").toDataURL() === was) === want, [both, same], { timeout: 20000 });
   await page.keyboard.press("c");
-  await becomes(false).catch(() => expect(false, "the ghost is not seen"));
+  await becomes(false).catch(() => expect(false, "the ghost is not visible"));
   await page.keyboard.press("c");
   await becomes(true).catch(() => expect(false, "the ghost does not come back"));
   await page.getByRole("tab", { name: "Plot" }).click();
@@ -44,7 +44,7 @@ await test("two recordings stand side by side", async () => {
   await page.locator(".sides").waitFor();
   expect((await page.locator(".sides").textContent()) === "all.resultsother.results" && !await page.locator(".compared").isVisible(), "the pictures have no names");
   const beside = await picture(page);
-  // Each half has bodies: many colours, and the halves differ, as the ball hangs elsewhere.
+  // Each half shows bodies, in many colours, and the halves differ, as the ball is at another position.
   const halves = await page.evaluate(() => {
     const from = document.querySelector(".view > canvas"), to = document.createElement("canvas"), w = from.width / 2, h = from.height;
     Object.assign(to, { width: from.width, height: h });

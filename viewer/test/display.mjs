@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the picture shows: fields of solids, axes, trails, sections, forces.
+// Display options: fields of solids, axes, trails, sections, forces.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -44,7 +44,7 @@ await test("elements of solids have colours of their own, and solids may have di
   expect(await picture(page) !== flat, "elements and nodes have one picture");
 });
 
-await test("the helical axis of a body is the axis of its hinge, of a screw with its pitch, seen from the ground and from a body", async () => {
+await test("the helical axis of a body is the axis of its hinge, of a screw with its pitch, relative to the ground and to a body", async () => {
   const screwed = `format: 1
 bodies:
   table: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}
@@ -61,7 +61,7 @@ output: {every: 20 ms}
 `;
   const axis_of = async (page) => {
     const text = await page.locator(".helical").textContent(), number = "-?[\\d.]+(?:e[+-]?\\d+)?";
-    const found = text.match(new RegExp(`^(${number}) rad/s about (.*) through (.*) m; (${number}) m along`));
+    const found = text.match(new RegExp(`^(${number}) rad/s about (.*) through (.*) m; pitch (${number}) m/rad`));
     expect(found, `the axis reads '${text}'`);
     return { rate: Number(found[1]), along: found[2].split(",").map(Number), point: found[3].split(",").map(Number), pitch: Number(found[4]) };
   };
@@ -80,13 +80,13 @@ output: {every: 20 ms}
   await other.page.getByRole("tab", { name: "Display" }).click();
   await other.page.getByLabel("Time", { exact: true }).fill("25");
   await other.page.getByLabel("Body of the helical axis").selectOption("nut");
-  await other.page.getByLabel("Helical axis seen from").selectOption("table");
+  await other.page.getByLabel("Helical axis relative to").selectOption("table");
   await other.page.waitForFunction(() => document.querySelector(".helical").textContent.includes("rad/s"));
-  // The table has turned by 0.5 rad: the screw's axis is its x, through its middle; lead over one turn is the pitch for a radian.
+  // The table has turned by 0.5 rad: the screw's axis is its x, through its middle; its pitch per radian is the lead over one turn.
   const screw = await axis_of(other.page), t = 0.5;
   expect(near(screw.rate, 2, 1e-3) && near(Math.abs(screw.along[0]), Math.cos(t), 2e-3) && near(Math.abs(screw.along[1]), Math.sin(t), 2e-3), JSON.stringify(screw));
   expect(near(Math.abs(screw.pitch), 0.3 / (2 * Math.PI), 1e-4) && near(screw.point[1] * Math.cos(t) - screw.point[0] * Math.sin(t), 0, 2e-3) && near(screw.point[2], 0, 2e-3), JSON.stringify(screw));
-  await other.page.getByLabel("Helical axis seen from").selectOption("ground");
+  await other.page.getByLabel("Helical axis relative to").selectOption("ground");
   await other.page.waitForFunction(() => !document.querySelector(".helical").textContent.startsWith("2.000"));
   const both = await axis_of(other.page);  // rates of 1 about z and 2 about the table's x together
   expect(near(both.rate, Math.sqrt(5), 2e-3) && near(Math.abs(both.along[2]), 1 / Math.sqrt(5), 2e-3), JSON.stringify(both));
@@ -112,7 +112,7 @@ await test("trails, centres, axes, parallel projection, section and follow chang
   }
   await page.getByLabel("Section plane").selectOption("none");
   expect(await picture(page) === plain, "the section does not go");
-  // Followed, the arm stays where it is in the picture while everything else moves: its centre projects to one place.
+  // The followed arm stays at its position in the picture while everything else moves: its centre projects to one point.
   await page.keyboard.press("f");
   const eye = async () => { await page.keyboard.press("b"); return page.evaluate(() => location.hash.match(/at=([^&]*)/)[1].split(",").map(Number)); };
   const first = await eye();
@@ -162,7 +162,7 @@ output: {every: 1 s}
   for (const [time, height] of [["Home", 2], ["End", 3]]) {
     await page.keyboard.press(time);
     const off = await picture(page), bodies = await dark(null);
-    // The bodies alone, nearer to the eye than the ground: as large as perspective makes them.
+    // The bodies alone, nearer to the camera than the ground: of the size by perspective.
     expect(Math.abs(bodies[0].area - (distance / (distance - height - 0.01)) ** 2) < 0.05, `without shadows there is ${JSON.stringify(bodies)}`);
     await shadows.click();
     seen[height] = await dark(off);
@@ -172,13 +172,13 @@ output: {every: 1 s}
   }
   for (const height of [2, 3]) {
     const [plate, ball] = seen[height];
-    // Of parallel light, on a level ground: the shadow of a level plate is as large as it is, that of a ball longer by the slant of the light.
+    // Shadows by parallel light on a horizontal ground: that of a horizontal plate has its size, that of a ball is longer by the slope of the light.
     const dx = (plate.x + 2) / height, dy = plate.y / height, slant = Math.hypot(1, dx, dy);
     expect(Math.abs(plate.area - 1) < 0.04 && Math.abs(ball.area - Math.PI * 0.25 ** 2 * slant) < 0.02, `${height}: ${JSON.stringify(seen[height])}`);
     expect(Math.hypot(dx, dy) > 0.3 && Math.abs((ball.x - 2) / height - dx) < 0.02 && Math.abs(ball.y / height - dy) < 0.02, `${height}: ${JSON.stringify(seen[height])}`);
     expect(plate.light < 0.96 && ball.light < 0.96, `${height}: ${JSON.stringify(seen[height])}`);
   }
-  for (const k of [0, 1]) for (const axis of ["x", "y"]) {  // as far from the foot of what throws it as that is high
+  for (const k of [0, 1]) for (const axis of ["x", "y"]) {  // its distance from the foot of the object is the object's height
     const foot = axis === "y" ? 0 : k ? 2 : -2;
     expect(Math.abs((seen[3][k][axis] - foot) / (seen[2][k][axis] - foot) - 1.5) < 0.04, JSON.stringify(seen));
   }
@@ -191,7 +191,7 @@ await test("forces are scaled and filtered", async () => {
   const plain = await picture(page);
   await slide(page, "Length of arrows", 2.5);
   const long = await picture(page);
-  await slide(page, "Smallest shown, part of the largest", 0.5);
+  await slide(page, "Smallest shown, relative to the largest", 0.5);
   expect(plain !== long && await picture(page) !== long, "arrows stay as they are");
 });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages and scenes as files: archives, notebooks, what is cut short, glTF.
+// Pages and scenes as files: archives, notebooks, truncated files, glTF.
 import { execFileSync } from "node:child_process";
 import { copyFileSync, readFileSync, statSync, truncateSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -22,7 +22,7 @@ await test("recordings in an archive share the player", async () => {
 
 await test("a page in the frame of a notebook plays", async () => {
   made("all.html");
-  // As python/polhode/_show.py writes it: no origin of its own, scripts and downloads only.
+  // A frame as in python/polhode/_show.py: without origin, scripts and downloads only.
   const text = readFileSync(join(folder, "all.html"), "utf8").replaceAll("&", "&amp;").replaceAll('"', "&quot;");
   writeFileSync(join(folder, "notebook.html"), `<!doctype html><title>Notebook</title><iframe srcdoc="${text}" width="100%" height="600" sandbox="allow-scripts allow-downloads"></iframe><script>document.documentElement.dataset.ready = "1"</script>`);
   const { page } = await page_of("notebook.html");
@@ -31,7 +31,7 @@ await test("a page in the frame of a notebook plays", async () => {
   await frame.locator("output.clock").filter({ hasText: /0\.0[2-9]|0\.[1-9]/ }).waitFor({ timeout: 20000 });
 });
 
-await test("results that are cut short are shown up to the last whole frame", async () => {
+await test("truncated results are shown up to the last complete frame", async () => {
   made("all.html");
   const file = join(folder, "cut.h5");
   run("run", "all.yaml", "--quiet", "-o", "long.results", "--set", "analysis.step=0.5 ms", "--set", "output.every=0.5 ms");

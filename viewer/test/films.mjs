@@ -10,7 +10,7 @@ await test("a film has the pictures that were asked for", async () => {
   made("all.html");
   run("convert", "all.results", "film.gif", "--size", "160x120", "--rate", "8", "--to", "0.5", "--turn", "30");
   const { page } = await page_of("all.html");
-  // Decoded by the browser, which is no work of ours.
+  // Decoded by the browser, independently of Polhode.
   const found = await page.evaluate(async (text) => {
     const decoder = new ImageDecoder({ data: Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), type: "image/gif" });
     await decoder.tracks.ready;
@@ -29,7 +29,7 @@ await test("a film has the pictures that were asked for", async () => {
   expect(new Set(found.map((p) => p.sum)).size === 5, "pictures are alike");
   run("convert", "all.results", "pictures", "--size", "64x48", "--rate", "2");
   expect(readFileSync(join(folder, "pictures/00002.png")).subarray(1, 4).toString() === "PNG", "no pictures in the folder");
-  mkdirSync(join(folder, "made/film.gif"), { recursive: true });  // a folder of that name: what fails when all is drawn
+  mkdirSync(join(folder, "made/film.gif"), { recursive: true });  // a folder of that name, so that writing fails after drawing
   for (const [words, text] of [[["film.avi"], "cannot write '.avi' files"], [["film.gif", "--size", "10"], "Write it as 640x400"], [["film.gif", "--from", "3"], "the recording goes from 0 to 1 s"],
     [["no/such/film.gif"], "no/such/film.gif: cannot be written: its folder does not exist. Make the folder first."], [["made/film.gif", "--to", "0.2"], "made/film.gif: cannot be replaced"]])
     expect(refusal(["convert", "all.results", ...words]).includes(text), refusal(["convert", "all.results", ...words]));
@@ -77,11 +77,11 @@ await test("an .mp4 film has the size, the rate, the duration and the pictures t
   run("convert", "all.results", "same", ...words);
   const of = (name, ...words) => execFileSync(name, ["-v", "error", ...words], { cwd: folder, maxBuffer: 1 << 28 });
   const { streams: [film], format } = JSON.parse(of("ffprobe", "-count_frames", "-show_streams", "-show_format", "-of", "json", "film.mp4"));
-  // Numbers of pixels are even in what every player takes: 161 become 162.
+  // Players need even numbers of pixels: 161 become 162.
   expect(film.codec_name === "h264" && film.pix_fmt === "yuv420p" && film.width === 162 && film.height === 120, JSON.stringify(film));
   expect(film.color_space === "bt709" && film.color_range === "tv", "players must guess its colours");
   expect(film.r_frame_rate === "8/1" && Number(film.nb_read_frames) === 7 && Math.abs(Number(format.duration) - 7 / 8) < 0.01, JSON.stringify([film, format]));
-  // Its pictures are those of the folder, but for what compression loses, and each differs more from the next one.
+  // Its pictures are those of the folder up to compression losses, and differ more from the next ones.
   const raw = (...words) => of("ffmpeg", ...words, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"), pad = ["-vf", "pad=162:120"];
   const pictures = raw("-i", "film.mp4", "-vf", "scale=in_color_matrix=bt709:in_range=tv"), drawn = raw("-i", "same/%05d.png", ...pad), size = 162 * 120 * 3;
   expect(pictures.length === 7 * size && drawn.length === 7 * size, `${pictures.length} and ${drawn.length} bytes`);

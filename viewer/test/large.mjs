@@ -16,7 +16,7 @@ async function measured(name, pictures = 8) {
   const before = await spent("renderer"), { page } = await page_of(name), loading = await spent("renderer") - before;
   const drawn = () => page.evaluate(() => Number(document.documentElement.dataset.frames ?? 0));
   await page.keyboard.press(" ");
-  await page.waitForTimeout(1500);  // until a slow machine has found what it can draw
+  await page.waitForTimeout(1500);  // until rendering has adapted to a slow machine
   const from = await drawn(), busy = await spent(), alone = await spent("renderer"), issued = await page.evaluate(() => window.drawCalls);
   await page.waitForFunction((n) => Number(document.documentElement.dataset.frames) >= n, from + pictures, { timeout: 240000 });
   const count = await drawn() - from, each = 1000 * (await spent() - busy) / count, script = 1000 * (await spent("renderer") - alone) / count;
@@ -41,7 +41,7 @@ output: {every: 1 ms}
   expect(statSync(join(folder, "chain.html")).size > 20e6, "a small page");
   const { page, loading, each, most, script, calls } = await measured("chain.html", 40);
   expect(loading < 3, `it takes ${loading} s`);
-  // What is left where a graphics processor draws: it fits into a sixtieth of a second, in a few calls that do not grow with the bodies.
+  // Work of the page with a graphics processor: less than a sixtieth of a second, in a few calls independent of the number of bodies.
   expect(script < 1000 / 60 && calls < 30, `a picture takes the page ${script} ms and ${calls} calls`);
   expect(each < 100, `a picture takes ${each} ms of processors`);
   expect(most < 600, `the page takes ${most} MB`);
@@ -57,7 +57,7 @@ ${list(10000, (i) => `  b${i}: {shape: {${i % 2 ? "sphere: 0.2" : "box: [0.3, 0.
 analysis: {duration: 0.5 s, step: 50 ms}
 output: {every: 50 ms}
 `);
-  // Equal shapes are drawn as instances: one by one, ten thousand of them would take a second for a picture.
+  // Equal shapes are drawn as instances; ten thousand separate ones would take a second per picture.
   const { page, loading, each, most } = await measured("many.html");
   expect(loading < 6 && each < 1000 && most < 450, `${loading} s to load, ${each} ms for a picture, ${most} MB`);
   expect(await colours(page) > 60, "the picture has few colours");
@@ -91,9 +91,9 @@ await test("a server sends only what is looked at", async () => {
   await served(["all.results"], async (address) => {
     const asked = [], { page } = await page_of(address);
     page.on("request", (request) => asked.push(request.url()));
-    await page.waitForTimeout(1500);  // it asks now and then whether the file is another one
+    await page.waitForTimeout(1500);  // the page checks at intervals whether the file has changed
     const idle = new Set(asked.splice(0));
-    await page.getByRole("button", { name: /^arm/ }).first().click();  // its velocities are wanted now
+    await page.getByRole("button", { name: /^arm/ }).first().click();  // loads its velocities
     await page.locator(".details td.number").nth(2).waitFor();
     const wanted = asked.splice(0).filter((url) => !idle.has(url));
     expect(wanted.length > 0, "the velocities were there before they were wanted");
@@ -110,7 +110,7 @@ await test("a crowd of balls is drawn as balls, and each is met by a click", asy
   const { page } = await page_of("crowd.html");
   const name = await clicked(page, /^b\d+$/);
   expect(/^b\d+$/.test(name), `no click meets a ball, the last one met '${name}'`);
-  // Parallel projection and a section draw them another way; all must show pictures full of colours.
+  // Parallel projection and a section use other drawing paths; all must show pictures with many colours.
   for (const act of [() => undefined, () => page.keyboard.press("o"), async () => { await page.getByRole("tab", { name: "Display" }).click(); await page.getByLabel("Section plane").selectOption("x"); }]) {
     await act();
     await page.waitForTimeout(200);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sizes, load times and pictures a second of pages, in a headless Chromium with software rendering: node measure.mjs PAGE ...
-// Times of processors say more than times of clocks on a machine that others use too.
+// Processor times are more reliable than wall times on a shared machine.
 import { statSync } from "node:fs";
 import { cpus } from "node:os";
 import { resolve } from "node:path";
@@ -18,7 +18,7 @@ for (const file of process.argv.slice(2)) {
   await page.waitForTimeout(500);
   await page.keyboard.press(" ");
   const count = () => page.evaluate(() => Number(document.documentElement.dataset.frames ?? 0));
-  await page.waitForTimeout(3000);  // until a slow machine has found what it can draw
+  await page.waitForTimeout(3000);  // until rendering has adapted to a slow machine
   const from = await count(), begin = Date.now(), busy = await cpu();
   await page.waitForTimeout(4000);
   const drawn = await count() - from, rate = drawn / ((Date.now() - begin) / 1000), each = (await cpu() - busy) / drawn;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects are found, chosen, read, hidden and measured.
+// Search, selection, values, hiding and measuring of objects.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { channels, chosen, expect, folder, model, page_of, picture, recorded, run, shot, test } from "./support.mjs";
@@ -49,16 +49,16 @@ await test("hidden, ghost and isolated bodies change the picture", async () => {
 });
 
 await test("two clicks measure a distance, three an angle", async () => {
-  // Points on two sides of a cube of 1 m, seen in parallel from its front: what they measure is known.
+  // Points on two sides of a cube of 1 m, in parallel projection from its front, at a known distance.
   recorded("cube", "format: 1\nbodies: {cube: {fixed: true, shape: {box: [1, 1, 1]}}, far: {shape: {box: [1, 1, 1]}, density: 1, position: [3, 0, 0]}}\nanalysis: {duration: 0.1 s, step: 0.1 s}\n");
   const { page } = await page_of("cube.html");
   await page.keyboard.press("1");
   await page.keyboard.press("o");
   const { x, y, width, height } = await page.locator(".view > canvas").boundingBox(), ruler = page.locator(".measure");
-  // Where the edges of both cubes lie in the picture: the first and last click along a row that meets something.
+  // Edges of both cubes in the picture: the first and last click along a row that hits an object.
   await page.waitForTimeout(300);
   const name = async (u, v) => { await page.mouse.click(u, v); return chosen(page); };
-  const edge = async (from, to, wanted) => {  // halves the way between a point within and one outside
+  const edge = async (from, to, wanted) => {  // bisection between a point within and one outside
     for (let k = 0; k < 9; k++) { const m = (from + to) / 2; if (await name(m, y + height / 2) === wanted) from = m; else to = m; }
     return from;
   };

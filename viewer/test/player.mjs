@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page opens, plays, and is for everyone: time, bookmark, phone, dark, accessibility.
+// Opening and playback of the page: time, bookmark, phone, dark theme, accessibility.
 import { clock, colours, expect, page_of, picture, shot, test, violations } from "./support.mjs";
 
 await test("the saved file opens without network and shows a picture", async () => {
@@ -68,7 +68,7 @@ for (const [name, options] of [["wide and light", {}], ["dark", { colorScheme: "
       expect(found.length === 0, found.join(" | "));
     }
     expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the window");
-    // The energy drift is in view whatever the panel shows.
+    // The energy drift is visible with any panel.
     const drift = await page.locator(".drift").boundingBox(), { width, height } = page.viewportSize();
     expect(drift && drift.x >= 0 && drift.y >= 0 && drift.x + drift.width <= width && drift.y + drift.height <= height, `the drift stands at ${JSON.stringify(drift)}`);
     if (options.colorScheme) expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(20, 25, 31)", "not dark");
@@ -107,7 +107,7 @@ await test("every key of the list does what the list says", async () => {
   await press("/"); expect(await page.evaluate(() => document.activeElement.type) === "search", "no search");
   await page.keyboard.type("arm");
   await page.getByRole("button", { name: /^arm/ }).first().click();
-  const pressed = async (...keys) => {  // each is to change the picture
+  const pressed = async (...keys) => {  // each key must change the picture
     for (const key of keys) { const before = await picture(page); await press(key); expect(await picture(page) !== before, `${key} changes nothing`); }
   };
   await page.getByLabel("Time", { exact: true }).fill("40");

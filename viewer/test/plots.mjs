@@ -12,7 +12,7 @@ analysis: {duration: 8 s, step: 2 ms}
 output: {every: 10 ms}
 `;
 
-// A damped pendulum that falls below the height from which potential energy counts.
+// A damped pendulum that falls below the height of zero potential energy.
 const swing = `format: 1
 gravity: [0, 0, -9.81]
 bodies: {arm: {shape: {box: [1, 0.1, 0.1]}, density: 1000, position: [0.5, 0, 0]}}
@@ -83,7 +83,7 @@ await test("a drag zooms a plot; two clicks, or a button, show all of it again",
   const t = await clock(page);
   await zoom();
   expect(await clock(page) === t, "a drag moves the time");
-  // The time of a click is that of the part which is shown, and the curve is drawn over it.
+  // The time of a click is that of the visible range, and the curve is drawn over it.
   await page.mouse.click(...at(0.6));
   within(await clock(page), 0.4, 0.01, "the time");
   await page.mouse.dblclick(...at(0.5));
@@ -93,7 +93,7 @@ await test("a drag zooms a plot; two clicks, or a button, show all of it again",
   await all();
 });
 
-await test("the ledger stacks the energies, and its upper edge is level as energy is kept", async () => {
+await test("the ledger stacks the energies, and its upper edge is constant as energy is conserved", async () => {
   const page = await plotted("swing.html", "energy.kinetic");
   await page.getByRole("button", { name: "Close this plot" }).click();
   await page.getByRole("button", { name: "Ledger" }).click();
@@ -104,10 +104,10 @@ await test("the ledger stacks the energies, and its upper edge is level as energ
   rows.forEach((row, k) => {
     const [, kinetic, potential, dissipated] = own[k];
     [kinetic, kinetic + potential - low, kinetic + potential - low + dissipated].forEach((sum, i) => within(row[i + 1], sum, 1e-5 * scale, `row ${k}, layer ${i}`));
-    within(row[3], rows[0][3], 1e-5 * scale, `the upper edge of row ${k}`);  // nothing is put in, so what is lost is all that goes
+    within(row[3], rows[0][3], 1e-5 * scale, `the upper edge of row ${k}`);  // no energy is supplied, so only losses change the sum
   });
   expect(own.at(-1)[3] > 1e-3 * scale, "nothing is lost, so that the test says little");
-  // Layers are filled: as curves over time the same numbers leave the field empty.
+  // Layers are filled; as curves over time the same numbers leave the area empty.
   const inked = () => page.evaluate(() => {
     const canvas = document.querySelector(".plot canvas"), { width, height } = canvas, context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
     context.drawImage(canvas, 0, 0);
@@ -129,7 +129,7 @@ await test("a phase plot of an oscillator is an ellipse", async () => {
   await page.getByLabel("Kind of plot").selectOption("phase");
   const text = await saved(page, "CSV"), rows = table(text);
   expect(text.startsWith("bodies.bob.position.x [m],bodies.bob.velocity.x [m/s]\n"), text.slice(0, 80));
-  // Over 40 periods of 100 steps the amplitude stands; the method only shifts the phase, and keeps the energy.
+  // Over 40 periods of 100 steps the amplitude is constant; the method shifts the phase and conserves energy.
   for (const [x, v] of rows) within(((x - 1) / 0.1) ** 2 + (v / (0.1 * 10 * Math.PI)) ** 2, 1, 1e-3, "the radius");
   expect(rows.some(([x]) => x < 0.905) && rows.some(([, v]) => v > 3), "only a part of the ellipse");
   await shot(page, "phase");

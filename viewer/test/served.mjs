@@ -12,7 +12,7 @@ await test("a model is served, and loaded again when it is saved", async () => {
     await page.waitForTimeout(500);
     writeFileSync(join(folder, "served.yaml"), model.replace("title: Everything", "title: Saved again"));
     await page.getByRole("heading", { name: "Saved again" }).waitFor({ timeout: 60000 });
-    // What is wrong is told with its place, and the page comes back when it is mended; redundant joints are marked.
+    // A fault of the model is shown with its location, and the page returns when it is corrected; redundant joints are marked.
     const save = async (text) => { await page.waitForTimeout(1200); writeFileSync(join(folder, "served.yaml"), text); };
     await save(model.replace("restitution: 0.5", "restituton: 0.5"));
     await page.locator(".failed").waitFor({ timeout: 60000 });

@@ -37,7 +37,7 @@ for (const path of ["index.html", "gallery.html", "theory/joints.html", "referen
       expect(await page.evaluate(() => [...document.images].every((i) => !i.complete || i.naturalWidth > 0 || i.loading === "lazy")), `${path}: a picture is missing`);
     });
 await open("theory/joints.html", {}, async (page) => expect(await page.locator("math").count() > 20 && await page.locator("#equation-joint-coincident math").count() === 1, "formulas are no formulas"));
-// What the site promises is there: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
+// Contents of the site: five quick starts, every example with its picture, help, terms of other programs, interfaces, the theory as one file.
 const examples = join(dirname(fileURLToPath(import.meta.url)), "../../examples"), all = readdirSync(examples).filter((name) => existsSync(join(examples, name, "model.yaml")));
 await open("gallery.html", {}, async (page) => {
   const shown = await page.evaluate(() => [...document.querySelectorAll("article a")].filter((a) => a.querySelector("img")?.naturalWidth > 0 || a.parentElement.querySelector("img")).map((a) => a.getAttribute("href")));

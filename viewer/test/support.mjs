@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of the page share: a browser, recordings to open, and how a page is looked at. POLHODE names the program that
-// makes the pages; without Chromium or the packages of package.json tests are skipped (exit code 77). SCREENSHOTS names a folder
+// Helpers of the page's tests: a browser, recordings, and access to pages. POLHODE is the program that
+// writes the pages; without Chromium or the packages of package.json tests are skipped (exit code 77). SCREENSHOTS names a folder
 // for pictures.
 import { execFileSync, spawn } from "node:child_process";
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -76,7 +76,7 @@ const makers = {
     run("run", "tyre.yaml", "--quiet", "--set", "analysis.duration=0.2 s");
     run("view", "tyre.results", "--html", "tyre.html", "--quiet");
   },
-  "compared.html": () => {  // the same model with the ball elsewhere, and shorter
+  "compared.html": () => {  // the same model with another position of the ball and a shorter duration
     made("all.html");
     run("run", "all.yaml", "--quiet", "-o", "other.results", "--set", "bodies.ball.position=[0.6, 0, 0.5]", "--set", "analysis.duration=0.6 s");
     run("view", "all.results", "other.results", "--html", "compared.html", "--quiet");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of round solid, against the triangles of its picture.
+// Every kind of round solid, against the triangles that represent it in pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,8 +30,8 @@ class EveryRoundSolid : public testing::TestWithParam<const RoundSolid*> {
   const ShapePlace place_{{0.05, -0.03, 0.02}, Random(3).frame()};
 
   void SetUp() override {
-    ASSERT_NE(kind_, nullptr) << "a kind of the model file";
-    ASSERT_FALSE(sizes_.empty()) << "longer lists of lengths";
+    ASSERT_NE(kind_, nullptr) << "the kind is not one of the model file";
+    ASSERT_FALSE(sizes_.empty()) << "the kind needs a longer list of lengths";
   }
   [[nodiscard]] Shape shape() const { return solid_.shape("shape", sizes_, place_, 0.0); }
   /// Points of the surface, in coordinates of the body; chords of the circles are below 1e-4.
@@ -64,7 +64,7 @@ TEST_P(EveryRoundSolid, HasChordsFromItsCentreToItsCore) {
   for (int k = 0; k < 3; ++k)
     for (const double sign : {-1.0, 1.0})
       for (const double part : {1.0 - 1e-6, 1.0 + 1e-6}) {
-        // Beside the axis, where directions from it are known.
+        // Slightly off the axis, where the radial direction is defined.
         const Vec3 x = s.centre + sign * part * s.chords[k] * s.axes.col(k) + Vec3::Constant(1e-9);
         const double distance =
             solid_.plain.over(v3(x), 0.0, s, at_rest(still, 6)).distance + s.rounding;
@@ -109,7 +109,7 @@ TEST_P(EveryRoundSolid, HasOneSupportPointAndItsDerivative) {
   }
 }
 
-/// Other code takes a round solid for its corners, flat ends and, without these, an ellipsoid.
+/// Representation of a round solid elsewhere: corners, flat ends and, without these, an ellipsoid.
 TEST_P(EveryRoundSolid, TouchesAPlaneWithItsLowestPoint) {
   const Shape s = shape(), floor = plane();
   const std::vector<Vec3> list = points();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole models in docs/reference/beams.md run as they stand.
+// The complete models of docs/reference/beams.md, run unchanged.
 #include <support/page_examples.hpp>
 
 namespace polhode::test::beams_page_tests {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The examples of docs/reference/connectors.md and joints.md run as they stand.
+// The examples of docs/reference/connectors.md and joints.md, run unchanged.
 #include <support/page_examples.hpp>
 
 namespace polhode::test::connectors_page_tests {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every file in tests/corpus/broken is refused with the message that stands beside it, and every
+// Every file in tests/corpus/broken is refused with the message in the file beside it, and every
 // file in tests/corpus/good is read. A broken file NAME.yaml may have overrides in NAME.set, one a
 // line.
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(Corpus, BrokenModelsAreRefusedWithTheirMessages) {
     try {
       const Model model =
           read_model_text(content(path), path.filename().string(), overrides_of(path));
-      ADD_FAILURE() << "was read without a fault";
+      ADD_FAILURE() << "was read without an error";
     } catch (const ModelErrors& errors) {
       EXPECT_EQ(errors.text() + "\n", content(beside(path, ".txt")));
     }
@@ -80,8 +80,8 @@ TEST(Corpus, GoodModelsAreRead) {
   }
 }
 
-/// What the fuzzer does for minutes, here for a second: cuts, doublings and swaps of good models
-/// give a model or located faults and nothing else.
+/// A short run of what the fuzzer does: cuts, repetitions and exchanges in good models give a model
+/// or located errors.
 TEST(Corpus, DamagedModelsAreReadOrRefused) {
   unsigned seed = 20250101;
   const auto random = [&](std::size_t below) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The examples of docs/reference/events.md run as they stand.
+// The examples of docs/reference/events.md, run unchanged.
 #include <support/page_examples.hpp>
 
 namespace polhode::test::events_page_tests {

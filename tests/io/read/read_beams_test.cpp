@@ -87,7 +87,7 @@ TEST(ReadBeams, GoTogetherWithSolidsAndBodies) {
   EXPECT_EQ(s.solids().size(), 1u);
 }
 
-// A face of a solid is held by the end of a beam, and nothing else holds it: what hangs on the
+// A solid whose face is bonded to the end of a beam and held by nothing else: the load on the
 // beam's end is the solid's weight.
 TEST(ReadBeams, HoldSolids) {
   constexpr const char* kText = R"(

@@ -8,13 +8,13 @@
 namespace polhode::read_fields_tests {
 namespace {
 
-/// A value within the range, and unlike any default.
+/// A value within the range that differs from all defaults.
 double number_for(const Field& field) {
   const double least = std::max(field.range.least, -4.0), most = std::min(field.range.most, 10.0);
   return field.kind == FieldKind::kInteger ? std::ceil(least) + 3.0 : least + 0.3 * (most - least);
 }
 
-/// Text of a value for a field of the model file; "" for kinds that are not bound.
+/// Text of a value for a field of the model file; "" for kinds that are not bound to a member.
 std::string text_for(const Field& field) {
   switch (field.kind) {
     case FieldKind::kNumber:

@@ -17,7 +17,7 @@ constexpr double kRounding = 1e-14;
 
 void write(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
 
-/// Two bodies out of every plane of symmetry, with most kinds of joints and loads between them, the
+/// Two bodies without a plane of symmetry, with most kinds of joints and loads between them, the
 /// ground and a third body that slides and turns.
 const std::string kArm =
     "format: 1\n"
@@ -111,8 +111,8 @@ TEST_F(ReadParts, TakesOverNamesWithThePrefixAndJoinsAcross) {
               0.25, kRounding);
 }
 
-/// The motion of a part that stands elsewhere is the motion of the part, moved: laws of mechanics
-/// do not know place, direction or handedness.
+/// Motion of a part at another pose: the motion of the part, transformed. The laws of mechanics do
+/// not depend on position, direction or handedness.
 struct Placed {
   Mat3 A = Mat3::Identity();
   Vec3 r = Vec3::Zero();
@@ -125,8 +125,8 @@ void expect_same_motion(const Model& alone, const Model& placed, const Placed& p
     ASSERT_TRUE(first.step(0.5).accepted);
     ASSERT_TRUE(second.step(0.5).accepted);
   }
-  // Both runs round and stop their iterations differently; the motion grows such differences by
-  // less than a thousand in half a second.
+  // Rounding and the ends of iterations differ between the runs; in half a second such differences
+  // grow by less than a factor of 1000.
   constexpr double kSame = 1e-10;
   for (int i = 0; i < 3; ++i) {
     const BodyMotion a = first.body(i), b = second.body(i);

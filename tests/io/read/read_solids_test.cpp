@@ -39,7 +39,8 @@ TEST(ReadSolids, TakesMeshesFromGeneratorsAndNumbers) {
   const MeshSpec& pad = everything().solids[0].mesh;
   EXPECT_EQ(pad.type, "block");
   EXPECT_EQ(pad.parameters.at("cells"), (std::vector<double>{4, 4, 4}));
-  EXPECT_NEAR(pad.parameters.at("size")[2], 0.1, kRounding);  // Bare millimetres.
+  EXPECT_NEAR(pad.parameters.at("size")[2], 0.1,
+              kRounding);  // A number without a unit, in millimetres.
   const MeshSpec& rod = everything().solids[1].mesh;
   EXPECT_EQ(rod.parameters.at("inner"), std::vector<double>{0.01});
   EXPECT_NEAR((rod.position - Vec3(0.3, 0, 0)).norm(), 0.0, kRounding);

@@ -139,7 +139,7 @@ TEST(BeamResults, HoldNodesSectionForcesAndTensions) {
   EXPECT_THAT(dims, ElementsAre(5, 3));
   numbers(file, "/bodies/stone/position", dims);
   EXPECT_THAT(dims, ElementsAre(5, 3));
-  // Nodes have no view of their own; the joint that holds the mast has.
+  // Nodes have no group of views; the joint that holds the mast has one.
   EXPECT_LE(H5Lexists(file, "/bodies/mast.1", H5P_DEFAULT), 0);
   numbers(file, "/joints/mast.start/force", dims);
   H5Fclose(file);
@@ -157,7 +157,7 @@ TEST(BeamResults, ProbesRecordElementsAndPieces) {
   const std::vector<std::string> pull = lines_of(scratch / "out/probes/pull.csv");
   ASSERT_EQ(pull.size(), 6u);
   EXPECT_EQ(pull[0], "t [s],tension [N],length [m]");
-  // Without force at the start but for round-off of its length.
+  // The force at the start is zero to the round-off of its length.
   EXPECT_NEAR(std::stod(pull[1].substr(2)), 0.0, 1e-9);
 }
 
@@ -171,8 +171,8 @@ TEST(BeamResults, PicturesShowLinesWithTheirForces) {
   ASSERT_EQ(radius.size(), 11u);
   EXPECT_FLOAT_EQ(radius[0], 0.01F);
   ASSERT_EQ(force.size(), 24u);
-  EXPECT_GT(force[3 * 5], 0.0F);  // the rope has begun to pull
-  // What stands in results.pvd are the bodies that the user named.
+  EXPECT_GT(force[3 * 5], 0.0F);  // the rope is taut
+  // results.pvd contains the bodies that the user named.
   const std::string bodies = read_file(scratch / "out/paraview/results/000004.vtp");
   EXPECT_THAT(bodies, HasSubstr(R"(NumberOfPolys="12")"));  // the cube of the stone
 }
@@ -193,8 +193,8 @@ TEST(BeamResults, RestartEndsInTheSameBits) {
   EXPECT_EQ(continued.state_hash(), straight.state_hash());
 }
 
-// A static law through the whole chain: a level cantilever that hangs carries at its foot its
-// weight as shear and weight × L/2 as moment; the axial force of a standing one is its weight.
+// Section forces of cantilevers under their weight: at the foot of a horizontal one the weight as
+// shear and weight × L/2 as moment; the axial force of a vertical one is its weight.
 TEST(BeamResults, SectionForcesCarryTheWeight) {
   std::string text = kModel;
   const auto cut = [&](const char* from, const char* to) {

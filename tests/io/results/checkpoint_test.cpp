@@ -41,7 +41,7 @@ Model chain(int bodies) {
   return model;
 }
 
-/// A state whose every number differs from every other.
+/// A state in which all numbers differ.
 State unlike_any_other(const System& system) {
   State state = system.initial_state();
   double next = 0.1;
@@ -121,7 +121,8 @@ TEST(Checkpoint, RefusesAnotherModel) {
   }
 }
 
-// Wherever one bit is changed or the file ends, the checkpoint is refused with a sentence.
+// A checkpoint with a changed bit, in every 97th byte, or cut, at every 211th byte, is refused with
+// a message.
 TEST(Checkpoint, RefusesADamagedFile) {
   const Saved s;
   const std::string good = read_file(s.path);

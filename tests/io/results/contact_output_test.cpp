@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run with contact writes, and that it goes on from a checkpoint as if it had not stopped.
+// Output of a run with contact, and its continuation from a checkpoint with the same results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(ContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
   EXPECT_NEAR(sliding[6], -0.25 * sliding[2], 1e-9);
   EXPECT_EQ(sliding[13], 2.0);
   EXPECT_EQ(sliding[12], 4.0);
-  EXPECT_NEAR(turned[40][6], 0.25 * sliding[2], 1e-9) << "on the body the probe names first";
+  EXPECT_NEAR(turned[40][6], 0.25 * sliding[2], 1e-9) << "sign: on the first body of the probe";
   const std::vector<double>& end = feet.back();
   EXPECT_NEAR(end[2], 10.0, 1e-6);
   EXPECT_EQ(end[13], 1.0);
@@ -116,7 +116,7 @@ TEST(ContactOutput, ARunGoesOnFromACheckpointBitForBit) {
 }
 
 TEST(ContactOutput, ReactionsAndAccelerationsAtAnInstantTakeTheForcesOfContact) {
-  // Half a second after it stopped the block still creeps in its bristles, the less the finer.
+  // Creep of the block by its bristles, half a second after it stopped; it decreases with the step.
   for (const auto& [step, bound] : {std::pair{"5 ms", 1e-5}, {"0.5 ms", 1e-9}}) {
     Simulation simulation(
         read_model_text(kModel, "m.yaml", {std::string("analysis.step=") + step}));

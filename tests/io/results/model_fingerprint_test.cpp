@@ -19,7 +19,7 @@ struct Wave final : TimeFunction {
   double rate_;
 };
 
-/// One of everything.
+/// A model with one entry of every section.
 Model model_of_all() {
   Model m;
   m.gravity = {0.0, 0.0, -9.81};
@@ -122,7 +122,7 @@ TEST(ModelFingerprint, LeavesOutWhatARunMayBeContinuedWith) {
     change(other);
     EXPECT_EQ(model_fingerprint(other), fingerprint);
   }
-  // Shapes are only drawn where nothing touches.
+  // Without contact, shapes are used in pictures only.
   Model drawn = model_of_all();
   drawn.contacts.present = false;
   const std::string without = model_fingerprint(drawn);
@@ -167,7 +167,7 @@ TEST(ModelFingerprint, ChangesWithEveryBoundFieldThatARunMayNotBeContinuedWith) 
     }
 }
 
-/// What a mesh file holds counts, not where it lies.
+/// The content of a mesh file enters the fingerprint, not its path.
 TEST(ModelFingerprint, ReadsMeshFiles) {
   const test::Scratch scratch;
   const auto with_mesh = [&](const std::string& name, const std::string& text) {

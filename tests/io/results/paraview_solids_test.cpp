@@ -32,7 +32,7 @@ std::vector<T> array(const std::string& file, const std::string& tag, const std:
   return values;
 }
 
-/// A report in which every number is known from its node or element.
+/// A report whose numbers are functions of the node or element.
 SolidReport report_of(const Mesh& mesh) {
   SolidReport report;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
@@ -85,7 +85,8 @@ TEST(SolidsWriter, ShowsEverySolidWhereItIs) {
             (std::vector<float>{1, 2, 3, 4, 5, 6}));  // xx, yy, zz, xy, yz, xz.
 }
 
-/// VTK's cells have a positive volume: the triangle 0 1 2 of a wedge is seen from outside.
+/// Node order of VTK's cells of positive volume: the normal of the triangle 0 1 2 of a wedge points
+/// outwards.
 TEST(SolidsWriter, TurnsWedgesAsVtkWantsThem) {
   const test::Scratch scratch;
   const Mesh wedge = make_mesh("w", "block", {{"size", {1, 1, 1}}, {"cells", {1, 1, 1}}}, "wedge6");

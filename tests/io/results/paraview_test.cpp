@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Numbers of a named array of a .vtp file, found the way a reader finds them: by its offset.
+/// Numbers of a named array of a .vtp file, read by its offset.
 template <class T>
 std::vector<T> array(const std::string& vtp, const std::string& name) {
   std::smatch match;

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr int kBodies = 40;
 
-/// Frame k, in which every number is known.
+/// Frame k, whose numbers are functions of k and their place.
 ResultsFrame frame(int k) {
   ResultsFrame f;
   f.t = 0.5 * k;
@@ -91,7 +91,7 @@ TEST(ResultsReader, ReadsAFileCutShortUpToItsLastWholeFrame) {
     for (std::size_t k = 0; k < t.size(); ++k) {
       EXPECT_EQ(t[k], 0.5 * static_cast<double>(k));
       for (std::size_t i = 0; i < kBodies; ++i) {
-        ASSERT_EQ(r[3 * (k * kBodies + i)], static_cast<double>(k)) << "a frame that is not whole";
+        ASSERT_EQ(r[3 * (k * kBodies + i)], static_cast<double>(k)) << "an incomplete frame";
         ASSERT_EQ(omega[3 * (k * kBodies + i) + 2], 3.0 * static_cast<double>(k));
       }
     }

@@ -30,7 +30,7 @@ ResultsLayout layout(int bodies) {
   return l;
 }
 
-/// A frame in which every number is known from the frame's number k and its place.
+/// A frame whose numbers are functions of the frame's number k and their place.
 ResultsFrame frame(const ResultsLayout& l, int k) {
   ResultsFrame f;
   f.t = 0.5 * k;
@@ -99,7 +99,7 @@ print(results["provenance"].attrs["version"], results["provenance/model"].asstr(
             "1.2.3 format: 1\n\n");
 }
 
-/// Joints with friction or limits have data sets of their own, others have none.
+/// Data sets of joints with friction or limits; other joints have none.
 TEST(ResultsFile, HoldsFrictionAndStopsOfJoints) {
   const test::Scratch scratch;
   ResultsLayout l = layout(1);
@@ -132,7 +132,7 @@ print([name for name in joints["free"]], "stops" in joints["pin"], "friction" in
             "['coordinates', 'force', 'moment', 'rates'] False False\n");
 }
 
-/// Solids have their nodes and elements side by side, and what holds them under its name.
+/// Data sets of solids: nodes and elements of all solids in sequence, interfaces by name.
 TEST(ResultsFile, HoldsDeformableSolids) {
   const test::Scratch scratch;
   Mesh mesh;
@@ -154,7 +154,7 @@ TEST(ResultsFile, HoldsDeformableSolids) {
       report.elements[static_cast<std::size_t>(e)].cauchy(2, 2) = 10.0 * k + e;
       report.elements[static_cast<std::size_t>(e)].strain_energy_density = e;
     }
-    // As means over the elements around.
+    // Means over the adjacent elements.
     report.nodal.cauchy.assign(5, Mat3::Zero());
     report.nodal.von_mises = {0, 0, 0, 10.0 * k, 10.0 * k + 1.0};
     report.nodal.strain_energy_density = {0.5, 0.5, 0.5, 0.0, 1.0};
@@ -233,17 +233,17 @@ TEST(ResultsFile, HoldsAModelWithoutJointsAndLoads) {
 }
 
 // The number of complete frames is the length of `time`; a writer that is killed at any moment
-// leaves at least the frames older than the time it may hold them back.
+// leaves at least the frames older than its buffering time.
 TEST(ResultsFile, IsWholeAfterItsWriterWasKilled) {
   const test::Scratch scratch;
   const ResultsLayout l = layout(20);
   for (const int milliseconds : {60, 137, 211, 305}) {
     const std::string path = scratch / "killed.h5";
-    int first_frame[2];  // The writer says when one stands.
+    int first_frame[2];  // The writer signals that the first frame is written.
     ASSERT_EQ(pipe(first_frame), 0);
     const pid_t writer = fork();
     if (writer == 0) {
-      alarm(10);  // Ends by itself should the test be killed.
+      alarm(10);  // The process ends even if the test is killed.
       ResultsFile file(path, l, {});
       for (int k = 0;; ++k) {
         file.append(frame(l, k));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run with surfaces of solids in contact writes, and that it goes on from a checkpoint as if
-// it had not stopped.
+// Output of a run with contact of solids' surfaces, and its continuation from a checkpoint with the
+// same results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 
 using test::csv_rows, test::recorded_run;
 
-/// A rubber block lands on a floor that slopes less than friction holds, and a ball on the block.
+/// A rubber block that lands on an inclined floor, below the angle of friction, and a ball that
+/// lands on the block.
 const char* kModel = R"(
 format: 1
 title: Block and ball
@@ -51,8 +52,8 @@ TEST(SurfaceContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
   const auto foot = csv_rows(scratch / "out/probes/foot.csv"),
              head = csv_rows(scratch / "out/probes/head.csv");
   ASSERT_EQ(foot.front().size(), 16U);
-  // The probe gives forces on what it names first: the floor carries block and ball, the block
-  // carries the ball. Impulses balance the change of momentum in every direction.
+  // The probe gives forces on its first entry: the floor carries block and ball, the block carries
+  // the ball. Impulses balance the change of momentum in every direction.
   const Balance b = simulation.balance();
   const double t = simulation.time();
   Vec3 on_block = Vec3::Zero(), on_ball = Vec3::Zero();
@@ -65,7 +66,8 @@ TEST(SurfaceContactOutput, HoldsForcesImpulsesAndLossesThatNewtonsLawsDemand) {
   EXPECT_LT((on_block + 1.5 * t * g - b.linear_momentum).norm(), 1e-9);
   EXPECT_LT((on_ball + 0.5 * t * g - 0.5 * simulation.body(1).v).norm(), 1e-9);
   EXPECT_GT(on_ball[2], 1.0);
-  EXPECT_NEAR(foot.back()[14], on_block[2], 1e-9) << "a plane: pressure is all of the normal force";
+  EXPECT_NEAR(foot.back()[14], on_block[2], 1e-9)
+      << "on a plane the sum of pressures is the normal force";
   double most = 0.0;
   for (const std::vector<double>& row : foot)
     if (row[2] > 0.0) most = std::max(most, std::hypot(row[6], row[7]) / row[2]);
@@ -92,7 +94,7 @@ TEST(SurfaceContactOutput, ARunGoesOnFromACheckpointBitForBit) {
   Simulation straight(model);
   const RunSummary whole = recorded_run(straight, scratch / "straight");
   Model half = model;
-  half.analysis.duration = 0.1;  // the block deforms and rubs
+  half.analysis.duration = 0.1;  // the block is deformed and slides
   Simulation first(half);
   ASSERT_EQ(recorded_run(first, scratch / "cut").end, RunEnd::finished);
   write_checkpoint(scratch / "c.pst", first.model(), first.system(), first.state());

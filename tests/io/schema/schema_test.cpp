@@ -37,7 +37,7 @@ TEST(Schema, DefinesWhatItRefersTo) {
   }
 }
 
-/// The published schema takes the good models and refuses those whose keys or kinds are wrong.
+/// The published schema accepts the good models and refuses those with wrong keys or kinds.
 TEST(Schema, AgreesWithTheReader) {
   const fs::path file = fs::temp_directory_path() / "polhode_schema_test.json";
   std::ofstream(file) << json_schema();
@@ -52,7 +52,7 @@ TEST(Schema, AgreesWithTheReader) {
   EXPECT_EQ(code, 0);
 }
 
-/// docs/reference/model_file.md is made from the field tables. To make it anew, run this test with
+/// docs/reference/model_file.md is made from the field tables. To regenerate it, run this test with
 /// POLHODE_WRITE_REFERENCE=1 in the environment.
 TEST(Schema, ReferencePageIsUpToDate) {
   const fs::path page = kRoot / "docs/reference/model_file.md";

@@ -52,7 +52,7 @@ TEST(SpecMember, RefusesAnotherSpec) {
   EXPECT_THROW(static_cast<void>(fields_of<Trip>(analysis_fields())), std::logic_error);
 }
 
-/// Else the tests that go through all bound fields would pass over it.
+/// Other specs would be skipped by the tests of all bound fields.
 TEST(SpecMember, BelongsToOneOfTheSpecsThatAreTested) {
   for (const FieldTable* table : all_field_tables())
     for (const Field& field : table->fields)

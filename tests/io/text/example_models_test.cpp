@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry and masses: ours, the same as in the tables of time per step; the N-four-bar is that of
-// the IFToMM library of computational benchmark problems (case A02).
+// Geometry and masses of the built-in models, the same as in the tables of time per step; the
+// N-four-bar is that of the IFToMM library of computational benchmark problems (case A02).
 #include <polhode/io/text/example_models.hpp>
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ Model model_of(const std::string& name, const std::map<std::string, std::string>
   throw std::logic_error("no generator " + name);
 }
 
-/// The point of a joint in the world as body b has it.
+/// Point Z of body b, in the ground frame.
 Vec3 place(const Model& model, const JointSpec& joint, int body, const Vec3& Z) {
   (void)joint;
   if (body == kGround) return Z;
@@ -46,7 +46,8 @@ TEST(ModelGenerators, CountBodiesAndJointsOfTheFourBar) {
   EXPECT_EQ(model.bodies[0].name, "b0");
   EXPECT_EQ(model.bodies[40].position, Vec3(40, 0.5, 0));  // The last upright.
   EXPECT_EQ(model.bodies[41].position, Vec3(0.5, 1, 0));   // The first bar.
-  EXPECT_EQ(model.bodies[0].inertia(0, 0), 1.0 / 12.0);    // Every bit, so that figures compare.
+  EXPECT_EQ(model.bodies[0].inertia(0, 0),
+            1.0 / 12.0);  // Exact, so that published figures can be compared.
   EXPECT_EQ(model.bodies[0].inertia(1, 1), 1e-3);
   EXPECT_EQ(model.bodies[41].inertia(0, 0), 1e-3);
   EXPECT_EQ(model.bodies[0].angular_velocity, Vec3(0, 0, -1));

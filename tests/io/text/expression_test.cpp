@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// SI value at t of a text taken as a value of this dimension; NaN if it is refused.
+/// SI value at t of a text, read as a value of this dimension; NaN if it is refused.
 double value(const std::string& text, const Dimension& wanted = {}, const UnitSystem& units = {},
              const Variables& variables = {}, double t = 0.0) {
   ExpressionFault fault;

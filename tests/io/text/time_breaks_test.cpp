@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where functions of time break, and bounds of how they bend.
+// Breaks (jumps and kinks) of functions of time, and bounds of values and second derivatives.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -75,7 +75,7 @@ TEST(ExpressionBreaks, AreNoneWhereNothingTakesOver) {
     EXPECT_FALSE(expression(text)->next_break(0.0, 10.0).exists()) << text;
 }
 
-/// A run that is continued asks from elsewhere, and must meet the same breaks to the last bit.
+/// A continued run starts its search at another time and must find bitwise the same breaks.
 TEST(ExpressionBreaks, DoNotHangOnWhereTheSearchBegins) {
   const auto f = expression("sin(17*t) > 0.3 ? 1 : t");
   for (const TimeBreak& b : breaks(*f, 20.0))

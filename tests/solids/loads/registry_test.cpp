@@ -32,7 +32,7 @@ SolidLoadDescription description(const SolidLoadKind& kind, const ElementKind& e
 }
 
 /// A load is external and has its tangent. Its work over a step at ρ∞ = 1 is force times
-/// displacement, stored if it is dead and constant, else put in.
+/// displacement, stored energy if it is dead and constant, else supplied.
 void check_laws(const SolidLoadKind& kind, const SolidLoadDescription& d, const SolidStep& moved,
                 bool potential) {
   const ElementGroups groups = kind.make(d);

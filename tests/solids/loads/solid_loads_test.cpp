@@ -131,7 +131,7 @@ TEST_P(ClosedSurface, IsLoadedByItsAreaAndNotMovedByAPressure) {
   EXPECT_LT(sum.norm(), 1e-13 * 3.0 * 24.0);
   EXPECT_NEAR(total[2], -2.0 * total[0], 1e-13 * total.norm());
   EXPECT_EQ(total[1], 0.0);
-  // Dead and constant: a potential. Pressure at the start pushes on the volume it finds.
+  // Dead and constant: a potential. Pressure at the start acts on the undeformed volume.
   const double stored = step.work(*traction).stored;
   SolidStep start = step;
   start.stand_still();

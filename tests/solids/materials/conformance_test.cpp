@@ -18,7 +18,7 @@ Vec6 voigt(const Mat3& E) {
   return v;
 }
 
-/// Strain of a deformation gradient near a turned identity.
+/// Strain of a deformation gradient near a rotation.
 Vec6 strain(Random& random, double size) {
   Mat3 F = Mat3::Identity();
   for (int i = 0; i < 9; ++i) F.data()[i] += random.number(size);
@@ -99,7 +99,7 @@ TEST_P(EveryMaterial, HasTheTangentOfItsDiscreteStress) {
       const Vec6 E_1 = E_0 + step * strain(random, 1.0);
       Mat6 D = discrete_stress(*material_, E_0, E_1, A_).D / modulus_;
       D.rightCols<3>() *= 2.0;
-      // A switch of the fibres within the stencil costs digits.
+      // A switch of the fibres within the stencil makes differences less accurate.
       const double tolerance = material_->has_fibres() ? 1e-4 : 1e-8;
       expect_derivative(
           D,
@@ -129,7 +129,7 @@ TEST_P(EveryMaterial, DoesNotMindWhichEndComesFirst) {
 TEST_P(EveryMaterial, SaysThatAnInvertedVolumeIsNoNumber) {
   Vec6 flat = Vec6::Zero();
   flat[0] = -0.5;
-  if (GetParam().kind == "elastic") GTEST_SKIP() << "knows nothing of volume";
+  if (GetParam().kind == "elastic") GTEST_SKIP() << "its energy does not depend on the volume";
   EXPECT_FALSE(std::isfinite(strain_energy(*material_, flat, A_)));
 }
 
@@ -165,7 +165,7 @@ TEST(MooneyRivlinUncoupled, HasAStressOfShapeThatDoesNotPressAndAPressureOfVolum
   EXPECT_NEAR(pressure(true), 1e9 * std::log(J) / J, 1e-13 * 1e9);
 }
 
-// A fibre pulled from below rest to above in one step: the work is the energy above rest only.
+// A fibre that goes from slack to taut in one step: the work is the energy of the taut part only.
 TEST(Fibres, AreExactAcrossTheSwitchWithinAStep) {
   const auto with = make_material("m", {.kind = "neo_hookean",
                                         .values = {{"lame", 1.0}, {"shear_modulus", 1.0}},

@@ -16,7 +16,7 @@ Mesh block(int cells, double at = 0.0) {
   return mesh;
 }
 
-/// Both meshes in one, their nodes side by side.
+/// Both meshes in one, with separate nodes.
 Mesh both(const Mesh& a, const Mesh& b) {
   Mesh sum = a;
   const int shift = static_cast<int>(a.nodes.size());

@@ -85,8 +85,8 @@ Flux flux(const Mesh& mesh, const Surface& surface) {
 
 class EveryGenerator : public testing::TestWithParam<std::tuple<std::size_t, std::string>> {};
 
-// Were two neighbours to halve their common face differently, it would count as boundary twice and
-// the fluxes would not cancel; were a cell turned, its volume would be lost.
+// If two neighbours divided their common face differently, it would count as boundary twice and the
+// fluxes would not cancel; if a cell were inverted, its volume would be missing.
 TEST_P(EveryGenerator, FillsItsShapeWithoutGaps) {
   const auto& [index, type] = GetParam();
   const Solid& solid = solids()[index];
@@ -103,7 +103,7 @@ TEST_P(EveryGenerator, FillsItsShapeWithoutGaps) {
   const double size = extent(mesh).size();
   EXPECT_LT(outside.area.norm(), 1e-12 * size * size);
   EXPECT_NEAR(outside.volume, filled, 1e-12 * filled);
-  // Straight sides cut off parts of a circle: sin(h)/h of 16 sides is 1 − 2.6e-2; of a sphere twice
+  // Area lost by straight sides of a circle: sin(h)/h of 16 sides is 1 − 2.6e-2; of a sphere twice
   // as much. Quadratic sides leave the square of that.
   const bool quadratic = cell_shape(type).order == 2;
   const double tolerance = index == 0 ? 1e-12 : quadratic ? 2e-3 : 0.1;

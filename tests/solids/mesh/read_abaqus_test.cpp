@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Two bricks one above the other, unit cubes, with numbers that are no indices.
+/// Two bricks one above the other, unit cubes, with numbers that are not consecutive.
 std::string two_bricks(const std::string& rest) {
   std::string text = "** written by hand\n*Heading\n two bricks\n*Node, nset=All\n";
   for (int z = 0; z < 3; ++z)
@@ -55,7 +55,7 @@ TEST(ReadAbaqus, GathersSets) {
   EXPECT_THAT(mesh_faults(mesh), testing::IsEmpty());
 }
 
-// Each face by its Abaqus name, where it stands on a unit cube, a tetrahedron, a wedge.
+// Each face by its Abaqus name and its position on a unit cube, a tetrahedron, a wedge.
 TEST(ReadAbaqus, KnowsTheFacesOfSolids) {
   const auto middle = [](const Mesh& mesh, const char* name) {
     const Surface& surface = mesh.surfaces.at(name);
@@ -158,7 +158,7 @@ TEST(ReadAbaqus, LocatesWhatItRefuses) {
             "part.inp: the file has no nodes. Check that it is the mesh you meant.");
 }
 
-// A set that names itself would double with every line.
+// A set that contains itself would double with every line.
 TEST(ReadAbaqus, KeepsSetsOfSetsSmall) {
   std::string text = two_bricks("*NSET, NSET=a\n100, 101\n*NSET, NSET=a\n");
   for (int i = 0; i < 100; ++i) text += "a, a, a, a, a, a, a, a\n";

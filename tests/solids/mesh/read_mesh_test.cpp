@@ -66,7 +66,7 @@ TEST_P(MeshFile, HasElementsOfItsType) {
   EXPECT_THAT(mesh_faults(mesh_), IsEmpty());
 }
 
-// A node out of place would not lie in the middle of its edge, face or cell.
+// A misplaced node would not be in the middle of its edge, face or cell.
 TEST_P(MeshFile, HasEveryNodeWhereTheShapeHasIt) {
   const CellShape& shape = mesh_.blocks[0].shape();
   const CellShape& linear = cell_shape(shape.corners == 8   ? "hex8"
@@ -114,7 +114,8 @@ TEST_P(MeshFile, HasItsGroups) {
     for (int node : mesh_.node_sets.at("foot")) EXPECT_NEAR(mesh_.nodes[node][2], 0.0, kRounding);
     return;
   }
-  // Surfaces face outward, whatever way the file has them; the one between looks out of either.
+  // Surfaces face outward in any order of nodes in the file; the surface between the blocks faces
+  // out of either.
   const std::string foot = gmsh ? "foot" : "Surface5", top = gmsh ? "top" : "Surface49";
   EXPECT_LT((area(mesh_, mesh_.surfaces.at(foot)) - Vec3(0, 0, -2)).norm(), 10.0 * kRounding);
   EXPECT_LT((area(mesh_, mesh_.surfaces.at(top)) - Vec3(0, 0, 2)).norm(), 10.0 * kRounding);
@@ -127,7 +128,7 @@ TEST_P(MeshFile, HasItsGroups) {
     }
 }
 
-// However short the file is cut, the answer is a located error or, near its end, the mesh.
+// A file cut at up to 300 lengths gives a located error or, near its end, the mesh.
 TEST_P(MeshFile, CutShortIsRefused) {
   const std::string bytes = bytes_of(GetParam());
   int whole = 0;
@@ -140,11 +141,11 @@ TEST_P(MeshFile, CutShortIsRefused) {
       EXPECT_FALSE(e.hint().empty());
     }
   }
-  // Abaqus files have no end; the others miss theirs.
+  // Abaqus files have no end mark; the other formats detect a missing one.
   EXPECT_LE(whole, GetParam().ends_with(".inp") ? 300 : 8);
 }
 
-// Bytes overwritten at places that a fixed rule chooses: nothing but a mesh or an InputError.
+// Bytes overwritten at positions of a fixed rule: the result is a mesh or an InputError.
 TEST_P(MeshFile, DamagedDoesNoHarm) {
   const std::string bytes = bytes_of(GetParam());
   std::uint32_t random = 12345;
@@ -171,7 +172,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& one) {
 }
 INSTANTIATE_TEST_SUITE_P(Files, MeshFile, testing::ValuesIn(files()), test_name);
 
-// What fuzzers found once must stay mended.
+// Files on which fuzzers once found failures.
 TEST(ReadMesh, WithstandsWhatFuzzersFound) {
   int inputs = 0;
   for (const auto& entry :
