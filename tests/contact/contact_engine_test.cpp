@@ -137,11 +137,13 @@ TEST(Stack, OfTenBoxesStands) {
   EXPECT_LT(s.drift(), 1e-9);
 }
 
-TEST(FreeCollision, OfBodiesOfEveryShapeKeepsEnergyAndMomenta) {
+TEST(FreeCollision, OfEveryPairOfShapesKeepsEnergyAndMomenta) {
   const auto all = every_shape();
-  for (const auto& [i, j] : {std::pair(2, 2), {6, 6}, {0, 2}, {1, 6}, {5, 2}, {3, 2}, {7, 0}}) {
-    for (unsigned seed = 1; seed <= 1; ++seed) {
-      Random random(seed);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i; j < all.size(); ++j) {
+      if (!all[i].shape.bounded() || !all[j].shape.bounded()) continue;  // overlaps at the start
+      SCOPED_TRACE(all[i].name + " and " + all[j].name);
+      Random random(static_cast<unsigned>(1 + i + all.size() * j));
       Scene s(Vec3::Zero());
       BodyMotion m = random.motion();
       m.r.setZero();
@@ -154,15 +156,13 @@ TEST(FreeCollision, OfBodiesOfEveryShapeKeepsEnergyAndMomenta) {
       s.law(0.0, 1.0);
       s.begin(1e-2);
       const Vec3 v_before = s.motion(a).v;
-      for (int k = 0; k < 90; ++k)
-        ASSERT_TRUE(s.step()) << all[i].name << " " << all[j].name << " " << s.last.text();
+      for (int k = 0; k < 90; ++k) ASSERT_TRUE(s.step()) << s.last.text();
       const Ledger& l = s.state.ledger;
-      EXPECT_LT(s.drift(), 1e-10 * l.energy_scale) << all[i].name << " " << all[j].name;
+      EXPECT_LT(s.drift(), 1e-10 * l.energy_scale);
       EXPECT_LT(l.p_drift, 1e-10 * l.p_scale);
       EXPECT_LT(l.l_drift, 1e-10 * l.l_scale);
-      EXPECT_GT((s.motion(a).v - v_before).norm(), 0.1) << all[i].name << " " << all[j].name;
+      EXPECT_GT((s.motion(a).v - v_before).norm(), 0.1) << "they do not meet";
     }
-  }
 }
 
 TEST(Contacts, GoOnBitForBitFromAnArchive) {

@@ -74,7 +74,6 @@ TEST(NormalLaw, StatesStiffnessDepthAndDurationOfItsOwnForce) {
     law.potential = known.potential;
     law.tolerance = 2e-3;
     law.upper = 0.0;
-    law.lower = -law.tolerance;
     const bool spring = law.is_spring();
     EXPECT_EQ(std::isinf(law.floor()), spring) << known.word;
 
@@ -104,6 +103,57 @@ TEST(NormalLaw, StatesStiffnessDepthAndDurationOfItsOwnForce) {
     EXPECT_NEAR(v, speed, 1e-3 * speed) << known.word;
     EXPECT_NEAR(t, stated, (spring ? 1e-3 : 0.05) * stated) << known.word;
   }
+}
+
+/// A spring with a floor: alone above three quarters of the way to it, infinite there. Force and
+/// quotient are those of its energy, also where an impact has moved its activation distance.
+/// @tests{spring-floor}
+TEST(NormalLaw, StiffensASpringNearItsFloor) {
+  for (const NormalPotential potential : {NormalPotential::linear, NormalPotential::hertz})
+    for (const double reach : {0.0, -0.3e-4, -0.8e-4, -0.95e-4}) {
+      SCOPED_TRACE(reach);
+      NormalLaw alone;
+      alone.potential = potential;
+      alone.stiffness = 3e5;
+      alone.tolerance = 1e-4;
+      alone.upper = reach;
+      NormalLaw law = alone;
+      law.lower = -1e-4;
+      EXPECT_EQ(law.floor(), -1e-4);
+      EXPECT_TRUE(std::isinf(alone.floor()));
+      for (const double gap : {1e-5, 0.0, -0.2e-4, -0.75e-4}) {
+        EXPECT_EQ(law.energy(gap), alone.energy(gap));
+        EXPECT_EQ(law.force(gap), alone.force(gap));
+        EXPECT_FALSE(law.is_near_floor(gap));
+      }
+      EXPECT_TRUE(std::isinf(law.energy(-1e-4)));
+      EXPECT_GT(law.force(-0.999e-4),
+                100.0 * law.stiffness * 1e-4 * (potential == NormalPotential::hertz ? 1e-2 : 1.0));
+      for (const double gap : {-0.7500001e-4, -0.8e-4, -0.9e-4, -0.97e-4, -0.999e-4}) {
+        EXPECT_TRUE(law.is_near_floor(gap));
+        const double h = 1e-4 * (gap - law.floor()), energy = law.energy(gap);
+        if (std::abs(gap - reach) > 2.0 * h && std::abs(gap + 0.75e-4) > 2.0 * h) {
+          EXPECT_NEAR(law.force(gap), -(law.energy(gap + h) - law.energy(gap - h)) / (2.0 * h),
+                      1e-6 * law.force(gap));
+          EXPECT_NEAR(law.force_and_slope(gap).slope,
+                      (law.force(gap + h) - law.force(gap - h)) / (2.0 * h),
+                      1e-6 * std::abs(law.force_and_slope(gap).slope));
+        }
+        for (const double from : {2e-5, -0.5e-4, -0.85e-4, -0.99e-4}) {
+          const NormalLaw::WithSlope q = law.quotient_and_slope(from, gap);
+          EXPECT_NEAR(q.value * (from - gap), energy - law.energy(from),
+                      1e-12 * (energy + law.energy(from)));
+          EXPECT_GE(q.value, 0.0);
+        }
+        if (!(energy > 0.0)) continue;
+        EXPECT_NEAR(law.gap_of(energy), gap, 1e-12 * std::abs(gap));
+        for (const double part : {1e-3, 0.5, 1.0}) {
+          NormalLaw again = law.with_stiffness(0.4 * law.stiffness);
+          again.upper = again.reach_for(gap, part * energy);
+          EXPECT_NEAR(again.energy(gap), part * energy, 1e-9 * energy) << gap << ' ' << part;
+        }
+      }
+    }
 }
 
 }  // namespace

@@ -57,9 +57,11 @@ TEST(LineSearch, MakesNewtonsMethodConvergeWhereItDiverges) {
 // The merit of Newton's increment has the slope −2 at its start, which with two values determines
 // the parabola.
 TEST(LineSearch, GoesToTheMinimumOfTheParabola) {
+  LineSearchRule rule = kReduceMerit;
+  rule.searches_for_kink = false;
   for (const double best : {0.12, 0.25, 0.45}) {
     const auto parabola = [&](double p) { return 1.0 - 2.0 * p + p * p / best; };
-    const Search s = search(kReduceMerit, parabola);
+    const Search s = search(rule, parabola);
     EXPECT_TRUE(s.accepted);
     ASSERT_EQ(s.tried.size(), 2U);
     EXPECT_NEAR(s.tried[1], best, 1e-15);

@@ -3,6 +3,9 @@
 // and the motion by impulses compared with that by forces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
@@ -145,6 +148,61 @@ TEST(SpringLaws, HoldABlockOnASlopeAtAnyStep) {
 }
 
 /// Smallest gap of a body on a plane with a spring law, through a restart.
+// Springs of given stiffness that are too soft for the rounded edges of their boxes: below them
+// nothing passes, energy is exact, and a warning names the pair.
+// @tests{spring-floor}
+TEST(SpringLaws, StopSoftContactsAtTheRoundingOfEdges) {
+  const std::string bodies =
+      "  crate: {fixed: true, shape: {box: [1, 1, 0.2]}, position: [0, 0, -0.1]}\n"
+      "  a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}";
+  const double rounding = 2e-4;
+  for (const char* law : {"linear, stiffness: 1e4", "hertz, hertz_stiffness: 1e6"})
+    for (const double step : {1e-2, 1e-3, 1e-4}) {
+      SCOPED_TRACE(format("{} at {} s", law, step));
+      Simulation s = Scene{bodies, "friction: 0.3"}.with(law, step);
+      const RunSummary end = s.run();
+      EXPECT_LT(s.body("a").v.norm(), 1e-6);
+      EXPECT_LT(end.contacts->least_gap, -0.6 * rounding);
+      EXPECT_GT(end.contacts->least_gap, -0.9 * rounding);
+      EXPECT_LT(end.energy_drift, 1e-12);
+      EXPECT_NEAR(s.point("a", Vec3::Zero()).acceleration.norm(), 0.0, 1e-3);
+      EXPECT_TRUE(std::any_of(end.warnings.begin(), end.warnings.end(), [](const auto& warning) {
+        return warning.find("'crate' and 'a' overlapped") != std::string::npos;
+      }));
+    }
+  // A stiffness that carries the box, by four corners or more, without that warning.
+  Simulation s = Scene{bodies, "friction: 0.3"}.with("linear, stiffness: 1e6", 1e-3);
+  const RunSummary end = s.run();
+  EXPECT_LT(s.body("a").r.z() - 0.1, -kG / 1e7);
+  EXPECT_GT(s.body("a").r.z() - 0.1, -kG / 4e6 - 1e-8);
+  for (const std::string& warning : end.warnings)
+    EXPECT_EQ(warning.find("overlapped"), std::string::npos) << warning;
+}
+
+TEST(SpringLaws, ReboundFromTheRoundingOfEdges) {
+  const std::string bodies =
+      "  crate: {fixed: true, shape: {box: [1, 1, 0.2]}, position: [0, 0, -0.1]}\n"
+      "  a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.11], velocity: [0, 0, -2]}";
+  for (const char* law : {"linear, stiffness: 1e5", "hertz, hertz_stiffness: 1e7"})
+    for (const double e : {0.0, 0.5, 1.0})
+      for (const double step : {5e-3, 1e-3, 1e-4, 1e-5}) {
+        SCOPED_TRACE(format("{} e {} at {} s", law, e, step));
+        Simulation s =
+            Scene{bodies, format("restitution: {}, friction: 0", e)}.with(law, step, 0.02);
+        const RunSummary end = s.run();
+        EXPECT_GT(end.contacts->least_gap, -0.9 * 2e-4);
+        EXPECT_LT(end.energy_drift, 2e-11);
+        const double approach = std::sqrt(4.0 + 2.0 * kG * 0.01);
+        const double v = s.body("a").v.z(), z = s.body("a").r.z() - 0.1;
+        const double squared = v * v + 2.0 * kG * z;  // of the separation
+        if (e > 0.0) {
+          EXPECT_NEAR(std::sqrt(squared), e * approach, 2e-3 * approach);
+        } else {
+          EXPECT_LT(std::abs(v), 0.05 * approach);  // its spring swings, damped
+        }
+      }
+}
+
 TEST(SpringLaws, RememberTheSmallestGap) {
   const Scene scene{kBall, "restitution: 0.5", 0.3};
   for (const char* law : {"hertz", "linear"}) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <support/convergence.hpp>
@@ -229,6 +230,10 @@ output: {hdf5: false}
                                "coin.yaml"));
   const RunSummary summary = s.run();
   EXPECT_EQ(summary.end, RunEnd::not_converged);
+  EXPECT_THAT(summary.message, testing::HasSubstr("'it'"));
+  // An upright wheel of a slim disc falls in some sqrt(R/g).
+  EXPECT_GT(s.time(), 0.1);
+  EXPECT_LT(s.time(), 1.0);
 }
 
 }  // namespace polhode::rolling_tests

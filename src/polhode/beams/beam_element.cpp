@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include <Eigen/Cholesky>
 #include <polhode/beams/beam_element.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/math/dense.hpp>
 #include <polhode/system/mass_coupling.hpp>
 
 namespace polhode {
@@ -132,13 +132,13 @@ Vec9 relative_motion(const Vec6& of_1, const Vec6& of_2, const Vec3& z_1, const 
 
 /// @eq{beam-residual-flexibility}
 Mat6 with_residual_flexibility(const Mat6& C, double L) {
-  Mat6 S = C.inverse();
+  Mat6 S = inverse(C);
   const Eigen::Matrix2d bending = S.bottomRightCorner<2, 2>() * (L * L / 12.0);
   S(1, 1) += bending(1, 1);  // M_z varies with V_y, M_y with −V_z
   S(2, 2) += bending(0, 0);
   S(1, 2) -= bending(0, 1);
   S(2, 1) -= bending(1, 0);
-  const Mat6 stiffened = S.inverse();
+  const Mat6 stiffened = inverse(S);
   return 0.5 * (stiffened + stiffened.transpose());
 }
 
@@ -172,8 +172,7 @@ BeamElement::BeamElement(const BeamElementSpec& spec)
   bodies = spec.bodies;
   const std::string where = format("beam '{}'", name);
   if (!(L_ > 0.0)) throw InputError(where, "has no length", "Give it two distinct points");
-  const Eigen::LLT<Mat6> factor(spec.stiffness);
-  if (factor.info() != Eigen::Success)
+  if (!is_positive_definite(spec.stiffness))
     throw InputError(where, "has a section stiffness that is not positive definite",
                      "Give it positive stiffnesses, and couplings that are not too large");
   if (coupled_mass_ != 0.0 && (!end_1_.Z.isZero(0.0) || !end_2_.Z.isZero(0.0)))

@@ -5,6 +5,7 @@
 #include <polhode/compile/beam_contact.hpp>
 #include <polhode/core/error.hpp>
 #include <polhode/core/format.hpp>
+#include <polhode/math/dense.hpp>
 
 namespace polhode {
 
@@ -30,7 +31,7 @@ ShapeSpec bar(const Vec3& from, const Vec3& to, const Vec3& along, double radius
   shape.type = "capsule";
   shape.sizes = {2.0 * radius, (to - from).norm() + 2.0 * radius};
   shape.position = 0.5 * (from + to);
-  shape.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), along);
+  shape.orientation = rotation_between(Vec3::UnitZ(), along);
   return shape;
 }
 

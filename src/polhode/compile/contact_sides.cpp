@@ -6,6 +6,7 @@
 #include <polhode/compile/contact_sides.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/core/names.hpp>
+#include <polhode/math/dense.hpp>
 
 namespace polhode {
 
@@ -78,7 +79,7 @@ contact::ShapePlace shape_place(const BodySpec& body, const ShapeSpec& shape) {
                             shape.orientation.normalized().toRotationMatrix()};
   if (shape.type == "plane") {
     const Vec3 n(shape.sizes[0], shape.sizes[1], shape.sizes[2]);
-    place.axes = place.axes * Quat::FromTwoVectors(Vec3::UnitZ(), n).toRotationMatrix();
+    place.axes = place.axes * rotation_between(Vec3::UnitZ(), n).toRotationMatrix();
   }
   if (!body.fixed) return place;
   const Mat3 R = body.orientation.normalized().toRotationMatrix();

@@ -35,6 +35,7 @@ std::vector<ShapePairReport> ContactSet::reports() const {
     r.dissipated += p.report.work.dissipated + p.impact_loss + p.friction_loss;
     r.impact_loss += p.report.normal_loss + p.impact_loss;
     if (p.unresolved) ++r.unresolved;
+    if (!p.open_stiffness && p.data.normal.is_near_floor(p.report.gap_n1)) r.near_floor = true;
     if (p.report.normal_force == 0.0) continue;
     r.points += p.data.pair.weight > 0.0 ? 1 : -1;
     if (p.report.after.slips)

@@ -19,8 +19,9 @@ struct ShapePairReport {
   ContactStatus status = ContactStatus::open;
   double dissipated = 0.0;   ///< In the step, impacts included [J].
   double impact_loss = 0.0;  ///< The part of it due to impacts [J].
-  int unresolved = 0;  ///< Points that closed in an impact of fewer than twenty steps although
-                       ///< their law has a given stiffness or damper.
+  int unresolved = 0;       ///< Points that closed in an impact of fewer than twenty steps although
+                            ///< their law has a given stiffness or damper.
+  bool near_floor = false;  ///< A spring of given stiffness is stiffer there than stated.
 };
 
 /// Two shapes that overlap.

@@ -16,6 +16,8 @@ namespace {
 constexpr double kRestDamping = 0.3;
 /// Largest tolerance of rounded shapes, as a part of their rounding radius.
 constexpr double kOfRounding = 0.85;
+/// Overlap of rounded shapes that springs do not reach, as a part of their rounding radius.
+constexpr double kDeepest = 0.9;
 /// Ratio of margin to required margin above which candidates are found again, as after a diverged
 /// iteration.
 constexpr double kWideMargin = 8.0;
@@ -195,12 +197,12 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.may_be_closed_form = d.a && is_closed_form_point(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
+  p.floor = !spring ? -tolerance : plane ? kNoFloor : -kDeepest * rounding;
   const PointHistory& h = d.history;
   if (h.closed && h.stiffness > 0.0)
     set_band(p, h.stiffness, h.reach, h.floor);
   else
-    set_band(p, k, 0.0, -tolerance);
-  if (spring) p.least_gap = plane ? -std::numeric_limits<double>::infinity() : -0.9 * rounding;
+    set_band(p, k, 0.0, p.floor);
   set_phase(p, h.phase);
 
   d.friction = law.friction;

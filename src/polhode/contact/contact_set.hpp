@@ -157,6 +157,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
     std::array<std::uint64_t, 2> key{};
     PointData data;
     double restitution = 0.0;
+    double floor = 0.0;               ///< Of the band of a point that closes [m].
     double least_gap = 0.0;           ///< No step may end below this gap [m].
     bool damped = false;              ///< Rebounds by a damper.
     double damping_number = 0.0;      ///< c |w_pre| of a damped rebound [-].
@@ -200,6 +201,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   [[nodiscard]] double slow_speed(const Point& p, double force, double dt) const;
   [[nodiscard]] double fallen(const Point& p, const Vec3& n) const;
   void set_phase(Point& p, ContactPhase phase) const;
+  /// Floor of springs on shapes without bounds, whose overlap has no limit [m].
+  static constexpr double kNoFloor = std::numeric_limits<double>::lowest();
   void set_band(Point& p, double stiffness, double upper, double lower) const;
   void start_band(Point& p) const;
   void store_again(Point& p, double stiffness, double energy) const;

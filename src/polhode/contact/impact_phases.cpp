@@ -2,6 +2,7 @@
 // Impacts and resting contact: the phases of a point from closing to opening.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <polhode/contact/contact_set.hpp>
@@ -44,7 +45,7 @@ void ContactSet::set_band(Point& p, double stiffness, double upper, double lower
   law.stiffness = p.data.history.stiffness = stiffness;
   law.upper = p.data.history.reach = upper;
   law.lower = p.data.history.floor = lower;
-  if (!law.is_spring()) p.least_gap = lower;
+  p.least_gap = lower > kNoFloor ? lower : -std::numeric_limits<double>::infinity();
 }
 
 void ContactSet::set_phase(Point& p, ContactPhase phase) const {
@@ -62,9 +63,11 @@ void ContactSet::set_phase(Point& p, ContactPhase phase) const {
 }
 
 /// Starts the barrier's band at the present gap. A gap that is within the band although no force
-/// acted on the path to it, as at the start, stores no energy.
+/// acted on the path to it, as at the start, stores no energy. A spring has its floor below it.
 void ContactSet::start_band(Point& p) const {
   const NormalLaw& law = p.data.normal;
+  if (law.is_near_floor(p.gap_n))
+    set_band(p, law.stiffness, law.reach(), NormalLaw::floor_below(p.gap_n));
   if (law.is_spring() || of_surface(p.data.pair.kind)) return;
   const double least = kMinBand * law.tolerance, standard = -law.tolerance;
   const double lower = std::min(standard, p.gap_n - least);
@@ -136,7 +139,7 @@ void ContactSet::begin_phase(Point& p, double speed, double dt) const {
     set_phase(p, ContactPhase::landing);
   }
   if (!p.open_stiffness) k = p.rest_stiffness;
-  set_band(p, k, 0.0, -p.data.normal.tolerance);
+  set_band(p, k, 0.0, p.floor);
   if (p.gap_n >= p.data.normal.reach()) return;
   h.closed = true;
   h.gap = p.gap_n;

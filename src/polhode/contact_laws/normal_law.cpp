@@ -26,15 +26,48 @@ constexpr double kLinearImpact = 1.0, kHertzImpact = 1.25;
 /// Duration of an impact over the ratio of greatest depth and speed, of Hertz's law and of the
 /// barrier at small depths, where its force is k δ²/d̂.
 constexpr double kHertzTime = 2.9432, kBarrierTime = 2.8044;
+/// Part of the way to its floor from which a spring stiffens.
+constexpr double kSpringAlone = 0.75;
+constexpr int kBisections = 200;
+
+/// Solution of f = 0 for an increasing f between low and high, by bisection to the last digit.
+template <class F>
+double bisect(double low, double high, F&& f) {
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;
+    (f(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
 
 }  // namespace
 
 double NormalLaw::floor() const {
-  if (is_spring()) return -std::numeric_limits<double>::infinity();
+  if (is_spring()) return lower ? *lower : -std::numeric_limits<double>::infinity();
   return lower ? *lower : -tolerance;
 }
 
+bool NormalLaw::is_near_floor(double gap) const {
+  return is_spring() && lower && gap < kSpringAlone * *lower;
+}
+
+double NormalLaw::floor_below(double gap) { return gap / kSpringAlone; }
+
+NormalLaw NormalLaw::barrier_at_floor() const {
+  NormalLaw law;
+  law.stiffness = bristle_stiffness();
+  law.lower = *lower;
+  law.upper = kSpringAlone * *lower;
+  if (reach() < *law.upper) law.later = reach();
+  return law;
+}
+
 double NormalLaw::energy(double gap) const {
+  return own_energy(gap) + (is_near_floor(gap) ? barrier_at_floor().own_energy(gap) : 0.0);
+}
+
+double NormalLaw::own_energy(double gap) const {
   if (gap >= reach()) return 0.0;
   switch (potential) {
     case NormalPotential::barrier: {
@@ -57,6 +90,9 @@ double NormalLaw::energy(double gap) const {
 
 double NormalLaw::gap_of(double energy) const {
   if (!(energy > 0.0)) return reach();
+  if (is_spring() && lower)
+    if (const double start = std::min(reach(), kSpringAlone * *lower); energy > own_energy(start))
+      return bisect(*lower, start, [&](double gap) { return energy - this->energy(gap); });
   switch (potential) {
     case NormalPotential::barrier: {
       // (1 − s)³ = v s: decreasing and convex on the left, so Newton converges monotonically from
@@ -82,6 +118,16 @@ double NormalLaw::gap_of(double energy) const {
 /// Energy of the barrier with x = g − floor = s d̂: (k x²/3) ((1 − s)/s)³.
 double NormalLaw::reach_for(double gap, double energy) const {
   if (!(energy > 0.0)) return gap;
+  const double reach = own_reach_for(gap, energy);
+  if (!is_near_floor(gap)) return reach;
+  NormalLaw law = *this;
+  return bisect(gap, reach, [&](double end) {
+    law.upper = end;
+    return law.energy(gap) - energy;
+  });
+}
+
+double NormalLaw::own_reach_for(double gap, double energy) const {
   switch (potential) {
     case NormalPotential::barrier: {
       const double x = gap - floor();
@@ -170,6 +216,13 @@ double NormalLaw::impact_duration(double mass, double speed) const {
 }
 
 NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {
+  WithSlope f = own_force(gap);
+  if (!is_near_floor(gap)) return f;
+  const WithSlope more = barrier_at_floor().own_force(gap);
+  return {f.value + more.value, f.slope + more.slope};
+}
+
+NormalLaw::WithSlope NormalLaw::own_force(double gap) const {
   if (gap >= reach()) return {0.0, 0.0};
   switch (potential) {
     case NormalPotential::barrier: {
@@ -195,12 +248,19 @@ NormalLaw::WithSlope NormalLaw::force_and_slope(double gap) const {
 }
 
 NormalLaw::WithSlope NormalLaw::quotient_and_slope(double gap_0, double gap_1) const {
+  WithSlope q = own_quotient(gap_0, gap_1);
+  if (!is_near_floor(gap_0) && !is_near_floor(gap_1)) return q;
+  const WithSlope more = barrier_at_floor().own_quotient(gap_0, gap_1);
+  return {q.value + more.value, q.slope + more.slope};
+}
+
+NormalLaw::WithSlope NormalLaw::own_quotient(double gap_0, double gap_1) const {
   const bool in_0 = gap_0 < reach(), in_1 = gap_1 < reach();
   if (!in_0 && !in_1) return {0.0, 0.0};
   if (in_0 != in_1) {
     const double change = gap_1 - gap_0;
-    const double lambda = -(energy(gap_1) - energy(gap_0)) / change;
-    return {lambda, (force_and_slope(gap_1).value - lambda) / change};
+    const double lambda = -(own_energy(gap_1) - own_energy(gap_0)) / change;
+    return {lambda, (own_force(gap_1).value - lambda) / change};
   }
   switch (potential) {
     case NormalPotential::barrier: {

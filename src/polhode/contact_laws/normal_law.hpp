@@ -48,7 +48,9 @@ inline constexpr std::array kPotentialWords{PotentialWord{"barrier", NormalPoten
 ///   b = (k d̂²/3)(1/s − 3 + 3s − s²),   f = −b' = (k d̂/3)(1/s² − 3 + 2s)
 ///
 /// for s < 1 and zero beyond, twice continuously differentiable and convex. The others act on the
-/// depth δ = reach − g: linear b = ½ k δ², Hertz b = (2/5) k δ^{5/2}.
+/// depth δ = reach − g: linear b = ½ k δ², Hertz b = (2/5) k δ^{5/2}. With a floor, which is the
+/// gap that rounded surfaces can have at least, a barrier adds to them on the last quarter of the
+/// way to it. @eq{spring-floor}
 ///
 /// The quotient λ = −(b(g_1) − b(g_0))/(g_1 − g_0) is written without the difference, so it has no
 /// 0/0; it is never negative. With it the step conserves the energy exactly. @eq{contact-quotient}
@@ -59,7 +61,7 @@ struct NormalLaw {
   NormalPotential potential = NormalPotential::barrier;
   double stiffness = 1.0;   ///< k [N/m]; Hertz: [N/m^{3/2}].
   double tolerance = 1e-3;  ///< Of the gap [m].
-  /// Ends of the band, if they are not ±tolerance of a barrier, or 0 of another potential [m].
+  /// Ends of the band, if they are not ±tolerance of a barrier; of a spring 0 and none [m].
   std::optional<double> upper, lower;
   /// Gap at which a barrier starts to act, if that is within its band: its force is reduced by the
   /// one there [m]. @eq{contact-later}
@@ -67,8 +69,12 @@ struct NormalLaw {
 
   /// Activation distance: larger gaps carry no force [m].
   [[nodiscard]] double reach() const { return later ? *later : end(); }
-  /// Gap that no step may reach [m]; −∞ if the law allows overlaps.
+  /// Gap that no step may reach [m]; −∞ if the law allows any overlap.
   [[nodiscard]] double floor() const;
+  /// Whether a spring is stiffer at this gap, as that is near its floor.
+  [[nodiscard]] bool is_near_floor(double gap) const;
+  /// Floor of a spring that starts to stiffen at this gap [m].
+  [[nodiscard]] static double floor_below(double gap);
   [[nodiscard]] double band() const { return end() - floor(); }
   [[nodiscard]] bool is_spring() const { return contact::is_spring(potential); }
   [[nodiscard]] NormalLaw with_stiffness(double k) const {
@@ -119,6 +125,14 @@ struct NormalLaw {
  private:
   /// Upper end of the band [m].
   [[nodiscard]] double end() const { return upper ? *upper : is_spring() ? 0.0 : tolerance; }
+  /// Barrier of a spring near its floor, which starts no earlier than the spring.
+  [[nodiscard]] NormalLaw barrier_at_floor() const;
+  /// Energy [J], force [N] and quotient [N] of the potential without that barrier, where it acts.
+  [[nodiscard]] double own_energy(double gap) const;
+  [[nodiscard]] WithSlope own_force(double gap) const;
+  [[nodiscard]] WithSlope own_quotient(double gap_0, double gap_1) const;
+  /// Activation distance without that barrier [m].
+  [[nodiscard]] double own_reach_for(double gap, double energy) const;
   /// s where it starts to act.
   [[nodiscard]] double first() const { return later ? (*later - floor()) / band() : 1.0; }
   [[nodiscard]] static double chained(double, const WithSlope& f) { return f.value; }

@@ -10,6 +10,7 @@
 #include <polhode/engines/contact_cg_engine.hpp>
 #include <polhode/equations/line_search.hpp>
 #include <polhode/kernels/dispatch.hpp>
+#include <polhode/math/dense.hpp>
 
 namespace polhode {
 
@@ -146,8 +147,8 @@ void ContactCgEngine::find_free_motions(const State& state, const Trial& trial) 
   for (const int b : acted_on_) {
     free_[b].has_loads = true;
     const Mat6 symmetric = 0.5 * (blocks_[b] + blocks_[b].transpose());
-    const bool regular = Eigen::LLT<Mat6>(symmetric).info() == Eigen::Success;
-    free_[b].response = (regular ? blocks_[b] : own_[b]).inverse();
+    const bool regular = is_positive_definite(symmetric);
+    free_[b].response = inverse(regular ? blocks_[b] : own_[b]);
     free_[b].increment = x_[b] + free_[b].response * rhs_[b];
     move(b, Vec3::Zero(), Vec3::Zero());
   }

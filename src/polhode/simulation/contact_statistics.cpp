@@ -11,10 +11,12 @@ namespace polhode {
 
 namespace {
 
-/// Layout of the totals: losses by impacts and friction, the smallest gap and the number of
-/// unresolved impacts; then for each pair impulse, energy loss, whether its sensor overlaps; with
-/// impulses at the end: sweeps, and steps that did not converge.
-constexpr std::size_t kHead = 4, kPerPair = 3, kImpulses = 2, kMinGap = 2, kUnresolvedTime = 3;
+/// Layout of the totals: losses by impacts and friction, the smallest gap, the number of
+/// unresolved impacts, the number of steps with overlaps near the floor of springs and the first
+/// pair of shapes with one; then for each pair impulse, energy loss, whether its sensor overlaps;
+/// with impulses at the end: sweeps, and steps that did not converge.
+constexpr std::size_t kHead = 7, kPerPair = 3, kImpulses = 2, kMinGap = 2, kUnresolvedTime = 3,
+                      kNearFloor = 4;
 /// Value for no small gap so far: totals are compared, which NaN does not allow.
 constexpr double kNoGap = std::numeric_limits<double>::infinity();
 
@@ -40,7 +42,7 @@ void ContactStatistics::resume(const State& state) {
   totals_ = contact::ContactSet::totals_in(state);
   const std::size_t wanted = total_count();
   const ImpulseFigures search = impulse_figures();
-  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap, 0.0};
+  if (totals_.size() < kHead) totals_ = {0.0, 0.0, kNoGap, 0.0, 0.0, 0.0, 0.0};
   if (totals_.size() != wanted) totals_.resize(kHead);  // the stored pairs have changed
   totals_.resize(wanted, 0.0);
   if (!contacts_->impulses()) return;
@@ -62,6 +64,7 @@ void ContactStatistics::see(const State& state) {
   seen.touching = 0;
   seen.least_gap = kNoGap;
   seen.impact_loss = seen.friction_loss = seen.unresolved = 0.0;
+  seen.near_floor.reset();
   for (const contact::ShapePairReport& r : contacts_->reports()) {
     if (r.points > 0) ++seen.touching;
     const Side a = map_->body[static_cast<std::size_t>(r.a)];
@@ -70,6 +73,7 @@ void ContactStatistics::see(const State& state) {
     seen.impact_loss += r.impact_loss;
     seen.friction_loss += r.dissipated - r.impact_loss;
     seen.unresolved += r.unresolved;
+    if (r.near_floor && !seen.near_floor) seen.near_floor = {r.a, r.b};
     const auto found = place.find(std::minmax(a, b));
     if (found == place.end()) continue;
     const double sign = a == map_->pairs[found->second].a ? 1.0 : -1.0;
@@ -102,6 +106,10 @@ void ContactStatistics::after_step(State& state) {
   totals[1] += seen_.friction_loss;
   totals[kUnresolvedTime] += seen_.unresolved;
   totals[kMinGap] = std::fmin(totals[kMinGap], seen_.least_gap);
+  if (seen_.near_floor && totals[kNearFloor]++ == 0.0) {
+    totals[kNearFloor + 1] = seen_.near_floor->first;
+    totals[kNearFloor + 2] = seen_.near_floor->second;
+  }
   for (std::size_t k = 0; k < seen_.reports.size(); ++k) {
     totals[kHead + kPerPair * k] += seen_.reports[k].impulse;
     totals[kHead + kPerPair * k + 1] += seen_.reports[k].energy_lost;
@@ -141,6 +149,15 @@ ContactReport ContactStatistics::report(int pair) const {
 
 double ContactStatistics::unresolved() const {
   return totals_.size() > kUnresolvedTime ? totals_[kUnresolvedTime] : 0.0;
+}
+
+ContactStatistics::NearFloor ContactStatistics::near_floor() const {
+  if (totals_.size() < kHead || totals_[kNearFloor] == 0.0) return {};
+  const auto name = [&](double shape) {
+    return contacts_->shapes().at(static_cast<std::size_t>(shape)).name;
+  };
+  return {static_cast<std::int64_t>(totals_[kNearFloor]), name(totals_[kNearFloor + 1]),
+          name(totals_[kNearFloor + 2])};
 }
 
 ImpulseFigures ContactStatistics::impulse_figures() const {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <polhode/compile/build_contacts.hpp>
@@ -26,7 +29,8 @@ struct ContactsSeen {
   int touching = 0;            ///< Pairs of shapes in contact.
   double least_gap = 0.0;      ///< [m]; infinite if no shapes were near.
   double impact_loss = 0.0, friction_loss = 0.0, unresolved = 0.0;
-  ImpulseFigures search;  ///< Of the non-smooth law.
+  std::optional<std::pair<int, int>> near_floor;  ///< The first pair of shapes near their floor.
+  ImpulseFigures search;                          ///< Of the non-smooth law.
 };
 
 /// Statistics of contacts over the steps; the sums are part of the state.
@@ -60,6 +64,12 @@ class ContactStatistics {
   /// Number of impacts since the start of fewer than twenty steps although their law has a given
   /// stiffness or damper.
   [[nodiscard]] double unresolved() const;
+  /// Overlaps beyond which springs of given stiffness are stiffer than stated.
+  struct NearFloor {
+    std::int64_t steps = 0;                 ///< With such an overlap, since the start.
+    std::string first_shape, second_shape;  ///< Names of the first pair.
+  };
+  [[nodiscard]] NearFloor near_floor() const;
   /// Sensor events since the start or restart.
   [[nodiscard]] const std::vector<SensorEvent>& events() const { return events_; }
   /// Contact wrenches by body of the system, over the last step; empty without contact.

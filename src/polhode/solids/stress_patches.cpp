@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <polhode/math/dense.hpp>
 #include <polhode/solids/elements/quadrature.hpp>
 #include <polhode/solids/stress_patches.hpp>
 
@@ -70,7 +71,7 @@ CloudFit::CloudFit(std::span<const Vec3> points, int order, const Mat3* directio
   if (directions) {
     to_axes = directions->inverse();
   } else {
-    to_axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().transpose();
+    to_axes = eigen_of_symmetric(spread).vectors.transpose();
   }
   const Vec3 variance = (to_axes * spread * to_axes.transpose()).diagonal().cwiseMax(0.0);
   for (int c = 0; c < 3; ++c)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
@@ -9,6 +8,7 @@
 
 #include <polhode/core/format.hpp>
 #include <polhode/engines/saddle_solver.hpp>
+#include <polhode/math/dense.hpp>
 #include <polhode/math/hat.hpp>
 #include <polhode/stepping/plain_motions.hpp>
 
@@ -167,7 +167,7 @@ Mat3 axes_of(const Mat3& inertia) {
   Mat3 off = inertia;
   off.diagonal().setZero();
   if (!(size > 0.0) || off.cwiseAbs().maxCoeff() <= kEqual * size) return Mat3::Identity();
-  return Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvectors();
+  return eigen_of_symmetric(inertia).vectors;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <polhode/core/format.hpp>
 #include <polhode/io/read/read_context.hpp>
 #include <polhode/joints/registry.hpp>
+#include <polhode/math/dense.hpp>
 
 namespace polhode {
 namespace {
@@ -179,7 +180,7 @@ class JointReader {
     if (x && !check_x(z_a, *x)) return;
     const Mat3 F = axes_about(z_a, x ? x : across(z_a, rod_direction()));
     // The smallest rotation from one axis to the other keeps the joint's initial angle near zero.
-    const Quat turn = Quat::FromTwoVectors(z_a, z_b);
+    const Quat turn = rotation_between(z_a, z_b);
     joint_.R_a = a_.Lambda.transpose() * F;
     joint_.R_b = b_.Lambda.transpose() * (turn * F);
     joint_.assembled_start = true;

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Eigenvalues>
-
 #include <polhode/compile/beam_mesh.hpp>
 #include <polhode/compile/shape_surface.hpp>
 #include <polhode/core/format.hpp>
 #include <polhode/geometry/shapes.hpp>
+#include <polhode/math/dense.hpp>
 
 namespace polhode {
 
@@ -30,8 +29,8 @@ void append(TriangleSurface& sum, const TriangleSurface& part, const Mat3& R, co
 
 // I_x = m (l_y² + l_z²)/12 and so on, solved for the lengths.
 TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(body.inertia);
-  const Vec3& I = axes.eigenvalues();
+  const SymmetricEigen axes = eigen_of_symmetric(body.inertia);
+  const Vec3& I = axes.values;
   Vec3 squares = 6.0 / body.mass * (Vec3::Constant(I.sum()) - 2.0 * I);
   double largest = std::sqrt(std::max(0.0, squares.maxCoeff()));
   if (body.point_mass || !(largest > 0.0)) largest = 0.02 * size;
@@ -39,7 +38,7 @@ TriangleSurface inertia_box(const BodySpec& body, double size, double thinnest) 
   for (double s : squares)
     lengths.push_back(std::max(s > 0.0 ? std::sqrt(s) : 0.0, thinnest * largest));
   if (body.point_mass) lengths.assign(3, largest);
-  Mat3 R = axes.eigenvectors();
+  Mat3 R = axes.vectors;
   if (R.determinant() < 0.0) R.col(2) *= -1.0;
   TriangleSurface box;
   append(box, shape_surface(*find_shape_kind("box"), lengths), R, Vec3::Zero());
@@ -51,7 +50,7 @@ namespace {
 /// Square of a plane about its point, visible from both sides.
 TriangleSurface plane_patch(const std::vector<double>& normal, double half_width) {
   const Vec3 n(normal[0], normal[1], normal[2]);
-  const Mat3 R = Quat::FromTwoVectors(Vec3::UnitZ(), n).toRotationMatrix();
+  const Mat3 R = rotation_between(Vec3::UnitZ(), n).toRotationMatrix();
   TriangleSurface square;
   for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
     square.points.push_back(half_width * (x * R.col(0) + y * R.col(1)));
