@@ -203,6 +203,36 @@ TEST(SpringLaws, ReboundFromTheRoundingOfEdges) {
       }
 }
 
+// Without gravity springs are chosen for impacts of two bodies: here a third drives one into the
+// floor. Nothing gets deeper than four tolerances, also in the plane; energy is exact up to the
+// rounding of positions that close to the floor.
+// @tests{spring-floor}
+TEST(SpringLaws, LetNothingGetDeepUnderSeveralBodies) {
+  const std::string model = R"(
+format: 1
+gravity: [0, 0, 0]
+bodies:
+  floor: {fixed: true, shape: {plane: z}}
+  a: {shape: {sphere: 0.1}, mass: 0.001, position: [0, 0, 0.0501], velocity: [0, 0, -0.1]}
+  b: {shape: {sphere: 0.1}, mass: 10, position: [0, 0, 0.1502], velocity: [0, 0, -2]}
+contacts: {default: {restitution: 1, friction: 0}}
+analysis: {duration: 0.02 s, step: 1 ms}
+)";
+  const double tolerance = 5e-5;  // 1e-3 of the radius
+  for (const char* law : {"linear", "hertz"})
+    for (const char* step : {"10 ms", "1 ms", "0.1 ms", "0.01 ms"}) {
+      SCOPED_TRACE(format("{} {}", law, step));
+      Simulation s(read_model_text(
+          model, "m.yaml",
+          {format("contacts.default.law={}", law), format("analysis.step={}", step)}));
+      const RunSummary end = s.run();
+      EXPECT_EQ(end.end, RunEnd::finished);
+      EXPECT_GT(end.contacts->least_gap, -4.0 * tolerance);
+      EXPECT_LT(end.energy_drift, 1e-9);
+      EXPECT_GT(s.body("b").v.z(), 0.0) << "the heavy ball goes back up";
+    }
+}
+
 TEST(SpringLaws, RememberTheSmallestGap) {
   const Scene scene{kBall, "restitution: 0.5", 0.3};
   for (const char* law : {"hertz", "linear"}) {

@@ -16,8 +16,9 @@ namespace {
 constexpr double kRestDamping = 0.3;
 /// Largest tolerance of rounded shapes, as a part of their rounding radius.
 constexpr double kOfRounding = 0.85;
-/// Overlap of rounded shapes that springs do not reach, as a part of their rounding radius.
-constexpr double kDeepest = 0.9;
+/// Overlaps that springs do not reach: of rounded shapes, as a part of their rounding radius, and
+/// without a given stiffness in tolerances.
+constexpr double kDeepest = 0.9, kDeepestTolerances = 4.0;
 /// Ratio of margin to required margin above which candidates are found again, as after a diverged
 /// iteration.
 constexpr double kWideMargin = 8.0;
@@ -197,7 +198,9 @@ void ContactSet::complete_law(Point& p, double dt) const {
   p.may_be_closed_form = d.a && is_closed_form_point(d);
   p.sensor = law.sensor;
   p.law_dt = dt;
-  p.floor = !spring ? -tolerance : plane ? kNoFloor : -kDeepest * rounding;
+  p.floor = plane ? kNoFloor : -kDeepest * rounding;
+  if (p.open_stiffness) p.floor = std::max(p.floor, -kDeepestTolerances * tolerance);
+  if (!spring) p.floor = -tolerance;
   const PointHistory& h = d.history;
   if (h.closed && h.stiffness > 0.0)
     set_band(p, h.stiffness, h.reach, h.floor);
