@@ -69,7 +69,7 @@ TEST_F(GlobalizationOfGrowth, UndoesALargeIncrementThatGrewAndTakesHalfOfTheNext
   EXPECT_TRUE(globalization.undone());
   EXPECT_EQ(moved(), before);
   EXPECT_EQ(engine.resumed, 1);
-  // The same size again is undone again, until the damping is small.
+  // An increment of that size is undone each time, until the damping is small.
   (void)globalization.iterate(0.1, true);
   EXPECT_TRUE(globalization.undone());
   (void)globalization.iterate(0.1, true);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <polhode/core/format.hpp>
 #include <polhode/engines/coupled_engine.hpp>
@@ -186,8 +185,8 @@ Iteration CoupledEngine::iterate(const State& state, Trial& trial, bool refactor
   return done;
 }
 
-/// Applies part_ of the increment; with contacts less of it, until the merit decreases. Inverted
-/// elements have no residual.
+/// Application of part_ of the increment; with contacts of less, until the merit decreases.
+/// Inverted elements have no residual.
 void CoupledEngine::apply(const State& state, Trial& trial, Iteration& done) {
   const double before = searches_ ? merit(state, trial) : 0.0;
   move(state, trial, part_, done);

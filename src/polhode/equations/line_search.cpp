@@ -2,6 +2,7 @@
 #include <polhode/equations/line_search.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace polhode {
 

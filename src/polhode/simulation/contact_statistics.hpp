@@ -29,7 +29,7 @@ struct ContactsSeen {
   int touching = 0;            ///< Pairs of shapes in contact.
   double least_gap = 0.0;      ///< [m]; infinite if no shapes were near.
   double impact_loss = 0.0, friction_loss = 0.0, unresolved = 0.0;
-  std::optional<std::pair<int, int>> near_floor;  ///< The first pair of shapes near their floor.
+  std::optional<std::pair<int, int>> near_floor;  ///< First pair of shapes near their floor.
   ImpulseFigures search;                          ///< Of the non-smooth law.
 };
 

@@ -165,8 +165,8 @@ RunSummary Simulation::summary() const {
                  short_ones));
     if (const ContactStatistics::NearFloor deep = s.contacts.near_floor(); deep.steps > 0)
       r.warnings.push_back(
-          format("contacts: '{}' and '{}' overlapped in {} steps by nearly the rounding of their "
-                 "edges, where contact is stiffer than stated. Give a larger stiffness",
+          format("contacts: '{}' and '{}' overlapped in {} steps by nearly the radius of their "
+                 "rounding, where contact is stiffer than stated. Give a larger stiffness",
                  deep.first_shape, deep.second_shape, deep.steps));
     if (s.model.contacts.nonsmooth()) {
       const ImpulseFigures search = s.contacts.impulse_figures();

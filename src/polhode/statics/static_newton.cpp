@@ -262,7 +262,7 @@ double StaticNewton::apply(double part, StaticStep& step) {
   return most;
 }
 
-/// Applies part of x_ and assembles there: less of it as long as elements are inverted.
+/// Search for the part of x_ at which no element is inverted; applies it and assembles there.
 /// @returns whether none is.
 bool StaticNewton::search(double most, StaticStep& step, ElementReport& elements) {
   const bool nodes = !system_->nodes().empty();
