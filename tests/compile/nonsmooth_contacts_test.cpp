@@ -3,6 +3,7 @@
 
 #include <polhode/compile/nonsmooth_contacts.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/core/format.hpp>
 #include <polhode/io/read/read_model.hpp>
 #include <polhode/simulation/simulation_details.hpp>
 
@@ -87,11 +88,12 @@ analysis: {step: 2 ms, duration: )" +
 }
 
 TEST(NonsmoothContacts, WarnOfStepsThatDidNotConverge) {
-  Simulation run(model_of(R"(
-bodies:
-  floor: {fixed: true, shape: {plane: z}}
-  a: {shape: {box: [0.2, 0.2, 0.2]}, mass: 1, position: [0, 0, 0.1]}
-  b: {shape: {box: [0.2, 0.2, 0.2]}, mass: 100, position: [0, 0, 0.3]}
+  // More points than Newton's method continues with.
+  std::string boxes = "\nbodies:\n  floor: {fixed: true, shape: {plane: z}}\n";
+  for (int k = 0; k < 15; ++k)
+    boxes += format("  b{}: {{shape: {{box: [0.2, 0.2, 0.2]}}, mass: 1, position: [{}, 0, 0.1]}}\n",
+                    k, k);
+  Simulation run(model_of(boxes + R"(
 contacts: {default: {law: nonsmooth, rolling_friction: 1 mm}, sweeps: 1}
 analysis: {duration: 20 ms, step: 5 ms}
 )"));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include <polhode/engines/impulse_newton.hpp>
@@ -62,6 +64,34 @@ TEST(ImpulseNewton, FindsWhatSweepsEndWith) {
     }
     for (int b = 0; b < 4; ++b)
       EXPECT_LT((found.bodies[b].v - swept.bodies[b].v).norm(), 1e-6) << along << ' ' << b;
+  }
+}
+
+/// Rolling and torsional friction that holds or slips, against the limit of very many sweeps.
+/// @tests{nonsmooth-projection}
+TEST(ImpulseNewton, FindsRollingAndTorsionalFriction) {
+  for (const double spin : {0.0, 1e-2, 1.0}) {
+    ProjectedGaussSeidel swept = column({2.0, 0.5, 1.0, 3.0}, 0.01);
+    for (std::size_t k = 0; k < swept.points.size(); ++k) {
+      swept.bodies[k].w = spin * Vec3(0.3, -0.5, k % 2 == 0 ? 1.0 : -0.2);
+      swept.turns.push_back({static_cast<int>(k), 1e-3, 2e-3, Vec3::Zero(), Vec3::Zero()});
+    }
+    swept.prepare();
+    ProjectedGaussSeidel found = swept;
+    for (int k = 0; k < 200000; ++k) swept.sweep(k % 2 == 1);
+    for (int k = 0; k < 5; ++k) found.sweep(k % 2 == 1);
+    ASSERT_TRUE(solve_impulses(found, 1e-8 * kFall)) << spin;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < found.turns.size(); ++k) {
+      EXPECT_NEAR(found.points[k].normal_impulse, swept.points[k].normal_impulse, 1e-7) << spin;
+      EXPECT_LT((found.turns[k].impulse - swept.turns[k].impulse).norm(), 1e-8) << spin << ' ' << k;
+      largest = std::max(largest, found.turns[k].impulse.norm());
+    }
+    EXPECT_GT(largest, 1e-6) << spin;
+    for (int b = 0; b < 4; ++b) {
+      EXPECT_LT((found.bodies[b].v - swept.bodies[b].v).norm(), 1e-7) << spin << ' ' << b;
+      EXPECT_LT((found.bodies[b].w - swept.bodies[b].w).norm(), 1e-5) << spin << ' ' << b;
+    }
   }
 }
 

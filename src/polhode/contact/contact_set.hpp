@@ -143,6 +143,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   int find_points(std::span<const BodyStep> steps, const StepContext& context,
                   std::vector<ImpulsePoint>& list) override;
   void place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const override;
+  [[nodiscard]] double gap_after(std::span<const BodyStep> steps,
+                                 const ImpulsePoint& point) const override;
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
                        const ImpulseSearch& search) override;
@@ -234,6 +236,7 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   /// Lower bound of the gap at t_{n+1}, from the displacements of the bodies [m].
   [[nodiscard]] double least_gap_at_end(const Point& p, const BodyStep& a, const BodyStep& b) const;
   [[nodiscard]] double gap_at_end(int point, const BodyStep& a, const BodyStep& b) const;
+  [[nodiscard]] bool rolls_in(int point, const BodyStep& a, const BodyStep& b) const;
   /// Whether a point acts in a step that ends with this gap. @param least  Clearance of the
   /// tightest point so far, updated with tightest_ [m].
   [[nodiscard]] bool acts(int point, double gap_1, double& least);

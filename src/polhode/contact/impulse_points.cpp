@@ -136,6 +136,14 @@ bool ContactSet::covers(std::span<const BodyStep> steps) const {
   return true;
 }
 
+/// Whether the surfaces overlap at the end of a step although the points that were nearest at its
+/// start have not approached: the nearest point of a spinning body moves over it.
+bool ContactSet::rolls_in(int point, const BodyStep& a, const BodyStep& b) const {
+  const Point& p = points_[point];
+  return !balls_[point].holds && !of_flat_pieces(p.data.pair.kind) &&
+         least_gap_at_end(p, a, b) < 0.0 && gap_at_end(point, a, b) < std::min(0.0, p.gap_n);
+}
+
 int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& context,
                             std::vector<ImpulsePoint>& list) {
   const double dt = context.dt, slow = kSlowReboundSteps * system_->gravity().norm() * std::abs(dt);
@@ -164,7 +172,7 @@ int ContactSet::find_points(std::span<const BodyStep> steps, const StepContext& 
     const double way = std::min({of_a - of_b, of_a, -of_b});
     const double least = least_exit_speed(p.gap_n, w, p.restitution, dt, slow);
     const bool acted = !p.data.history.impulse.isZero(0.0) && before == 0;
-    if (!acted && 2.0 * way / dt - w >= least) continue;
+    if (!acted && 2.0 * way / dt - w >= least && !rolls_in(i, a, b)) continue;
     ImpulsePoint point;
     point.gap = p.gap_n;
     point.rate = w;
@@ -252,6 +260,17 @@ void ContactSet::place_points(std::span<const BodyStep> steps, std::span<Impulse
     if (!of_flat_pieces(p.data.pair.kind))
       follow_gap(p.data, gap_at_end(at.number, a, b) - p.gap_n, a, b, at);
   }
+}
+
+double ContactSet::gap_after(std::span<const BodyStep> steps, const ImpulsePoint& point) const {
+  const SpherePairCache& balls = balls_[point.number];
+  const BodyStep &a = steps[balls.a], &b = steps[balls.b];
+  if (balls.holds || !of_flat_pieces(points_[point.number].data.pair.kind))
+    return gap_at_end(point.number, a, b);
+  // A piece that is left has a gap to the edge of the surface: its plane counts.
+  const Vec3 apart = a.u + a.theta.cross(point.place - a.r_n - 0.5 * a.u) - b.u -
+                     b.theta.cross(point.place - b.r_n - 0.5 * b.u);
+  return point.gap + point.normal.dot(apart);
 }
 
 void ContactSet::report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss,

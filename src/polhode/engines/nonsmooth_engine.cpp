@@ -18,13 +18,25 @@ constexpr int kMaxRounds = 4;
 /// Relative change of the motion at which the iteration of motion-dependent loads ends.
 constexpr double kSameMotion = 1e-13;
 constexpr int kMaxRepeats = 60;
-/// Depth of an overlap that no step may produce, as a part of the smaller size.
+/// Depth of an overlap, as a part of the smaller size, that no step with unconverged impulses may
+/// produce.
 constexpr double kPressedIn = 0.1;
+/// Increase of a penetration, as that part, above which a step with converged impulses is too long
+/// for the motion of the contact point.
+constexpr double kSinks = 3e-3;
 /// Change of speeds in the last sweep over few points, relative to gravity's speed increment in a
 /// step, above which a step fails.
 constexpr double kFarOff = 1.0;
 /// Largest number of solutions of a step that would gain energy, each with more points held back.
 constexpr int kMaxHeldBack = 3;
+/// Largest number of sweeps in a step, unless given: as many as kAffordable permits for their
+/// points, which matters for few bodies with large mass ratios or elastic impacts.
+constexpr int kUsualSweeps = 100;
+constexpr int kAffordable = 200000;
+/// Number of points and turns that Newton's method solves in any case, and its tolerance relative
+/// to that of sweeps: it converges quadratically.
+constexpr int kFew = 20;
+constexpr double kExact = 1e-6;
 /// Reference speed of tolerances without gravity: this part of the fastest speed.
 constexpr double kPartOfSpeed = 1e-2;
 
@@ -185,25 +197,34 @@ void NonsmoothEngine::set_up(double dt, bool first) {
   }
 }
 
-/// Gauss-Seidel sweeps. If they do not converge, Newton's method continues from them for few
-/// points.
+/// Largest number of sweeps in a step.
+int NonsmoothEngine::most_sweeps() const {
+  if (options_.sweeps > 0) return options_.sweeps;
+  return std::max(kUsualSweeps, kAffordable / std::max(1, point_count()));
+}
+
+/// Gauss-Seidel sweeps. If the usual number does not suffice, Newton's method continues from them
+/// for few points; if it fails, more sweeps follow.
 void NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
   const bool balls = SphereGaussSeidel::suit(sweeps_);
-  balls ? balls_.take(sweeps_) : sweeps_.prepare();
-  search_.converged = false;
-  do {
-    const bool backwards = search_.sweeps % 2 == 1;
-    const double change = std::sqrt(balls ? balls_.sweep(backwards) : sweeps_.sweep(backwards));
-    ++search_.sweeps;
-    search_.change = reference_ > 0.0 ? change / reference_ : change;
-    search_.converged = change <= enough;
-  } while (!search_.converged && search_.sweeps < options_.sweeps);
-  if (balls) balls_.give_back(sweeps_);
-  if (!search_.converged && is_small()) {
+  const auto run = [&](int most) {
+    balls ? balls_.take(sweeps_) : sweeps_.prepare();
+    do {
+      const bool backwards = search_.sweeps % 2 == 1;
+      const double change = std::sqrt(balls ? balls_.sweep(backwards) : sweeps_.sweep(backwards));
+      ++search_.sweeps;
+      search_.change = reference_ > 0.0 ? change / reference_ : change;
+      search_.converged = change <= enough;
+    } while (!search_.converged && search_.sweeps < most);
+    if (balls) balls_.give_back(sweeps_);
+  };
+  run(options_.sweeps > 0 ? options_.sweeps : kUsualSweeps);
+  if (search_.converged ? unknowns() <= kFew : is_small()) {
     if (balls) sweeps_.prepare();
-    search_.converged = solve_impulses(sweeps_, enough);
+    if (solve_impulses(sweeps_, kExact * enough)) search_.converged = true;
   }
+  if (!search_.converged && search_.sweeps < most_sweeps()) run(most_sweeps());
   for (int k = 0; k < point_count(); ++k) {
     const ProjectedGaussSeidel::Point& p = sweeps_.points[k];
     points_[k].impulse = p.normal_impulse * p.normal + p.friction_impulse;
@@ -263,14 +284,15 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     if (!move(state, trial)) return done;
     add_up(trial.context.dt);
   }
-  if (const int k = pressed_in(); k >= 0) {
+  if (const int k = pressed_in(trial.context); k >= 0) {
     const auto name = [&](int body) {
       return body == kGround ? std::string("the ground")
                              : format("body '{}'", system_->bodies()[body].name);
     };
-    done.reason =
-        format("{2} and {1} would overlap, as {0} sweeps did not converge: raise contacts.sweeps",
-               search_.sweeps, name(points_[k].a), name(points_[k].b));
+    done.reason = format("{1} and {0} would overlap", name(points_[k].a), name(points_[k].b));
+    if (!search_.converged)
+      done.reason +=
+          format(", as {} sweeps did not converge: raise contacts.sweeps", search_.sweeps);
     return done;
   }
   for (int b = 0; b < bodies_; ++b) {
@@ -303,19 +325,24 @@ bool NonsmoothEngine::hold_back() {
   return any;
 }
 
-/// The deepest point at the end of the step, if its depth is a considerable part of its bodies'
-/// size and has increased, or if the search is far from convergence; −1: none.
-int NonsmoothEngine::pressed_in() const {
+/// The deepest point at the end of the step whose penetration has increased considerably, or with
+/// an unconverged search is considerable and has increased; otherwise, if the search is far from
+/// convergence, that with the largest impulse; −1: none.
+int NonsmoothEngine::pressed_in(const StepContext& context) {
+  const int known = point_count();
+  impulsive_->find_points(steps_, context, points_);
+  for (int k = known; k < point_count(); ++k)  // found too late to act
+    points_[k].impulse = points_[k].turning = Vec3::Zero();
+  losses_.resize(points_.size());
   int worst = -1;
-  double deepest = -kPressedIn;
+  double deepest = 0.0;
   for (int k = 0; k < point_count(); ++k) {
     const ImpulsePoint& p = points_[k];
-    const BodyStep &a = steps_[index(p.a)], &b = steps_[index(p.b)];
-    const Vec3 apart = a.u + a.theta.cross(p.place - a.r_n - 0.5 * a.u) - b.u -
-                       b.theta.cross(p.place - b.r_n - 0.5 * b.u);
-    const double opens = p.normal.dot(apart), gap = (p.gap + opens) / p.size;
-    if (!(opens < 0.0) || gap >= deepest) continue;
-    deepest = gap;
+    const double gap = impulsive_->gap_after(steps_, p), sinks = std::min(0.0, p.gap) - gap;
+    const bool too_much =
+        search_.converged ? sinks > kSinks * p.size : sinks > 0.0 && gap < -kPressedIn * p.size;
+    if (!too_much || gap / p.size >= deepest) continue;
+    deepest = gap / p.size;
     worst = k;
   }
   // Few points for which sweeps and Newton's method both failed: where surfaces are flush the gaps

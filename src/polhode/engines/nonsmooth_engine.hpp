@@ -43,13 +43,16 @@ class NonsmoothEngine final : public NewtonEngine {
   [[nodiscard]] bool search(const State& state, const Trial& trial);
   void set_up(double dt, bool first);
   void sweep();
-  [[nodiscard]] bool is_small() const {
-    return point_count() <= kMaxDensePoints && sweeps_.turns.empty();
+  [[nodiscard]] int most_sweeps() const;
+  /// Number of points and turns.
+  [[nodiscard]] int unknowns() const {
+    return point_count() + static_cast<int>(sweeps_.turns.size());
   }
+  [[nodiscard]] bool is_small() const { return unknowns() <= kMaxDensePoints; }
   void add_up(double dt);
   /// @returns whether any point is newly held back.
   [[nodiscard]] bool hold_back();
-  [[nodiscard]] int pressed_in() const;
+  [[nodiscard]] int pressed_in(const StepContext& context);
 
   const System* system_;
   BodyContacts* contacts_;

@@ -19,6 +19,21 @@ namespace polhode {
 
 using namespace step_control;
 
+namespace {
+
+/// Part of a sentence about possible causes: the first joint whose friction or stop may lock it.
+std::string locking_joint(const System& system) {
+  for (const InteractionRef& ref : system.interactions()) {
+    const InteractionTraits& traits = system.traits(ref);
+    if (traits.rows > 0 && traits.works && !traits.prescribes)
+      return format("friction or a stop that locks {} '{}', ", system.group(ref.group).kind(),
+                    traits.name);
+  }
+  return {};
+}
+
+}  // namespace
+
 struct Stepper::Impl {
   const System& system;
   SingleStep single;
@@ -428,9 +443,9 @@ StepReport Stepper::Impl::advance(State& state, double t_limit) {
     } else {
       report.message = format(
           "{} Steps down to {:.2g} s were tried. Possible causes: a position that the joints "
-          "cannot leave, a load or spring that is far too stiff, or masses that differ by many "
+          "cannot leave, {}a load or spring that is far too stiff, or masses that differ by many "
           "orders. 'polhode check --tangents' checks the equations.",
-          report.newton.text(), least_step());
+          report.newton.text(), least_step(), locking_joint(system));
       return report;
     }
   }

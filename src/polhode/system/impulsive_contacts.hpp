@@ -11,7 +11,7 @@ namespace polhode {
 
 /// Termination of the impulse iteration of a step.
 struct ImpulseOptions {
-  int sweeps = 100;         ///< Largest number, over all points.
+  int sweeps = 0;           ///< Largest number, over all points; 0: as accuracy and cost require.
   double tolerance = 1e-3;  ///< Change of a point's speed in a sweep, as part of |g| Δt [-].
 };
 
@@ -62,6 +62,9 @@ class ImpulsiveContacts {
   /// Updates normals and positions to those of the middle of the steps.
   virtual void place_points(std::span<const BodyStep> steps,
                             std::span<ImpulsePoint> list) const = 0;
+  /// Gap of a point at the end of the steps [m].
+  [[nodiscard]] virtual double gap_after(std::span<const BodyStep> steps,
+                                         const ImpulsePoint& point) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
   virtual Work commit_impulses(State& state, std::span<const BodyStep> steps,
                                const StepContext& context, std::span<const ImpulsePoint> list,

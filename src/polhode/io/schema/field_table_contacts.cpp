@@ -216,7 +216,7 @@ const FieldTable& contacts_fields() {
           {.name = "sweeps",
            .kind = kInteger,
            .meaning = "With law: nonsmooth, largest number of Gauss-Seidel sweeps in a step.",
-           .standard = "100",
+           .standard = "100, or 200 000 over the number of points if more",
            .range = {1.0, 1e6},
            .member = &ContactsSpec::sweeps},
           {.name = "sweep_tolerance",
