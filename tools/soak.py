@@ -31,7 +31,7 @@ from support import program  # noqa: E402
 
 # Bounds of the rise of mechanical energy and of the error of the energy balance, relative to the scene's energy. The non-smooth law
 # solves a step to 1e-3 of gravity's velocity change in it, and warns where it does not.
-RISE = {"barrier": 1e-6, "hertz": 1e-6, "linear": 1e-6, "nonsmooth": 5e-3}
+RISE = {"barrier": 1e-6, "hertz": 1e-6, "linear": 1e-6, "nonsmooth": 1e-2}
 BALANCE = {"barrier": 1e-9, "hertz": 1e-9, "linear": 1e-9, "nonsmooth": 1e-2}
 # Bound of penetration, relative to the smallest half size of the largest body: the barrier's band is 1e-3; hertz and linear are stiff
 # enough to stop one body within their bound, not several at once; the non-smooth law ends a run at a tenth.

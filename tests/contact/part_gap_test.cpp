@@ -72,6 +72,47 @@ TEST(PartGap, IsTheLeastOfManyPoints) {
     }
 }
 
+/// Distance of the outer rim of a tube from solids in front of it, beside it and within its mouth.
+TEST(RingGap, IsTheLeastOfManyPoints) {
+  Random random(34);
+  const Shape tube = round_tube(0.8, 0.5, 0.7);
+  int met = 0, within = 0;
+  for (const Shape& b :
+       {box("box", {0.8, 0.7, 0.5}), hull("hull", stone(5)), box("needle", {0.1, 0.1, 1.5})})
+    for (int trial = 0; trial < 300; ++trial) {
+      const Mat3 L_a = random.frame(), L_b = random.frame();
+      const Placement<double> at_a(0.7 * random.direction(), L_a, 0), at_b(Vec3::Zero(), L_b, 6);
+      for (const int which : {0, 1}) {
+        const Shape part = part_of(tube, which);
+        const double R = part.half.x();
+        double expected = 1e9;
+        for (int k = 0; k < 2000; ++k) {
+          const double u = std::numbers::pi * k / 1000;
+          const Vec3 X = part.centre + part.axes * Vec3(R * std::cos(u), R * std::sin(u), 0.0);
+          expected =
+              std::min(expected, point_over_solid(at_a.point(X), part.rounding, b, at_b).distance);
+        }
+        if (expected < 0.0) continue;
+        const Gap<double> g =
+            gap({GapKind::part_solid, which, 0, 1.0, Fade::none}, tube, b, at_a, at_b);
+        EXPECT_LT(g.distance, expected + 1e-12) << trial;
+        EXPECT_GT(g.distance, expected - 1e-3) << trial;
+        EXPECT_NEAR(value(g.normal).norm(), 1.0, 1e-14);
+        ++met;
+        // Whether the solid is nearer to the disc that the rim surrounds than to the rim.
+        double disc = 1e9;
+        for (int k = 0; k < 2000; ++k) {
+          const double u = std::numbers::pi * k / 20, q = R * (k / 40) / 50.0;
+          const Vec3 X = part.centre + part.axes * Vec3(q * std::cos(u), q * std::sin(u), 0.0);
+          disc = std::min(disc, point_over_solid(at_a.point(X), part.rounding, b, at_b).distance);
+        }
+        if (disc < expected - 0.05) ++within;
+      }
+    }
+  EXPECT_GT(met, 500);
+  EXPECT_GT(within, 30);
+}
+
 /// Overlap of a part that penetrates a face far from the edges: its depth below the face.
 TEST(PartGap, IsNegativeWhereThePartReachesThrough) {
   const Shape egg = ellipsoid("egg", {0.3, 0.2, 0.4}), crate = box("crate", {2.0, 2.0, 2.0});
@@ -127,15 +168,17 @@ TEST(RoundOverEdge, IsTheLeastOfManyPoints) {
   EXPECT_GT(compared, 500);
 }
 
-/// On a plane that is cut into triangles a part has the gap of the plane.
-/// @tests{contact-one-gap}
+/// On a plane that is cut into triangles a part has the gap of the plane, the outer rim of a tube
+/// too. @tests{contact-one-gap}
 TEST(PartGap, HasOneGapOverTrianglesOfAPlane) {
   Random random(33);
+  std::vector<NamedShape> shapes = round_shapes();
+  shapes.push_back({"tube", round_tube(0.8, 0.5, 0.7)});
   const Shape field = height_field("field", 15, 0.15, std::vector<double>(225, 0.0));
   NormalLaw law;
   law.stiffness = 1e5;
   law.tolerance = 2e-4;
-  for (const NamedShape& round : round_shapes())
+  for (const NamedShape& round : shapes)
     for (int trial = 0; trial < 40; ++trial) {
       const Mat3 L = random.frame(), none = Mat3::Identity();
       const Placement<double> ground(Vec3::Zero(), none, 6);

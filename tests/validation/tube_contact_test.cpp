@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact with the round faces of tubes: rolling within them, tubes rolling and standing on a
-// plane.
+// Contact with the round faces of tubes: rolling within them, tubes rolling and standing on planes,
+// boxes and triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +9,10 @@
 #include <numbers>
 #include <string>
 #include <vector>
+
+#include <polhode/core/format.hpp>
+#include <polhode/io/read/read_model.hpp>
+#include <polhode/simulation/simulation_details.hpp>
 
 #include "contact/scene.hpp"
 #include "contact/shapes_for_tests.hpp"
@@ -87,16 +91,33 @@ INSTANTIATE_TEST_SUITE_P(
                     Inside{Rolling::cylinder, 1e-4}),
     [](const auto& given) { return name_of(given.param); });
 
-class TubeOnAPlane : public testing::TestWithParam<double> {};
+enum class Floor { plane, box, triangles };
 
-TEST_P(TubeOnAPlane, RollsOnItsOwnRadius) {
-  const double R = 0.3, v = 2.0, dt = GetParam();
+struct OnAFloor {
+  Floor floor;
+  double dt;
+
+  void add(Scene& s) const {
+    if (floor == Floor::plane)
+      s.add_floor();
+    else if (floor == Floor::box)
+      s.contacts->add_shape({kGround, "box", box("box", {8.0, 4.0, 0.4}, {{0.0, 0.0, -0.2}})});
+    else
+      s.contacts->add_shape(
+          {kGround, "field", height_field("field", 9, 0.5, std::vector<double>(81, 0.0))});
+  }
+};
+
+class TubeOnAFloor : public testing::TestWithParam<OnAFloor> {};
+
+TEST_P(TubeOnAFloor, RollsOnItsOwnRadius) {
+  const double R = 0.3, v = 2.0, dt = GetParam().dt;
   Scene s;
   BodyMotion start = at({0.0, 0.0, R}, {v, 0.0, 0.0});
   start.W = {0.0, v / R, 0.0};
   const int wheel = s.add("wheel", round_tube(2.0 * R, 0.4, 0.1, {Vec3::Zero(), along_y()}), 1.0,
                           {0.03, 0.05, 0.03}, start);
-  s.add_floor();
+  GetParam().add(s);
   s.law(0.5, 0.0);
   s.begin(dt);
   double turn = 0.0;
@@ -112,14 +133,14 @@ TEST_P(TubeOnAPlane, RollsOnItsOwnRadius) {
   EXPECT_NEAR(s.motion(wheel).v.x(), v, 1e-4 * v);
 }
 
-TEST_P(TubeOnAPlane, SlidesOnItsFaceToAHalt) {
+TEST_P(TubeOnAFloor, SlidesOnItsFaceToAHalt) {
   const double v = 1.0, mu = 0.3;
   Scene s;
   const int tube = s.add("tube", round_tube(0.3, 0.2, 0.2), 1.0, {0.01, 0.01, 0.015},
                          at({0.0, 0.0, 0.1}, {v, 0.0, 0.0}));
-  s.add_floor();
+  GetParam().add(s);
   s.law(mu, 0.0);
-  s.begin(GetParam());
+  s.begin(GetParam().dt);
   ASSERT_TRUE(s.run(0.6)) << s.last.text();
   const BodyMotion m = s.motion(tube);
   EXPECT_NEAR(m.r.x(), v * v / (2.0 * mu * 9.81), 1e-4);
@@ -128,10 +149,91 @@ TEST_P(TubeOnAPlane, SlidesOnItsFaceToAHalt) {
   EXPECT_LT(m.v.norm(), 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAPlane, testing::Values(5e-3, 1e-3, 1e-4),
+std::vector<OnAFloor> floors_and_steps() {
+  std::vector<OnAFloor> all;
+  for (const Floor floor : {Floor::plane, Floor::box, Floor::triangles})
+    for (const double dt : {5e-3, 1e-3, floor == Floor::triangles ? 5e-4 : 1e-4})
+      all.push_back({floor, dt});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, TubeOnAFloor, testing::ValuesIn(floors_and_steps()),
                          [](const auto& given) {
-                           return std::to_string(std::lround(1e6 * given.param)) + "_us";
+                           const Floor floor = given.param.floor;
+                           const char* const name = floor == Floor::plane ? "plane"
+                                                    : floor == Floor::box ? "box"
+                                                                          : "triangles";
+                           return std::string(name) + "_at_" +
+                                  std::to_string(std::lround(1e6 * given.param.dt)) + "_us";
                          });
+
+/// Speed of a pipe that rolls on its rims. As a polygon it would lose a third of it in a second.
+TEST(TubeContact, RollsFreelyByEitherLaw) {
+  const std::string row = "[0, 0, 0, 0, 0, 0, 0]";
+  const std::string floors[] = {
+      "{plane: z}", "{box: [10, 2, 0.2], position: [0, 0, -0.1]}",
+      "{height_field: {spacing: 1, heights: [" + row + ", " + row + ", " + row + "]}}"};
+  for (const std::string& floor : floors)
+    for (const std::string law : {"barrier", "nonsmooth"})
+      for (const double step : {1e-2, 5e-3, 1e-3}) {
+        if (law == "nonsmooth" && floor.find("height_field") != std::string::npos) continue;
+        SCOPED_TRACE(format("{} by {} at {} s", floor, law, step));
+        Simulation s(read_model_text(
+            format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+                   "  floor: {{fixed: true, shape: {}}}\n"
+                   "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
+                   "0.00905], orientation: {{axis: x, angle: 90 deg}}, position: [0, 0, 0.1], "
+                   "velocity: [1, 0, 0], angular_velocity: [0, 10, 0]}}\n"
+                   "contacts: {{default: {{law: {}, friction: 0.3}}}}\n"
+                   "analysis: {{type: dynamics, duration: 1 s, step: {} s}}\n",
+                   floor, law, step),
+            "m.yaml"));
+        const RunSummary end = s.run();
+        ASSERT_EQ(end.end, RunEnd::finished) << end.message;
+        const double error = law == "barrier" ? 1e-6 : 10.0 * step * step;
+        EXPECT_NEAR(s.body("pipe").v.x(), 1.0, error);
+        EXPECT_NEAR(s.body("pipe").v.y(), 0.0, 1e-9);
+        EXPECT_NEAR(s.body("pipe").r.z(), 0.1, 1e-6);
+        EXPECT_LT(std::abs(end.contacts->numerical),
+                  law == "barrier" ? 1e-9 : 200.0 * step * step * step);
+      }
+}
+
+/// A thin bar through a tube, and a tube that falls with its mouth on a corner of a box: the rim
+/// touches neither.
+TEST(TubeContact, LeavesItsMouthOpen) {
+  for (const double step : {5e-3, 1e-3, 2e-4}) {
+    Simulation s(read_model_text(
+        format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+               "  bar: {{fixed: true, shape: {{box: [0.02, 0.02, 2]}}, position: [0.07, 0, 0]}}\n"
+               "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
+               "0.00905], position: [0, 0, 0.5]}}\n"
+               "contacts: {{default: {{friction: 0}}}}\n"
+               "analysis: {{type: dynamics, duration: 0.3 s, step: {} s}}\n",
+               step),
+        "m.yaml"));
+    const RunSummary end = s.run();
+    ASSERT_EQ(end.end, RunEnd::finished) << step;
+    EXPECT_NEAR(s.body("pipe").r.z(), 0.5 - 0.5 * 9.81 * 0.09, 1e-9) << step;
+    EXPECT_EQ(end.contacts->touching, 0) << step;
+    Simulation t(read_model_text(
+        format("format: 1\ngravity: [0, 0, -9.81]\nbodies:\n"
+               "  crate: {{fixed: true, shape: {{box: [0.4, 0.4, 0.4]}}, orientation: {{axis: [1, "
+               "-1, 0], angle: 0.955316618 rad}}}}\n"
+               "  pipe: {{shape: {{tube: [0.2, 0.18, 0.3]}}, mass: 1, inertia: [0.01, 0.01, "
+               "0.00905], position: [0, 0, 0.5]}}\n"
+               "contacts: {{default: {{friction: 0}}}}\n"
+               "analysis: {{type: dynamics, duration: 0.3 s, step: {} s}}\n",
+               step),
+        "m.yaml"));
+    const RunSummary rests = t.run();
+    ASSERT_EQ(rests.end, RunEnd::finished) << step << ": " << rests.message;
+    // Three edges of the corner, each at √2 of its height from the vertical, meet the inner rim.
+    const double corner = 0.2 * std::sqrt(3.0), lower = 0.09 / std::sqrt(2.0);
+    EXPECT_NEAR(t.body("pipe").r.z(), corner - lower + 0.15, 1e-3) << step;
+    EXPECT_LT(rests.energy_drift, 1e-9) << step;
+  }
+}
 
 }  // namespace
 }  // namespace polhode::tube_contact_tests

@@ -47,10 +47,11 @@ class Finder {
     const std::vector<int>& points = faces || some ? a_.face_points : a_.points;
     for (int i : some ? other.corners_ : points) {
       if (some && !std::binary_search(points.begin(), points.end(), i)) continue;
+      if (has_rings() && !on_inner_side(a_, i)) continue;
       const Vec3 x = in_b(a_.corners[i]);
       if (b_.solid == Solid::surface) {
         if (out_of_ball(x, 0.0) || !in_region({x})) continue;
-        if (is_tube(b_) && !each_triangle_)
+        if (is_tube(b_))
           add({GapKind::point_solid, i, 0, 1.0, Fade::none});
         else if (!each_triangle_)
           add({GapKind::point_surface, i, 0, 1.0, Fade::none});
@@ -81,9 +82,9 @@ class Finder {
     }
   }
 
-  /// Adds the pairs of a round side a.
+  /// Adds the pairs of a round side a, or of the outer rims of a tube.
   void round() {
-    if (!a_.round() && !stands_on_plane()) return;
+    if (!a_.round() && !stands_on_plane() && !has_rings()) return;
     const bool whole = a_.flat_ends.empty();
     const int parts = whole ? 1 : static_cast<int>(a_.flat_ends.size());
     const Fade fade = whole ? Fade::none : Fade::parallel;
@@ -109,7 +110,7 @@ class Finder {
       }
     // Edges are tested against the lateral surface between both ends. An ellipsoid is already one
     // part; only capsules have an edge without faces.
-    if (whole && b_.solid != Solid::segment) return;
+    if ((whole && b_.solid != Solid::segment) || has_rings()) return;
     for (int j : edges_)
       if (b_.edges[j].convex) add({GapKind::round_edge, 0, j, 1.0, Fade::none});
   }
@@ -183,7 +184,13 @@ class Finder {
   }
 
   [[nodiscard]] bool stands_on_plane() const {
-    return is_tube(a_) && b_.solid == Solid::half_space && !each_triangle_;
+    return is_tube(a_) && b_.solid == Solid::half_space;
+  }
+  /// Whether the outer rims of a tube act, instead of the corners of its polygon. Single triangles
+  /// do not show a rim that has passed through them.
+  [[nodiscard]] bool has_rings() const {
+    return is_tube(a_) &&
+           (b_.solid == Solid::polyhedron || (b_.solid == Solid::surface && !each_triangle_));
   }
   [[nodiscard]] double reach() const { return distance_ + a_.rounding + b_.rounding; }
   [[nodiscard]] Vec3 in_b(const Vec3& X) const { return at_b_.to_body(value(at_a_.point(X))); }

@@ -3,9 +3,13 @@
 // both is strictly convex and the other convex.
 #include <algorithm>
 #include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include <polhode/contact/gap_parts.hpp>
 #include <polhode/contact/round_solids/ellipsoid.hpp>
+#include <polhode/contact/round_solids/ring.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 #include <polhode/geometry/nearest.hpp>
@@ -16,6 +20,12 @@ namespace {
 
 /// Bulge of the disc at an end of a cylinder or cone, as a part of its radius.
 constexpr double kBulge = 2e-3;
+
+/// Half thickness of a ring, as a part of its radius.
+constexpr double kThin = 1e-6;
+/// Number of places along an edge at which its distance from a ring, which may have two minima, is
+/// compared.
+constexpr int kPlaces = 32;
 
 /// Feature of b nearest to a part.
 struct Nearest {
@@ -30,7 +40,8 @@ class SeenPart {
  public:
   template <class T>
   SeenPart(const Shape& part, const Placement<T>& at_a, const Placement<T>& at_b)
-      : half_(part.half),
+      : ring_(is_ring(part)),
+        half_(part.half),
         centre_(at_b.to_body(value(at_a.point(part.centre)))),
         farthest_(part.half.maxCoeff()) {
     const Vec3 origin = at_b.to_body(Vec3::Zero());
@@ -38,6 +49,7 @@ class SeenPart {
       axes_.col(i) = at_b.to_body(value(at_a.vector(part.axes.col(i)))) - origin;
   }
   [[nodiscard]] const Vec3& centre() const { return centre_; }
+  [[nodiscard]] bool ring() const { return ring_; }
 
   /// Nearest point of a plane if it lies in its triangle; where the part penetrates the plane, the
   /// middle of the section.
@@ -53,6 +65,8 @@ class SeenPart {
     const double reach = local.norm(), distance = height - reach;
     if (height < 0.0) return distance;
     const Vec3 to_nearest = -axes_ * half_.cwiseProduct(local) / reach;
+    // The lowest place of a ring below the plane may lie beyond the solid, within the ring.
+    if (ring_ && distance < 0.0) return distance;
     const Vec3 x = centre_ + std::min(1.0, height / reach) * to_nearest;
     const Vec3 u = q - p, v = r - p, w = x - p, m = u.cross(v);
     const double size = m.squaredNorm(), s = w.cross(v).dot(m) / size, t = u.cross(w).dot(m) / size;
@@ -61,6 +75,35 @@ class SeenPart {
     if (best.kind != Nearest::face || !(best.distance > distance))
       best = {Nearest::face, triangle, 0.0, distance};
     return distance;
+  }
+
+  /// Whether a ring and the convex polyhedron b overlap: arcs of it lie below all planes.
+  [[nodiscard]] bool reaches_into(const Shape& b) const {
+    using Arc = std::pair<double, double>;
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    std::vector<Arc> inside{{0.0, kTurn}}, left;
+    for (const auto& plane : b.planes) {
+      const Vec3 n = half_.x() * (axes_.transpose() * plane.normal);
+      const double height = plane.normal.dot(centre_) - plane.offset,
+                   most = std::hypot(n.x(), n.y());
+      if (height >= most) return false;
+      if (height <= -most) continue;
+      // Angles of negative height.
+      const double half = std::acos(-height / most);
+      double first = std::atan2(n.y(), n.x()) + half;
+      first -= kTurn * std::floor(first / kTurn);
+      const double last = first + kTurn - 2.0 * half;
+      left.clear();
+      for (const Arc& arc : inside)
+        for (const double shift : {0.0, kTurn}) {
+          const double low = std::max(arc.first, first - shift),
+                       high = std::min(arc.second, last - shift);
+          if (low < high) left.emplace_back(low, high);
+        }
+      inside.swap(left);
+      if (inside.empty()) return false;
+    }
+    return true;
   }
 
   /// Lower bound of the distance: convex bodies lie behind their tangent planes, so no point of a
@@ -73,26 +116,51 @@ class SeenPart {
     return n.dot(y) - half_.cwiseProduct(n).norm() - 0.5 * (axes_ * n).cwiseAbs().dot(high - low);
   }
 
+  /// Distance of a point from the part. @param n  Direction in which it grows, in axes of the part.
+  [[nodiscard]] double from(const Vec3& y, Vec3& n) const {
+    if (ring_) {
+      const double q = std::hypot(y.x(), y.y());
+      const Vec3 outward = q > 0.0 ? Vec3(y.x() / q, y.y() / q, 0.0) : Vec3(Vec3::UnitX());
+      n = y - half_.x() * outward;
+      const double distance = n.norm();
+      n /= distance;
+      return distance;
+    }
+    const double root = nearest_on_ellipsoid(half_, y);
+    n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
+    return n.dot(y) - half_.cwiseProduct(n).norm();
+  }
+
+  [[nodiscard]] double corner(const Vec3& x) const {
+    Vec3 n;
+    return ring_ ? from(axes_.transpose() * (x - centre_), n) : bound(x, x);
+  }
+
   void edge(const Shape& b, int index, Nearest& best) const {
     const Vec3 &p = b.corners[b.edges[index].i], v = b.corners[b.edges[index].j] - p;
     const double middle = std::clamp((centre_ - p).dot(v) / v.squaredNorm(), 0.0, 1.0);
     if ((centre_ - p - middle * v).norm() - farthest_ > best.distance) return;
     const Vec3 X = axes_.transpose() * (p - centre_), V = axes_.transpose() * v;
     const auto at = [&](double t, double& distance) {
-      const Vec3 y = X + t * V;
-      const double root = nearest_on_ellipsoid(half_, y);
-      const Vec3 n = y.cwiseQuotient((half_.cwiseAbs2().array() + root).matrix()).normalized();
-      distance = n.dot(y) - half_.cwiseProduct(n).norm();
+      Vec3 n;
+      distance = from(X + t * V, n);
       return n.dot(V);
     };
-    // The distance is convex along the edge: its slope changes sign once.
+    // The distance from a convex part is convex along the edge: its slope changes sign once.
     double low = 0.0, high = 1.0, d_low = 0.0, d_high = 0.0;
+    if (ring_) around_minimum(X, V, middle, at, low, high);
     double s_low = at(low, d_low), s_high = at(high, d_high);
     const auto take = [&](Nearest::Kind kind, int which, double t, double distance) {
       if (distance < best.distance) best = {kind, which, t, distance};
     };
-    if (s_low >= 0.0) return take(Nearest::corner, b.edges[index].i, 0.0, d_low);
-    if (s_high <= 0.0) return take(Nearest::corner, b.edges[index].j, 0.0, d_high);
+    const auto take_end = [&](double t, double distance) {
+      if (t == 0.0 || t == 1.0)
+        take(Nearest::corner, t == 0.0 ? b.edges[index].i : b.edges[index].j, 0.0, distance);
+      else
+        take(Nearest::edge, index, t, distance);
+    };
+    if (s_low >= 0.0) return take_end(low, d_low);
+    if (s_high <= 0.0) return take_end(high, d_high);
     double t = 0.5, distance = 0.0;
     const double enough = 1e-13 * v.norm();
     for (int k = 0, side = 0; k < 100 && high - low > 1e-15; ++k) {  // Illinois
@@ -113,6 +181,29 @@ class SeenPart {
   }
 
  private:
+  /// Range of an edge around its place nearest to a ring. The nearest place is no farther from the
+  /// centre than that nearest to the centre plus two radii.
+  template <class At>
+  void around_minimum(const Vec3& X, const Vec3& V, double middle, const At& at, double& low,
+                      double& high) const {
+    const double near = (X + middle * V).norm(), far = near + 2.0 * half_.x(),
+                 along = std::sqrt(far * far - near * near) / V.norm();
+    const double first = std::max(0.0, middle - along), last = std::min(1.0, middle + along);
+    const auto place = [&](int k) {
+      return k == kPlaces ? last : first + (last - first) * k / kPlaces;
+    };
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kPlaces; ++k) {
+      double distance = 0.0;
+      at(place(k), distance);
+      if (distance < least) least = distance, best = k;
+    }
+    low = place(std::max(0, best - 1));
+    high = place(std::min(kPlaces, best + 1));
+  }
+
+  bool ring_;
   Vec3 half_, centre_;
   Mat3 axes_;
   double farthest_;
@@ -145,8 +236,7 @@ struct SeenSurface {
   }
   [[nodiscard]] SurfacePlace corner(int k) const {
     if (is_tube(b) && on_inner_side(b, k)) return place({});
-    Nearest n{Nearest::corner, k, 0.0, part.bound(b.corners[k], b.corners[k])};
-    return place(n);
+    return place({Nearest::corner, k, 0.0, part.corner(b.corners[k])});
   }
 };
 
@@ -197,7 +287,7 @@ Nearest nearest_of(const FeaturePair& pair, const Shape& b, const SeenPart& part
     inside = inside && b.planes[t].normal.dot(part.centre()) < b.planes[t].offset;
     if (distance > shallowest.distance) shallowest = {Nearest::face, t, 0.0, distance};
   }
-  if (inside) return shallowest;
+  if (part.ring() ? part.reaches_into(b) : inside) return shallowest;
   if (best.kind == Nearest::face) return best;
   for (int e = 0; e < static_cast<int>(b.edges.size()); ++e) part.edge(b, e, best);
   return best;
@@ -291,6 +381,16 @@ V3<T> farthest_from_axis(const Shape& part, const Shape& tube, const Placement<T
 Shape part_of(const Shape& a, int which) {
   Shape part;
   part.solid = Solid::round;
+  if (is_tube(a)) {  // its outer rim, slightly behind the end, on whose inner rim it stands
+    const auto& [height, radius] = a.flat_ends[static_cast<std::size_t>(which)];
+    const double behind = std::min(kBulge * radius, 0.5 * a.half[2]);
+    part.round_solid = &ring_solid();
+    part.rounding = a.rounding;
+    part.axes = a.axes;
+    part.centre = a.centre + (height < 0.0 ? height + behind : height - behind) * a.axes.col(2);
+    part.half = {radius, radius, kThin * radius};
+    return part;
+  }
   part.round_solid = &ellipsoid_solid();
   part.rounding = a.rounding;
   part.axes = a.axes;

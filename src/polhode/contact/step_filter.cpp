@@ -5,6 +5,7 @@
 
 #include <polhode/contact/closed_form_point.hpp>
 #include <polhode/contact/contact_set.hpp>
+#include <polhode/contact/round_solids/ring.hpp>
 #include <polhode/contact/surface_features.hpp>
 #include <polhode/contact/tube.hpp>
 
@@ -23,6 +24,8 @@ constexpr double kMinAdvance = 1e-4;
 /// Tolerance on the kept clearance, as a part of it.
 constexpr double kMissing = 0.5;
 constexpr int kHalvings = 30;
+/// Distance of two parallel planes that count as one, as a part of a ring's radius.
+constexpr double kSamePlane = 1e-5;
 /// Cayley vector of the largest rotation in one iteration.
 constexpr double kLongestTurn = 0.6;
 
@@ -79,6 +82,24 @@ struct PathSeenFromB {
            (turn_a * turn_a * distance + turn_b * turn_b * (y.norm() + far) + 2.0 * turn_b * far);
   }
 };
+
+/// Whether side a of a pair is a part of a shape.
+bool has_part(GapKind kind) {
+  return kind == GapKind::part_solid || kind == GapKind::part_triangle ||
+         kind == GapKind::part_edge || kind == GapKind::part_corner ||
+         kind == GapKind::part_surface;
+}
+
+/// Whether all of a part lies in front of the plane across a gap through its nearest point. A ring
+/// may have another shape within it, which its other side may approach faster.
+bool lies_in_front(const Shape& part, const Vec3& r, const Mat3& Lambda, const Gap<double>& g) {
+  if (!is_ring(part)) return true;
+  const Vec3 n = value(g.normal);
+  const double nearest = n.dot(value(g.point)) + 0.5 * g.distance + part.rounding,
+               extent =
+                   part.half.cwiseProduct(part.axes.transpose() * (Lambda.transpose() * n)).norm();
+  return n.dot(r + Lambda * part.centre) - extent > nearest - kSamePlane * part.half.x();
+}
 
 /// Number of halvings of the rest of the increment in the search for a part in front of a plane.
 constexpr int kShorterParts = 4;
@@ -238,10 +259,11 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   const Vec3 relative = x_a.head<3>() - x_b.head<3>();
   // On a straight path a concave side may be approached faster than along the present normal.
   const GapKind kind = p.data.pair.kind;
-  const bool hollow =
+  const bool in_tube =
       (kind == GapKind::point_solid || kind == GapKind::part_solid) && is_tube(*p.data.b);
+  const Shape part_a = has_part(kind) ? part_of(*p.data.a, p.data.pair.i) : Shape{};
   std::array<Vec3, 2> ends;
-  const bool single = !hollow && few_points(*p.data.a, p.data.pair, true, ends) == 1;
+  const bool single = !in_tube && few_points(*p.data.a, p.data.pair, true, ends) == 1;
   const PathSeenFromB path{a, b, x_a, x_b, single ? ends[0] : Vec3::Zero()};
   const auto part_in_front = [&](const Gap<double>& g, double from) {
     const PathSeenFromB::Where now = path.at(from);
@@ -258,6 +280,8 @@ double ContactSet::advance(const Followed& followed, std::span<const BodyStep> s
   for (int k = 0; k < 200; ++k) {
     const Gap<double> g = gap_along(p, p.data.pair, steps, increments, done);
     const Vec3 n = value(g.normal);
+    const bool hollow = in_tube || !lies_in_front(part_a, a.r_n1 + done * x_a.head<3>(),
+                                                  Mat3(cay(done * x_a.tail<3>()) * a.Lambda_n1), g);
     double speed = hollow ? relative.norm() : std::max(0.0, -n.dot(relative));
     std::array<Vec3, 2> few;
     const auto turns = [&](const Vec3& theta, const Mat3& Lambda, const Vec3& towards,
@@ -340,8 +364,8 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
       [&](int t) {
         if (!is_tube(B) || !is_inner_side(B, t)) near.push_back(t);
       });
-  const auto speed = [&](const Vec3& n, const Mat3& L_a, double left) {
-    double v = std::max(0.0, -n.dot(relative));
+  const auto speed = [&](const Vec3& n, const Mat3& L_a, double left, bool in_front) {
+    double v = in_front ? std::max(0.0, -n.dot(relative)) : relative.norm();
     if (corner) {
       const std::array<Vec3, 1> z{L_a * Z};
       v += approach_by_turn(x_a.tail<3>(), n, z, left);
@@ -370,21 +394,22 @@ double ContactSet::advance_over_surface(int point, std::span<const BodyStep> ste
     double done = 0.0, last = 0.0;
     for (int k = 0; k < 200 && done < most; ++k) {
       const Where w = path.at(done);
-      const auto next = [&](double gap, const Vec3& n) {
-        const double v = speed(n, w.L_a, most - done);
+      const auto next = [&](double gap, const Vec3& n, bool in_front) {
+        const double v = speed(n, w.L_a, most - done, in_front);
         return gap < least ? 0.0
                : v > 0.0   ? (gap - least) / v
                            : std::numeric_limits<double>::infinity();
       };
       double step =
-          least_known ? next(over_plane_of_it(w), Vec3(side * (w.L_b * plane.normal))) : 0.0;
+          least_known ? next(over_plane_of_it(w), Vec3(side * (w.L_b * plane.normal)), true) : 0.0;
       if (!(step >= most - done)) {
         const Gap<double> g = gap_along(p, alone, steps, increments, done);
         if (k == 0) {
           least = p.least_gap + kKept * std::min(std::max(0.0, g.distance - p.least_gap), band);
           least_known = true;
         }
-        step = std::max(step, next(g.distance, value(g.normal)));
+        const bool in_front = lies_in_front(part, a.r_n1 + done * x_a.head<3>(), w.L_a, g);
+        step = std::max(step, next(g.distance, value(g.normal), in_front));
       }
       if (step >= most - done) {
         done = most;
