@@ -39,7 +39,7 @@ def main(folder):
             count += 1
             to = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
             if not to.exists():
-                faults.append(f"{path.relative_to(folder)}: {link} leads nowhere")
+                faults.append(f"{path.relative_to(folder)}: {link} does not exist")
             elif parts.fragment and to in pages and urllib.parse.unquote(parts.fragment) not in pages[to].places:
                 faults.append(f"{path.relative_to(folder)}: {link} leads to no place of that page")
     print("\n".join(faults[:50]) if faults else f"{len(pages)} pages, {count} links, all lead somewhere.")

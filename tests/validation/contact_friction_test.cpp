@@ -121,7 +121,7 @@ TEST(ContactFriction, CoinRollsAsTheReferenceTells) {
 }
 
 /// A ball that rolls and spins about the vertical with resistance to both: 5 μ_r g/(7 R).
-TEST(ContactFriction, RollingAndDrillingResistanceStopABall) {
+TEST(ContactFriction, RollingAndTorsionalFrictionStopABall) {
   const double R = 0.1, rolling = 2e-3, torsion = 3e-3;
   Scene s;
   BodyMotion start = at({0.0, 0.0, R}, {1.0, 0.0, 0.0});

@@ -104,7 +104,7 @@ TEST(NonsmoothContact, BowlingBallEndsRolling) {
 
 /// Rolling friction μ_r slows a ball that rolls by 5 μ_r g/(7 R); spin friction (torsional) slows
 /// one that spins in place by 5 μ_t g/(2 R²).
-TEST(NonsmoothContact, RollingAndDrillingFrictionSlowABall) {
+TEST(NonsmoothContact, RollingAndTorsionalFrictionSlowABall) {
   Scene s;
   const double R = 0.1, mu_r = 2e-3, mu_t = 1e-3;
   BodyMotion rolls = at({0.0, 0.0, R}, {1.0, 0.0, 0.0});

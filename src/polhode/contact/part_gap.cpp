@@ -79,6 +79,12 @@ class SeenPart {
 
   /// Whether a ring and the convex polyhedron b overlap: arcs of it lie below all planes.
   [[nodiscard]] bool reaches_into(const Shape& b) const {
+    if (std::any_of(b.planes.begin(), b.planes.end(), [&](const auto& plane) {
+          return plane.normal.dot(centre_) -
+                     half_.cwiseProduct(axes_.transpose() * plane.normal).norm() >=
+                 plane.offset;
+        }))
+      return false;
     using Arc = std::pair<double, double>;
     constexpr double kTurn = 2.0 * std::numbers::pi;
     std::vector<Arc> inside{{0.0, kTurn}}, left;

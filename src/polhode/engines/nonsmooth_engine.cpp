@@ -207,7 +207,7 @@ int NonsmoothEngine::most_sweeps() const {
 /// for few points; if it fails, more sweeps follow.
 void NonsmoothEngine::sweep() {
   const double enough = options_.tolerance * reference_;
-  exact_ = false;
+  bool exact = false;
   const bool balls = SphereGaussSeidel::suit(sweeps_);
   const auto run = [&](int most) {
     balls ? balls_.take(sweeps_) : sweeps_.prepare();
@@ -217,14 +217,14 @@ void NonsmoothEngine::sweep() {
       ++search_.sweeps;
       search_.change = reference_ > 0.0 ? change / reference_ : change;
       search_.converged = change <= enough;
+      exact = change <= kExact * enough;
     } while (!search_.converged && search_.sweeps < most);
     if (balls) balls_.give_back(sweeps_);
   };
   run(options_.sweeps > 0 ? options_.sweeps : kUsualSweeps);
-  if (search_.converged ? unknowns() <= kFew : is_small()) {
+  if (search_.converged ? !exact && unknowns() <= kFew : is_small()) {
     if (balls) sweeps_.prepare();
-    exact_ = solve_impulses(sweeps_, kExact * enough);
-    search_.converged = search_.converged || exact_;
+    if (solve_impulses(sweeps_, kExact * enough)) search_.converged = true;
   }
   if (!search_.converged && search_.sweeps < most_sweeps()) run(most_sweeps());
   for (int k = 0; k < point_count(); ++k) {
@@ -316,8 +316,7 @@ bool NonsmoothEngine::hold_back() {
     taken += losses_[k].normal + losses_[k].friction;
     pressed += points_[k].impulse.norm();
   }
-  const double error = (exact_ ? kExact : 1.0) * options_.tolerance * reference_;
-  if (taken >= -error * pressed) return false;
+  if (taken >= -options_.tolerance * reference_ * pressed) return false;
   held_back_.resize(points_.size(), 0);
   bool any = false;
   for (std::size_t k = 0; k < points_.size(); ++k) {

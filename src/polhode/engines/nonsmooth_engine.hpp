@@ -71,7 +71,6 @@ class NonsmoothEngine final : public NewtonEngine {
   std::vector<Mat3> inertia_;                         ///< World, at t_n.
   std::vector<char> round_;                           ///< By body: isotropic inertia.
   ImpulseSearch search_;
-  bool exact_ = false;      ///< Newton's method has solved for the impulses.
   double dt_ = 0.0;         ///< Of the step [s].
   double reference_ = 0.0;  ///< Reference speed of ImpulseOptions::tolerance [m/s].
   int worst_body_ = -1;
