@@ -145,6 +145,8 @@ class ContactSet final : public BodyContacts, public PointwiseContacts, public I
   void place_points(std::span<const BodyStep> steps, std::span<ImpulsePoint> list) const override;
   [[nodiscard]] double gap_after(std::span<const BodyStep> steps,
                                  const ImpulsePoint& point) const override;
+  [[nodiscard]] std::optional<std::pair<int, int>> passed(
+      std::span<const BodyStep> steps) const override;
   Work commit_impulses(State& state, std::span<const BodyStep> steps, const StepContext& context,
                        std::span<const ImpulsePoint> list, std::span<const ImpulseLoss> losses,
                        const ImpulseSearch& search) override;

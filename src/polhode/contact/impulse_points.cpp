@@ -40,6 +40,8 @@ constexpr double kPasses = 0.5;
 constexpr double kMinTurn = 1e-6, kMinMove = 1e-6;
 /// Largest shift of a point, as a part of the size, and largest rotation of a normal.
 constexpr double kMaxShift = 0.1, kMaxTilt = 0.1;
+/// Displacement of two edges in a step, as a part of the size, above which they are followed.
+constexpr double kFast = 0.02;
 /// Distance, as a part of the rounding, below which points of one surface are the same.
 constexpr double kSamePlace = 1e-6;
 
@@ -119,6 +121,41 @@ void follow_gap(const PointData& d, double change, const BodyStep& a, const Body
   } else if (u.norm() > kMinMove * d.length && std::abs(miss) < kMaxTilt * u.norm()) {
     at.normal = (at.normal + miss / u.squaredNorm() * u).normalized();
   }
+}
+
+/// Whether a segment passes through a triangle.
+bool passes_through(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& y, const Vec3& z) {
+  const Vec3 u = y - x, v = z - x, w = q - p, across = w.cross(v);
+  const double volume = u.dot(across);
+  if (volume == 0.0) return false;
+  const Vec3 from = p - x, other = from.cross(u);
+  const double s = from.dot(across) / volume, t = w.dot(other) / volume, k = v.dot(other) / volume;
+  return s > 0.0 && t > 0.0 && s + t < 1.0 && k > 0.0 && k < 1.0;
+}
+
+/// Whether an edge of a passes through the surface of b. Cores of bodies in contact are apart by
+/// their roundings.
+bool pierces(const Shape& a, int edge, const Shape& b, const Placement<double>& at_a,
+             const Placement<double>& at_b) {
+  const Vec3 p = at_b.to_body(value(at_a.point(a.corners[a.edges[edge].i]))),
+             q = at_b.to_body(value(at_a.point(a.corners[a.edges[edge].j])));
+  bool found = false;
+  const auto take = [&](int t) {
+    const auto& c = b.triangles[t];
+    found = found || passes_through(p, q, b.corners[c[0]], b.corners[c[1]], b.corners[c[2]]);
+  };
+  if (!b.tree) {
+    for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t) take(t);
+    return found;
+  }
+  const Vec3 low = p.cwiseMin(q), high = p.cwiseMax(q);
+  b.tree->visit(
+      [&](const auto& box) {
+        return !found && (box.low.array() <= high.array()).all() &&
+               (low.array() <= box.high.array()).all();
+      },
+      take);
+  return found;
 }
 
 Vec3 relative(const Vec3& v_a, const Vec3& w_a, const Vec3& arm_a, const Vec3& v_b, const Vec3& w_b,
@@ -271,6 +308,28 @@ double ContactSet::gap_after(std::span<const BodyStep> steps, const ImpulsePoint
   const Vec3 apart = a.u + a.theta.cross(point.place - a.r_n - 0.5 * a.u) - b.u -
                      b.theta.cross(point.place - b.r_n - 0.5 * b.u);
   return point.gap + point.normal.dot(apart);
+}
+
+std::optional<std::pair<int, int>> ContactSet::passed(std::span<const BodyStep> steps) const {
+  int last = -1;  // edge of the last pair
+  for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+    const Point& p = points_[i];
+    if (p.data.pair.kind != GapKind::edge_edge || p.sensor) continue;
+    const BodyStep &a = steps[balls_[i].a], &b = steps[balls_[i].b];
+    const double least = least_gap_at_end(p, a, b);
+    if (least > 0.0 || p.gap_n - least < kFast * p.data.length) continue;
+    const Placement<double> from_a(a.r_n, a.Lambda_n, 0), from_b(b.r_n, b.Lambda_n, 6),
+        to_a(a.r_n1, a.Lambda_n1, 0), to_b(b.r_n1, b.Lambda_n1, 6);
+    const Shape &A = *p.data.a, &B = *p.data.b;
+    const auto [e, f] = std::pair(p.data.pair.i, p.data.pair.j);
+    const bool again =
+        last >= 0 && points_[last].key[0] == p.key[0] && points_[last].data.pair.i == e;
+    last = i;
+    if ((!again && pierces(A, e, B, to_a, to_b) && !pierces(A, e, B, from_a, from_b)) ||
+        (pierces(B, f, A, to_b, to_a) && !pierces(B, f, A, from_b, from_a)))
+      return std::pair(shapes_[p.a].body, shapes_[p.b].body);
+  }
+  return std::nullopt;
 }
 
 void ContactSet::report_impulse(Point& p, const ImpulsePoint& at, const ImpulseLoss& loss,

@@ -286,12 +286,15 @@ Iteration NonsmoothEngine::iterate(const State& state, Trial& trial, bool, doubl
     if (!move(state, trial)) return done;
     add_up(trial.context.dt);
   }
-  if (const int k = pressed_in(trial.context); k >= 0) {
+  std::optional<std::pair<int, int>> overlap;
+  if (search_.converged) overlap = impulsive_->passed(steps_);
+  if (const int k = pressed_in(trial.context); k >= 0) overlap = {points_[k].a, points_[k].b};
+  if (overlap) {
     const auto name = [&](int body) {
       return body == kGround ? std::string("the ground")
                              : format("body '{}'", system_->bodies()[body].name);
     };
-    done.reason = format("{1} and {0} would overlap", name(points_[k].a), name(points_[k].b));
+    done.reason = format("{1} and {0} would overlap", name(overlap->first), name(overlap->second));
     if (!search_.converged)
       done.reason +=
           format(", as {} sweeps did not converge: raise contacts.sweeps", search_.sweeps);

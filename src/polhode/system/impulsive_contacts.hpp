@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <polhode/system/pair_terms.hpp>
@@ -65,6 +67,9 @@ class ImpulsiveContacts {
   /// Gap of a point at the end of the steps [m].
   [[nodiscard]] virtual double gap_after(std::span<const BodyStep> steps,
                                          const ImpulsePoint& point) const = 0;
+  /// Two bodies with an edge that passes into the other one in fast steps.
+  [[nodiscard]] virtual std::optional<std::pair<int, int>> passed(
+      std::span<const BodyStep> steps) const = 0;
   /// Commits an accepted step like BodyContacts::commit().
   virtual Work commit_impulses(State& state, std::span<const BodyStep> steps,
                                const StepContext& context, std::span<const ImpulsePoint> list,
